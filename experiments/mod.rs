@@ -1,0 +1,1 @@
+//! The experiments: settings on one page per paper, one function per artefact.

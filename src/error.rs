@@ -1,0 +1,101 @@
+//! What failed, and where.
+//!
+//! Each layer has its own error type with one variant per way to be wrong, carrying the culprit
+//! (`LayoutError`, `GrammarError`, ...). [`Error`] is what a user of files and commands meets: it
+//! adds the path, and the place inside the file, to such a cause.
+
+use std::path::{Path, PathBuf};
+
+/// Result of an operation on files or of a command.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Any cause, from any layer.
+pub type Cause = Box<dyn std::error::Error + Send + Sync + 'static>;
+
+/// A failure with its place: which file, where in it, and why.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The operating system refused to read or write.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// File or folder concerned.
+        path: PathBuf,
+        /// What was tried, as a verb: `read`, `create`, ...
+        action: &'static str,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// The content of a file is not what its format promises.
+    #[error("{}: {place}: {source}", path.display())]
+    Input {
+        /// File concerned.
+        path: PathBuf,
+        /// Place in the file: `line 3, column 7`, `regions[17].width`, `pixel (3, 9)`, ...
+        place: String,
+        /// What is wrong there.
+        source: Cause,
+    },
+    /// The content of a file as a whole cannot serve.
+    #[error("{}: {source}", path.display())]
+    Content {
+        /// File concerned.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: Cause,
+    },
+    /// A value that the user gave on the command line cannot serve.
+    #[error("{option}: {message}")]
+    Option {
+        /// The option or argument.
+        option: String,
+        /// Why it cannot serve.
+        message: String,
+    },
+    /// A method failed on valid input.
+    #[error("{0}")]
+    Method(#[source] Cause),
+    /// The user asked to stop; what was finished is kept.
+    #[error("interrupted; finished work is kept, run the same command again to resume")]
+    Interrupted,
+}
+
+impl Error {
+    /// Wraps an I/O error with its path and the verb that failed.
+    pub fn io(path: &Path, action: &'static str, source: std::io::Error) -> Self {
+        Self::Io {
+            path: path.to_path_buf(),
+            action,
+            source,
+        }
+    }
+
+    /// Wraps a cause with its file and the place in it.
+    pub fn input(path: &Path, place: impl Into<String>, source: impl Into<Cause>) -> Self {
+        Self::Input {
+            path: path.to_path_buf(),
+            place: place.into(),
+            source: source.into(),
+        }
+    }
+
+    /// Wraps a cause with its file.
+    pub fn content(path: &Path, source: impl Into<Cause>) -> Self {
+        Self::Content {
+            path: path.to_path_buf(),
+            source: source.into(),
+        }
+    }
+
+    /// A bad command-line value.
+    pub fn option(option: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Option {
+            option: option.into(),
+            message: message.into(),
+        }
+    }
+
+    /// A method's own failure.
+    pub fn method(source: impl Into<Cause>) -> Self {
+        Self::Method(source.into())
+    }
+}

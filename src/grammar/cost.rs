@@ -1,0 +1,61 @@
+//! The cost of a grammar: its description length (Wu et al. 2014, Eq. 1 and 2).
+
+use super::{Grammar, Operation};
+
+/// Cost of each operation, `cost_op` of Eq. 2, and of each written successor.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Costs {
+    /// Split.
+    pub split: f64,
+    /// Repeat.
+    pub repeat: f64,
+    /// A B A ... B A.
+    pub repeat_aba: f64,
+    /// Mirrored split.
+    pub sym_split: f64,
+    /// Columns and rows at once.
+    pub grid_split: f64,
+    /// Each successor written in a rule: 1 in the paper, 0 in the first row of its Table 5.
+    pub successor: f64,
+}
+
+impl Default for Costs {
+    /// Split 0.1 and repeat 0.5 (Sec. 3.2); the extensions cost what the rule they extend costs.
+    fn default() -> Self {
+        Self {
+            split: 0.1,
+            repeat: 0.5,
+            repeat_aba: 0.5,
+            sym_split: 0.1,
+            grid_split: 0.1,
+            successor: 1.0,
+        }
+    }
+}
+
+impl Costs {
+    /// `cost_op` of the operation.
+    pub fn operation(&self, operation: &Operation) -> f64 {
+        match operation {
+            Operation::Split { .. } => self.split,
+            Operation::Repeat { .. } => self.repeat,
+            Operation::RepeatAba { .. } => self.repeat_aba,
+            Operation::SymSplit { .. } => self.sym_split,
+            Operation::GridSplit { .. } => self.grid_split,
+        }
+    }
+
+    /// Eq. 2: cost of one rule.
+    pub fn rule(&self, operation: &Operation) -> f64 {
+        self.operation(operation) + self.successor * operation.successor_count() as f64
+    }
+
+    /// Eq. 1: cost of a grammar, the sum over its rules.
+    pub fn grammar(&self, grammar: &Grammar) -> f64 {
+        grammar
+            .rules
+            .iter()
+            .map(|rule| self.rule(&rule.operation))
+            .sum()
+    }
+}

@@ -1,0 +1,160 @@
+//! The nouns of split grammars.
+
+use crate::shape::Axis;
+
+/// A size along the split axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Size {
+    /// In the grammar's unit.
+    Absolute(f64),
+    /// A weight: what absolute sizes leave over is shared in proportion (Wu et al. 2014, Sec. 5).
+    Relative(f64),
+}
+
+impl Size {
+    /// The number, whatever its kind.
+    pub fn value(self) -> f64 {
+        match self {
+            Size::Absolute(v) | Size::Relative(v) => v,
+        }
+    }
+}
+
+/// One symbol written on the right-hand side of a rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Successor {
+    /// Non-terminal symbol or terminal label.
+    pub symbol: String,
+    /// Its extent along the split axis.
+    pub size: Size,
+}
+
+impl Successor {
+    /// A successor of absolute size.
+    pub fn new(symbol: impl Into<String>, size: f64) -> Self {
+        Self {
+            symbol: symbol.into(),
+            size: Size::Absolute(size),
+        }
+    }
+}
+
+/// What a rule does to its rectangle (Wu et al. 2014, Sec. 3.1 and 4.7).
+#[derive(Debug, Clone, PartialEq)]
+pub enum Operation {
+    /// Successors in order along the axis (x: left to right, y: bottom to top).
+    Split {
+        /// Direction.
+        axis: Axis,
+        /// The parts.
+        successors: Vec<Successor>,
+    },
+    /// `successors` is one period, repeated a whole number of times, at least 2.
+    Repeat {
+        /// Direction.
+        axis: Axis,
+        /// One period.
+        successors: Vec<Successor>,
+    },
+    /// A B A B ... B A.
+    RepeatAba {
+        /// Direction.
+        axis: Axis,
+        /// The outer element.
+        a: Successor,
+        /// What stands between.
+        b: Successor,
+    },
+    /// The half from the outside in, and its mirror image.
+    SymSplit {
+        /// Direction.
+        axis: Axis,
+        /// From the outside in.
+        successors: Vec<Successor>,
+        /// Whether the last successor stands once in the middle.
+        center: bool,
+    },
+    /// Columns and rows at once.
+    GridSplit {
+        /// Widths of the columns, left to right.
+        columns: Vec<Size>,
+        /// Heights of the rows, bottom to top.
+        rows: Vec<Size>,
+        /// One symbol per cell, `cells[row][column]`.
+        cells: Vec<Vec<String>>,
+    },
+}
+
+impl Operation {
+    /// Number of successors written in the rule, `|alpha|` of Eq. 2.
+    pub fn successor_count(&self) -> usize {
+        match self {
+            Operation::Split { successors, .. }
+            | Operation::Repeat { successors, .. }
+            | Operation::SymSplit { successors, .. } => successors.len(),
+            Operation::RepeatAba { .. } => 2,
+            Operation::GridSplit { cells, .. } => cells.iter().map(Vec::len).sum(),
+        }
+    }
+
+    /// The name of the operation in files and on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Operation::Split { .. } => "split",
+            Operation::Repeat { .. } => "repeat",
+            Operation::RepeatAba { .. } => "repeat_aba",
+            Operation::SymSplit { .. } => "sym_split",
+            Operation::GridSplit { .. } => "grid_split",
+        }
+    }
+
+    /// The symbols written in the rule, in order.
+    pub fn symbols(&self) -> Vec<&str> {
+        match self {
+            Operation::Split { successors, .. }
+            | Operation::Repeat { successors, .. }
+            | Operation::SymSplit { successors, .. } => {
+                successors.iter().map(|s| s.symbol.as_str()).collect()
+            }
+            Operation::RepeatAba { a, b, .. } => vec![&a.symbol, &b.symbol],
+            Operation::GridSplit { cells, .. } => {
+                cells.iter().flatten().map(String::as_str).collect()
+            }
+        }
+    }
+}
+
+/// `symbol --> operation`, with a weight in a stochastic grammar.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// Left-hand side.
+    pub symbol: String,
+    /// Weight among the rules of the same symbol; `None` in a deterministic grammar.
+    pub weight: Option<f64>,
+    /// Right-hand side.
+    pub operation: Operation,
+}
+
+/// A facade that a joint grammar derives (Wu et al. 2014, Fig. 13).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    /// Name of the facade.
+    pub name: String,
+    /// Symbol to start from: a non-terminal, or a terminal when the facade is one region.
+    pub symbol: String,
+    /// Extent along x.
+    pub width: f64,
+    /// Extent along y.
+    pub height: f64,
+}
+
+/// A split grammar with the facade, or facades, that it explains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grammar {
+    /// Unit of absolute sizes.
+    pub unit: String,
+    /// Where derivation starts: one entry, or one per facade for a joint grammar. Never empty.
+    pub starts: Vec<Start>,
+    /// The rules. The order carries no meaning; writers keep it.
+    pub rules: Vec<Rule>,
+}

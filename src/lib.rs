@@ -1,0 +1,33 @@
+//! # Edifice
+//!
+//! A probabilistic-programming and optimization toolkit for buildings.
+//!
+//! Generic models ([`model`]) and generic optimizers ([`optim`]) are siblings that know nothing of
+//! each other; the methods of published papers ([`methods`]) join them, over the shared nouns of
+//! [`shape`] and [`grammar`]. Experiments reproduce each paper's tables and figures.
+//!
+//! | paper | module | experiment |
+//! | --- | --- | --- |
+//! | Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts* | [`methods::facade_grammar`] | `experiments/facade_grammar.rs` |
+//! | Weissenberg et al. 2013, *Is there a Procedural Logic to Architecture?* | [`methods::procedural_logic`] | `experiments/procedural_logic.rs` |
+//! | Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings* | [`methods::building_exteriors`] | `experiments/building_exteriors.rs` |
+//!
+//! ## Conventions
+//! - Origin at the lower left, x to the right, y up; lengths in the facade's own unit.
+//! - Randomness is an argument: see [`rng`]. Same seed, same bytes, whatever the number of threads.
+//! - Library code neither prints nor touches paths, except in [`io`], [`report`] and [`experiments`].
+
+pub mod cluster;
+pub mod error;
+#[path = "../experiments/mod.rs"]
+pub mod experiments;
+pub mod grammar;
+pub mod io;
+pub mod methods;
+pub mod model;
+pub mod optim;
+pub mod report;
+pub mod rng;
+pub mod shape;
+
+pub use error::{Error, Result};

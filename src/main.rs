@@ -1,0 +1,2 @@
+//! The `edifice` command line.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Building exteriors (Fan and Wonka 2016).

@@ -1,0 +1,1 @@
+//! Facade grammars (Wu et al. 2014).

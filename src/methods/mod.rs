@@ -1,0 +1,5 @@
+//! The papers' methods, one folder per paper; no method imports another.
+
+pub mod building_exteriors;
+pub mod facade_grammar;
+pub mod procedural_logic;

@@ -1,0 +1,1 @@
+//! Procedural logic (Weissenberg et al. 2013).

@@ -1,0 +1,13 @@
+//! The papers' shared nouns: geometry of facades and buildings.
+//!
+//! - [`Rect`]: an axis-parallel rectangle, origin at the lower left, y up.
+//! - [`Facade`]: labelled rectangles inside a rectangular domain (Wu et al. 2014, Sec. 3.1).
+//! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
+
+mod facade;
+mod label_grid;
+mod rect;
+
+pub use facade::{Facade, LayoutError, Region};
+pub use label_grid::LabelGrid;
+pub use rect::{Axis, Rect};
