@@ -1,2 +1,9 @@
-//! The `edifice` command line.
-fn main() {}
+//! The `edifice` command line: parses, calls, prints; everything else is in the library.
+
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run()
+}

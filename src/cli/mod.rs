@@ -1,0 +1,57 @@
+//! Commands of the contract. Results go to standard output, progress and messages to standard
+//! error; exit code 0 on success, 2 for bad usage, 1 for bad input or failure.
+
+mod building;
+mod facade;
+mod grammar;
+mod logic;
+mod print;
+mod reproduce;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Probabilistic programming and optimization for buildings.
+#[derive(Parser)]
+#[command(name = "edifice", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Infer, derive and show split grammars (Wu et al. 2014).
+    #[command(subcommand)]
+    Grammar(grammar::Command),
+    /// Convert facades between formats.
+    #[command(subcommand)]
+    Facade(facade::Command),
+    /// Rules, retrieval and new facades from labelled images (Weissenberg et al. 2013).
+    #[command(subcommand)]
+    Logic(logic::Command),
+    /// Learn how houses look (Fan and Wonka 2016).
+    #[command(subcommand)]
+    Building(building::Command),
+    /// Run the experiments of the papers and write the report.
+    Reproduce(reproduce::Args),
+}
+
+/// Parses the arguments and runs the command.
+pub fn run() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Grammar(command) => grammar::run(command),
+        Command::Facade(command) => facade::run(command),
+        Command::Logic(command) => logic::run(command),
+        Command::Building(command) => building::run(command),
+        Command::Reproduce(args) => reproduce::run(args),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            print::error(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
