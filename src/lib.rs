@@ -21,6 +21,7 @@ pub mod cluster;
 pub mod error;
 #[path = "../experiments/mod.rs"]
 pub mod experiments;
+pub mod file;
 pub mod grammar;
 pub mod io;
 pub mod methods;
