@@ -101,6 +101,16 @@ pub enum LayoutError {
         /// Its top.
         top: f64,
     },
+    /// A region is thinner than what counts as a difference.
+    #[error("regions[{index}] ({label}) is thinner than {tolerance}")]
+    TooThin {
+        /// Index of the region.
+        index: usize,
+        /// Its label.
+        label: String,
+        /// Longest difference that counts as none.
+        tolerance: f64,
+    },
     /// The facade has no region at all.
     #[error("the facade has no regions")]
     Empty,

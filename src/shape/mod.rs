@@ -4,10 +4,14 @@
 //! - [`Facade`]: labelled rectangles inside a rectangular domain (Wu et al. 2014, Sec. 3.1).
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
+mod cuts;
 mod facade;
 mod label_grid;
 mod rect;
+mod tiling;
 
+pub use cuts::Cuts;
 pub use facade::{Facade, LayoutError, Region};
 pub use label_grid::LabelGrid;
 pub use rect::{Axis, Rect};
+pub use tiling::{IndexedLayout, RELATIVE_TOLERANCE, Span};

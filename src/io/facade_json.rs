@@ -1,0 +1,230 @@
+//! Facade layouts as JSON: `*.facade.json`, format `edifice/facade`, version 1.
+//!
+//! ```json
+//! { "format": "edifice/facade", "version": 1, "name": "monge_42", "unit": "px",
+//!   "width": 400.0, "height": 600.0,
+//!   "regions": [ { "label": "window", "x": 20.0, "y": 40.0, "width": 30.0, "height": 60.0 } ] }
+//! ```
+//! Origin at the lower left, y up. The reader is strict about what it knows (types, duplicate
+//! keys, finite numbers, positive sizes, trailing text) and ignores keys that it does not know.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use super::{read_bytes, write_atomic};
+use crate::shape::{Facade, Rect, Region};
+use crate::{Error, Result};
+
+/// The value of the key `format`.
+pub const FORMAT: &str = "edifice/facade";
+/// The version written, and the only one read.
+pub const VERSION: u64 = 1;
+
+/// Reads a facade layout (tiling or element layout) from a file.
+///
+/// # Errors
+/// Names the file and the JSON path or the line and column of what is wrong.
+pub fn read(path: &Path) -> Result<Facade> {
+    parse(&read_bytes(path)?, path)
+}
+
+/// Writes a facade layout to a file, whole or not at all.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be written.
+pub fn write(facade: &Facade, path: &Path) -> Result<()> {
+    write_atomic(path, to_string(facade).as_bytes())
+}
+
+/// Parses the bytes of a facade file; `path` only names the file in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(bytes: &[u8], path: &Path) -> Result<Facade> {
+    check_header(bytes, path, FORMAT, VERSION)?;
+    let file: File = parse_json(bytes, path)?;
+    let regions = file
+        .regions
+        .into_iter()
+        .map(|r| Region {
+            label: r.label,
+            rect: Rect::new(r.x, r.y, r.width, r.height),
+        })
+        .collect();
+    Facade::new(file.name, file.unit, file.width, file.height, regions)
+        .map_err(|e| Error::content(path, e))
+}
+
+/// The text of a facade file, one region a line. Numbers read back to the same bits.
+pub fn to_string(facade: &Facade) -> String {
+    let mut out = format!(
+        "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {}, \"unit\": {},\n  \"width\": {}, \"height\": {},\n  \"regions\": [",
+        quoted(&facade.name),
+        quoted(&facade.unit),
+        number(facade.width),
+        number(facade.height)
+    );
+    for (index, region) in facade.regions.iter().enumerate() {
+        let r = region.rect;
+        // Writing to a String cannot fail.
+        let _ = write!(
+            out,
+            "{}\n    {{ \"label\": {}, \"x\": {}, \"y\": {}, \"width\": {}, \"height\": {} }}",
+            if index == 0 { "" } else { "," },
+            quoted(&region.label),
+            number(r.x),
+            number(r.y),
+            number(r.width),
+            number(r.height)
+        );
+    }
+    out.push_str("\n  ] }\n");
+    out
+}
+
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+fn number(value: f64) -> String {
+    serde_json::Value::from(value).to_string()
+}
+
+/// Parses a whole JSON file into `T`, with the JSON path, line and column in errors.
+///
+/// # Errors
+/// [`Error::Input`] for malformed JSON, wrong types, missing or duplicate keys, numbers that do not
+/// fit, and text after the value.
+pub fn parse_json<T: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<T> {
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let value = serde_path_to_error::deserialize(&mut json).map_err(|e| {
+        let place = match e.path().to_string() {
+            root if root == "." => {
+                format!("line {}, column {}", e.inner().line(), e.inner().column())
+            }
+            place => place,
+        };
+        Error::input(path, place, e.into_inner())
+    })?;
+    json.end().map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        Error::input(path, place, e)
+    })?;
+    Ok(value)
+}
+
+/// Checks the keys `format` and `version` before anything else, so that a file of another kind is
+/// called that, and not "missing field".
+///
+/// # Errors
+/// [`Error::Input`] at `format` or `version`.
+pub fn check_header(bytes: &[u8], path: &Path, format: &str, version: u64) -> Result<()> {
+    let header: Header = parse_json(bytes, path)?;
+    if header.format != format {
+        let found = header.format;
+        let message = format!("unknown format {found:?}, expected {format:?}");
+        return Err(Error::input(path, "format", message));
+    }
+    if header.version != version {
+        let found = header.version;
+        let message = format!("unknown version {found}, expected {version}");
+        return Err(Error::input(path, "version", message));
+    }
+    Ok(())
+}
+
+#[derive(Deserialize)]
+struct Header {
+    format: String,
+    version: u64,
+}
+
+#[derive(Deserialize)]
+struct File {
+    name: String,
+    unit: String,
+    width: f64,
+    height: f64,
+    regions: Vec<FileRegion>,
+}
+
+#[derive(Deserialize)]
+struct FileRegion {
+    label: String,
+    x: f64,
+    y: f64,
+    width: f64,
+    height: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"{ "format": "edifice/facade", "version": 1, "name": "a", "unit": "px",
+        "width": 4.0, "height": 6, "note": "ignored",
+        "regions": [ { "label": "window", "x": 1, "y": 2.5, "width": 3, "height": 1e-1 } ] }"#;
+
+    fn fail(text: &str) -> String {
+        let error = parse(text.as_bytes(), "f.facade.json".as_ref()).unwrap_err();
+        let message = error.to_string();
+        assert!(message.starts_with("f.facade.json: "), "{message}");
+        message
+    }
+
+    #[test]
+    fn round_trip_keeps_every_bit() {
+        let facade = parse(GOOD.as_bytes(), "f".as_ref()).unwrap();
+        assert_eq!(facade.regions[0].rect, Rect::new(1.0, 2.5, 3.0, 0.1));
+        let again = parse(to_string(&facade).as_bytes(), "f".as_ref()).unwrap();
+        assert_eq!(facade, again);
+    }
+
+    #[test]
+    fn bad_files_name_their_place() {
+        let cases = [
+            ("\"width\": 3", "\"width\": -3", "regions[0].width"),
+            ("\"width\": 3", "\"width\": NaN", "line 3"),
+            ("\"width\": 3", "\"width\": 1e999", "regions[0].width"),
+            ("\"width\": 3", "\"width\": \"3\"", "regions[0].width"),
+            (
+                "\"width\": 3",
+                "\"width\": 3, \"width\": 3",
+                "duplicate field",
+            ),
+            (
+                "\"width\": 3",
+                "\"w\": 3",
+                "regions[0]: missing field `width`",
+            ),
+            (
+                "\"width\": 3",
+                "\"width\": 30",
+                "regions[0] (window) reaches outside",
+            ),
+            ("\"window\"", "\"\"", "regions[0].label is empty"),
+            ("\"width\": 4.0", "\"width\": 0", "facade width is 0"),
+            (
+                "edifice/facade",
+                "edifice/grammar",
+                "format: unknown format",
+            ),
+            (
+                "\"version\": 1",
+                "\"version\": 2",
+                "version: unknown version 2",
+            ),
+            ("1e-1 } ] }", "1e-1 } ] } x", "line 3"),
+            ("1e-1 } ] }", "1e-1 }", "line 3"),
+        ];
+        for (from, to, expected) in cases {
+            let text = GOOD.replacen(from, to, 1);
+            assert_ne!(text, GOOD, "{from}");
+            let message = fail(&text);
+            assert!(message.contains(expected), "{to}: {message}");
+        }
+    }
+}
