@@ -2,11 +2,23 @@
 //!
 //! A grammar `G(T, NT, s0, P)` maps non-terminal symbols to splitting operations on rectangles
 //! (Wu et al. 2014, Sec. 3.1). A symbol with a rule is a non-terminal; one without is a terminal
-//! label. One independent evaluator computes cost ([`Costs`]) and derives; no method reports its
-//! own cost.
+//! label. One independent evaluator ([`evaluate()`]) computes cost ([`Costs`]) and derives
+//! ([`derive()`]); no method reports its own cost.
 
+mod check;
 mod cost;
+mod derive;
+mod error;
+mod evaluate;
+mod place;
 mod rule;
+mod table;
+mod tiling;
 
+pub use check::{TOLERANCE, check};
 pub use cost::Costs;
+pub use derive::{Derivation, NonTerminal, REGION_LIMIT, derivation, derive};
+pub use error::{GrammarError, Warning};
+pub use evaluate::{EvaluateError, Evaluation, evaluate};
 pub use rule::{Grammar, Operation, Rule, Size, Start, Successor};
+pub use tiling::{Difference, same_tiling, tiling_difference};

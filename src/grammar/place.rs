@@ -1,0 +1,180 @@
+//! Where the successors of a rule go in its rectangle.
+
+use super::derive::REGION_LIMIT;
+use super::{GrammarError, Operation, Rule, Size};
+use crate::shape::{Axis, Rect};
+
+/// A part along one axis: index of the written successor, offset from the start, extent.
+type Part = (usize, f64, f64);
+
+/// Lays out the successors of a rule in `rect`: pairs of the index of a successor, in the order of
+/// [`Operation::symbols`], and its rectangle, from left to right or bottom to top (a grid: row by
+/// row from the bottom).
+///
+/// Absolute sizes must fill the rectangle up to `tolerance`. Where there are relative sizes they
+/// share what the absolute ones leave, in proportion; a repeat then takes the whole number of
+/// periods nearest to its nominal sizes, at least one (Wu et al. 2014, Sec. 5).
+///
+/// The mirror image of `sym_split` mirrors the *order* of the successors, not their contents: a
+/// symbol means the same content wherever it stands.
+pub(super) fn place(
+    index: usize,
+    rule: &Rule,
+    rect: Rect,
+    tolerance: f64,
+    out: &mut Vec<(usize, Rect)>,
+) -> Result<(), GrammarError> {
+    let line = |axis: Axis| Line {
+        index,
+        rule,
+        axis,
+        extent: rect.extent(axis),
+        tolerance,
+    };
+    let mut strips = |axis: Axis, parts: Vec<Part>| {
+        out.extend(
+            parts
+                .into_iter()
+                .map(|(i, at, extent)| (i, rect.strip(axis, rect.start(axis) + at, extent))),
+        );
+    };
+    match &rule.operation {
+        Operation::Split { axis, successors } => {
+            let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
+            strips(*axis, line(*axis).fill((0..sizes.len()).collect(), &sizes)?);
+        }
+        Operation::Repeat { axis, successors } => {
+            let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
+            let times = line(*axis).periods(&sizes, &[], 2)?;
+            let order = (0..times).flat_map(|_| 0..sizes.len()).collect();
+            strips(*axis, line(*axis).fill(order, &sizes)?);
+        }
+        Operation::RepeatAba { axis, a, b } => {
+            let sizes = [a.size, b.size];
+            let times = line(*axis).periods(&sizes, &sizes[..1], 1)?;
+            let order = (0..2 * times + 1).map(|i| i % 2).collect();
+            strips(*axis, line(*axis).fill(order, &sizes)?);
+        }
+        Operation::SymSplit {
+            axis,
+            successors,
+            center,
+        } => {
+            let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
+            let mirrored = sizes.len() - usize::from(*center);
+            let order = (0..sizes.len()).chain((0..mirrored).rev()).collect();
+            strips(*axis, line(*axis).fill(order, &sizes)?);
+        }
+        Operation::GridSplit { columns, rows, .. } => {
+            let across = line(Axis::X).fill((0..columns.len()).collect(), columns)?;
+            let up = line(Axis::Y).fill((0..rows.len()).collect(), rows)?;
+            for &(j, y, height) in &up {
+                for &(i, x, width) in &across {
+                    let cell = Rect::new(rect.x + x, rect.y + y, width, height);
+                    out.push((j * columns.len() + i, cell));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One axis of the region that a rule splits.
+struct Line<'a> {
+    index: usize,
+    rule: &'a Rule,
+    axis: Axis,
+    extent: f64,
+    tolerance: f64,
+}
+
+impl Line<'_> {
+    /// How many periods of `sizes` fit beside `fixed` (the closing A of `repeat_aba`).
+    fn periods(&self, sizes: &[Size], fixed: &[Size], least: u32) -> Result<usize, GrammarError> {
+        let period: f64 = sizes.iter().map(|s| s.value()).sum();
+        let room = self.extent - fixed.iter().map(|s| s.value()).sum::<f64>();
+        let exact = sizes.iter().all(|s| matches!(s, Size::Absolute(_)));
+        let mut times = (room / period).round();
+        if exact {
+            let fits = (times * period - room).abs() <= self.tolerance;
+            if times < f64::from(least) || !fits {
+                return Err(GrammarError::RepeatDoesNotFit {
+                    rule: self.index,
+                    symbol: self.rule.symbol.clone(),
+                    axis: self.axis,
+                    period,
+                    extent: room,
+                    times: room / period,
+                    least,
+                });
+            }
+        } else {
+            // Never so many that the absolute parts alone overflow the region.
+            let absolute = absolute_sum(sizes);
+            if absolute > 0.0 {
+                let free = self.extent - absolute_sum(fixed);
+                times = times.min((free / absolute).ceil() - 1.0);
+            }
+            times = times.max(1.0);
+        }
+        if times * sizes.len() as f64 > REGION_LIMIT as f64 {
+            return Err(GrammarError::TooManyRegions {
+                limit: REGION_LIMIT,
+            });
+        }
+        Ok(times as usize)
+    }
+
+    /// Offsets and extents of the parts `order`, whose sizes are `sizes[order[..]]`.
+    fn fill(&self, order: Vec<usize>, sizes: &[Size]) -> Result<Vec<Part>, GrammarError> {
+        let (mut absolute, mut relative) = (0.0, 0.0);
+        for &i in &order {
+            match sizes[i] {
+                Size::Absolute(v) => absolute += v,
+                Size::Relative(v) => relative += v,
+            }
+        }
+        let scale = if relative > 0.0 {
+            (self.extent - absolute) / relative
+        } else if (absolute - self.extent).abs() <= self.tolerance {
+            1.0
+        } else {
+            return Err(GrammarError::SizesDoNotAddUp {
+                rule: self.index,
+                symbol: self.rule.symbol.clone(),
+                axis: self.axis,
+                sum: absolute,
+                extent: self.extent,
+            });
+        };
+        let mut parts = Vec::with_capacity(order.len());
+        let mut at = 0.0;
+        for i in order {
+            let extent = match sizes[i] {
+                Size::Absolute(v) => v,
+                Size::Relative(v) => v * scale,
+            };
+            if extent.is_nan() || extent <= 0.0 {
+                return Err(GrammarError::TooSmall {
+                    rule: self.index,
+                    symbol: self.rule.symbol.clone(),
+                    axis: self.axis,
+                    needed: absolute,
+                    extent: self.extent,
+                });
+            }
+            parts.push((i, at, extent));
+            at += extent;
+        }
+        Ok(parts)
+    }
+}
+
+/// Sum of the absolute ones of `sizes`.
+fn absolute_sum(sizes: &[Size]) -> f64 {
+    let absolute = |s: &Size| match s {
+        Size::Absolute(v) => *v,
+        Size::Relative(_) => 0.0,
+    };
+    sizes.iter().map(absolute).sum()
+}
