@@ -157,9 +157,9 @@ fn check_rule(index: usize, rule: &Rule) -> Result<(), GrammarError> {
                         what,
                     })
             };
-            shape(String::new(), cells.len(), rows.len(), "rows")?;
+            shape("cells".to_owned(), cells.len(), rows.len(), "rows")?;
             for (j, row) in cells.iter().enumerate() {
-                shape(format!("[{j}]"), row.len(), columns.len(), "columns")?;
+                shape(format!("cells[{j}]"), row.len(), columns.len(), "columns")?;
                 for (i, name) in row.iter().enumerate() {
                     named(name, format!("cells[{j}][{i}]"))?;
                 }

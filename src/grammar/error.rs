@@ -86,9 +86,7 @@ pub enum GrammarError {
         second: usize,
     },
     /// A grid split whose cells do not match its columns and rows.
-    #[error(
-        "rules[{rule}] ({symbol}): cells {place} has {found} entries, expected {expected} ({what})"
-    )]
+    #[error("rules[{rule}] ({symbol}): {place} has {found} entries, expected {expected} ({what})")]
     GridShape {
         /// Index of the rule.
         rule: usize,

@@ -85,11 +85,11 @@ pub fn to_string(facade: &Facade) -> String {
     out
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     serde_json::Value::from(value).to_string()
 }
 

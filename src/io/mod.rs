@@ -5,5 +5,6 @@
 
 mod atomic;
 pub mod facade_json;
+pub mod grammar_json;
 
 pub use atomic::{read_bytes, write_atomic};

@@ -224,3 +224,45 @@ pub fn naive(grammar: &Grammar, symbol: &str, rect: Rect, out: &mut Vec<Region>)
         }
     }
 }
+
+/// The same grammar with every size relative.
+pub fn size_independent(grammar: &Grammar) -> Grammar {
+    let mut out = grammar.clone();
+    for rule in &mut out.rules {
+        for size in sizes(&mut rule.operation) {
+            *size = Size::Relative(size.value());
+        }
+    }
+    out
+}
+
+/// The same grammar with a second, weighted way to derive some symbols.
+pub fn stochastic(grammar: &Grammar, seed: u64) -> Grammar {
+    let mut out = size_independent(grammar);
+    let mut rng = stream(seed, "stochastic", 0);
+    for mut rule in out.rules.clone() {
+        if rng.random_bool(0.5) {
+            for first in out.rules.iter_mut().filter(|r| r.symbol == rule.symbol) {
+                first.weight = Some(rng.random_range(0.1..10.0));
+            }
+            rule.weight = Some(rng.random_range(0.1..10.0));
+            for size in sizes(&mut rule.operation) {
+                *size = Size::Relative(size.value() * rng.random_range(0.5..2.0));
+            }
+            out.rules.push(rule);
+        }
+    }
+    out
+}
+
+fn sizes(operation: &mut Operation) -> Vec<&mut Size> {
+    match operation {
+        Operation::Split { successors, .. }
+        | Operation::Repeat { successors, .. }
+        | Operation::SymSplit { successors, .. } => {
+            successors.iter_mut().map(|s| &mut s.size).collect()
+        }
+        Operation::RepeatAba { a, b, .. } => vec![&mut a.size, &mut b.size],
+        Operation::GridSplit { columns, rows, .. } => columns.iter_mut().chain(rows).collect(),
+    }
+}
