@@ -1,0 +1,245 @@
+//! A facade as the parser sees it: an irregular grid of labelled assets.
+
+use super::alphabet::Alphabet;
+use crate::shape::{Axis, Facade, LabelGrid, LayoutError};
+
+/// Labelled cells between sorted coordinates; an edge runs wherever two neighbouring cells belong
+/// to different assets.
+///
+/// Of a label image every label is one asset, so that edges separate labels and the wall may be
+/// split anywhere; of a tiling every region is an asset of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Canvas {
+    /// Name of the facade.
+    pub name: String,
+    /// Column boundaries, strictly increasing, `columns + 1` of them.
+    pub xs: Vec<f64>,
+    /// Row boundaries from the bottom, strictly increasing, `rows + 1` of them.
+    pub ys: Vec<f64>,
+    /// Asset of each cell, row by row from the bottom.
+    assets: Vec<u32>,
+    /// Label of each asset, a number of the alphabet.
+    labels: Vec<u32>,
+    /// Whether the assets are rectangles that no line may cut.
+    rigid: bool,
+}
+
+impl Canvas {
+    /// A label image: neighbouring equal rows and columns are merged, which loses nothing.
+    ///
+    /// Complexity: linear in the cells (rows are compared whole, columns on the merged rows).
+    pub fn from_grid(grid: &LabelGrid, alphabet: &mut Alphabet) -> Self {
+        let labels = grid
+            .labels
+            .iter()
+            .map(|name| alphabet.intern(name))
+            .collect();
+        let columns = grid.columns();
+        let row = |j: usize| &grid.cells[j * columns..(j + 1) * columns];
+        let keep_rows: Vec<usize> = (0..grid.rows())
+            .filter(|&j| j == 0 || row(j) != row(j - 1))
+            .collect();
+        let keep_columns: Vec<usize> = (0..columns)
+            .filter(|&i| i == 0 || keep_rows.iter().any(|&j| row(j)[i] != row(j)[i - 1]))
+            .collect();
+        let assets = keep_rows
+            .iter()
+            .flat_map(|&j| keep_columns.iter().map(move |&i| u32::from(row(j)[i])))
+            .collect();
+        Self {
+            name: grid.name.clone(),
+            xs: boundaries(&keep_columns, &grid.xs),
+            ys: boundaries(&keep_rows, &grid.ys),
+            assets,
+            labels,
+            rigid: false,
+        }
+    }
+
+    /// A tiling: every region is an asset that stays whole.
+    ///
+    /// # Errors
+    /// [`LayoutError`] naming the overlap or the gap that keeps the layout from being a tiling.
+    pub fn from_tiling(facade: &Facade, alphabet: &mut Alphabet) -> Result<Self, LayoutError> {
+        if facade.regions.is_empty() {
+            return Err(LayoutError::Empty);
+        }
+        let xs = coordinates(facade, Axis::X);
+        let ys = coordinates(facade, Axis::Y);
+        let (columns, rows) = (xs.len() - 1, ys.len() - 1);
+        let mut assets = vec![u32::MAX; columns * rows];
+        let mut labels = Vec::with_capacity(facade.regions.len());
+        for (index, region) in facade.regions.iter().enumerate() {
+            labels.push(alphabet.intern(&region.label));
+            let (left, right) = (nearest(&xs, region.rect.x), nearest(&xs, region.rect.right()));
+            let (bottom, top) = (nearest(&ys, region.rect.y), nearest(&ys, region.rect.top()));
+            for j in bottom..top {
+                for i in left..right {
+                    let cell = &mut assets[j * columns + i];
+                    if *cell != u32::MAX {
+                        let first = *cell as usize;
+                        return Err(LayoutError::Overlap {
+                            first,
+                            first_label: facade.regions[first].label.clone(),
+                            second: index,
+                            second_label: region.label.clone(),
+                            x: (xs[i] + xs[i + 1]) / 2.0,
+                            y: (ys[j] + ys[j + 1]) / 2.0,
+                        });
+                    }
+                    *cell = index as u32;
+                }
+            }
+        }
+        if let Some(hole) = assets.iter().position(|&asset| asset == u32::MAX) {
+            let (i, j) = (hole % columns, hole / columns);
+            return Err(LayoutError::Gap {
+                x: xs[i],
+                y: ys[j],
+                right: xs[i + 1],
+                top: ys[j + 1],
+            });
+        }
+        Ok(Self {
+            name: facade.name.clone(),
+            xs,
+            ys,
+            assets,
+            labels,
+            rigid: true,
+        })
+    }
+
+    /// The same facade with labels for assets, as a label image of it would say.
+    pub fn painted(mut self) -> Self {
+        for asset in &mut self.assets {
+            *asset = self.labels[*asset as usize];
+        }
+        let count = self.labels.iter().max().map_or(0, |&last| last + 1);
+        self.labels = (0..count).collect();
+        self.rigid = false;
+        self
+    }
+
+    /// Number of columns of cells.
+    pub fn columns(&self) -> usize {
+        self.xs.len() - 1
+    }
+
+    /// Number of rows of cells.
+    pub fn rows(&self) -> usize {
+        self.ys.len() - 1
+    }
+
+    /// Extent along x, in the unit of the facade.
+    pub fn width(&self) -> f64 {
+        self.xs[self.columns()] - self.xs[0]
+    }
+
+    /// Extent along y, in the unit of the facade.
+    pub fn height(&self) -> f64 {
+        self.ys[self.rows()] - self.ys[0]
+    }
+
+    /// Whether no line may cut an asset.
+    pub fn is_rigid(&self) -> bool {
+        self.rigid
+    }
+
+    /// Label of the cell in column `i`, row `j` from the bottom.
+    pub fn label_at(&self, i: usize, j: usize) -> u32 {
+        self.labels[self.assets[j * self.columns() + i] as usize]
+    }
+
+    /// The facade seen along `axis`.
+    pub(super) fn view(&self, axis: Axis) -> View<'_> {
+        let columns = self.columns();
+        match axis {
+            Axis::X => View {
+                canvas: self,
+                cuts: &self.xs,
+                spans: &self.ys,
+                step: 1,
+                stride: columns,
+            },
+            Axis::Y => View {
+                canvas: self,
+                cuts: &self.ys,
+                spans: &self.xs,
+                step: columns,
+                stride: 1,
+            },
+        }
+    }
+}
+
+/// A canvas seen along one axis: `k` counts the cells along the axis, so that lines run between
+/// `k - 1` and `k`, and `t` counts the cells along a line.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    canvas: &'a Canvas,
+    /// Coordinates of the lines.
+    pub cuts: &'a [f64],
+    /// Boundaries of the cells along a line.
+    pub spans: &'a [f64],
+    step: usize,
+    stride: usize,
+}
+
+impl View<'_> {
+    /// Number of cells along the axis.
+    pub fn depth(&self) -> usize {
+        self.cuts.len() - 1
+    }
+
+    /// Number of cells along a line.
+    pub fn span(&self) -> usize {
+        self.spans.len() - 1
+    }
+
+    /// Asset of a cell.
+    pub fn asset(&self, k: usize, t: usize) -> u32 {
+        self.canvas.assets[k * self.step + t * self.stride]
+    }
+
+    /// Label of an asset.
+    pub fn label(&self, asset: u32) -> u32 {
+        self.canvas.labels[asset as usize]
+    }
+}
+
+/// Coordinates of the kept cells' lower ends, and the upper end of the last.
+fn boundaries(kept: &[usize], all: &[f64]) -> Vec<f64> {
+    kept.iter()
+        .map(|&index| all[index])
+        .chain(all.last().copied())
+        .collect()
+}
+
+/// Sorted boundaries of the regions along `axis`; nearer than a billionth of the facade is equal.
+fn coordinates(facade: &Facade, axis: Axis) -> Vec<f64> {
+    let extent = facade.domain().extent(axis);
+    let mut all: Vec<f64> = facade
+        .regions
+        .iter()
+        .flat_map(|region| [region.rect.start(axis), region.rect.end(axis)])
+        .map(|value| value.clamp(0.0, extent))
+        .chain([0.0, extent])
+        .collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|next, kept| *next - *kept <= 1e-9 * extent);
+    if let Some(last) = all.last_mut() {
+        *last = extent;
+    }
+    all
+}
+
+/// Index of the boundary nearest to `value`.
+fn nearest(sorted: &[f64], value: f64) -> usize {
+    let after = sorted.partition_point(|&x| x < value).min(sorted.len() - 1);
+    if after > 0 && value - sorted[after - 1] < sorted[after] - value {
+        after - 1
+    } else {
+        after
+    }
+}

@@ -1,0 +1,97 @@
+//! Transformation to n-ary split nodes (Sec. 4.1.1, Eq. 9).
+
+use super::parse::{BinaryNode, BinaryTree};
+use crate::shape::Axis;
+
+/// A node of an n-ary split tree.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NaryNode {
+    /// The scope is one asset with this label.
+    Insert(u32),
+    /// Two or more parts along `axis`, none of them split along the same axis.
+    Split {
+        /// Splitting direction.
+        axis: Axis,
+        /// Sizes along the axis, in the unit of the facade.
+        sizes: Vec<f64>,
+        /// The parts, indices of later nodes.
+        children: Vec<u32>,
+    },
+}
+
+/// An n-ary split tree over a facade; node 0 is the root and every child comes after its parent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NaryTree {
+    /// Extent along x.
+    pub width: f64,
+    /// Extent along y.
+    pub height: f64,
+    /// The nodes.
+    pub nodes: Vec<NaryNode>,
+}
+
+impl NaryTree {
+    /// Rewrites nested binary splits of one direction as n-ary splits until none is left (Eq. 9).
+    pub fn from_binary(tree: &BinaryTree) -> Self {
+        let mut nodes = vec![NaryNode::Insert(0)];
+        let mut todo = vec![(0_usize, 0_usize)];
+        while let Some((from, to)) = todo.pop() {
+            nodes[to] = match tree.nodes[from] {
+                BinaryNode::Insert(label) => NaryNode::Insert(label),
+                BinaryNode::Split { axis, .. } => {
+                    let (sizes, parts) = collect(tree, axis, from);
+                    let first = nodes.len();
+                    nodes.resize(first + parts.len(), NaryNode::Insert(0));
+                    todo.extend(parts.iter().enumerate().map(|(i, &part)| (part, first + i)));
+                    NaryNode::Split {
+                        axis,
+                        sizes,
+                        children: (first..first + parts.len()).map(|c| c as u32).collect(),
+                    }
+                }
+            };
+        }
+        Self {
+            width: tree.width,
+            height: tree.height,
+            nodes,
+        }
+    }
+
+    /// Number of split nodes.
+    pub fn splits(&self) -> usize {
+        let is_split = |node: &&NaryNode| matches!(node, NaryNode::Split { .. });
+        self.nodes.iter().filter(is_split).count()
+    }
+}
+
+impl BinaryTree {
+    /// Number of split nodes.
+    pub fn splits(&self) -> usize {
+        let is_split = |node: &&BinaryNode| matches!(node, BinaryNode::Split { .. });
+        self.nodes.iter().filter(is_split).count()
+    }
+}
+
+/// The parts of the chain of splits along `axis` that starts at `root`, in order, with sizes.
+fn collect(tree: &BinaryTree, axis: Axis, root: usize) -> (Vec<f64>, Vec<usize>) {
+    let (mut out_sizes, mut parts) = (Vec::new(), Vec::new());
+    let mut todo = vec![(root, 0.0)];
+    while let Some((node, size)) = todo.pop() {
+        match tree.nodes[node] {
+            BinaryNode::Split {
+                axis: a,
+                sizes,
+                children,
+            } if a == axis => {
+                todo.push((children[1] as usize, sizes[1]));
+                todo.push((children[0] as usize, sizes[0]));
+            }
+            _ => {
+                out_sizes.push(size);
+                parts.push(node);
+            }
+        }
+    }
+    (out_sizes, parts)
+}
