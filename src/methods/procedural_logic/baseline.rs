@@ -49,20 +49,17 @@ pub fn baseline_grammar(
     Ok(share_content(&tree, &alphabet, tolerance, facade))
 }
 
-/// What a region holds: its label, or its split with the sizes in units of the tolerance.
+/// What a region holds: its label; or its split, its extent across the split, and its parts with
+/// their sizes, in units of the tolerance.
 #[derive(PartialEq, Eq, Hash)]
 enum Content {
     Insert(u32),
-    Split(Axis, Vec<(usize, i64)>),
+    Split(Axis, i64, Vec<(usize, i64)>),
 }
 
 /// One rule per distinct content (bottom-up hash-consing).
-fn share_content(
-    tree: &NaryTree,
-    alphabet: &Alphabet,
-    tolerance: f64,
-    facade: &Facade,
-) -> Grammar {
+fn share_content(tree: &NaryTree, alphabet: &Alphabet, tolerance: f64, facade: &Facade) -> Grammar {
+    let extents = tree.extents();
     let mut ids: FxHashMap<Content, usize> = FxHashMap::default();
     let mut class = vec![0; tree.nodes.len()];
     let mut example = Vec::new();
@@ -74,11 +71,12 @@ fn share_content(
                 sizes,
                 children,
             } => {
-                let size = |s: &f64| (s / tolerance).round() as i64;
+                let size = |s: f64| (s / tolerance).round() as i64;
                 let parts = children.iter().zip(sizes);
                 Content::Split(
                     *axis,
-                    parts.map(|(&c, s)| (class[c as usize], size(s))).collect(),
+                    size(extents[node][axis.other() as usize]),
+                    parts.map(|(&c, &s)| (class[c as usize], size(s))).collect(),
                 )
             }
         };

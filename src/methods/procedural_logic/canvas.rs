@@ -61,45 +61,21 @@ impl Canvas {
     /// # Errors
     /// [`LayoutError`] naming the overlap or the gap that keeps the layout from being a tiling.
     pub fn from_tiling(facade: &Facade, alphabet: &mut Alphabet) -> Result<Self, LayoutError> {
-        if facade.regions.is_empty() {
-            return Err(LayoutError::Empty);
-        }
-        let xs = coordinates(facade, Axis::X);
-        let ys = coordinates(facade, Axis::Y);
-        let (columns, rows) = (xs.len() - 1, ys.len() - 1);
-        let mut assets = vec![u32::MAX; columns * rows];
-        let mut labels = Vec::with_capacity(facade.regions.len());
-        for (index, region) in facade.regions.iter().enumerate() {
-            labels.push(alphabet.intern(&region.label));
-            let (left, right) = (nearest(&xs, region.rect.x), nearest(&xs, region.rect.right()));
-            let (bottom, top) = (nearest(&ys, region.rect.y), nearest(&ys, region.rect.top()));
-            for j in bottom..top {
-                for i in left..right {
-                    let cell = &mut assets[j * columns + i];
-                    if *cell != u32::MAX {
-                        let first = *cell as usize;
-                        return Err(LayoutError::Overlap {
-                            first,
-                            first_label: facade.regions[first].label.clone(),
-                            second: index,
-                            second_label: region.label.clone(),
-                            x: (xs[i] + xs[i + 1]) / 2.0,
-                            y: (ys[j] + ys[j + 1]) / 2.0,
-                        });
-                    }
-                    *cell = index as u32;
-                }
+        facade.check_tiling()?;
+        let grid = facade.indexed()?;
+        let (xs, ys) = (grid.xs.values().to_vec(), grid.ys.values().to_vec());
+        let columns = xs.len() - 1;
+        let mut assets = vec![0; columns * (ys.len() - 1)];
+        for (index, span) in grid.spans.iter().enumerate() {
+            for j in span.bottom..span.top {
+                assets[j * columns + span.left..j * columns + span.right].fill(index as u32);
             }
         }
-        if let Some(hole) = assets.iter().position(|&asset| asset == u32::MAX) {
-            let (i, j) = (hole % columns, hole / columns);
-            return Err(LayoutError::Gap {
-                x: xs[i],
-                y: ys[j],
-                right: xs[i + 1],
-                top: ys[j + 1],
-            });
-        }
+        let labels = facade
+            .regions
+            .iter()
+            .map(|region| alphabet.intern(&region.label))
+            .collect();
         Ok(Self {
             name: facade.name.clone(),
             xs,
@@ -214,32 +190,4 @@ fn boundaries(kept: &[usize], all: &[f64]) -> Vec<f64> {
         .map(|&index| all[index])
         .chain(all.last().copied())
         .collect()
-}
-
-/// Sorted boundaries of the regions along `axis`; nearer than a billionth of the facade is equal.
-fn coordinates(facade: &Facade, axis: Axis) -> Vec<f64> {
-    let extent = facade.domain().extent(axis);
-    let mut all: Vec<f64> = facade
-        .regions
-        .iter()
-        .flat_map(|region| [region.rect.start(axis), region.rect.end(axis)])
-        .map(|value| value.clamp(0.0, extent))
-        .chain([0.0, extent])
-        .collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup_by(|next, kept| *next - *kept <= 1e-9 * extent);
-    if let Some(last) = all.last_mut() {
-        *last = extent;
-    }
-    all
-}
-
-/// Index of the boundary nearest to `value`.
-fn nearest(sorted: &[f64], value: f64) -> usize {
-    let after = sorted.partition_point(|&x| x < value).min(sorted.len() - 1);
-    if after > 0 && value - sorted[after - 1] < sorted[after] - value {
-        after - 1
-    } else {
-        after
-    }
 }

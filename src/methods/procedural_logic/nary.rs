@@ -58,6 +58,25 @@ impl NaryTree {
         }
     }
 
+    /// Width and height of each node.
+    pub(super) fn extents(&self) -> Vec<[f64; 2]> {
+        let mut extents = vec![[self.width, self.height]; self.nodes.len()];
+        for (node, content) in self.nodes.iter().enumerate() {
+            if let NaryNode::Split {
+                axis,
+                sizes,
+                children,
+            } = content
+            {
+                for (&child, &size) in children.iter().zip(sizes) {
+                    extents[child as usize] = extents[node];
+                    extents[child as usize][*axis as usize] = size;
+                }
+            }
+        }
+        extents
+    }
+
     /// Number of split nodes.
     pub fn splits(&self) -> usize {
         let is_split = |node: &&NaryNode| matches!(node, NaryNode::Split { .. });
