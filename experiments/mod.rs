@@ -1,1 +1,44 @@
 //! The experiments: settings on one page per paper, one function per artefact.
+//!
+//! # How to add a paper
+//! 1. Write `experiments/<slug>.rs` with a `pub const EXPERIMENT: Experiment` that lists its artefacts: the name of a
+//!    table or figure (`table_1`, `figure_14`), a title, and a function `fn(&mut Context) -> Result<()>`.
+//! 2. Add `pub mod <slug>;` and `&<slug>::EXPERIMENT` to [`ALL`] below.
+//! 3. Write `src/bin/<slug>.rs`: `fn main() -> std::process::ExitCode { edifice::experiments::main(&edifice::experiments::<slug>::EXPERIMENT) }`.
+//!
+//! # What an artefact's function does
+//! ```ignore
+//! fn table_1(ctx: &mut Context) -> Result<()> {
+//!     let seeds = ctx.budget().choose(1, 3, 10);                       // smoke, default, paper
+//!     ctx.setting("seeds", seeds);                                     // goes to run.json and keys the journal
+//!     let path = ctx.shipped("facade_grammar/published.csv")?;         // a file or folder of datasets/, digest recorded
+//!     let units: Vec<_> = /* (facade, method, seed) */;
+//!     let results: Vec<Answer> = ctx.units(&units, |u| u.key(), |u| run(u))?;   // parallel, in order, resumable
+//!     for (unit, answer) in units.iter().zip(&results) {
+//!         ctx.observe(Row { dataset: "shipped".into(), method: unit.method.to_string(), .. });   // -> table_1.csv
+//!     }
+//!     ctx.table(&table);                                               // -> table_1.md
+//!     ctx.figure("table_1", &figure)?;                                 // -> table_1.svg, table_1.png
+//!     ctx.compare("mean cost of ADP", "109.4", format!("{mean:.1}"));  // beside the paper, in table_1.md
+//!     ctx.note("Needs ...");
+//!     Ok(())
+//! }
+//! ```
+//! Results of a unit (`Answer`) are `Serialize + DeserializeOwned`: they go to the journal, and a run that was killed
+//! takes them from there. Time a unit inside its function (it runs on one thread), never around [`Context::units`].
+
+mod frame;
+
+pub mod facade_grammar;
+
+use std::process::ExitCode;
+
+pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
+
+/// Every paper's experiment, in the order of the report.
+pub const ALL: &[&Experiment] = &[&facade_grammar::EXPERIMENT];
+
+/// The `main` of a paper's own binary: parses the options, runs, prints the summary.
+pub fn main(experiment: &'static Experiment) -> ExitCode {
+    frame::main(experiment)
+}

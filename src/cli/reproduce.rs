@@ -1,16 +1,31 @@
 //! Running the experiments.
 
+use edifice::experiments::{self, ALL};
+
 /// Options of `edifice reproduce`.
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example: edifice reproduce facade_grammar --only table_1 --budget smoke --out reports"
+)]
 pub struct Args {
-    /// Papers to run; all when none is named.
+    /// Papers to run; all when none is named
     papers: Vec<String>,
+    #[command(flatten)]
+    options: experiments::Args,
 }
 
 /// Runs the experiments.
 pub fn run(args: Args) -> edifice::Result<()> {
-    for paper in &args.papers {
-        super::print::message(paper);
+    for name in &args.papers {
+        if ALL.iter().all(|experiment| experiment.slug != name) {
+            let known: Vec<_> = ALL.iter().map(|experiment| experiment.slug).collect();
+            return Err(edifice::Error::option(
+                "PAPERS",
+                format!("no paper {name:?}; known are {}", known.join(", ")),
+            ));
+        }
     }
-    Ok(())
+    let wanted = |slug: &str| args.papers.is_empty() || args.papers.iter().any(|p| p == slug);
+    let chosen: Vec<_> = ALL.iter().copied().filter(|e| wanted(e.slug)).collect();
+    experiments::run_to_end(&chosen, args.options)
 }

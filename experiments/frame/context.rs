@@ -1,0 +1,268 @@
+//! What an artefact's function is given.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
+
+use super::document::Document;
+use super::journal::Journal;
+use super::options::{Budget, Options};
+use super::progress::{self, Progress};
+use super::provenance::{self, Comparison};
+use crate::report::{self, Figure, Row, Table};
+use crate::{Error, Result};
+
+/// Set when the user asked to stop; units under way finish, no new one starts.
+pub(super) static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Two units of work with one name: the journal could not tell them apart.
+#[derive(Debug, thiserror::Error)]
+#[error("two units of work are both called {0:?}")]
+struct DuplicateUnit(String);
+
+/// No shipped data of this name.
+#[derive(Debug, thiserror::Error)]
+#[error("no such folder; run from the project's folder, where `datasets` is")]
+struct NoDatasets;
+
+/// The options of the run and the artefact in the making.
+pub struct Context<'a> {
+    pub(super) options: &'a Options,
+    pub(super) slug: &'static str,
+    pub(super) artefact: &'static str,
+    pub(super) folder: PathBuf,
+    pub(super) settings: BTreeMap<String, serde_json::Value>,
+    pub(super) data: BTreeMap<String, String>,
+    pub(super) rows: Vec<Row>,
+    pub(super) document: Document,
+    pub(super) comparisons: Vec<Comparison>,
+    pub(super) files: Vec<String>,
+    pub(super) skipped: Option<String>,
+    batches: usize,
+}
+
+impl<'a> Context<'a> {
+    pub(super) fn new(
+        options: &'a Options,
+        slug: &'static str,
+        artefact: &'static str,
+        title: &str,
+        folder: PathBuf,
+    ) -> Self {
+        Self {
+            options,
+            slug,
+            artefact,
+            folder,
+            settings: BTreeMap::new(),
+            data: BTreeMap::new(),
+            rows: Vec::new(),
+            document: Document::new(artefact, title),
+            comparisons: Vec::new(),
+            files: Vec::new(),
+            skipped: None,
+            batches: 0,
+        }
+    }
+
+    /// How much to run.
+    pub fn budget(&self) -> Budget {
+        self.options.budget
+    }
+
+    /// Seed of all random streams.
+    pub fn seed(&self) -> u64 {
+        self.options.seed
+    }
+
+    /// Folder with the real data sets, when the user has it.
+    pub fn data(&self) -> Option<&Path> {
+        self.options.data.as_deref()
+    }
+
+    /// Notes a setting: it goes to `run.json` and into the key of the journal, so call it before
+    /// [`Context::units`].
+    pub fn setting(&mut self, name: &str, value: impl Into<serde_json::Value>) {
+        self.settings.insert(name.to_string(), value.into());
+    }
+
+    /// Path of a file or folder below `datasets/`; its digest is recorded.
+    ///
+    /// # Errors
+    /// [`Error::Content`] when the shipped data cannot be found, [`Error::Io`] when it cannot be read.
+    pub fn shipped(&mut self, name: &str) -> Result<PathBuf> {
+        let built = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = [Path::new("datasets"), &built.join("datasets")]
+            .iter()
+            .map(|folder| folder.join(name))
+            .find(|path| path.exists())
+            .ok_or_else(|| Error::content(&Path::new("datasets").join(name), NoDatasets))?;
+        self.data
+            .insert(format!("datasets/{name}"), provenance::digest(&path)?);
+        Ok(path)
+    }
+
+    /// Path of a file or folder below the real data, with its digest recorded; `None` without
+    /// `--data` or when it is not there.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read.
+    pub fn real(&mut self, name: &str) -> Result<Option<PathBuf>> {
+        let Some(path) = self.data().map(|data| data.join(name)) else {
+            return Ok(None);
+        };
+        if !path.exists() {
+            self.note(format!("`{name}` is not in the data folder: left out."));
+            return Ok(None);
+        }
+        self.data
+            .insert(format!("DATA/{name}"), provenance::digest(&path)?);
+        Ok(Some(path))
+    }
+
+    /// Runs `work` on every unit, on all threads, and returns the results in the order of the
+    /// units. Results of an earlier run with the same settings are taken from the journal.
+    ///
+    /// `key` names a unit within the artefact, for example `shipped/a/adp_best/3`.
+    ///
+    /// # Errors
+    /// The first failure in the order of the units; [`Error::Interrupted`] after Ctrl-C.
+    pub fn units<T, R>(
+        &mut self,
+        units: &[T],
+        key: impl Fn(&T) -> String + Sync,
+        work: impl Fn(&T) -> Result<R> + Sync,
+    ) -> Result<Vec<R>>
+    where
+        T: Sync,
+        R: Serialize + DeserializeOwned + Send,
+    {
+        let mut seen = HashSet::new();
+        for unit in units {
+            let key = key(unit);
+            if !seen.insert(key.clone()) {
+                return Err(Error::method(DuplicateUnit(key)));
+            }
+        }
+        self.batches += 1;
+        let journal = Journal::open(&self.journal_path())?;
+        let known: Vec<Option<R>> = units.iter().map(|unit| journal.get(&key(unit))).collect();
+        let finished = known.iter().filter(|r| r.is_some()).count();
+        let name = format!("{} {}", self.slug, self.artefact);
+        let progress = Progress::new(&name, units.len() as u64, finished as u64);
+        let results: Vec<Result<R>> = units
+            .par_iter()
+            .zip(known)
+            .map(|(unit, known)| {
+                if let Some(result) = known {
+                    return Ok(result);
+                }
+                if STOP.load(Ordering::Relaxed) {
+                    return Err(Error::Interrupted);
+                }
+                let result = work(unit)?;
+                journal.put(&key(unit), &result)?;
+                progress.step();
+                Ok(result)
+            })
+            .collect();
+        results.into_iter().collect()
+    }
+
+    /// The journal's file: other settings, data, seed or build have another.
+    fn journal_path(&self) -> PathBuf {
+        let mut hash = Sha256::new();
+        let about = serde_json::json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "build": build(),
+            "artefact": self.artefact,
+            "batch": self.batches,
+            "seed": self.options.seed,
+            "budget": self.options.budget,
+            "settings": self.settings,
+            "data": self.data,
+        });
+        hash.update(about.to_string().as_bytes());
+        let name = format!(
+            "{}-{}-{}.jsonl",
+            self.artefact,
+            self.batches,
+            &provenance::hex(&hash.finalize())[..16]
+        );
+        self.folder.join(".work").join(name)
+    }
+
+    /// Adds an observation to `<artefact>.csv`; the experiment's name is filled in.
+    pub fn observe(&mut self, mut row: Row) {
+        row.experiment = self.slug.to_string();
+        self.rows.push(row);
+    }
+
+    /// Adds a table to `<artefact>.md`.
+    pub fn table(&mut self, table: &Table) {
+        self.document.block(table.markdown());
+    }
+
+    /// Writes `<name>.svg` and `<name>.png` and shows the picture in `<artefact>.md`. The artefact's
+    /// own picture has the artefact's name; further ones append to it (`figure_14_right`).
+    ///
+    /// # Errors
+    /// [`Error::Io`] when a file cannot be written.
+    pub fn figure(&mut self, name: &str, figure: &Figure) -> Result<()> {
+        report::write_figure(&self.folder, name, figure)?;
+        self.files.push(format!("{name}.svg"));
+        self.files.push(format!("{name}.png"));
+        self.document.image(name, figure.caption());
+        Ok(())
+    }
+
+    /// Writes another file beside the artefact, for example `figure_16.glb`, and links it.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the file cannot be written.
+    pub fn attach(&mut self, name: &str, bytes: &[u8], what: &str) -> Result<()> {
+        crate::file::write_atomic(&self.folder.join(name), bytes)?;
+        self.files.push(name.to_string());
+        self.document.block(format!("[{name}]({name}): {what}"));
+        Ok(())
+    }
+
+    /// Sets a quantity beside what the paper printed.
+    pub fn compare(
+        &mut self,
+        quantity: impl Into<String>,
+        printed: impl Into<String>,
+        ours: impl Into<String>,
+    ) {
+        self.comparisons.push(Comparison {
+            quantity: quantity.into(),
+            printed: printed.into(),
+            ours: ours.into(),
+        });
+    }
+
+    /// Adds a paragraph to `<artefact>.md`: a reading, a deviation, a reason.
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.document.block(text.into());
+    }
+
+    /// Says that the artefact cannot be made here, and why; return `Ok(())` after it.
+    pub fn skip(&mut self, reason: impl Into<String>) {
+        let reason = reason.into();
+        progress::line(&format!("{} {}: {reason}", self.slug, self.artefact));
+        self.skipped = Some(reason);
+    }
+}
+
+/// Length and age of the running program: a rebuilt one must not reuse what an older one found.
+fn build() -> String {
+    std::env::current_exe()
+        .and_then(std::fs::metadata)
+        .map(|meta| format!("{} {:?}", meta.len(), meta.modified().ok()))
+        .unwrap_or_default()
+}

@@ -1,0 +1,117 @@
+//! Finished units of work, kept so that a run that was stopped goes on where it was.
+//!
+//! One JSON object a line, `{"key": ..., "value": ...}`, appended in one write when a unit ends. A
+//! kill can leave half a line at the end, which is dropped on the next start. The file's name
+//! carries a hash of the settings, so that other settings find nothing to reuse.
+
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result};
+
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    key: String,
+    value: serde_json::Value,
+}
+
+/// The journal of one artefact.
+pub struct Journal {
+    path: PathBuf,
+    done: HashMap<String, serde_json::Value>,
+    file: Mutex<File>,
+}
+
+impl Journal {
+    /// Opens or starts the journal at `path`, whose folder is made when missing.
+    pub fn open(path: &Path) -> Result<Self> {
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+        }
+        let old = match std::fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+            Err(e) => return Err(Error::io(path, "read", e)),
+        };
+        let (done, whole) = entries(&old);
+        if whole < old.len() {
+            crate::file::write_atomic(path, &old[..whole])?;
+        }
+        let file = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(path)
+            .map_err(|e| Error::io(path, "write", e))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            done,
+            file: Mutex::new(file),
+        })
+    }
+
+    /// The stored result of a unit; `None` when there is none of this shape.
+    pub fn get<R: serde::de::DeserializeOwned>(&self, key: &str) -> Option<R> {
+        R::deserialize(self.done.get(key)?).ok()
+    }
+
+    /// Stores the result of a unit.
+    pub fn put<R: Serialize>(&self, key: &str, value: &R) -> Result<()> {
+        let entry = Entry {
+            key: key.to_string(),
+            value: serde_json::to_value(value).map_err(Error::method)?,
+        };
+        let mut line = serde_json::to_vec(&entry).map_err(Error::method)?;
+        line.push(b'\n');
+        let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
+        file.write_all(&line)
+            .map_err(|e| Error::io(&self.path, "write", e))
+    }
+}
+
+/// The whole lines of a journal, and how many bytes they take.
+fn entries(bytes: &[u8]) -> (HashMap<String, serde_json::Value>, usize) {
+    let mut done = HashMap::new();
+    let mut whole = 0;
+    for line in bytes.split_inclusive(|&b| b == b'\n') {
+        if line.last() != Some(&b'\n') {
+            break;
+        }
+        let Ok(entry) = serde_json::from_slice::<Entry>(line) else {
+            break;
+        };
+        done.insert(entry.key, entry.value);
+        whole += line.len();
+    }
+    (done, whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_a_line_is_dropped_and_the_rest_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("work/a.jsonl");
+        let journal = Journal::open(&path).unwrap();
+        journal.put("one", &1.5).unwrap();
+        journal.put("two", &(0.1 + 0.2)).unwrap();
+        drop(journal);
+        let mut bytes = std::fs::read(&path).unwrap();
+        bytes.extend_from_slice(b"{\"key\":\"three\",\"val");
+        std::fs::write(&path, &bytes).unwrap();
+
+        let journal = Journal::open(&path).unwrap();
+        assert_eq!(journal.get::<f64>("one"), Some(1.5));
+        assert_eq!(journal.get::<f64>("two"), Some(0.1 + 0.2));
+        assert_eq!(journal.get::<f64>("three"), None);
+        journal.put("three", &3.0).unwrap();
+        let journal = Journal::open(&path).unwrap();
+        assert_eq!(journal.get::<f64>("three"), Some(3.0));
+    }
+}

@@ -1,0 +1,33 @@
+//! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
+
+mod context;
+mod document;
+mod journal;
+mod options;
+mod progress;
+mod provenance;
+mod run;
+
+pub use context::Context;
+pub use options::{Args, Budget, Options};
+pub use run::{Report, main, run, run_to_end};
+
+/// One table or figure of a paper.
+pub struct Artefact {
+    /// Name of its files: `table_1`, `figure_14`.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub title: &'static str,
+    /// Makes it.
+    pub run: fn(&mut Context) -> crate::Result<()>,
+}
+
+/// One paper's experiments.
+pub struct Experiment {
+    /// The paper's slug, which names its folder under the report.
+    pub slug: &'static str,
+    /// Authors, year and title.
+    pub paper: &'static str,
+    /// Its tables and figures, in the order of the report.
+    pub artefacts: &'static [Artefact],
+}

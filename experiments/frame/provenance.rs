@@ -1,0 +1,136 @@
+//! Where a result comes from: `run.json`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::{Error, Result};
+
+/// Provenance of the artefacts of one paper, `OUT/<paper>/run.json`.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Run {
+    /// Slug of the paper.
+    pub experiment: String,
+    /// Authors, year and title.
+    pub paper: String,
+    /// Name of each artefact and how it was made last.
+    pub artefacts: BTreeMap<String, Made>,
+    /// Names of the artefacts in the order of the report.
+    pub order: Vec<String>,
+}
+
+/// How an artefact was made.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Made {
+    /// What it shows.
+    pub title: String,
+    /// The command.
+    pub command: String,
+    /// The seed.
+    pub seed: u64,
+    /// `smoke`, `default` or `paper`.
+    pub budget: String,
+    /// Every setting.
+    pub settings: BTreeMap<String, serde_json::Value>,
+    /// SHA-256 of each data file or folder read.
+    pub data: BTreeMap<String, String>,
+    /// Version of the crate.
+    pub version: String,
+    /// Seconds from start to end, units taken from the journal not counted.
+    pub wall_seconds: f64,
+    /// The machine: cores, threads used, system.
+    pub machine: Machine,
+    /// Files written, relative to the paper's folder.
+    pub files: Vec<String>,
+    /// Quantities beside what the paper printed.
+    pub comparisons: Vec<Comparison>,
+    /// Why nothing was made, when nothing was.
+    pub skipped: Option<String>,
+}
+
+/// A machine, as far as it matters for times.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Machine {
+    /// Logical cores.
+    pub cores: usize,
+    /// Threads that ran units.
+    pub threads: usize,
+    /// Operating system and processor family.
+    pub system: String,
+    /// Whether the build is optimized.
+    pub optimized: bool,
+}
+
+impl Machine {
+    /// This machine.
+    pub fn this(threads: usize) -> Self {
+        Self {
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            threads,
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            optimized: !cfg!(debug_assertions),
+        }
+    }
+}
+
+/// A quantity, what the paper printed, what this run found.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Comparison {
+    /// What is compared.
+    pub quantity: String,
+    /// The paper's number as printed.
+    pub printed: String,
+    /// Ours.
+    pub ours: String,
+}
+
+impl Run {
+    /// Reads `run.json`; a missing file, or one of another version, is an empty run.
+    pub fn read(path: &Path) -> Self {
+        std::fs::read(path)
+            .ok()
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+            .unwrap_or_default()
+    }
+
+    /// Writes `run.json`.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let mut bytes = serde_json::to_vec_pretty(self).map_err(Error::method)?;
+        bytes.push(b'\n');
+        crate::file::write_atomic(path, &bytes)
+    }
+}
+
+/// SHA-256 of a file, or of the names and contents of all files below a folder, in order of name.
+pub fn digest(path: &Path) -> Result<String> {
+    let mut hash = Sha256::new();
+    add(&mut hash, path, path)?;
+    Ok(hex(&hash.finalize()))
+}
+
+/// Lower-case hexadecimal.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+fn add(hash: &mut Sha256, root: &Path, path: &Path) -> Result<()> {
+    let fail = |e| Error::io(path, "read", e);
+    if path.is_dir() {
+        let entries: std::io::Result<Vec<_>> = std::fs::read_dir(path)
+            .map_err(fail)?
+            .map(|entry| entry.map(|e| e.path()))
+            .collect();
+        let mut entries = entries.map_err(fail)?;
+        entries.sort();
+        return entries.iter().try_for_each(|entry| add(hash, root, entry));
+    }
+    if path != root {
+        let name = path.strip_prefix(root).unwrap_or(path);
+        hash.update(name.to_string_lossy().as_bytes());
+        hash.update([0]);
+    }
+    hash.update(std::fs::read(path).map_err(fail)?);
+    Ok(())
+}

@@ -1,0 +1,288 @@
+//! Runs experiments and writes the report.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use clap::Parser;
+
+use super::context::{Context, STOP};
+use super::document::readable;
+use super::options::{Args, Options};
+use super::progress::line;
+use super::provenance::{Machine, Made, Run};
+use super::{Artefact, Experiment};
+use crate::report::{self, Page, Section};
+use crate::{Error, Result};
+
+/// What was run.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// The report's first page.
+    pub index: PathBuf,
+    /// Artefacts made, as `paper/artefact`.
+    pub made: Vec<String>,
+    /// Artefacts that could not be made here, with the reason.
+    pub skipped: Vec<(String, String)>,
+    /// Artefacts that failed, with the error.
+    pub failed: Vec<(String, String)>,
+    /// Seconds from start to end.
+    pub seconds: f64,
+}
+
+/// An artefact failed.
+#[derive(Debug, thiserror::Error)]
+#[error("{failed} of {all} artefacts failed")]
+struct Failed {
+    failed: usize,
+    all: usize,
+}
+
+impl Report {
+    /// The closing summary, line by line.
+    pub fn summary(&self) -> Vec<String> {
+        let mut lines = vec![format!(
+            "{} artefacts made in {:.1} s, {} left out, {} failed",
+            self.made.len(),
+            self.seconds,
+            self.skipped.len(),
+            self.failed.len()
+        )];
+        let named = |(name, why): &(String, String), what| format!("  {name} {what}: {why}");
+        lines.extend(self.skipped.iter().map(|entry| named(entry, "left out")));
+        lines.extend(self.failed.iter().map(|entry| named(entry, "failed")));
+        lines.push(format!("Report: {}", self.index.display()));
+        lines
+    }
+
+    /// The report, or an error when an artefact failed.
+    ///
+    /// # Errors
+    /// [`Error::Method`] that counts the failures.
+    pub fn check(self) -> Result<Self> {
+        match self.failed.len() {
+            0 => Ok(self),
+            failed => Err(Error::method(Failed {
+                failed,
+                all: failed + self.made.len(),
+            })),
+        }
+    }
+}
+
+/// Runs the experiments and writes the report.
+///
+/// A failing artefact does not stop the others; see [`Report::check`]. The journals of finished
+/// units are removed only when everything asked for is done.
+///
+/// # Errors
+/// [`Error::Option`] for an unknown artefact, [`Error::Io`] when the report cannot be written,
+/// [`Error::Interrupted`] after Ctrl-C.
+pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Report> {
+    let chosen = choose(experiments, &options.only)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build()
+        .map_err(Error::method)?;
+    let start = Instant::now();
+    let mut report = Report::default();
+    for (experiment, artefacts) in &chosen {
+        let folder = options.out.join(experiment.slug);
+        std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create", e))?;
+        for artefact in artefacts {
+            let name = format!("{}/{}", experiment.slug, artefact.name);
+            line(&format!("{name}: {}", artefact.title));
+            match pool.install(|| make(experiment, artefact, &folder, options)) {
+                Ok(None) => report.made.push(name),
+                Ok(Some(reason)) => report.skipped.push((name, reason)),
+                Err(Error::Interrupted) => return Err(Error::Interrupted),
+                Err(error) => {
+                    line(&format!("{name} failed: {error}"));
+                    report.failed.push((name, error.to_string()));
+                }
+            }
+        }
+    }
+    report.index = write_index(&options.out)?;
+    if report.failed.is_empty() {
+        for (experiment, _) in &chosen {
+            remove_journals(&options.out.join(experiment.slug).join(".work"))?;
+        }
+    }
+    report.seconds = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// The artefacts asked for, by experiment.
+fn choose(
+    experiments: &[&'static Experiment],
+    only: &[String],
+) -> Result<Vec<(&'static Experiment, Vec<&'static Artefact>)>> {
+    let all = || experiments.iter().flat_map(|e| e.artefacts);
+    if let Some(unknown) = only.iter().find(|name| all().all(|a| a.name != **name)) {
+        let known: Vec<_> = all().map(|a| a.name).collect();
+        return Err(Error::option(
+            "--only",
+            format!("no artefact {unknown:?}; known are {}", known.join(", ")),
+        ));
+    }
+    let wanted = |a: &&'static Artefact| only.is_empty() || only.iter().any(|n| n == a.name);
+    Ok(experiments
+        .iter()
+        .map(|e| (*e, e.artefacts.iter().filter(wanted).collect()))
+        .filter(|(_, artefacts): &(_, Vec<_>)| !artefacts.is_empty())
+        .collect())
+}
+
+/// Makes one artefact with all its files; returns the reason when it was left out.
+fn make(
+    experiment: &'static Experiment,
+    artefact: &'static Artefact,
+    folder: &Path,
+    options: &Options,
+) -> Result<Option<String>> {
+    let start = Instant::now();
+    let mut ctx = Context::new(
+        options,
+        experiment.slug,
+        artefact.name,
+        artefact.title,
+        folder.to_path_buf(),
+    );
+    (artefact.run)(&mut ctx)?;
+    if ctx.skipped.is_none() {
+        let csv = format!("{}.csv", artefact.name);
+        report::write_rows(&folder.join(&csv), &ctx.rows)?;
+        ctx.files.insert(0, csv);
+    }
+    let page = format!("{}.md", artefact.name);
+    let text = ctx
+        .document
+        .markdown(&ctx.comparisons, ctx.skipped.as_deref());
+    crate::file::write_atomic(&folder.join(&page), text.as_bytes())?;
+    ctx.files.insert(0, page);
+
+    let path = folder.join("run.json");
+    let mut run = Run::read(&path);
+    run.experiment = experiment.slug.to_string();
+    run.paper = experiment.paper.to_string();
+    run.order = experiment.artefacts.iter().map(|a| a.name.into()).collect();
+    let made = Made {
+        title: artefact.title.to_string(),
+        command: options.command.clone(),
+        seed: options.seed,
+        budget: format!("{:?}", options.budget).to_lowercase(),
+        settings: ctx.settings,
+        data: ctx.data,
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        wall_seconds: start.elapsed().as_secs_f64(),
+        machine: Machine::this(rayon::current_num_threads()),
+        files: ctx.files,
+        comparisons: ctx.comparisons,
+        skipped: ctx.skipped.clone(),
+    };
+    run.artefacts.insert(artefact.name.to_string(), made);
+    run.write(&path)?;
+    Ok(ctx.skipped)
+}
+
+/// Writes `OUT/index.html` over every paper found there, so that papers run one by one add up.
+fn write_index(out: &Path) -> Result<PathBuf> {
+    let fail = |e| Error::io(out, "read", e);
+    let mut folders = Vec::new();
+    for entry in std::fs::read_dir(out).map_err(fail)? {
+        let path = entry.map_err(fail)?.path();
+        if path.join("run.json").is_file() {
+            folders.push(path);
+        }
+    }
+    folders.sort();
+    let pages: Vec<Page> = folders
+        .iter()
+        .map(|folder| page(folder, &Run::read(&folder.join("run.json"))))
+        .collect();
+    let path = out.join("index.html");
+    crate::file::write_atomic(&path, report::index(&pages).as_bytes())?;
+    Ok(path)
+}
+
+/// One paper's part of the index.
+fn page(folder: &Path, run: &Run) -> Page {
+    let sections = run.order.iter().filter_map(|name| {
+        let made = run.artefacts.get(name)?;
+        let markdown = std::fs::read_to_string(folder.join(format!("{name}.md"))).ok()?;
+        Some(Section {
+            name: name.clone(),
+            heading: format!("{}: {}", readable(name), made.title),
+            markdown,
+            files: made.files.clone(),
+            made: format!(
+                "seed {}, budget {}, version {}, {:.1} s on {} threads, {}{}",
+                made.seed,
+                made.budget,
+                made.version,
+                made.wall_seconds,
+                made.machine.threads,
+                made.machine.system,
+                match made.machine.optimized {
+                    true => "",
+                    false => ", unoptimized build",
+                },
+            ),
+        })
+    });
+    Page {
+        slug: run.experiment.clone(),
+        paper: run.paper.clone(),
+        sections: sections.collect(),
+    }
+}
+
+/// Removes a finished run's journals.
+fn remove_journals(folder: &Path) -> Result<()> {
+    match std::fs::remove_dir_all(folder) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io(folder, "remove", e)),
+        _ => Ok(()),
+    }
+}
+
+/// Options of a paper's own binary.
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(flatten)]
+    args: Args,
+}
+
+/// The `main` of a paper's own binary.
+pub fn main(experiment: &'static Experiment) -> ExitCode {
+    let args = Cli::parse().args;
+    match run_to_end(&[experiment], args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            line(&format!("error: {error}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs with Ctrl-C caught, and prints the summary to standard error.
+///
+/// # Errors
+/// As [`run`] and [`Report::check`].
+pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()> {
+    let options = args.check()?;
+    // A second Ctrl-C stops at once: nothing finished is lost either way.
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        line("stopping after the units under way; Ctrl-C again stops at once");
+    });
+    let report = run(experiments, &options)?;
+    for text in report.summary() {
+        line(&text);
+    }
+    report.check().map(|_| ())
+}

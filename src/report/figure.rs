@@ -1,0 +1,118 @@
+//! Figures: panels in a grid.
+
+use std::path::Path;
+
+use super::drawing::{Area, Drawing};
+use super::{Bars, Chart, Dendrogram, HeatMap, Tiles, render};
+use crate::Result;
+
+/// One panel of a figure.
+#[derive(Debug, Clone)]
+pub enum Panel {
+    /// Lines and points.
+    Chart(Chart),
+    /// Grouped bars.
+    Bars(Bars),
+    /// A matrix.
+    HeatMap(HeatMap),
+    /// A tree.
+    Dendrogram(Dendrogram),
+    /// A layout.
+    Tiles(Tiles),
+}
+
+macro_rules! panel {
+    ($($kind:ident),*) => {$(
+        impl From<$kind> for Panel {
+            fn from(panel: $kind) -> Self {
+                Panel::$kind(panel)
+            }
+        }
+    )*};
+}
+panel!(Chart, Bars, HeatMap, Dendrogram, Tiles);
+
+/// Panels in a grid, filled row by row.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    caption: String,
+    columns: usize,
+    cell: (f64, f64),
+    panels: Vec<Panel>,
+}
+
+impl Figure {
+    /// A figure with `columns` panels a row, each 480 x 340 logical pixels.
+    pub fn new(caption: impl Into<String>, columns: usize) -> Self {
+        Self {
+            caption: caption.into(),
+            columns: columns.max(1),
+            cell: (480.0, 340.0),
+            panels: Vec::new(),
+        }
+    }
+
+    /// A figure of one panel, 680 x 420 logical pixels.
+    pub fn single(caption: impl Into<String>, panel: impl Into<Panel>) -> Self {
+        Self::new(caption, 1).cell(680.0, 420.0).panel(panel)
+    }
+
+    /// Sets the size of each panel in logical pixels.
+    pub fn cell(mut self, width: f64, height: f64) -> Self {
+        self.cell = (width, height);
+        self
+    }
+
+    /// Adds a panel.
+    pub fn panel(mut self, panel: impl Into<Panel>) -> Self {
+        self.panels.push(panel.into());
+        self
+    }
+
+    /// What the figure shows, for readers who cannot see it.
+    pub fn caption(&self) -> &str {
+        &self.caption
+    }
+
+    fn draw(&self) -> Drawing {
+        const MARGIN: f64 = 10.0;
+        let columns = self.columns.min(self.panels.len().max(1));
+        let rows = self.panels.len().div_ceil(columns).max(1);
+        let (width, height) = self.cell;
+        let mut out = Drawing::new(
+            columns as f64 * width + 2.0 * MARGIN,
+            rows as f64 * height + 2.0 * MARGIN,
+        );
+        for (i, panel) in self.panels.iter().enumerate() {
+            let area = Area {
+                x: MARGIN + (i % columns) as f64 * width,
+                y: MARGIN + (i / columns) as f64 * height,
+                width,
+                height,
+            };
+            match panel {
+                Panel::Chart(p) => p.draw(&mut out, area),
+                Panel::Bars(p) => p.draw(&mut out, area),
+                Panel::HeatMap(p) => p.draw(&mut out, area),
+                Panel::Dendrogram(p) => p.draw(&mut out, area),
+                Panel::Tiles(p) => p.draw(&mut out, area),
+            }
+        }
+        out
+    }
+}
+
+/// Writes `<name>.svg` and `<name>.png` into a folder.
+///
+/// # Errors
+/// [`crate::Error::Io`] when a file cannot be written, [`crate::Error::Method`] when plotters cannot draw.
+pub fn write_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
+    let drawing = figure.draw();
+    let svg = render::svg(&drawing)?;
+    crate::file::write_atomic(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+    let png = render::png(&drawing)?;
+    crate::file::write_atomic(&folder.join(format!("{name}.png")), &png)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,162 @@
+//! The frame of a chart: grid, ticks, labels, title, legend.
+
+use super::axis::{Fitted, Scale};
+use super::chart::Corner;
+use super::colour::{Colour, FRAME, GRID, INK, MUTED, PAPER};
+use super::drawing::{Anchor, Area, Drawing, Text, text_width};
+
+/// Height of tick labels and legends.
+pub const SMALL: f64 = 11.5;
+/// Height of axis labels.
+pub const LABEL: f64 = 12.5;
+/// Height of panel titles.
+pub const TITLE: f64 = 14.0;
+
+/// Draws the title and gives back the area below it.
+pub fn title(out: &mut Drawing, area: Area, text: &str) -> Area {
+    if text.is_empty() {
+        return area.inside(0.0, 6.0, 0.0, 0.0);
+    }
+    out.label(Text {
+        at: (area.x + area.width / 2.0, area.y + 13.0),
+        text: text.to_string(),
+        size: TITLE,
+        anchor: Anchor::Middle,
+        colour: INK,
+        bold: true,
+        vertical: false,
+    });
+    area.inside(0.0, 30.0, 0.0, 0.0)
+}
+
+/// Draws grid, ticks and labels of both axes; gives back the plotting area.
+pub fn axes(
+    out: &mut Drawing,
+    area: Area,
+    (x, x_scale): (&Fitted, &Scale),
+    (y, y_scale): (&Fitted, &Scale),
+) -> Area {
+    let widest = y
+        .ticks()
+        .map(|(_, t)| text_width(t, SMALL))
+        .fold(0.0, f64::max);
+    let plot = area.inside(widest + 34.0, 0.0, 22.0, 46.0);
+    x_ticks(out, plot, x, x_scale.label(), true);
+    y_ticks(out, plot, y, y_scale.label());
+    out.outline(plot, 1.0, FRAME);
+    plot
+}
+
+/// Draws ticks, their labels and the axis label below the plot; grid lines when wanted.
+pub fn x_ticks(out: &mut Drawing, plot: Area, x: &Fitted, label: &str, grid: bool) {
+    for (place, text) in x.ticks() {
+        let at = plot.x + place * plot.width;
+        if grid {
+            out.path(vec![(at, plot.y), (at, plot.bottom())], 1.0, GRID);
+        }
+        out.path(
+            vec![(at, plot.bottom()), (at, plot.bottom() + 4.0)],
+            1.0,
+            FRAME,
+        );
+        out.text((at, plot.bottom() + 13.0), text, SMALL, Anchor::Middle);
+    }
+    let middle = plot.x + plot.width / 2.0;
+    out.text((middle, plot.bottom() + 33.0), label, LABEL, Anchor::Middle);
+}
+
+/// Draws grid lines, ticks, their labels and the axis label left of the plot.
+pub fn y_ticks(out: &mut Drawing, plot: Area, y: &Fitted, label: &str) {
+    let mut widest = 0.0_f64;
+    for (place, text) in y.ticks() {
+        let at = plot.bottom() - place * plot.height;
+        out.path(vec![(plot.x, at), (plot.right(), at)], 1.0, GRID);
+        out.path(vec![(plot.x - 4.0, at), (plot.x, at)], 1.0, FRAME);
+        out.text((plot.x - 7.0, at), text, SMALL, Anchor::End);
+        widest = widest.max(text_width(text, SMALL));
+    }
+    out.label(Text {
+        at: (plot.x - widest - 21.0, plot.y + plot.height / 2.0),
+        text: label.to_string(),
+        size: LABEL,
+        anchor: Anchor::Middle,
+        colour: INK,
+        bold: false,
+        vertical: true,
+    });
+}
+
+/// How a legend shows its entry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Key {
+    /// A piece of line.
+    Line,
+    /// A piece of dashed line.
+    Dashes,
+    /// A dot.
+    Dot,
+    /// A small square.
+    Square,
+}
+
+/// Draws a legend in a corner of the plot, on a ground that lets what lies below shine through.
+pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[(Key, Colour, &str)]) {
+    let entries: Vec<_> = entries.iter().filter(|e| !e.2.is_empty()).collect();
+    if entries.is_empty() || corner == Corner::None {
+        return;
+    }
+    const LINE: f64 = 17.0;
+    let text = entries
+        .iter()
+        .map(|e| text_width(e.2, SMALL))
+        .fold(0.0, f64::max);
+    let (width, height) = (text + 44.0, LINE * entries.len() as f64 + 8.0);
+    let (left, top) = (plot.x + 8.0, plot.y + 8.0);
+    let (right, bottom) = (plot.right() - width - 8.0, plot.bottom() - height - 8.0);
+    let (x, y) = match corner {
+        Corner::TopLeft => (left, top),
+        Corner::BottomLeft => (left, bottom),
+        Corner::BottomRight => (right, bottom),
+        Corner::TopRight | Corner::None => (right, top),
+    };
+    let area = Area {
+        x,
+        y,
+        width,
+        height,
+    };
+    out.rect(area, PAPER.with_opacity(0.85));
+    out.outline(area, 1.0, GRID);
+    for (i, (key, colour, name)) in entries.iter().enumerate() {
+        let y = y + 4.0 + LINE * (i as f64 + 0.5);
+        let line = [(x + 8.0, y), (x + 30.0, y)];
+        match key {
+            Key::Line => out.path(line.to_vec(), 2.0, *colour),
+            Key::Dashes => out.dashes(&line, 2.0, *colour),
+            Key::Dot => out.disc((x + 19.0, y), 3.5, *colour),
+            Key::Square => out.rect(
+                Area {
+                    x: x + 13.0,
+                    y: y - 5.5,
+                    width: 11.0,
+                    height: 11.0,
+                },
+                *colour,
+            ),
+        }
+        out.text((x + 36.0, y), name, SMALL, Anchor::Start);
+    }
+}
+
+/// A text in muted colour.
+pub fn muted(out: &mut Drawing, at: (f64, f64), text: &str, size: f64, anchor: Anchor) {
+    out.label(Text {
+        at,
+        text: text.to_string(),
+        size,
+        anchor,
+        colour: MUTED,
+        bold: false,
+        vertical: false,
+    });
+}

@@ -1,0 +1,100 @@
+//! Markdown tables.
+
+/// How a column is aligned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// Words.
+    Left,
+    /// Numbers.
+    Right,
+}
+
+/// A table with a title.
+#[derive(Debug, Clone, Default)]
+pub struct Table {
+    title: String,
+    columns: Vec<(String, Align)>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a column.
+    pub fn column(mut self, name: impl Into<String>, align: Align) -> Self {
+        self.columns.push((name.into(), align));
+        self
+    }
+
+    /// Adds columns of numbers.
+    pub fn numbers<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        let columns = names.into_iter().map(|n| (n.into(), Align::Right));
+        self.columns.extend(columns);
+        self
+    }
+
+    /// Adds a row; missing cells stay empty, cells beyond the columns are dropped.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether it has no row.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The table as Markdown, columns padded so that it also reads as plain text.
+    pub fn markdown(&self) -> String {
+        let cell = |row: &[String], i: usize| -> String {
+            let text = row.get(i).map_or("", String::as_str);
+            text.replace('|', "\\|").replace('\n', " ")
+        };
+        let names: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();
+        let widths: Vec<usize> = (0..names.len())
+            .map(|i| {
+                let all = std::iter::once(&names).chain(&self.rows);
+                all.map(|row| cell(row, i).chars().count())
+                    .max()
+                    .unwrap_or(0)
+                    .max(3)
+            })
+            .collect();
+        let line = |row: &[String]| {
+            let cells = widths.iter().enumerate().map(|(i, &width)| {
+                let text = cell(row, i);
+                match self.columns[i].1 {
+                    Align::Right => format!("{text:>width$}"),
+                    _ => format!("{text:<width$}"),
+                }
+            });
+            format!("| {} |", cells.collect::<Vec<_>>().join(" | "))
+        };
+        let rule = widths
+            .iter()
+            .zip(&self.columns)
+            .map(|(&width, column)| match column.1 {
+                Align::Right => format!("{}:", "-".repeat(width - 1)),
+                _ => "-".repeat(width),
+            });
+        let mut lines = Vec::new();
+        if !self.title.is_empty() {
+            lines.push(format!("**{}**", self.title));
+            lines.push(String::new());
+        }
+        lines.push(line(&names));
+        lines.push(format!("| {} |", rule.collect::<Vec<_>>().join(" | ")));
+        lines.extend(self.rows.iter().map(|row| line(row)));
+        lines.join("\n")
+    }
+}
