@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 /// Result of an operation on files or of a command.
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Any cause, from any layer.
 pub type Cause = Box<dyn std::error::Error + Send + Sync + 'static>;

@@ -3,8 +3,23 @@
 //! Readers check everything at the door and name the file and the place of what is wrong. Writers
 //! go through [`write_atomic`], so that a failed run leaves nothing half-written.
 
-mod atomic;
 pub mod facade_json;
 pub mod grammar_json;
+pub mod label_image;
+pub mod label_map;
+pub mod label_text;
+pub mod pixels;
 
-pub use atomic::{read_bytes, write_atomic};
+use std::path::Path;
+
+pub use crate::file::{read_bytes, write_atomic};
+pub use label_map::LabelMap;
+
+/// Name of a facade that carries none: the file name up to its first dot.
+fn file_stem(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    match name.split('.').next() {
+        Some(stem) if !stem.is_empty() => stem.to_string(),
+        _ => name.into_owned(),
+    }
+}

@@ -101,6 +101,26 @@ pub enum LayoutError {
         /// Its top.
         top: f64,
     },
+    /// No full line splits a part of the facade (Wu et al. 2014, Sec. 6.3).
+    #[error(
+        "no full line splits the {count} regions from ({x}, {y}) to ({right}, {top}), regions[{index}] ({label}) first"
+    )]
+    Unsplittable {
+        /// Left of the part.
+        x: f64,
+        /// Its bottom.
+        y: f64,
+        /// Its right.
+        right: f64,
+        /// Its top.
+        top: f64,
+        /// Number of its regions.
+        count: usize,
+        /// Lowest index among them.
+        index: usize,
+        /// The label of that region.
+        label: String,
+    },
     /// A region is thinner than what counts as a difference.
     #[error("regions[{index}] ({label}) is thinner than {tolerance}")]
     TooThin {

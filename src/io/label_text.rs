@@ -1,0 +1,119 @@
+//! Label images as text: a matrix of labels or numbers, one row a line, the top row first.
+//!
+//! Entries are separated by blanks, tabs or commas; blank lines are skipped. A label has no blanks
+//! or commas in it. Each entry is a square of one unit.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::label_map::{Key, LabelMap};
+use super::{file_stem, read_bytes};
+use crate::shape::LabelGrid;
+use crate::{Error, Result};
+
+/// Reads a text matrix. With a `map`, numbers are looked up in it; other entries are labels.
+///
+/// # Errors
+/// Names the file, and the line and entry of a number that the map does not name, or of a row that
+/// is longer or shorter than the first.
+pub fn read(path: &Path, map: Option<&LabelMap>) -> Result<LabelGrid> {
+    parse(&read_bytes(path)?, path, map)
+}
+
+/// Parses a text matrix; `path` names the grid, and the file in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(bytes: &[u8], path: &Path, map: Option<&LabelMap>) -> Result<LabelGrid> {
+    let text = std::str::from_utf8(bytes).map_err(|e| Error::content(path, e))?;
+    let mut names: HashMap<String, u16> = HashMap::new();
+    let mut rows: Vec<Vec<u16>> = Vec::new();
+    for (line, content) in (1..).zip(text.lines()) {
+        let entries = content
+            .split([' ', '\t', ',', '\r'])
+            .filter(|e| !e.is_empty());
+        let mut row = Vec::new();
+        for (entry, word) in (1..).zip(entries) {
+            let place = || format!("line {line}, entry {entry}");
+            let label = match (map, word.parse::<u32>()) {
+                (Some(map), Ok(id)) => named(map, id).ok_or_else(|| {
+                    let message = format!("unknown number {id}: the label map does not name it");
+                    Error::input(path, place(), message)
+                })?,
+                _ => word,
+            };
+            let next = names.len();
+            let number = match names.get(label) {
+                Some(&number) => number,
+                None => {
+                    let number = u16::try_from(next)
+                        .map_err(|_| Error::input(path, place(), "more than 65536 labels"))?;
+                    names.insert(label.to_string(), number);
+                    number
+                }
+            };
+            row.push(number);
+        }
+        if row.is_empty() {
+            continue;
+        }
+        if let Some(first) = rows.first().filter(|first| first.len() != row.len()) {
+            let message = format!("{} entries, the first row has {}", row.len(), first.len());
+            return Err(Error::input(path, format!("line {line}"), message));
+        }
+        rows.push(row);
+    }
+    let Some(columns) = rows.first().map(Vec::len) else {
+        return Err(Error::content(path, "the matrix is empty"));
+    };
+    let mut labels: Vec<(String, u16)> = names.into_iter().collect();
+    labels.sort_unstable_by_key(|&(_, number)| number);
+    let grid = LabelGrid {
+        name: file_stem(path),
+        unit: "px".into(),
+        xs: (0..=columns).map(|x| x as f64).collect(),
+        ys: (0..=rows.len()).map(|y| y as f64).collect(),
+        labels: labels.into_iter().map(|(name, _)| name).collect(),
+        cells: rows.iter().rev().flatten().copied().collect(),
+    };
+    Ok(grid.merged())
+}
+
+fn named(map: &LabelMap, id: u32) -> Option<&str> {
+    map.find(Key::Id(id))
+        .and_then(|position| map.names().nth(position.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_line_is_the_top_row() {
+        let text = b"sky sky\n\nwall, door\r\n";
+        let grid = parse(text, "a.txt".as_ref(), None).unwrap();
+        assert_eq!(grid.labels, ["door", "sky", "wall"]);
+        assert_eq!(grid.cells, [2, 0, 1, 1]);
+        let map = LabelMap::cmp();
+        let grid = parse(b"2 3\n2 2", "a.txt".as_ref(), Some(&map)).unwrap();
+        assert_eq!(grid.labels, ["facade", "window"]);
+        assert_eq!(grid.cells, [0, 0, 0, 1]);
+    }
+
+    #[test]
+    fn bad_matrices_name_their_place() {
+        let map = LabelMap::cmp();
+        let cases: [(&[u8], &str); 4] = [
+            (b"a a\na", "line 2: 1 entries, the first row has 2"),
+            (b"1 1\n1 99", "line 2, entry 2: unknown number 99"),
+            (b"\n \n", "a.txt: the matrix is empty"),
+            (b"\xff", "invalid utf-8"),
+        ];
+        for (bytes, expected) in cases {
+            let message = parse(bytes, "a.txt".as_ref(), Some(&map))
+                .unwrap_err()
+                .to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}
