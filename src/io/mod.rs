@@ -3,6 +3,7 @@
 //! Readers check everything at the door and name the file and the place of what is wrong. Writers
 //! go through [`write_atomic`], so that a failed run leaves nothing half-written.
 
+pub mod building_json;
 pub mod facade_json;
 pub mod grammar_json;
 pub mod label_image;

@@ -2,8 +2,12 @@
 //!
 //! - [`Rect`]: an axis-parallel rectangle, origin at the lower left, y up.
 //! - [`Facade`]: labelled rectangles inside a rectangular domain (Wu et al. 2014, Sec. 3.1).
+//! - [`Building`]: boxes, roofs and facade pieces (Fan and Wonka 2016, Sec. 4.1).
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
+mod building;
+mod building_error;
+mod building_plan;
 mod components;
 mod cuts;
 mod decompose;
@@ -13,6 +17,12 @@ mod rect;
 mod splittable;
 mod tiling;
 
+pub use building::{
+    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof, RoofStyle,
+    Side, Special,
+};
+pub use building_error::BuildingError;
+pub use building_plan::{PlanEdge, PlanUnion, Visibility, visibility};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};
 pub use facade::{Facade, LayoutError, Region};

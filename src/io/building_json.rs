@@ -1,0 +1,149 @@
+//! Buildings as JSON: `*.building.json`, format `edifice/building`, version 1, and databases of
+//! buildings: `*.buildings.jsonl`, one such object a line.
+//!
+//! ```json
+//! { "format": "edifice/building", "version": 1, "name": "house_001", "unit": "m", "floor_height": 2.9,
+//!   "boxes": [ { "style": "garage", "x": 2.9, "y": 3.1, "width": 5.8, "depth": 6.2, "height": 2.8,
+//!                "roof": { "style": "gable", "pitch": 30.0, "ridge": "x" } } ],
+//!   "facades": [ { "side": "front", "start": 0.0, "base": 0.0, "width": 5.8, "height": 2.8,
+//!                  "elements": [ { "style": "sash", "x": 1.0, "y": 0.9, "width": 1.2, "height": 1.4 } ] } ],
+//!   "special": [ "chimney" ] }
+//! ```
+//! `x`, `y` of a box are its centre; those of an element its lower-left corner on its piece. Box
+//! styles: main, garage, porch; roofs: flat, gable, hip, shed, cone; elements: sash, sliding,
+//! casement, bay, fixed, door; special: chimney, tower. `facades` and `special` may be left out: a
+//! side without facade pieces was not observed.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::facade_json::{check_header, parse_json};
+use super::{read_bytes, write_atomic};
+use crate::shape::{Building, FacadePiece, MassBox, Special};
+use crate::{Error, Result};
+
+/// The value of the key `format`.
+pub const FORMAT: &str = "edifice/building";
+/// The version written, and the only one read.
+pub const VERSION: u64 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    #[serde(default)]
+    format: String,
+    #[serde(default)]
+    version: u64,
+    name: String,
+    unit: String,
+    floor_height: f64,
+    boxes: Vec<MassBox>,
+    #[serde(default)]
+    facades: Vec<FacadePiece>,
+    #[serde(default)]
+    special: Vec<Special>,
+}
+
+/// Reads one building, or a database of buildings, one JSON object a line when the name of the
+/// file ends in `.jsonl`.
+///
+/// # Errors
+/// Names the file and the line or JSON path of what is wrong; a database without buildings is an
+/// error too.
+pub fn read(path: &Path) -> Result<Vec<Building>> {
+    let bytes = read_bytes(path)?;
+    if path.extension().is_some_and(|e| e == "jsonl") {
+        return parse_lines(&bytes, path);
+    }
+    Ok(vec![parse(&bytes, path)?])
+}
+
+/// Writes one building, indented.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be written.
+pub fn write(building: &Building, path: &Path) -> Result<()> {
+    let text =
+        serde_json::to_string_pretty(&file(building)).map_err(|e| Error::content(path, e))?;
+    write_atomic(path, format!("{text}\n").as_bytes())
+}
+
+/// Writes a database, one building a line.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be written.
+pub fn write_lines(buildings: &[Building], path: &Path) -> Result<()> {
+    let mut text = String::new();
+    for building in buildings {
+        let line = serde_json::to_string(&file(building)).map_err(|e| Error::content(path, e))?;
+        text.push_str(&line);
+        text.push('\n');
+    }
+    write_atomic(path, text.as_bytes())
+}
+
+fn file(building: &Building) -> File {
+    File {
+        format: FORMAT.into(),
+        version: VERSION,
+        name: building.name.clone(),
+        unit: building.unit.clone(),
+        floor_height: building.floor_height,
+        boxes: building.boxes.clone(),
+        facades: building.facades.clone(),
+        special: building.special.clone(),
+    }
+}
+
+/// Parses the bytes of one building; `path` only names the file in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(bytes: &[u8], path: &Path) -> Result<Building> {
+    check_header(bytes, path, FORMAT, VERSION)?;
+    let f: File = parse_json(bytes, path)?;
+    Building::new(
+        f.name,
+        f.unit,
+        f.floor_height,
+        f.boxes,
+        f.facades,
+        f.special,
+    )
+    .map_err(|e| Error::content(path, e))
+}
+
+/// Parses the bytes of a database; empty lines are skipped.
+///
+/// # Errors
+/// As [`read`], with the line.
+pub fn parse_lines(bytes: &[u8], path: &Path) -> Result<Vec<Building>> {
+    let mut buildings = Vec::new();
+    for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
+        if line.iter().all(u8::is_ascii_whitespace) {
+            continue;
+        }
+        let building = parse(line, path).map_err(|e| at_line(e, i + 1))?;
+        buildings.push(building);
+    }
+    if buildings.is_empty() {
+        return Err(Error::content(path, "the database has no buildings"));
+    }
+    Ok(buildings)
+}
+
+/// Puts the line of the database in front of the place inside it.
+fn at_line(error: Error, line: usize) -> Error {
+    match error {
+        Error::Input {
+            path,
+            place,
+            source,
+        } => {
+            let place = format!("line {line}, {}", place.trim_start_matches("line 1, "));
+            Error::input(&path, place, source)
+        }
+        Error::Content { path, source } => Error::input(&path, format!("line {line}"), source),
+        other => other,
+    }
+}
