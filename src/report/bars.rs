@@ -43,7 +43,7 @@ impl Bars {
             y: y.from_zero(),
             categories,
             groups: Vec::new(),
-            legend: Corner::default(),
+            legend: Corner::Above,
         }
     }
 
@@ -71,6 +71,13 @@ impl Bars {
 
     pub(super) fn draw(&self, out: &mut Drawing, area: Area) {
         let area = frame::title(out, area, &self.title);
+        let entries: Vec<(Key, Colour, &str)> = self
+            .groups
+            .iter()
+            .enumerate()
+            .map(|(g, group)| (Key::Square, category(g), group.name.as_str()))
+            .collect();
+        let area = frame::legend_above(out, area, self.legend, &entries);
         let tops = self.groups.iter().flat_map(|g| {
             let error = |i: usize| g.errors.get(i).copied().unwrap_or(0.0);
             g.values
@@ -130,12 +137,6 @@ impl Bars {
         let middle = (plot.x + plot.width / 2.0, plot.bottom() + foot - 13.0);
         out.text(middle, &self.label, LABEL, Anchor::Middle);
         out.outline(plot, 1.0, FRAME);
-        let entries: Vec<(Key, Colour, &str)> = self
-            .groups
-            .iter()
-            .enumerate()
-            .map(|(g, group)| (Key::Square, category(g), group.name.as_str()))
-            .collect();
         frame::legend(out, plot, self.legend, &entries);
     }
 

@@ -17,6 +17,8 @@ pub enum Corner {
     BottomRight,
     /// Lower left.
     BottomLeft,
+    /// In rows above the plot, where it covers nothing.
+    Above,
     /// No legend.
     None,
 }
@@ -133,6 +135,20 @@ impl Chart {
 
     pub(super) fn draw(&self, out: &mut Drawing, area: Area) {
         let area = frame::title(out, area, &self.title);
+        let entries: Vec<_> = self
+            .series
+            .iter()
+            .enumerate()
+            .map(|(i, s)| {
+                let key = match s.kind {
+                    Kind::Dashed => Key::Dashes,
+                    Kind::Points => Key::Dot,
+                    _ => Key::Line,
+                };
+                (key, s.shade(i), s.name.as_str())
+            })
+            .collect();
+        let area = frame::legend_above(out, area, self.legend, &entries);
         let x = self.x.fit(self.xs());
         let y = self.y.fit(self.ys());
         let plot = frame::axes(out, area, (&x, &self.x), (&y, &self.y));
@@ -150,19 +166,6 @@ impl Chart {
         for (i, series) in self.series.iter().enumerate() {
             series.draw(out, &place, i);
         }
-        let entries: Vec<_> = self
-            .series
-            .iter()
-            .enumerate()
-            .map(|(i, s)| {
-                let key = match s.kind {
-                    Kind::Dashed => Key::Dashes,
-                    Kind::Points => Key::Dot,
-                    _ => Key::Line,
-                };
-                (key, s.shade(i), s.name.as_str())
-            })
-            .collect();
         frame::legend(out, plot, self.legend, &entries);
     }
 

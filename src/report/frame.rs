@@ -99,12 +99,12 @@ pub enum Key {
     Square,
 }
 
+/// An entry of a legend.
+pub type Entry<'a> = (Key, Colour, &'a str);
+
 /// Draws a legend in a corner of the plot, on a ground that lets what lies below shine through.
-pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[(Key, Colour, &str)]) {
+pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[Entry]) {
     let entries: Vec<_> = entries.iter().filter(|e| !e.2.is_empty()).collect();
-    if entries.is_empty() || corner == Corner::None {
-        return;
-    }
     const LINE: f64 = 17.0;
     let text = entries
         .iter()
@@ -117,8 +117,12 @@ pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[(Key, Co
         Corner::TopLeft => (left, top),
         Corner::BottomLeft => (left, bottom),
         Corner::BottomRight => (right, bottom),
-        Corner::TopRight | Corner::None => (right, top),
+        Corner::TopRight => (right, top),
+        Corner::Above | Corner::None => return,
     };
+    if entries.is_empty() {
+        return;
+    }
     let area = Area {
         x,
         y,
@@ -127,25 +131,48 @@ pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[(Key, Co
     };
     out.rect(area, PAPER.with_opacity(0.85));
     out.outline(area, 1.0, GRID);
-    for (i, (key, colour, name)) in entries.iter().enumerate() {
-        let y = y + 4.0 + LINE * (i as f64 + 0.5);
-        let line = [(x + 8.0, y), (x + 30.0, y)];
-        match key {
-            Key::Line => out.path(line.to_vec(), 2.0, *colour),
-            Key::Dashes => out.dashes(&line, 2.0, *colour),
-            Key::Dot => out.disc((x + 19.0, y), 3.5, *colour),
-            Key::Square => out.rect(
-                Area {
-                    x: x + 13.0,
-                    y: y - 5.5,
-                    width: 11.0,
-                    height: 11.0,
-                },
-                *colour,
-            ),
-        }
-        out.text((x + 36.0, y), name, SMALL, Anchor::Start);
+    for (i, entry) in entries.iter().enumerate() {
+        legend_entry(out, (x + 8.0, y + 4.0 + LINE * (i as f64 + 0.5)), entry);
     }
+}
+
+/// Draws a legend in rows above the plot, when it belongs there; gives back the area below it.
+pub fn legend_above(out: &mut Drawing, area: Area, corner: Corner, entries: &[Entry]) -> Area {
+    let entries = entries.iter().filter(|e| !e.2.is_empty());
+    if corner != Corner::Above {
+        return area;
+    }
+    let (left, mut x, mut y) = (area.x + 44.0, area.x + 44.0, area.y + 7.0);
+    let mut used = 0.0;
+    for entry in entries {
+        let width = text_width(entry.2, SMALL) + 46.0;
+        if x > left && x + width > area.right() {
+            (x, y) = (left, y + 17.0);
+        }
+        legend_entry(out, (x, y), entry);
+        x += width;
+        used = y + 15.0 - area.y;
+    }
+    area.inside(0.0, used, 0.0, 0.0)
+}
+
+fn legend_entry(out: &mut Drawing, (x, y): (f64, f64), (key, colour, name): &Entry) {
+    let line = [(x, y), (x + 22.0, y)];
+    match key {
+        Key::Line => out.path(line.to_vec(), 2.0, *colour),
+        Key::Dashes => out.dashes(&line, 2.0, *colour),
+        Key::Dot => out.disc((x + 11.0, y), 3.5, *colour),
+        Key::Square => out.rect(
+            Area {
+                x: x + 8.0,
+                y: y - 5.5,
+                width: 11.0,
+                height: 11.0,
+            },
+            *colour,
+        ),
+    }
+    out.text((x + 28.0, y), name, SMALL, Anchor::Start);
 }
 
 /// A text in muted colour.

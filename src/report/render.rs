@@ -163,11 +163,11 @@ fn draw<B: DrawingBackend>(root: &Root<B>, drawing: &Drawing, scale: f64) -> Res
     root.present().map_err(fail)
 }
 
-/// The corners of an axis-parallel rectangle, the last pixel not included.
+/// The corners of an axis-parallel rectangle.
 fn rectangle(points: &[(i32, i32)]) -> Option<[(i32, i32); 2]> {
     let [a, b, c, d] = points else { return None };
     let upright = a.1 == b.1 && b.0 == c.0 && c.1 == d.1 && d.0 == a.0;
-    upright.then_some([*a, (c.0 - 1, c.1 - 1)])
+    upright.then_some([*a, *c])
 }
 
 fn rgba(colour: Colour) -> RGBAColor {
@@ -175,11 +175,12 @@ fn rgba(colour: Colour) -> RGBAColor {
 }
 
 fn style<'a>(text: &Text, scale: f64) -> TextStyle<'a> {
-    let font = (FAMILY, text.size * scale).into_font();
-    let font = match text.bold {
-        true => font.style(FontStyle::Bold),
-        false => font,
+    let face = if text.bold {
+        FontStyle::Bold
+    } else {
+        FontStyle::Normal
     };
+    let font = FontDesc::new(FontFamily::Name(FAMILY), text.size * scale, face);
     let font = match text.vertical {
         true => font.transform(FontTransform::Rotate270),
         false => font,
