@@ -1,1 +1,13 @@
-//! cluster
+//! Grouping and ranking by distance: generic, no buildings.
+//!
+//! - [`chi_square`]: distance between two histograms.
+//! - [`agglomerate`]: hierarchical clustering of a distance matrix, with its [`Dendrogram`].
+//! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
+
+mod agglomerative;
+mod chi_square;
+mod retrieval;
+
+pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
+pub use chi_square::{Histogram, chi_square};
+pub use retrieval::{MatchCurve, Query, cumulative_match, purity};

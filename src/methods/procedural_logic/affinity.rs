@@ -68,7 +68,7 @@ impl Affinity {
     }
 
     /// `C_d`, normalized by its largest entry to lie in 0..=1; all zero when nothing faces.
-    pub(super) fn normalized(&self) -> Coefficients {
+    pub fn normalized(&self) -> Coefficients {
         let scale = |sums: &Vec<f64>| {
             let largest = sums.iter().copied().fold(0.0, f64::max);
             let factor = if largest > 0.0 { 1.0 / largest } else { 0.0 };
@@ -99,7 +99,7 @@ impl Affinity {
 
 /// The normalized matrices `C_d`.
 #[derive(Debug, Clone)]
-pub(super) struct Coefficients {
+pub struct Coefficients {
     labels: usize,
     values: [Vec<f64>; 2],
 }

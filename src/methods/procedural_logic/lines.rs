@@ -15,7 +15,7 @@ struct Terms {
     length: Vec<f64>,
     /// Affinity times length.
     affinity: Vec<f64>,
-    /// Perpendicular edges that pass through the line before corner `t`.
+    /// Corners before corner `t` where a perpendicular edge of one asset passes through the line.
     crossings: Vec<u32>,
     /// Those of them where the line leaves one asset's inside for another's.
     cuts: Vec<u32>,
@@ -193,7 +193,7 @@ fn terms(
             if t > 0 {
                 let [a, b] = [view.asset(line - 1, t - 1), view.asset(line - 1, t)];
                 let [c, d] = [view.asset(line, t - 1), view.asset(line, t)];
-                crossing = u32::from(a != b && c != d);
+                crossing = u32::from(a != b && c != d && (a == c || b == d));
                 cut = u32::from(a == c && b == d && a != b);
             }
             terms.crossings[row + t + 1] = terms.crossings[row + t] + crossing;

@@ -8,11 +8,13 @@ mod lines;
 mod nary;
 mod parameters;
 mod parse;
+mod rules;
 
-pub use affinity::Affinity;
+pub use affinity::{Affinity, Coefficients};
 pub use alphabet::Alphabet;
 pub use baseline::{BaselineError, baseline_grammar};
 pub use canvas::Canvas;
 pub use nary::{NaryNode, NaryTree};
 pub use parameters::{Extent, Facing, ParameterError, Parameters};
-pub use parse::{BinaryNode, BinaryTree, NoSplit};
+pub use parse::{BinaryNode, BinaryTree, NoSplit, parse};
+pub use rules::{Call, Instance, InstanceError, ParametricRule, RuleSet};

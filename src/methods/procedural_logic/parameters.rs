@@ -9,11 +9,12 @@ use crate::shape::Axis;
 #[serde(rename_all = "snake_case")]
 pub enum Extent {
     /// The scope: the mean over the line, a number between 0 and 1 whatever the scope.
-    #[default]
     Scope,
     /// The whole facade; pixels outside the scope count nothing, so short lines are cheap.
     Facade,
-    /// The whole facade; pixels outside the scope are no edge (`e = 1`), so long lines are cheap.
+    /// The whole facade; pixels outside the scope are no edge (`e = 1`), so long lines are cheap
+    /// ("rewards splitting along a longer line").
+    #[default]
     Line,
 }
 
@@ -64,7 +65,7 @@ impl Parameters {
         alpha: 0.6,
         parental_bias: 0.25,
         horizontal_bias: 0.5,
-        extent: Extent::Scope,
+        extent: Extent::Line,
         facing: Facing::Across,
     };
     /// Section 5.4: searched for retrieval on ECP2011.

@@ -55,7 +55,7 @@ pub struct NoSplit {
 ///
 /// # Errors
 /// [`NoSplit`] for a tiling that no sequence of straight cuts makes.
-pub(super) fn parse(
+pub fn parse(
     canvas: &Canvas,
     coefficients: &Coefficients,
     parameters: &Parameters,
