@@ -7,8 +7,9 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::label_map::{Key, LabelMap};
+use super::raster::Raster;
 use super::{file_stem, read_bytes};
-use crate::shape::LabelGrid;
+use crate::shape::{Facade, LabelGrid};
 use crate::{Error, Result};
 
 /// Reads a text matrix. With a `map`, numbers are looked up in it; other entries are labels.
@@ -77,6 +78,34 @@ pub fn parse(bytes: &[u8], path: &Path, map: Option<&LabelMap>) -> Result<LabelG
         cells: rows.iter().rev().flatten().copied().collect(),
     };
     Ok(grid.merged())
+}
+
+/// A label that cannot stand in a text matrix.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the label {0:?} has a blank or a comma in it, which a text matrix cannot hold")]
+pub struct UnfitLabel(pub String);
+
+/// The matrix of a layout, sampled as [`Raster`] says.
+///
+/// # Errors
+/// [`UnfitLabel`] for a label with a blank or a comma in it.
+pub fn to_string(facade: &Facade) -> Result<String, UnfitLabel> {
+    let raster = Raster::new(facade);
+    let unfit = |label: &&String| label.contains([' ', '\t', ',', '\r', '\n']);
+    if let Some(label) = raster.labels.iter().find(unfit) {
+        return Err(UnfitLabel(label.clone()));
+    }
+    let mut out = String::new();
+    for row in raster.rows() {
+        for (column, &label) in row.iter().enumerate() {
+            if column > 0 {
+                out.push(' ');
+            }
+            out.push_str(&raster.labels[label as usize]);
+        }
+        out.push('\n');
+    }
+    Ok(out)
 }
 
 fn named(map: &LabelMap, id: u32) -> Option<&str> {

@@ -4,16 +4,24 @@
 //! go through [`write_atomic`], so that a failed run leaves nothing half-written.
 
 pub mod building_json;
+pub mod cmp_xml;
+pub mod draw;
+mod facade_file;
 pub mod facade_json;
 pub mod grammar_json;
 pub mod label_image;
 pub mod label_map;
 pub mod label_text;
+pub mod palette;
 pub mod pixels;
+pub mod raster;
 
 use std::path::Path;
 
 pub use crate::file::{read_bytes, write_atomic};
+pub use facade_file::{
+    ReadOptions, Source, read_facade, read_label_grid, read_source, write_facade,
+};
 pub use label_map::LabelMap;
 
 /// Name of a facade that carries none: the file name up to its first dot.

@@ -50,6 +50,16 @@ pub struct Pixels {
     palette: Option<Vec<u8>>,
 }
 
+/// Width and height of a PNG, from its header.
+///
+/// # Errors
+/// [`PixelError::Png`] when it is none.
+pub fn size(bytes: &[u8]) -> Result<(f64, f64), PixelError> {
+    let mut decoder = Decoder::new(Cursor::new(bytes));
+    let header = decoder.read_header_info()?;
+    Ok((header.width.into(), header.height.into()))
+}
+
 impl Pixels {
     /// Decodes a PNG; 16-bit samples keep their upper half.
     ///

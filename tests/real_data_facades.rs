@@ -1,0 +1,154 @@
+//! Every facade of the ECP, Graz and CMP databases: reads, decomposes into a splittable tiling,
+//! repaints exactly.
+//!
+//! Needs the data in the folder that `EDIFICE_DATA` names. `cargo test --release --test
+//! real_data_facades -- --nocapture` prints the statistics.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use edifice::io::{self, LabelMap, ReadOptions};
+use edifice::shape::{LabelGrid, decompose, splittable};
+
+/// The folder of real data, if there is one; says loudly when there is not.
+fn data() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let named = std::env::var_os("EDIFICE_DATA").map(PathBuf::from);
+    let found = named.or_else(|| beside.is_dir().then_some(beside));
+    if found.is_none() {
+        eprintln!("SKIPPED: no real data. Set EDIFICE_DATA to the folder that holds facades/.");
+    }
+    found
+}
+
+/// Files of a folder with an extension, sorted.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == extension));
+    files.sort();
+    files
+}
+
+/// `min/median/max` of numbers.
+fn spread(mut values: Vec<f64>) -> String {
+    values.sort_by(f64::total_cmp);
+    let (first, last) = (values[0], values[values.len() - 1]);
+    format!("{first:.4}/{:.4}/{last:.4}", values[values.len() / 2])
+}
+
+/// Decomposes every picture, checks the result, prints a line of statistics.
+fn check_all(name: &str, grids: &[LabelGrid]) {
+    let (mut terminals, mut seconds, mut thin, mut cut) = (vec![], vec![], vec![], vec![]);
+    let (mut rectangles, mut others) = (vec![], vec![]);
+    for grid in grids {
+        let start = Instant::now();
+        let result = decompose(grid).unwrap();
+        seconds.push(start.elapsed().as_secs_f64());
+        let facade = &result.facade;
+        assert_eq!(facade.check_tiling(), Ok(()), "{}", grid.name);
+        assert_eq!(splittable(facade), Ok(()), "{}", grid.name);
+        let repainted = LabelGrid::from_facade(facade, None).unwrap().merged();
+        assert!(repainted == grid.merged(), "{} does not repaint", grid.name);
+        terminals.push(facade.regions.len() as f64);
+        let slim = facade
+            .regions
+            .iter()
+            .filter(|r| r.rect.width.min(r.rect.height) <= 2.0);
+        thin.push(slim.count() as f64);
+        cut.push(result.cut_elements.len() as f64);
+        rectangles.push(result.areas.0 as f64);
+        others.push(result.areas.1 as f64);
+    }
+    println!(
+        "{name}: {} facades; min/median/max terminals {}, of these 1-2 px thin {}, rectangular areas {}, other areas {}, rectangular areas cut {} (all {}), seconds {}",
+        grids.len(),
+        spread(terminals),
+        spread(thin),
+        spread(rectangles),
+        spread(others),
+        spread(cut.clone()),
+        cut.iter().sum::<f64>(),
+        spread(seconds),
+    );
+}
+
+fn label_images(folder: &str) -> Option<Vec<LabelGrid>> {
+    let folder = data()?.join(folder);
+    let read = |file: &PathBuf| io::read_label_grid(file, &ReadOptions::default()).unwrap();
+    Some(files(&folder, "png").iter().map(read).collect())
+}
+
+#[test]
+fn ecp() {
+    let Some(grids) = label_images("facades/ecp2011/labels") else {
+        return;
+    };
+    assert_eq!(grids.len(), 104);
+    check_all("ecp2011", &grids);
+}
+
+#[test]
+fn graz() {
+    let Some(grids) = label_images("facades/graz50/labels") else {
+        return;
+    };
+    assert_eq!(grids.len(), 30);
+    check_all("graz50", &grids);
+}
+
+#[test]
+fn cmp_images() {
+    let Some(grids) = label_images("facades/cmp") else {
+        return;
+    };
+    assert_eq!(grids.len(), 250);
+    check_all("cmp png", &grids);
+}
+
+#[test]
+fn cmp_rectangles() {
+    let Some(data) = data() else { return };
+    let (mut grids, mut agreements) = (vec![], vec![]);
+    for file in files(&data.join("facades/cmp"), "xml") {
+        let grid = io::read_label_grid(&file, &ReadOptions::default()).unwrap();
+        assert_eq!(grid.check(), Ok(()));
+        let image = file.with_extension("png");
+        let image = io::label_image::read(&image, Some(&LabelMap::cmp())).unwrap();
+        agreements.push(agreement(&grid, &image));
+        grids.push(grid);
+    }
+    assert_eq!(grids.len(), 250);
+    let mean = agreements.iter().sum::<f64>() / agreements.len() as f64;
+    println!(
+        "cmp xml: pixels like the image, mean {mean:.4}, {}",
+        spread(agreements)
+    );
+    assert!(mean > 0.96);
+    check_all("cmp xml", &grids);
+}
+
+/// Fraction of the area in which two pictures of one size show the same label.
+fn agreement(a: &LabelGrid, b: &LabelGrid) -> f64 {
+    let cut = |p: &[f64], q: &[f64]| {
+        let mut all: Vec<f64> = p.iter().chain(q).copied().collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    };
+    let (xs, ys) = (cut(&a.xs, &b.xs), cut(&a.ys, &b.ys));
+    let name = |g: &LabelGrid, x: f64, y: f64| {
+        let i = g.xs.partition_point(|&v| v <= x) - 1;
+        let j = g.ys.partition_point(|&v| v <= y) - 1;
+        g.labels[usize::from(g.at(i, j))].clone()
+    };
+    let mut same = 0.0;
+    for y in ys.windows(2) {
+        for x in xs.windows(2) {
+            if name(a, x[0], y[0]) == name(b, x[0], y[0]) {
+                same += (x[1] - x[0]) * (y[1] - y[0]);
+            }
+        }
+    }
+    same / (xs[xs.len() - 1] * ys[ys.len() - 1])
+}
