@@ -147,11 +147,9 @@ fn parse_objects(reader: &mut Reader<&[u8]>) -> Result<Vec<CmpObject>, CmpError>
                     _ => {}
                 }
             }
-            Event::End(_) => {
-                // The reader has checked that the end matches the start.
-                if open.pop().as_deref() == Some("object") {
-                    objects.push(std::mem::take(&mut draft).finish()?);
-                }
+            // The reader has checked that the end matches the start.
+            Event::End(_) if open.pop().as_deref() == Some("object") => {
+                objects.push(std::mem::take(&mut draft).finish()?);
             }
             Event::Eof => break,
             _ => {}
