@@ -185,6 +185,42 @@ pub enum GrammarError {
     },
 }
 
+impl GrammarError {
+    /// Index of the rule that is wrong, where the error is about one.
+    pub fn rule(&self) -> Option<usize> {
+        match self {
+            Self::NoSuccessors { rule, .. }
+            | Self::SizeNumber { rule, .. }
+            | Self::Weight { rule, .. }
+            | Self::DuplicateRule { second: rule, .. }
+            | Self::GridShape { rule, .. }
+            | Self::SizesDoNotAddUp { rule, .. }
+            | Self::RepeatDoesNotFit { rule, .. }
+            | Self::TooSmall { rule, .. } => Some(*rule),
+            Self::NoStart
+            | Self::StartIndex { .. }
+            | Self::StartSize { .. }
+            | Self::UndefinedStart { .. }
+            | Self::EmptySymbol { .. }
+            | Self::Cycle { .. }
+            | Self::AskedSize { .. }
+            | Self::TooManyRegions { .. }
+            | Self::Stochastic { .. } => None,
+        }
+    }
+
+    /// Whether the grammar may be right at another size of its facade.
+    pub fn depends_on_size(&self) -> bool {
+        matches!(
+            self,
+            Self::SizesDoNotAddUp { .. }
+                | Self::RepeatDoesNotFit { .. }
+                | Self::TooSmall { .. }
+                | Self::TooManyRegions { .. }
+        )
+    }
+}
+
 /// Something in a valid grammar that its author may not have meant.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Warning {

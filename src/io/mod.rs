@@ -8,6 +8,7 @@ pub mod cmp_xml;
 pub mod draw;
 mod facade_file;
 pub mod facade_json;
+pub mod grammar_cga;
 pub mod grammar_json;
 pub mod label_image;
 pub mod label_map;

@@ -1,0 +1,172 @@
+//! From tokens to statements.
+
+use chumsky::error::RichReason;
+use chumsky::input::{Stream, ValueInput};
+use chumsky::prelude::*;
+
+use super::error::Fault;
+use super::syntax::{Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Target};
+use super::token::Token;
+use crate::shape::Axis;
+
+type Extra<'t, 'a> = extra::Err<Rich<'t, Token<'a>>>;
+
+/// Parses the statements of CGA text of `length` bytes.
+pub(super) fn items<'a>(
+    tokens: Vec<(Token<'a>, SimpleSpan)>,
+    length: usize,
+) -> Result<Vec<Item<'a>>, Fault> {
+    let end: SimpleSpan = (length..length).into();
+    let stream = Stream::from_iter(tokens).map(end, |(token, span): (_, _)| (token, span));
+    file().parse(stream).into_result().map_err(|errors| {
+        let first = errors.into_iter().min_by_key(|e| e.span().start);
+        first.map_or_else(|| Fault::new(end, "not a grammar"), |e| fault(&e))
+    })
+}
+
+fn fault(error: &Rich<'_, Token<'_>>) -> Fault {
+    let message = match error.reason() {
+        RichReason::Custom(message) => message.clone(),
+        RichReason::ExpectedFound { expected, found } => {
+            let mut wanted: Vec<String> = expected.iter().map(ToString::to_string).collect();
+            wanted.sort();
+            wanted.dedup();
+            let found = match found {
+                Some(token) => format!("'{}'", **token),
+                None => "the end of the text".to_owned(),
+            };
+            format!("found {found}, expected {}", wanted.join(" or "))
+        }
+    };
+    Fault::new(*error.span(), message)
+}
+
+fn word<'t, 'a: 't, I>(word: &'static str) -> impl Parser<'t, I, (), Extra<'t, 'a>> + Clone
+where
+    I: ValueInput<'t, Token = Token<'a>, Span = SimpleSpan>,
+{
+    select! { Token::Name(name) if name == word => () }.labelled(word)
+}
+
+fn file<'t, 'a: 't, I>() -> impl Parser<'t, I, Vec<Item<'a>>, Extra<'t, 'a>>
+where
+    I: ValueInput<'t, Token = Token<'a>, Span = SimpleSpan>,
+{
+    let reserved = ["attr", "const", "version", "else", "split", "case"];
+    let name =
+        select! { Token::Name(name) if !reserved.contains(&name) => name }.labelled("a symbol");
+    let note = select! { Token::Note(note) = e => (note, e.span()) };
+    let notes = note.repeated().collect::<Vec<At<&str>>>();
+
+    let expression = recursive(|expression| {
+        let number =
+            select! { Token::Number(text) => Expression::Number(text) }.labelled("a number");
+        let constant = name.map(Expression::Name).labelled("a constant");
+        let group = expression.delimited_by(just(Token::OpenParen), just(Token::CloseParen));
+        let atom = choice((number, constant, group));
+        let signed = just(Token::Minus)
+            .or_not()
+            .then(atom)
+            .map(|(minus, value)| match minus {
+                Some(_) => Expression::Negative(Box::new(value)),
+                None => value,
+            });
+        let binary =
+            |left, (sign, right)| Expression::Binary(Box::new(left), sign, Box::new(right));
+        let factor = choice((just(Token::Star).to('*'), just(Token::Slash).to('/')));
+        let product = signed.clone().foldl(factor.then(signed).repeated(), binary);
+        let sign = choice((just(Token::Plus).to('+'), just(Token::Minus).to('-')));
+        product.clone().foldl(sign.then(product).repeated(), binary)
+    });
+    let expression = expression.map_with(|value, e| (value, e.span()));
+
+    let target = recursive(|target| {
+        let axis = select! { Token::Name("x") => Axis::X, Token::Name("y") => Axis::Y }
+            .labelled("x or y")
+            .delimited_by(just(Token::OpenParen), just(Token::CloseParen));
+        let part = just(Token::Tilde)
+            .or_not()
+            .then(expression.clone())
+            .then_ignore(just(Token::Colon))
+            .then(target)
+            .map(|((tilde, size), target)| Part {
+                relative: tilde.is_some(),
+                size,
+                target,
+            });
+        let parts = part
+            .clone()
+            .separated_by(just(Token::Bar))
+            .at_least(1)
+            .collect::<Vec<_>>();
+        let period = parts
+            .delimited_by(just(Token::OpenBrace), just(Token::CloseBrace))
+            .then_ignore(just(Token::Star))
+            .map_with(|parts, e| Entry::Repeat(parts, e.span()));
+        let body = choice((period, part.map(Entry::Part)))
+            .separated_by(just(Token::Bar))
+            .at_least(1)
+            .collect::<Vec<_>>()
+            .delimited_by(just(Token::OpenBrace), just(Token::CloseBrace));
+        let split = word("split")
+            .ignore_then(axis)
+            .then(body)
+            .then(just(Token::Star).map_with(|_, e| e.span()).or_not())
+            .try_map(|((axis, body), star), _| {
+                let Some(star) = star else {
+                    return Ok(Target::Split(axis, body));
+                };
+                let parts = body.into_iter().map(|entry| match entry {
+                    Entry::Part(part) => Ok(part),
+                    Entry::Repeat(_, span) => Err(Rich::custom(span, "a repeat inside a repeat")),
+                });
+                let parts = parts.collect::<Result<_, _>>()?;
+                Ok(Target::Split(axis, vec![Entry::Repeat(parts, star)]))
+            });
+        choice((split, name.map(Target::Symbol))).map_with(|target, e| (target, e.span()))
+    });
+
+    let percent = expression
+        .clone()
+        .then_ignore(just(Token::Percent))
+        .map(Chance::Percent);
+    let chance = choice((percent, word("else").to(Chance::Else))).then_ignore(just(Token::Colon));
+    let alternative = |chance: Chance<'a>, (notes, target)| Alternative {
+        notes,
+        chance,
+        target,
+    };
+    let weighted = notes
+        .then(chance)
+        .then(target.clone())
+        .map(move |((notes, chance), target)| alternative(chance, (notes, target)))
+        .repeated()
+        .at_least(1)
+        .collect::<Vec<_>>();
+    let single = notes
+        .then(target)
+        .map(move |rest| vec![alternative(Chance::Always, rest)]);
+    let rule = notes
+        .then(name.map_with(|name, e| (name, e.span())))
+        .then_ignore(just(Token::Arrow))
+        .then(choice((weighted, single)))
+        .map(|((notes, name), alternatives)| {
+            Item::Rule(Box::new(CgaRule {
+                notes,
+                name,
+                alternatives,
+            }))
+        });
+    let text = select! { Token::Text(_) => () }.labelled("a quoted text");
+    let constant = choice((word("attr"), word("const")))
+        .ignore_then(name.map_with(|name, e| (name, e.span())))
+        .then_ignore(just(Token::Equals))
+        .then(expression)
+        .map(|(name, value)| Item::Constant(name, value));
+    let start = just(Token::At).then(word("StartRule")).to(Item::StartRule);
+    let version = word("version").then(text).to(Item::Version);
+    choice((version, start, constant, rule))
+        .repeated()
+        .collect::<Vec<_>>()
+        .then_ignore(end())
+}
