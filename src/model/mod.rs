@@ -1,1 +1,21 @@
-//! model
+//! Generic probability: models with hidden structure, without buildings and without optimizers.
+//!
+//! | module | what | learned by |
+//! | --- | --- | --- |
+//! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
+//!
+//! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
+//! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
+//! in log space, natural logarithms. Hidden variables and missing values are summed or integrated
+//! out, never imputed.
+
+pub(crate) mod chunks;
+pub mod conjugate;
+pub mod em;
+mod error;
+pub mod hierarchy;
+pub(crate) mod linalg;
+mod table;
+
+pub use error::ModelError;
+pub use table::{Cell, Column, Table};

@@ -1,0 +1,153 @@
+//! Expectation-maximization towards the maximum a posteriori, once for every model.
+//!
+//! With observations O, hidden values Z and parameters Θ, each round replaces Θ by
+//! `argmax E[log P(O, Z | Θ') | O, Θ] + log P(Θ')`, which never lowers
+//! `log P(O | Θ) + log P(Θ)`. The E step yields expected sufficient statistics, the M step turns
+//! them into parameters; both are a model's own, the loop is here.
+//!
+//! Source: Fan and Wonka 2016, Sec. 5.3, *Parameter learning*: iterate until no parameter changes
+//! by more than 1e-6.
+
+use super::error::ModelError;
+
+/// A model that can be learned by EM from data it holds.
+pub trait Em {
+    /// Parameters Θ.
+    type Model: Clone;
+    /// Expected sufficient statistics of the complete data.
+    type Stats;
+
+    /// E step: expected sufficient statistics under `model`, and `log P(O | Θ)`.
+    ///
+    /// # Errors
+    /// What the data contradicts.
+    fn expect(&self, model: &Self::Model) -> Result<(Self::Stats, f64), ModelError>;
+
+    /// M step: the parameters of highest expected complete-data log posterior.
+    ///
+    /// # Errors
+    /// Statistics that determine no parameters, such as a singular covariance without a prior.
+    fn maximize(&self, stats: &Self::Stats) -> Result<Self::Model, ModelError>;
+
+    /// `log P(Θ)`; 0 for maximum likelihood.
+    fn log_prior(&self, model: &Self::Model) -> f64;
+
+    /// The largest absolute change of any parameter between two models.
+    fn movement(&self, before: &Self::Model, after: &Self::Model) -> f64;
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stopping {
+    /// Stop when no parameter moves by more than this (paper: 1e-6).
+    pub movement: f64,
+    /// Stop as well when a round gains less log posterior than this (0: never for this reason).
+    pub gain: f64,
+    /// Stop after so many rounds.
+    pub max_rounds: usize,
+}
+
+impl Default for Stopping {
+    fn default() -> Self {
+        Self {
+            movement: 1e-6,
+            gain: 0.0,
+            max_rounds: 2000,
+        }
+    }
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// No parameter moved by more than the tolerance.
+    Converged,
+    /// A round gained less than [`Stopping::gain`].
+    SmallGain,
+    /// The log posterior could not rise any more in floating point.
+    Stalled,
+    /// [`Stopping::max_rounds`] were run.
+    MaxRounds,
+}
+
+/// Result of EM.
+#[derive(Clone, Debug)]
+pub struct Fit<M> {
+    /// The parameters.
+    pub model: M,
+    /// `log P(O | Θ)`, nats.
+    pub log_likelihood: f64,
+    /// `log P(O | Θ) + log P(Θ)`, nats.
+    pub log_posterior: f64,
+    /// Log posterior before each round and after the last; never falls.
+    pub trace: Vec<f64>,
+    /// Why the run ended.
+    pub outcome: Outcome,
+}
+
+/// Runs EM from `start`.
+///
+/// # Errors
+/// Those of [`Em::expect`] and [`Em::maximize`].
+pub fn run<E: Em>(
+    em: &E,
+    start: E::Model,
+    stopping: &Stopping,
+) -> Result<Fit<E::Model>, ModelError> {
+    let (mut stats, mut log_likelihood) = em.expect(&start)?;
+    let mut model = start;
+    let mut log_posterior = log_likelihood + em.log_prior(&model);
+    let mut trace = vec![log_posterior];
+    let mut outcome = Outcome::MaxRounds;
+    for _ in 0..stopping.max_rounds {
+        let next = em.maximize(&stats)?;
+        let (next_stats, next_likelihood) = em.expect(&next)?;
+        let next_posterior = next_likelihood + em.log_prior(&next);
+        let gain = next_posterior - log_posterior;
+        if gain.is_nan() || gain < 0.0 {
+            outcome = Outcome::Stalled;
+            break;
+        }
+        let movement = em.movement(&model, &next);
+        (model, stats) = (next, next_stats);
+        (log_likelihood, log_posterior) = (next_likelihood, next_posterior);
+        trace.push(log_posterior);
+        if movement <= stopping.movement {
+            outcome = Outcome::Converged;
+            break;
+        }
+        if gain < stopping.gain {
+            outcome = Outcome::SmallGain;
+            break;
+        }
+    }
+    Ok(Fit {
+        model,
+        log_likelihood,
+        log_posterior,
+        trace,
+        outcome,
+    })
+}
+
+/// Runs EM from every start and keeps the first of highest log posterior.
+///
+/// # Errors
+/// [`ModelError::Empty`] without starts; the first error of a run.
+pub fn restarts<E: Em>(
+    em: &E,
+    starts: impl IntoIterator<Item = E::Model>,
+    stopping: &Stopping,
+) -> Result<Fit<E::Model>, ModelError> {
+    let mut best: Option<Fit<E::Model>> = None;
+    for start in starts {
+        let fit = run(em, start, stopping)?;
+        if best
+            .as_ref()
+            .is_none_or(|b| fit.log_posterior > b.log_posterior)
+        {
+            best = Some(fit);
+        }
+    }
+    best.ok_or(ModelError::Empty { what: "starts" })
+}

@@ -1,0 +1,152 @@
+//! What can be wrong with data, a model, or a question put to it.
+
+/// One variant per way to be wrong; each names the variable, and the row where there is one.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// No rows, or no columns, where some are needed.
+    #[error("no {what} to work with")]
+    Empty {
+        /// `rows`, `columns`, `groups`, ...
+        what: &'static str,
+    },
+    /// Two columns, variables or groups share a name.
+    #[error("`{name}` is declared twice")]
+    Duplicate {
+        /// The shared name.
+        name: String,
+    },
+    /// A name that is not declared.
+    #[error("there is no variable `{name}`")]
+    Unknown {
+        /// The name asked for.
+        name: String,
+    },
+    /// A column has another number of rows than the table.
+    #[error("column `{column}` has {got} rows, the table has {expected}")]
+    Rows {
+        /// The column.
+        column: String,
+        /// Its rows.
+        got: usize,
+        /// Rows of the table.
+        expected: usize,
+    },
+    /// A value that is neither finite nor declared missing.
+    #[error("column `{column}`, row {row}: {value} is not finite (declare it missing instead)")]
+    NotFinite {
+        /// The column.
+        column: String,
+        /// Row, from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A column whose observed values are all equal, so that it has no scale.
+    #[error("column `{column}` is constant (every observed value is {value})")]
+    Constant {
+        /// The column.
+        column: String,
+        /// The value.
+        value: String,
+    },
+    /// A column without any observed value.
+    #[error("column `{column}` has no observed value")]
+    AllMissing {
+        /// The column.
+        column: String,
+    },
+    /// A value that must be given is missing.
+    #[error("column `{column}`, row {row}: a value is needed here")]
+    Missing {
+        /// The column.
+        column: String,
+        /// Row, from 0.
+        row: usize,
+    },
+    /// A category that the variable does not have.
+    #[error("column `{column}`, row {row}: category `{category}` was not seen in training")]
+    UnseenCategory {
+        /// The column.
+        column: String,
+        /// Row, from 0.
+        row: usize,
+        /// The category.
+        category: String,
+    },
+    /// A column of another kind than the model needs.
+    #[error("column `{column}` is {got}, {expected} is needed")]
+    Kind {
+        /// The column.
+        column: String,
+        /// Its kind.
+        got: &'static str,
+        /// The kind needed.
+        expected: &'static str,
+    },
+    /// Evidence of probability zero.
+    #[error("row {row}: the evidence has probability zero (first contradiction at `{variable}`)")]
+    Contradiction {
+        /// Row, from 0.
+        row: usize,
+        /// The variable at which the probability became zero.
+        variable: String,
+    },
+    /// A fit without a prior that the data cannot determine.
+    #[error(
+        "{rows} rows cannot determine the {parameters} parameters of `{variable}`: use a prior"
+    )]
+    TooFewRows {
+        /// Rows at hand.
+        rows: usize,
+        /// Free parameters asked for.
+        parameters: usize,
+        /// The variable or model.
+        variable: String,
+    },
+    /// Parents that form a cycle.
+    #[error("the model is cyclic: `{variable}` is among its own ancestors")]
+    Cycle {
+        /// A variable on the cycle.
+        variable: String,
+    },
+    /// A parameter or a setting out of its range.
+    #[error("`{name}`: {problem}")]
+    Parameter {
+        /// The parameter, setting or variable.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A covariance that is not positive definite.
+    #[error("the covariance of `{variable}` is singular: give it a prior")]
+    Singular {
+        /// The variable.
+        variable: String,
+    },
+    /// Text that does not hold a model.
+    #[error("corrupt model, {place}: {problem}")]
+    Corrupt {
+        /// Line and column, or the field.
+        place: String,
+        /// What is wrong there.
+        problem: String,
+    },
+}
+
+impl ModelError {
+    /// A parameter or setting out of range.
+    pub fn parameter(name: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self::Parameter {
+            name: name.into(),
+            problem: problem.into(),
+        }
+    }
+
+    /// Text that does not hold a model.
+    pub fn corrupt(place: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self::Corrupt {
+            place: place.into(),
+            problem: problem.into(),
+        }
+    }
+}

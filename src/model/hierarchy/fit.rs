@@ -1,0 +1,336 @@
+//! EM for a fixed structure, and starts for it.
+
+use rand::{Rng, RngExt};
+
+use super::super::chunks;
+use super::super::em::{Em, Fit, Stopping, run};
+use super::super::error::ModelError;
+use super::super::table::MISSING;
+use super::infer::{Scratch, assignments};
+use super::params::{Params, Priors, Shape, Stats};
+use super::schema::{Rows, Schema};
+use super::structure::{Selector, Structure, configuration};
+
+/// Rows of one parallel piece of work.
+const CHUNK: usize = 2048;
+
+/// A structure to be fitted to rows: the [`Em`] of hierarchical models.
+pub(crate) struct Problem<'a> {
+    pub schema: &'a Schema,
+    pub rows: &'a Rows,
+    pub priors: &'a Priors,
+    pub shape: Shape,
+}
+
+/// A fitted structure and its score.
+#[derive(Clone, Debug)]
+pub(crate) struct Scored {
+    pub shape: Shape,
+    pub params: Params,
+    pub stats: Stats,
+    pub score: f64,
+}
+
+impl<'a> Problem<'a> {
+    pub fn new(
+        schema: &'a Schema,
+        rows: &'a Rows,
+        priors: &'a Priors,
+        structure: Structure,
+    ) -> Result<Self, ModelError> {
+        Ok(Self {
+            schema,
+            rows,
+            priors,
+            shape: Shape::new(schema, structure)?,
+        })
+    }
+
+    /// Calls `visit` with every completion of row `i`, already inferred, and its probability
+    /// given the row; returns `log p(row)`.
+    pub fn visit(
+        &self,
+        params: &Params,
+        i: usize,
+        scratch: &mut Scratch,
+        mut visit: impl FnMut(&mut Scratch, &[u32], f64),
+    ) -> Result<f64, ModelError> {
+        let (real, codes) = (self.rows.real(i), self.rows.code(i));
+        let shape = &self.shape;
+        let contradiction = || ModelError::Contradiction {
+            row: i,
+            variable: self.culprit(params, i),
+        };
+        if shape.regressors.iter().all(|&c| codes[c] != MISSING) {
+            scratch.infer(shape, params, real, codes);
+            if !scratch.log_likelihood.is_finite() {
+                return Err(contradiction());
+            }
+            let l = scratch.log_likelihood;
+            visit(scratch, codes, 1.0);
+            return Ok(l);
+        }
+        let all = assignments(shape, |c| self.schema.codes[c].name.clone(), codes)?;
+        let logs: Vec<f64> = all
+            .iter()
+            .map(|a| {
+                scratch.infer(shape, params, real, a);
+                scratch.log_likelihood
+            })
+            .collect();
+        let total = super::super::linalg::log_sum_exp(&logs);
+        if !total.is_finite() {
+            return Err(contradiction());
+        }
+        for (a, l) in all.iter().zip(&logs) {
+            let weight = (l - total).exp();
+            if weight > 1e-15 {
+                scratch.infer(shape, params, real, a);
+                visit(scratch, a, weight);
+            }
+        }
+        Ok(total)
+    }
+
+    /// The first variable at which the evidence of a row becomes impossible or overflows.
+    fn culprit(&self, params: &Params, i: usize) -> String {
+        let mut real = vec![f64::NAN; self.rows.d];
+        let mut codes = vec![MISSING; self.rows.c];
+        let mut scratch = Scratch::new(&self.shape);
+        for (c, column) in self.schema.codes.iter().enumerate() {
+            codes[c] = self.rows.code(i)[c];
+            scratch.infer(&self.shape, params, &real, &codes);
+            if !scratch.log_likelihood.is_finite() {
+                return column.name.clone();
+            }
+        }
+        for (c, column) in self.schema.reals.iter().enumerate() {
+            real[c] = self.rows.real(i)[c];
+            scratch.infer(&self.shape, params, &real, &codes);
+            if !scratch.log_likelihood.is_finite() {
+                return column.name.clone();
+            }
+        }
+        "the row as a whole".to_owned()
+    }
+
+    /// EM, then the Cheeseman-Stutz score.
+    pub fn fit(&self, start: Params, stopping: &Stopping) -> Result<Scored, ModelError> {
+        let Fit { model, .. } = run(self, start, stopping)?;
+        self.scored(model)
+    }
+
+    /// The score at given parameters.
+    pub fn scored(&self, params: Params) -> Result<Scored, ModelError> {
+        let (stats, _) = self.expect(&params)?;
+        let score = self
+            .shape
+            .score(&params, &stats, self.priors)
+            .ok_or_else(|| ModelError::Singular {
+                variable: "the model".to_owned(),
+            })?;
+        Ok(Scored {
+            shape: self.shape.clone(),
+            params,
+            stats,
+            score,
+        })
+    }
+
+    /// Parameters from hard assignments: style and state per group of every row.
+    pub fn assigned(&self, styles: &[usize], states: &[Vec<usize>]) -> Result<Params, ModelError> {
+        let shape = &self.shape;
+        let s_count = shape.structure.styles;
+        let mut stats = shape.stats();
+        for (i, &s) in styles.iter().enumerate() {
+            let (real, codes) = (self.rows.real(i), self.rows.code(i));
+            stats.style[s] += 1.0;
+            for (c, &code) in codes.iter().enumerate().filter(|(_, v)| **v != MISSING) {
+                let parents = &shape.structure.code_parents[c];
+                if parents.iter().all(|&p| codes[p] != MISSING) {
+                    let k = configuration(parents, &shape.sizes, codes) * shape.sizes[c];
+                    stats.codes[c][(k + code as usize) * s_count + s] += 1.0;
+                }
+            }
+            for (g, columns) in shape.columns.iter().enumerate() {
+                let h = match &shape.structure.selectors[g] {
+                    Selector::Hidden(_) => {
+                        stats.tables[g][states[g][i] * s_count + s] += 1.0;
+                        states[g][i]
+                    }
+                    Selector::Style => s,
+                    Selector::Codes(c) if c.iter().all(|&c| codes[c] != MISSING) => {
+                        configuration(c, &shape.sizes, codes)
+                    }
+                    Selector::Codes(_) => continue,
+                };
+                add_filled(&mut stats.scatter[g][h], columns, real);
+            }
+        }
+        shape.maximize(&stats, self.priors)
+    }
+
+    /// A start from k-means++ clusters: of whole rows for S, of each group for its hidden variable.
+    pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Params, ModelError> {
+        let all: Vec<usize> = (0..self.rows.d).collect();
+        let styles = self.cluster(&all, true, self.shape.structure.styles, rng);
+        let states: Vec<Vec<usize>> = (0..self.shape.groups())
+            .map(|g| match self.shape.structure.selectors[g] {
+                Selector::Hidden(k) => {
+                    let own: Vec<usize> = self.schema.columns(g).collect();
+                    self.cluster(&own, false, k, rng)
+                }
+                _ => Vec::new(),
+            })
+            .collect();
+        self.assigned(&styles, &states)
+    }
+
+    /// k-means++ and a few Lloyd rounds over the standardised real columns `reals` (0 for missing),
+    /// and the categories as indicators.
+    fn cluster<R: Rng>(&self, reals: &[usize], codes: bool, k: usize, rng: &mut R) -> Vec<usize> {
+        if k <= 1 {
+            return vec![0; self.rows.rows];
+        }
+        let width = reals.len()
+            + if codes {
+                self.shape.sizes.iter().sum()
+            } else {
+                0
+            };
+        let mut points = vec![0.0; self.rows.rows * width];
+        for (i, point) in points.chunks_mut(width.max(1)).enumerate() {
+            let real = self.rows.real(i);
+            for (p, &c) in point.iter_mut().zip(reals) {
+                *p = if real[c].is_nan() { 0.0 } else { real[c] };
+            }
+            if codes {
+                let mut at = reals.len();
+                for (&code, &size) in self.rows.code(i).iter().zip(&self.shape.sizes) {
+                    if code != MISSING {
+                        point[at + code as usize] = 1.0;
+                    }
+                    at += size;
+                }
+            }
+        }
+        kmeans(&points, width, k, 8, rng)
+    }
+}
+
+impl Em for Problem<'_> {
+    type Model = Params;
+    type Stats = Stats;
+
+    fn expect(&self, params: &Params) -> Result<(Stats, f64), ModelError> {
+        let stats = chunks::fold(
+            self.rows.rows,
+            CHUNK,
+            |range| {
+                let mut stats = self.shape.stats();
+                let mut scratch = Scratch::new(&self.shape);
+                for i in range {
+                    let l = self.visit(params, i, &mut scratch, |scratch, codes, weight| {
+                        let real = self.rows.real(i);
+                        scratch.accumulate(&self.shape, params, real, codes, weight, &mut stats);
+                    })?;
+                    stats.log_likelihood += l;
+                }
+                Ok(stats)
+            },
+            |total, part| total.merge(&part),
+        )?;
+        let log_likelihood = stats.log_likelihood;
+        Ok((stats, log_likelihood))
+    }
+
+    fn maximize(&self, stats: &Stats) -> Result<Params, ModelError> {
+        self.shape.maximize(stats, self.priors)
+    }
+
+    fn log_prior(&self, params: &Params) -> f64 {
+        self.shape.log_prior(params, self.priors)
+    }
+
+    fn movement(&self, before: &Params, after: &Params) -> f64 {
+        before.movement(after)
+    }
+}
+
+/// Adds u uᵀ to a lower triangle; a missing value counts as the overall mean 0 with variance 1.
+fn add_filled(scatter: &mut [f64], columns: &[usize], real: &[f64]) {
+    let q = columns.len() + 1;
+    let u = |i: usize| match i {
+        0 => 1.0,
+        i if real[columns[i - 1]].is_nan() => 0.0,
+        i => real[columns[i - 1]],
+    };
+    for i in 0..q {
+        for j in 0..=i {
+            scatter[i * q + j] += u(i) * u(j);
+        }
+        if i > 0 && real[columns[i - 1]].is_nan() {
+            scatter[i * q + i] += 1.0;
+        }
+    }
+}
+
+/// k-means++ seeding (Arthur and Vassilvitskii 2007) and `rounds` Lloyd rounds; the cluster of
+/// every point. Clusters may be empty when there are fewer distinct points than `k`.
+pub(crate) fn kmeans<R: Rng>(
+    points: &[f64],
+    width: usize,
+    k: usize,
+    rounds: usize,
+    rng: &mut R,
+) -> Vec<usize> {
+    let n = points.len().checked_div(width).unwrap_or(0);
+    let point = |i: usize| &points[i * width..(i + 1) * width];
+    let distance =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>();
+    let mut centres: Vec<Vec<f64>> = vec![point(rng.random_range(0..n)).to_vec()];
+    let mut nearest: Vec<f64> = (0..n).map(|i| distance(point(i), &centres[0])).collect();
+    while centres.len() < k {
+        let total: f64 = nearest.iter().sum();
+        let mut at = rng.random::<f64>() * total;
+        let chosen = (0..n)
+            .find(|&i| {
+                at -= nearest[i];
+                at < 0.0
+            })
+            .unwrap_or(n - 1);
+        centres.push(point(chosen).to_vec());
+        for (i, best) in nearest.iter_mut().enumerate() {
+            *best = best.min(distance(point(i), point(chosen)));
+        }
+    }
+    let mut labels = vec![0; n];
+    for round in 0..=rounds {
+        let mut moved = false;
+        for (i, label) in labels.iter_mut().enumerate() {
+            let closest = (0..k)
+                .map(|c| (distance(point(i), &centres[c]), c))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .map_or(0, |(_, c)| c);
+            moved |= closest != *label;
+            *label = closest;
+        }
+        if round == rounds || (!moved && round > 0) {
+            break;
+        }
+        let mut counts = vec![0.0; k];
+        let mut sums = vec![vec![0.0; width]; k];
+        for (i, &label) in labels.iter().enumerate() {
+            counts[label] += 1.0;
+            for (s, v) in sums[label].iter_mut().zip(point(i)) {
+                *s += v;
+            }
+        }
+        for ((centre, sum), n) in centres.iter_mut().zip(sums).zip(counts) {
+            if n > 0.0 {
+                *centre = sum.into_iter().map(|v| v / n).collect();
+            }
+        }
+    }
+    labels
+}

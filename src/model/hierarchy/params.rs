@@ -1,0 +1,364 @@
+//! Parameters, sufficient statistics, the M step and the Cheeseman-Stutz score.
+
+use super::super::conjugate::{
+    Linear, LinearPrior, dirichlet_evidence, dirichlet_log_density, dirichlet_mode,
+};
+use super::super::error::ModelError;
+use super::schema::Schema;
+use super::structure::{Selector, Structure};
+
+/// Priors of every parameter; real columns are on the standardised scale (mean 0, deviation 1).
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Priors {
+    /// α of every table, at least 1 (1 is uniform; greater keeps probabilities off zero).
+    pub dirichlet: f64,
+    /// Normal-inverse-Wishart prior of every real group.
+    pub linear: LinearPrior,
+}
+
+impl Default for Priors {
+    fn default() -> Self {
+        Self {
+            dirichlet: 1.2,
+            linear: LinearPrior {
+                intercept: 0.1,
+                slope: 1.0,
+                scatter: 0.1,
+                freedom: 3.0,
+            },
+        }
+    }
+}
+
+impl Priors {
+    /// Checks that every hyperparameter is in its range.
+    ///
+    /// # Errors
+    /// [`ModelError::Parameter`].
+    pub fn check(&self) -> Result<(), ModelError> {
+        if !(self.dirichlet >= 1.0 && self.dirichlet.is_finite()) {
+            return Err(ModelError::parameter("dirichlet", "must be at least 1"));
+        }
+        let l = &self.linear;
+        for (name, value) in [
+            ("intercept", l.intercept),
+            ("slope", l.slope),
+            ("scatter", l.scatter),
+            ("freedom", l.freedom),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ModelError::parameter(name, "must be positive and finite"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Θ of a hierarchical model.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Params {
+    /// P(S = s).
+    pub style: Vec<f64>,
+    /// Per real group with a hidden variable, P(h | s) at `h * styles + s`; empty for others.
+    pub tables: Vec<Vec<f64>>,
+    /// Per real group, per state.
+    pub linear: Vec<Vec<Linear>>,
+    /// Per categorical column, P(c | configuration, s) at `(configuration * size + c) * styles + s`.
+    pub codes: Vec<Vec<f64>>,
+}
+
+/// Expected sufficient statistics, in the same layouts as [`Params`].
+#[derive(Clone, Debug)]
+pub(crate) struct Stats {
+    pub style: Vec<f64>,
+    pub tables: Vec<Vec<f64>>,
+    /// Per group, per state, lower triangle of `Σ w u uᵀ`, u = (1, parents, own columns).
+    pub scatter: Vec<Vec<Vec<f64>>>,
+    pub codes: Vec<Vec<f64>>,
+    pub log_likelihood: f64,
+}
+
+/// Shapes that follow from a schema and a structure.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape {
+    pub structure: Structure,
+    /// Topological order of the real groups.
+    pub order: Vec<usize>,
+    /// Numbers of categories.
+    pub sizes: Vec<usize>,
+    /// Per group, real columns in u after the leading 1: parents' columns, then own.
+    pub columns: Vec<Vec<usize>>,
+    /// Per group, length of x and of y.
+    pub p: Vec<usize>,
+    pub d: Vec<usize>,
+    /// Categorical columns that are parents of something.
+    pub regressors: Vec<usize>,
+}
+
+impl Shape {
+    pub fn new(schema: &Schema, structure: Structure) -> Result<Self, ModelError> {
+        let order = structure.order(&schema.groups)?;
+        let names: Vec<String> = schema.codes.iter().map(|c| c.name.clone()).collect();
+        super::structure::order(&structure.code_parents, &names)?;
+        let mut columns = Vec::new();
+        let (mut p, mut d) = (Vec::new(), Vec::new());
+        for g in 0..schema.groups.len() {
+            let mut list: Vec<usize> = Vec::new();
+            for &parent in &structure.parents[g] {
+                list.extend(schema.columns(parent));
+            }
+            p.push(1 + list.len());
+            d.push(schema.columns(g).len());
+            list.extend(schema.columns(g));
+            columns.push(list);
+        }
+        let mut regressors: Vec<usize> = structure.code_parents.iter().flatten().copied().collect();
+        for selector in &structure.selectors {
+            if let Selector::Codes(list) = selector {
+                regressors.extend(list);
+            }
+        }
+        regressors.sort_unstable();
+        regressors.dedup();
+        Ok(Self {
+            order,
+            sizes: schema.sizes(),
+            columns,
+            p,
+            d,
+            regressors,
+            structure,
+        })
+    }
+
+    pub fn groups(&self) -> usize {
+        self.columns.len()
+    }
+
+    pub fn states(&self, g: usize) -> usize {
+        self.structure.states(g, &self.sizes)
+    }
+
+    pub fn hidden(&self, g: usize) -> bool {
+        matches!(self.structure.selectors[g], Selector::Hidden(_))
+    }
+
+    fn configurations(&self, c: usize) -> usize {
+        let parents = &self.structure.code_parents[c];
+        parents.iter().map(|&p| self.sizes[p]).product()
+    }
+
+    pub fn stats(&self) -> Stats {
+        let s = self.structure.styles;
+        let groups = 0..self.groups();
+        Stats {
+            style: vec![0.0; s],
+            tables: groups
+                .clone()
+                .map(|g| {
+                    vec![
+                        0.0;
+                        if self.hidden(g) {
+                            self.states(g) * s
+                        } else {
+                            0
+                        }
+                    ]
+                })
+                .collect(),
+            scatter: groups
+                .map(|g| vec![vec![0.0; (self.p[g] + self.d[g]).pow(2)]; self.states(g)])
+                .collect(),
+            codes: (0..self.sizes.len())
+                .map(|c| vec![0.0; self.configurations(c) * self.sizes[c] * s])
+                .collect(),
+            log_likelihood: 0.0,
+        }
+    }
+
+    /// Parameters of highest expected complete-data posterior.
+    pub fn maximize(&self, stats: &Stats, priors: &Priors) -> Result<Params, ModelError> {
+        let s = self.structure.styles;
+        let mut linear = Vec::with_capacity(self.groups());
+        for (g, states) in stats.scatter.iter().enumerate() {
+            let fitted: Option<Vec<Linear>> = states
+                .iter()
+                .map(|m| priors.linear.mode(m, self.p[g], self.d[g]))
+                .collect();
+            linear.push(fitted.ok_or_else(|| ModelError::Singular {
+                variable: format!("group {g}"),
+            })?);
+        }
+        Ok(Params {
+            style: dirichlet_mode(&stats.style, priors.dirichlet),
+            tables: (0..self.groups())
+                .map(|g| conditional(&stats.tables[g], self.states(g), s, dirichlet_mode, priors))
+                .collect(),
+            linear,
+            codes: (0..self.sizes.len())
+                .map(|c| conditional(&stats.codes[c], self.sizes[c], s, dirichlet_mode, priors))
+                .collect(),
+        })
+    }
+
+    /// `log P(Θ)`.
+    pub fn log_prior(&self, params: &Params, priors: &Priors) -> f64 {
+        let s = self.structure.styles;
+        let alpha = priors.dirichlet;
+        let table = |t: &[f64], k: usize| -> f64 {
+            columns(t, k, s)
+                .map(|c| dirichlet_log_density(&c, alpha))
+                .sum()
+        };
+        let mut total = dirichlet_log_density(&params.style, alpha);
+        for g in 0..self.groups() {
+            total += table(&params.tables[g], self.states(g));
+            total += params.linear[g]
+                .iter()
+                .map(|l| priors.linear.log_density(l))
+                .sum::<f64>();
+        }
+        for (c, t) in params.codes.iter().enumerate() {
+            total += table(t, self.sizes[c]);
+        }
+        total
+    }
+
+    /// Cheeseman-Stutz score (Eq. 2 with a uniform P(G)):
+    /// `log P(O* | G) + log P(O | G, Θ) - log P(O* | G, Θ)`, O* given by its expected statistics.
+    pub fn score(&self, params: &Params, stats: &Stats, priors: &Priors) -> Option<f64> {
+        let s = self.structure.styles;
+        let alpha = priors.dirichlet;
+        let table = |counts: &[f64], probabilities: &[f64], k: usize| -> f64 {
+            let evidence: f64 = columns(counts, k, s)
+                .map(|c| dirichlet_evidence(&c, alpha))
+                .sum();
+            evidence - plug_in(counts, probabilities)
+        };
+        let mut total = stats.log_likelihood + dirichlet_evidence(&stats.style, alpha)
+            - plug_in(&stats.style, &params.style);
+        for g in 0..self.groups() {
+            total += table(&stats.tables[g], &params.tables[g], self.states(g));
+            for (m, l) in stats.scatter[g].iter().zip(&params.linear[g]) {
+                total +=
+                    priors.linear.evidence(m, self.p[g], self.d[g])? - l.expected_log_likelihood(m);
+            }
+        }
+        for (c, (counts, probabilities)) in stats.codes.iter().zip(&params.codes).enumerate() {
+            total += table(counts, probabilities, self.sizes[c]);
+        }
+        total.is_finite().then_some(total)
+    }
+
+    /// Number of free parameters, for BIC.
+    pub fn free_parameters(&self) -> usize {
+        let s = self.structure.styles;
+        let mut count = s - 1;
+        for g in 0..self.groups() {
+            let k = self.states(g);
+            if self.hidden(g) {
+                count += s * (k - 1);
+            }
+            count += k * (self.p[g] * self.d[g] + self.d[g] * (self.d[g] + 1) / 2);
+        }
+        for c in 0..self.sizes.len() {
+            count += s * self.configurations(c) * (self.sizes[c] - 1);
+        }
+        count
+    }
+}
+
+impl Stats {
+    /// Adds the statistics of other rows.
+    pub fn merge(&mut self, other: &Self) {
+        add(&mut self.style, &other.style);
+        for (a, b) in self.tables.iter_mut().zip(&other.tables) {
+            add(a, b);
+        }
+        for (a, b) in self
+            .scatter
+            .iter_mut()
+            .flatten()
+            .zip(other.scatter.iter().flatten())
+        {
+            add(a, b);
+        }
+        for (a, b) in self.codes.iter_mut().zip(&other.codes) {
+            add(a, b);
+        }
+        self.log_likelihood += other.log_likelihood;
+    }
+}
+
+impl Params {
+    /// Largest absolute difference of a parameter.
+    pub fn movement(&self, other: &Self) -> f64 {
+        let far = |a: &[f64], b: &[f64]| {
+            a.iter()
+                .zip(b)
+                .map(|(x, y)| (x - y).abs())
+                .fold(0.0, f64::max)
+        };
+        let mut most = far(&self.style, &other.style);
+        for (a, b) in self.tables.iter().zip(&other.tables) {
+            most = most.max(far(a, b));
+        }
+        for (a, b) in self.codes.iter().zip(&other.codes) {
+            most = most.max(far(a, b));
+        }
+        for (a, b) in self
+            .linear
+            .iter()
+            .flatten()
+            .zip(other.linear.iter().flatten())
+        {
+            most = most.max(far(&a.coefficients, &b.coefficients));
+            most = most.max(far(&a.covariance, &b.covariance));
+        }
+        most
+    }
+}
+
+fn add(a: &mut [f64], b: &[f64]) {
+    for (x, y) in a.iter_mut().zip(b) {
+        *x += y;
+    }
+}
+
+/// The distributions of a table laid out with `styles` fastest: `k` values each.
+fn columns(table: &[f64], k: usize, styles: usize) -> impl Iterator<Item = Vec<f64>> + '_ {
+    let blocks = if k == 0 {
+        0
+    } else {
+        table.len() / (k * styles)
+    };
+    (0..blocks).flat_map(move |b| {
+        (0..styles).map(move |s| (0..k).map(|h| table[(b * k + h) * styles + s]).collect())
+    })
+}
+
+fn conditional(
+    counts: &[f64],
+    k: usize,
+    styles: usize,
+    mode: impl Fn(&[f64], f64) -> Vec<f64>,
+    priors: &Priors,
+) -> Vec<f64> {
+    let mut table = vec![0.0; counts.len()];
+    for (i, column) in columns(counts, k, styles).enumerate() {
+        let (b, s) = (i / styles, i % styles);
+        for (h, p) in mode(&column, priors.dirichlet).into_iter().enumerate() {
+            table[(b * k + h) * styles + s] = p;
+        }
+    }
+    table
+}
+
+/// `Σ n log p`, with 0 log 0 = 0.
+fn plug_in(counts: &[f64], probabilities: &[f64]) -> f64 {
+    counts
+        .iter()
+        .zip(probabilities)
+        .map(|(n, p)| if *n > 0.0 { n * p.ln() } else { 0.0 })
+        .sum()
+}

@@ -1,0 +1,203 @@
+//! Structure search (Sec. 5.3): cardinalities of the hidden variables, then of S, lateral edges at
+//! every step, by the Cheeseman-Stutz score.
+
+use rand::Rng;
+use rayon::prelude::*;
+
+use super::super::em::Stopping;
+use super::super::error::ModelError;
+use super::edges::{propose, states, wide};
+use super::fit::{Problem, Scored, kmeans};
+use super::infer::Scratch;
+use super::params::Priors;
+use super::schema::{Rows, Schema};
+use super::structure::{Selector, Structure};
+use super::{Settings, Step, Variant};
+use crate::rng::stream;
+
+/// What a search needs everywhere.
+pub(crate) struct Search<'a> {
+    pub schema: &'a Schema,
+    pub rows: &'a Rows,
+    pub settings: &'a Settings,
+}
+
+impl<'a> Search<'a> {
+    /// Runs the search for every cardinality of S and keeps the first of highest score.
+    pub fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
+        let styles: Vec<usize> = match self.settings.variant {
+            Variant::Directed => vec![1],
+            _ => self.settings.styles.clone().collect(),
+        };
+        let found: Vec<Result<(Scored, Vec<Step>), ModelError>> = styles
+            .into_par_iter()
+            .map(|s| self.for_styles(s, &mut stream(seed, "hierarchy", s as u64)))
+            .collect();
+        let mut best: Option<Scored> = None;
+        let mut trace = Vec::new();
+        for result in found {
+            let (scored, steps) = result?;
+            trace.extend(steps);
+            if best.as_ref().is_none_or(|b| scored.score > b.score) {
+                best = Some(scored);
+            }
+        }
+        let best = best.ok_or(ModelError::Empty { what: "styles" })?;
+        let problem = self.problem(best.shape.structure.clone())?;
+        Ok((problem.fit(best.params, &self.settings.stopping)?, trace))
+    }
+
+    fn problem(&self, structure: Structure) -> Result<Problem<'a>, ModelError> {
+        let priors: &'a Priors = &self.settings.priors;
+        Problem::new(self.schema, self.rows, priors, structure)
+    }
+
+    /// The search of the paper for one cardinality of S.
+    fn for_styles<R: Rng>(
+        &self,
+        styles: usize,
+        rng: &mut R,
+    ) -> Result<(Scored, Vec<Step>), ModelError> {
+        let selector = match self.settings.variant {
+            Variant::Full | Variant::NoLateral => Selector::Hidden(2),
+            Variant::NoSecondLevel => Selector::Style,
+            Variant::Directed => Selector::Codes(Vec::new()),
+        };
+        let (groups, codes) = (self.schema.groups.len(), self.schema.codes.len());
+        let first = Structure::new(styles, &selector, groups, codes);
+        let mut best = self.restart(first, rng)?;
+        best = self.with_edges(best)?;
+        let mut trace = vec![self.step(&best)];
+        if matches!(selector, Selector::Hidden(_)) {
+            best = self.grow(best, &mut trace)?;
+            best = self.restyle(best, rng)?;
+            best = self.grow(best, &mut trace)?;
+        }
+        Ok((best, trace))
+    }
+
+    /// The best of several short runs of EM, run on.
+    fn restart<R: Rng>(&self, structure: Structure, rng: &mut R) -> Result<Scored, ModelError> {
+        let problem = self.problem(structure)?;
+        let short = Stopping {
+            max_rounds: 10,
+            ..self.settings.search
+        };
+        let mut best: Option<Scored> = None;
+        for _ in 0..self.settings.restarts.max(1) {
+            let scored = problem.fit(problem.start(rng)?, &short)?;
+            if best.as_ref().is_none_or(|b| scored.score > b.score) {
+                best = Some(scored);
+            }
+        }
+        let best = best.ok_or(ModelError::Empty { what: "starts" })?;
+        problem.fit(best.params, &self.settings.search)
+    }
+
+    /// Raises the cardinality of each hidden variable in turn while the score rises.
+    fn grow(&self, mut best: Scored, trace: &mut Vec<Step>) -> Result<Scored, ModelError> {
+        for g in 0..self.schema.groups.len() {
+            while best.shape.states(g) < self.settings.most_states {
+                let problem = self.problem(best.shape.structure.clone())?;
+                let start = super::split::start(&problem, &best, g)?;
+                let mut structure = best.shape.structure.clone();
+                structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
+                let grown = self.problem(structure)?.fit(start, &self.settings.search)?;
+                let grown = self.with_edges(grown)?;
+                if grown.score <= best.score {
+                    break;
+                }
+                best = grown;
+                trace.push(self.step(&best));
+            }
+        }
+        Ok(best)
+    }
+
+    /// Searches lateral edges around a fit; the better of the fits with the old and the new ones.
+    fn with_edges(&self, mut best: Scored) -> Result<Scored, ModelError> {
+        if self.settings.variant == Variant::NoLateral {
+            return Ok(best);
+        }
+        for _ in 0..self.settings.edge_rounds {
+            let problem = self.problem(best.shape.structure.clone())?;
+            let wide = wide(&problem, &best)?;
+            let structure = propose(&problem, &best, &wide, self.settings.most_parents);
+            if structure == best.shape.structure {
+                break;
+            }
+            let problem = self.problem(structure)?;
+            // The M step for the new edges, from the posteriors of the old model.
+            let start = problem.reparent(&best, &wide)?;
+            let scored = problem.fit(start, &self.settings.search)?;
+            if scored.score <= best.score {
+                break;
+            }
+            best = scored;
+        }
+        Ok(best)
+    }
+
+    /// New starts for S alone: rows are clustered by the posteriors of their hidden variables.
+    fn restyle<R: Rng>(&self, mut best: Scored, rng: &mut R) -> Result<Scored, ModelError> {
+        let problem = self.problem(best.shape.structure.clone())?;
+        let shape = &best.shape;
+        let mut scratch = Scratch::new(shape);
+        let mut features: Vec<f64> = Vec::new();
+        let mut assigned = vec![Vec::with_capacity(self.rows.rows); shape.groups()];
+        let offsets: Vec<usize> = (0..=shape.groups())
+            .map(|g| (0..g).map(|g| shape.states(g)).sum())
+            .collect();
+        let real_width = offsets[shape.groups()];
+        let width = real_width + shape.sizes.iter().sum::<usize>();
+        for i in 0..self.rows.rows {
+            let mut point = vec![0.0; width];
+            let mut top = vec![0; shape.groups()];
+            problem.visit(&best.params, i, &mut scratch, |scratch, codes, _| {
+                for (g, r) in states(scratch, &best) {
+                    point[offsets[g]..offsets[g] + r.len()].copy_from_slice(&r);
+                    top[g] = (0..r.len())
+                        .max_by(|&a, &b| r[a].total_cmp(&r[b]))
+                        .unwrap_or(0);
+                }
+                let mut at = real_width;
+                for (&code, &size) in codes.iter().zip(&shape.sizes) {
+                    if (code as usize) < size {
+                        point[at + code as usize] = 1.0;
+                    }
+                    at += size;
+                }
+            })?;
+            features.extend(point);
+            for (list, top) in assigned.iter_mut().zip(top) {
+                list.push(top);
+            }
+        }
+        let styles = shape.structure.styles;
+        for _ in 0..self.settings.restarts {
+            let labels = kmeans(&features, width, styles, 12, rng);
+            let start = problem.assigned(&labels, &assigned)?;
+            let start = super::params::Params {
+                linear: best.params.linear.clone(),
+                ..start
+            };
+            let scored = problem.fit(start, &self.settings.search)?;
+            if scored.score > best.score {
+                best = scored;
+            }
+        }
+        Ok(best)
+    }
+
+    fn step(&self, scored: &Scored) -> Step {
+        let structure = &scored.shape.structure;
+        Step {
+            styles: structure.styles,
+            cardinalities: (0..scored.shape.groups())
+                .map(|g| scored.shape.states(g))
+                .collect(),
+            lateral_edges: structure.parents.iter().map(Vec::len).sum(),
+            score: scored.score,
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! A learned model as JSON, and back with every invariant checked.
+
+use super::super::conjugate::Linear;
+use super::super::error::ModelError;
+use super::Variant;
+use super::params::{Params, Shape};
+use super::query::Hierarchy;
+use super::schema::Schema;
+use super::structure::{Selector, Structure};
+
+/// Format of the text; raised when its meaning changes.
+const FORMAT: &str = "edifice-hierarchy-1";
+
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    format: String,
+    variant: Variant,
+    schema: Schema,
+    structure: Structure,
+    style: Vec<f64>,
+    tables: Vec<Vec<f64>>,
+    codes: Vec<Vec<f64>>,
+    linear: Vec<Vec<StoredLinear>>,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredLinear {
+    /// B, row-major, parents (with the leading 1) x own columns.
+    coefficients: Vec<f64>,
+    /// Σ, row-major.
+    covariance: Vec<f64>,
+}
+
+impl Hierarchy {
+    /// The model as JSON.
+    ///
+    /// # Errors
+    /// [`ModelError::Corrupt`] should a parameter not be finite.
+    pub fn to_json(&self) -> Result<String, ModelError> {
+        let stored = Stored {
+            format: FORMAT.to_owned(),
+            variant: self.variant,
+            schema: self.schema.clone(),
+            structure: self.shape.structure.clone(),
+            style: self.params.style.clone(),
+            tables: self.params.tables.clone(),
+            codes: self.params.codes.clone(),
+            linear: self
+                .params
+                .linear
+                .iter()
+                .map(|states| states.iter().map(StoredLinear::of).collect())
+                .collect(),
+        };
+        serde_json::to_string_pretty(&stored).map_err(|e| corrupt("the model", e.to_string()))
+    }
+
+    /// A model from its JSON.
+    ///
+    /// # Errors
+    /// [`ModelError::Corrupt`] with the place, [`ModelError::Cycle`].
+    pub fn from_json(text: &str) -> Result<Self, ModelError> {
+        let stored: Stored = serde_json::from_str(text)
+            .map_err(|e| corrupt(&format!("line {}, column {}", e.line(), e.column()), e))?;
+        if stored.format != FORMAT {
+            return Err(corrupt(
+                "format",
+                format!("`{}` is not `{FORMAT}`", stored.format),
+            ));
+        }
+        check_schema(&stored.schema)?;
+        check_structure(&stored.schema, &stored.structure)?;
+        let shape = Shape::new(&stored.schema, stored.structure)?;
+        let empty = shape.stats();
+        let styles = shape.structure.styles;
+        distributions("style", &stored.style, styles, 1, styles)?;
+        check_tables("tables", &stored.tables, &empty.tables, styles, |g| {
+            shape.states(g)
+        })?;
+        check_tables("codes", &stored.codes, &empty.codes, styles, |c| {
+            shape.sizes[c]
+        })?;
+        if stored.linear.len() != shape.groups() {
+            return Err(corrupt("linear", "one list per real group is needed"));
+        }
+        let mut linear = Vec::new();
+        for (g, states) in stored.linear.into_iter().enumerate() {
+            let place = format!("linear[{g}] ({})", stored.schema.groups[g]);
+            if states.len() != shape.states(g) {
+                return Err(corrupt(&place, "one entry per state is needed"));
+            }
+            let states: Option<Vec<Linear>> = states
+                .into_iter()
+                .map(|l| Linear::new(shape.p[g], shape.d[g], l.coefficients, l.covariance))
+                .collect();
+            linear.push(states.ok_or_else(|| {
+                corrupt(
+                    &place,
+                    "sizes must fit and covariances be positive definite",
+                )
+            })?);
+        }
+        let params = Params {
+            style: stored.style,
+            tables: stored.tables,
+            linear,
+            codes: stored.codes,
+        };
+        Ok(Self::new(stored.schema, shape, params, stored.variant))
+    }
+}
+
+impl StoredLinear {
+    fn of(linear: &Linear) -> Self {
+        Self {
+            coefficients: linear.coefficients.clone(),
+            covariance: linear.covariance.clone(),
+        }
+    }
+}
+
+fn corrupt(place: &str, problem: impl ToString) -> ModelError {
+    ModelError::corrupt(place, problem.to_string())
+}
+
+fn check_schema(schema: &Schema) -> Result<(), ModelError> {
+    let rising = schema.offsets.windows(2).all(|w| w[0] < w[1]);
+    let whole = schema.offsets.first() == Some(&0)
+        && schema.offsets.last() == Some(&schema.reals.len())
+        && schema.offsets.len() == schema.groups.len() + 1;
+    if !(rising && whole) {
+        return Err(corrupt(
+            "schema.offsets",
+            "must rise from 0 to the number of real columns",
+        ));
+    }
+    for c in &schema.reals {
+        if !(c.mean.is_finite() && c.scale.is_finite() && c.scale > 0.0) {
+            return Err(corrupt(
+                "schema.reals",
+                format!("`{}` has no positive scale", c.name),
+            ));
+        }
+    }
+    match schema.codes.iter().find(|c| c.categories.is_empty()) {
+        Some(c) => Err(corrupt(
+            "schema.codes",
+            format!("`{}` has no categories", c.name),
+        )),
+        None => Ok(()),
+    }
+}
+
+fn check_structure(schema: &Schema, structure: &Structure) -> Result<(), ModelError> {
+    let (groups, codes) = (schema.groups.len(), schema.codes.len());
+    let below = |lists: &[Vec<usize>], limit: usize| lists.iter().flatten().all(|&p| p < limit);
+    let selectors = structure.selectors.iter().all(|s| match s {
+        Selector::Hidden(k) => *k >= 1,
+        Selector::Style => true,
+        Selector::Codes(list) => list.iter().all(|&c| c < codes),
+    });
+    let sized = structure.styles >= 1
+        && structure.selectors.len() == groups
+        && structure.parents.len() == groups
+        && structure.code_parents.len() == codes;
+    if !(sized
+        && selectors
+        && below(&structure.parents, groups)
+        && below(&structure.code_parents, codes))
+    {
+        return Err(corrupt("structure", "does not fit the schema"));
+    }
+    Ok(())
+}
+
+fn check_tables(
+    name: &str,
+    tables: &[Vec<f64>],
+    like: &[Vec<f64>],
+    styles: usize,
+    values: impl Fn(usize) -> usize,
+) -> Result<(), ModelError> {
+    if tables.len() != like.len() {
+        return Err(corrupt(name, format!("{} tables are needed", like.len())));
+    }
+    for (i, (table, like)) in tables.iter().zip(like).enumerate() {
+        if !like.is_empty() || !table.is_empty() {
+            distributions(
+                &format!("{name}[{i}]"),
+                table,
+                values(i),
+                styles,
+                like.len(),
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks a table of distributions over `values` values, with `styles` fastest.
+fn distributions(
+    place: &str,
+    table: &[f64],
+    values: usize,
+    styles: usize,
+    size: usize,
+) -> Result<(), ModelError> {
+    if table.len() != size || table.iter().any(|p| !(0.0..=1.0).contains(p)) {
+        return Err(corrupt(place, format!("{size} probabilities are needed")));
+    }
+    for block in table.chunks(values * styles) {
+        for s in 0..styles {
+            let sum: f64 = (0..values).map(|v| block[v * styles + s]).sum();
+            if (sum - 1.0).abs() > 1e-9 {
+                return Err(corrupt(place, format!("probabilities sum to {sum}, not 1")));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,306 @@
+//! Data: named columns, real or categorical, with missing values allowed anywhere.
+
+use super::error::ModelError;
+
+/// Code of a missing category.
+pub(crate) const MISSING: u32 = u32::MAX;
+
+/// One cell of a [`Table`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// Not observed.
+    Missing,
+    /// A finite number, in the column's own unit.
+    Real(f64),
+    /// Index into the column's categories.
+    Code(usize),
+}
+
+/// Values of a column.
+#[derive(Clone, Debug)]
+pub(crate) enum Values {
+    /// Finite numbers; NaN marks a missing one and never leaves the module.
+    Real(Vec<f64>),
+    /// Indices into `categories`, or [`MISSING`].
+    Codes {
+        categories: Vec<String>,
+        codes: Vec<u32>,
+    },
+}
+
+/// A named column.
+#[derive(Clone, Debug)]
+pub struct Column {
+    pub(crate) name: String,
+    pub(crate) values: Values,
+}
+
+impl Column {
+    /// The column's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Categories of a categorical column (`no`, `yes` for a binary one), `None` for a real one.
+    pub fn categories(&self) -> Option<&[String]> {
+        match &self.values {
+            Values::Real(_) => None,
+            Values::Codes { categories, .. } => Some(categories),
+        }
+    }
+
+    /// The cell at `row`; [`Cell::Missing`] past the end.
+    pub fn cell(&self, row: usize) -> Cell {
+        match &self.values {
+            Values::Real(v) => match v.get(row) {
+                Some(x) if x.is_finite() => Cell::Real(*x),
+                _ => Cell::Missing,
+            },
+            Values::Codes { codes, .. } => match codes.get(row) {
+                Some(&c) if c != MISSING => Cell::Code(c as usize),
+                _ => Cell::Missing,
+            },
+        }
+    }
+
+    pub(crate) fn kind(&self) -> &'static str {
+        match self.values {
+            Values::Real(_) => "real",
+            Values::Codes { .. } => "categorical",
+        }
+    }
+
+    fn len(&self) -> usize {
+        match &self.values {
+            Values::Real(v) => v.len(),
+            Values::Codes { codes, .. } => codes.len(),
+        }
+    }
+}
+
+/// A table of named columns with the same number of rows.
+///
+/// # Examples
+/// ```
+/// use edifice::model::Table;
+/// let houses = Table::new()
+///     .real("width", [Some(12.0), None, Some(9.5)])?
+///     .binary("chimney", [Some(true), Some(false), None])?
+///     .categorical("roof", &["flat", "gable", "hip"], [Some("hip"), Some("flat"), None])?;
+/// assert_eq!(houses.rows(), 3);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    rows: usize,
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// A table without columns.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a column of real numbers.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`], [`ModelError::Rows`], [`ModelError::Duplicate`].
+    pub fn real(
+        self,
+        name: &str,
+        values: impl IntoIterator<Item = Option<f64>>,
+    ) -> Result<Self, ModelError> {
+        let mut column = Vec::new();
+        for (row, value) in values.into_iter().enumerate() {
+            column.push(match value {
+                None => f64::NAN,
+                Some(x) if x.is_finite() => x,
+                Some(value) => {
+                    return Err(ModelError::NotFinite {
+                        column: name.to_owned(),
+                        row,
+                        value,
+                    });
+                }
+            });
+        }
+        self.push(name, Values::Real(column))
+    }
+
+    /// Adds a column of yes/no values (categories `no` and `yes`).
+    ///
+    /// # Errors
+    /// [`ModelError::Rows`], [`ModelError::Duplicate`].
+    pub fn binary(
+        self,
+        name: &str,
+        values: impl IntoIterator<Item = Option<bool>>,
+    ) -> Result<Self, ModelError> {
+        let codes = values.into_iter().map(|v| v.map_or(MISSING, u32::from));
+        let values = Values::Codes {
+            categories: vec!["no".to_owned(), "yes".to_owned()],
+            codes: codes.collect(),
+        };
+        self.push(name, values)
+    }
+
+    /// Adds a column of categories, each value one of `categories`.
+    ///
+    /// # Errors
+    /// [`ModelError::UnseenCategory`], [`ModelError::Rows`], [`ModelError::Duplicate`] (also for
+    /// a category listed twice).
+    pub fn categorical<'v>(
+        self,
+        name: &str,
+        categories: &[&str],
+        values: impl IntoIterator<Item = Option<&'v str>>,
+    ) -> Result<Self, ModelError> {
+        let mut codes = Vec::new();
+        for (row, value) in values.into_iter().enumerate() {
+            codes.push(match value {
+                None => None,
+                Some(v) => match categories.iter().position(|c| *c == v) {
+                    Some(i) => Some(i),
+                    None => {
+                        return Err(ModelError::UnseenCategory {
+                            column: name.to_owned(),
+                            row,
+                            category: v.to_owned(),
+                        });
+                    }
+                },
+            });
+        }
+        self.codes(name, categories, codes)
+    }
+
+    /// Adds a column of category indices.
+    ///
+    /// # Errors
+    /// [`ModelError::UnseenCategory`] for an index out of range, [`ModelError::Rows`],
+    /// [`ModelError::Duplicate`].
+    pub fn codes(
+        self,
+        name: &str,
+        categories: &[&str],
+        values: impl IntoIterator<Item = Option<usize>>,
+    ) -> Result<Self, ModelError> {
+        for (i, c) in categories.iter().enumerate() {
+            if categories[..i].contains(c) {
+                return Err(ModelError::Duplicate {
+                    name: format!("{name}={c}"),
+                });
+            }
+        }
+        let mut codes = Vec::new();
+        for (row, value) in values.into_iter().enumerate() {
+            codes.push(match value {
+                None => MISSING,
+                Some(i) if i < categories.len() => i as u32,
+                Some(i) => {
+                    return Err(ModelError::UnseenCategory {
+                        column: name.to_owned(),
+                        row,
+                        category: i.to_string(),
+                    });
+                }
+            });
+        }
+        let categories = categories.iter().map(|c| (*c).to_owned()).collect();
+        self.push(name, Values::Codes { categories, codes })
+    }
+
+    pub(crate) fn push(mut self, name: &str, values: Values) -> Result<Self, ModelError> {
+        if self.columns.iter().any(|c| c.name == name) {
+            return Err(ModelError::Duplicate {
+                name: name.to_owned(),
+            });
+        }
+        let column = Column {
+            name: name.to_owned(),
+            values,
+        };
+        if self.columns.is_empty() {
+            self.rows = column.len();
+        } else if column.len() != self.rows {
+            return Err(ModelError::Rows {
+                column: column.name.clone(),
+                got: column.len(),
+                expected: self.rows,
+            });
+        }
+        self.columns.push(column);
+        Ok(self)
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The columns, in order of declaration.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The column called `name`.
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`].
+    pub fn column(&self, name: &str) -> Result<&Column, ModelError> {
+        self.columns
+            .iter()
+            .find(|c| c.name == name)
+            .ok_or_else(|| ModelError::Unknown {
+                name: name.to_owned(),
+            })
+    }
+
+    /// The rows with the given indices, in that order; an index past the end gives a row of
+    /// missing values.
+    pub fn select(&self, rows: &[usize]) -> Self {
+        let columns = self.columns.iter().map(|c| Column {
+            name: c.name.clone(),
+            values: match &c.values {
+                Values::Real(v) => Values::Real(
+                    rows.iter()
+                        .map(|&r| v.get(r).copied().unwrap_or(f64::NAN))
+                        .collect(),
+                ),
+                Values::Codes { categories, codes } => Values::Codes {
+                    categories: categories.clone(),
+                    codes: rows
+                        .iter()
+                        .map(|&r| codes.get(r).copied().unwrap_or(MISSING))
+                        .collect(),
+                },
+            },
+        });
+        Self {
+            rows: rows.len(),
+            columns: columns.collect(),
+        }
+    }
+
+    /// The same table where every column not called one of `names` is missing in every row: what
+    /// is left is evidence to condition on.
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`] for a name without a column.
+    pub fn only(&self, names: &[&str]) -> Result<Self, ModelError> {
+        for name in names {
+            self.column(name)?;
+        }
+        let mut table = self.clone();
+        for column in &mut table.columns {
+            if !names.contains(&column.name.as_str()) {
+                match &mut column.values {
+                    Values::Real(v) => v.fill(f64::NAN),
+                    Values::Codes { codes, .. } => codes.fill(MISSING),
+                }
+            }
+        }
+        Ok(table)
+    }
+}

@@ -1,0 +1,229 @@
+//! The hierarchical model: does it find what made the data, and answer with it?
+
+use edifice::model::hierarchy::{Constant, Group, Hierarchy, Learned, Settings, Variant, learn};
+use edifice::model::{Cell, ModelError, Table};
+use edifice::rng::stream;
+use rand::RngExt;
+use rand_distr::StandardNormal;
+
+/// Rows of three groups (2 + 1 + 2 real columns) and three bits, of `k` styles; the second group
+/// depends on the first, and style 0 has no garage.
+fn made(n: usize, k: usize, seed: u64) -> (Table, Vec<usize>) {
+    let mut rng = stream(seed, "made", 0);
+    let mut real: Vec<Vec<Option<f64>>> = vec![Vec::new(); 5];
+    let mut bits: Vec<Vec<Option<bool>>> = vec![Vec::new(); 3];
+    let mut styles = Vec::new();
+    for i in 0..n {
+        let s = i % k;
+        styles.push(s);
+        let z: [f64; 5] = std::array::from_fn(|_| rng.sample(StandardNormal));
+        let a = 10.0 + 3.0 * (s % 2) as f64 + 0.5 * z[0];
+        let b = 5.0 + 2.0 * (s / 2) as f64 + 0.4 * z[1];
+        let c = 100.0 + 20.0 * a - 3.0 * b + 2.0 * z[2];
+        let garage = if s == 0 { 0.0 } else { 1.0 };
+        let d = garage * (8.0 + s as f64 + 0.3 * z[3]);
+        let e = garage * (2.0 + 0.2 * z[4]);
+        for (column, v) in real.iter_mut().zip([a, b, c, d, e]) {
+            column.push(Some(v));
+        }
+        for (bit, column) in bits.iter_mut().enumerate() {
+            let p = if s == bit { 0.9 } else { 0.1 };
+            column.push(Some(rng.random::<f64>() < p));
+        }
+    }
+    let mut table = Table::new();
+    for (j, column) in real.into_iter().enumerate() {
+        table = table.real(&format!("x{j}"), column).unwrap();
+    }
+    for (j, column) in bits.into_iter().enumerate() {
+        table = table.binary(&format!("b{j}"), column).unwrap();
+    }
+    (table, styles)
+}
+
+fn groups() -> Vec<Group> {
+    vec![
+        Group::new("size", &["x0", "x1"]),
+        Group::new("area", &["x2"]),
+        Group::new("garage", &["x3", "x4"]),
+        Group::new("bits", &["b0", "b1", "b2"]),
+    ]
+}
+
+fn settings() -> Settings {
+    Settings {
+        styles: 2..=6,
+        ..Settings::default()
+    }
+}
+
+const VARIANTS: [Variant; 4] = [
+    Variant::Full,
+    Variant::NoLateral,
+    Variant::NoSecondLevel,
+    Variant::Directed,
+];
+
+/// Adjusted Rand index of two labellings.
+fn rand_index(a: &[usize], b: &[usize]) -> f64 {
+    let pairs = |n: f64| n * (n - 1.0) / 2.0;
+    let (ka, kb) = (a.iter().max().unwrap() + 1, b.iter().max().unwrap() + 1);
+    let mut cells = vec![vec![0.0; kb]; ka];
+    for (&i, &j) in a.iter().zip(b) {
+        cells[i][j] += 1.0;
+    }
+    let sum: f64 = cells.iter().flatten().map(|&n| pairs(n)).sum();
+    let rows: f64 = cells.iter().map(|r| pairs(r.iter().sum())).sum();
+    let columns: f64 = (0..kb)
+        .map(|j| pairs(cells.iter().map(|r| r[j]).sum()))
+        .sum();
+    let expected = rows * columns / pairs(a.len() as f64);
+    (sum - expected) / (0.5 * (rows + columns) - expected)
+}
+
+fn styles_of(model: &Hierarchy, table: &Table) -> Vec<usize> {
+    let posterior = model.style_posterior(table).unwrap();
+    let top = |p: &Vec<f64>| (0..p.len()).max_by(|&a, &b| p[a].total_cmp(&p[b])).unwrap();
+    posterior.iter().map(top).collect()
+}
+
+fn learned(n: usize) -> (Learned, Table, Vec<usize>) {
+    let (table, styles) = made(n, 4, 1);
+    (
+        learn(&table, &groups(), &settings(), 7).unwrap(),
+        table,
+        styles,
+    )
+}
+
+fn real(table: &Table, column: &str, row: usize) -> f64 {
+    match table.column(column).unwrap().cell(row) {
+        Cell::Real(v) => v,
+        cell => panic!("{cell:?} where a number is needed"),
+    }
+}
+
+#[test]
+fn finds_styles_and_the_lateral_edge() {
+    let (learned, table, styles) = learned(200);
+    assert!(learned.model.styles().abs_diff(4) <= 1);
+    assert!(rand_index(&styles_of(&learned.model, &table), &styles) > 0.9);
+    let edge = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+    let edges = learned.model.lateral_edges();
+    assert!(
+        edges.contains(&edge("size", "area")) || edges.contains(&edge("area", "size")),
+        "{edges:?}"
+    );
+}
+
+#[test]
+fn variants_answer_and_ours_generalises_best() {
+    let (table, _) = made(200, 4, 1);
+    let (test, _) = made(400, 4, 2);
+    let mut mean = Vec::new();
+    for variant in VARIANTS {
+        let settings = Settings {
+            variant,
+            ..settings()
+        };
+        let learned = learn(&table, &groups(), &settings, 7).unwrap();
+        let l = learned.model.log_likelihood(&test).unwrap();
+        assert!(l.iter().all(|v| v.is_finite()));
+        mean.push(l.iter().sum::<f64>() / l.len() as f64);
+        let again = Hierarchy::from_json(&learned.model.to_json().unwrap()).unwrap();
+        assert_eq!(again.log_likelihood(&test).unwrap(), l);
+    }
+    println!("mean held-out log-likelihood {mean:?}");
+    assert!(mean[0] > mean[1] && mean[0] > mean[3], "{mean:?}");
+}
+
+#[test]
+fn completion_keeps_what_is_given_and_follows_the_rest() {
+    let (learned, table, _) = learned(400);
+    let given = table.select(&[0, 1]).only(&["x0", "x3"]).unwrap();
+    let draws = learned
+        .model
+        .complete(&given, 50, &mut stream(3, "draws", 0))
+        .unwrap();
+    assert_eq!(draws.table.rows(), 100);
+    for i in 0..100 {
+        for column in draws.table.columns() {
+            assert_ne!(column.cell(i), Cell::Missing);
+        }
+        assert!((real(&draws.table, "x0", i) - real(&given, "x0", i / 50)).abs() < 1e-9);
+    }
+    // Style 0 has no garage: where x3 is 0, so is x4.
+    assert!(real(&draws.table, "x4", 0).abs() < 0.8);
+    assert!(draws.log_density.iter().all(|v| v.is_finite()));
+}
+
+#[test]
+fn same_seed_same_bytes_with_any_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| learned(60).0.model.to_json().unwrap())
+    };
+    assert_eq!(run(1), run(3));
+}
+
+#[test]
+fn two_rows_still_answer() {
+    let (table, _) = made(120, 4, 1);
+    let two = learn(&table.select(&[1, 2]), &groups(), &settings(), 7);
+    assert!(matches!(two, Err(ModelError::Constant { .. })), "{two:?}");
+    for variant in VARIANTS {
+        let lenient = Settings {
+            variant,
+            constant: Constant::Keep,
+            ..settings()
+        };
+        let two = learn(&table.select(&[1, 2]), &groups(), &lenient, 7).unwrap();
+        let l = two.model.log_likelihood(&table).unwrap();
+        assert!(l.iter().all(|l| l.is_finite()));
+    }
+}
+
+#[test]
+fn missing_values_still_answer() {
+    let (table, _) = made(120, 4, 1);
+    let mut holes = Table::new();
+    for (j, column) in table.columns().iter().enumerate() {
+        let cells = (0..120).map(|i| match column.cell(i) {
+            cell if !(i * 7 + j * 5).is_multiple_of(3) => cell,
+            _ => Cell::Missing,
+        });
+        holes = match column.categories() {
+            None => holes.real(
+                column.name(),
+                cells.map(|c| match c {
+                    Cell::Real(v) => Some(v),
+                    _ => None,
+                }),
+            ),
+            Some(_) => holes.binary(
+                column.name(),
+                cells.map(|c| match c {
+                    Cell::Code(v) => Some(v == 1),
+                    _ => None,
+                }),
+            ),
+        }
+        .unwrap();
+    }
+    for variant in VARIANTS {
+        let settings = Settings {
+            variant,
+            styles: 2..=4,
+            ..settings()
+        };
+        let learned = learn(&holes, &groups(), &settings, 7).unwrap();
+        let l = learned.model.log_likelihood(&holes).unwrap();
+        assert!(l.iter().all(|l| l.is_finite()), "{variant:?}");
+        let mut rng = stream(1, "d", 0);
+        let draws = learned.model.complete(&holes, 1, &mut rng).unwrap();
+        assert_eq!(draws.table.rows(), 120);
+    }
+}
