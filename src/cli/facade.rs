@@ -1,12 +1,91 @@
 //! Facade files on the command line.
 
-use clap::Subcommand;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use edifice::io::{self, LabelMap, ReadOptions, Source};
+use edifice::shape::{self, Decomposition, Facade, LabelGrid};
+use edifice::{Error, Result};
+
+use super::print;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {}
+pub enum Command {
+    /// Convert a facade to another format, told by the file names.
+    ///
+    /// Reads .facade.json, label images (.png), matrices of labels (.txt) and rectangles of the CMP
+    /// database (.xml); writes .facade.json, .svg, .png and .txt. Label images become tilings of
+    /// rectangles that full lines can split.
+    #[command(
+        after_help = "Example: edifice facade convert monge_42.png -o monge_42.facade.json --regularize 2\n\nA label map is a JSON file: {\"window\": [255, 0, 0], \"wall\": 2}\nWithout one, the colours of the ECP and Graz databases and the numbers of the CMP database are known."
+    )]
+    Convert(Convert),
+}
+
+/// Options of `facade convert`.
+#[derive(Args)]
+pub struct Convert {
+    /// Facade to read.
+    input: PathBuf,
+    /// File to write.
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// What the colours or numbers of a label image or matrix stand for, as JSON.
+    #[arg(long, value_name = "FILE")]
+    label_map: Option<PathBuf>,
+    /// Keep only elements (windows, doors, ...), not the wall.
+    #[arg(long)]
+    elements: bool,
+}
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice::Result<()> {
-    match command {}
+pub fn run(command: Command) -> Result<()> {
+    match command {
+        Command::Convert(options) => convert(&options),
+    }
+}
+
+fn convert(options: &Convert) -> Result<()> {
+    let path = &options.input;
+    let label_map = options
+        .label_map
+        .as_deref()
+        .map(LabelMap::read)
+        .transpose()?;
+    let read_options = ReadOptions {
+        label_map,
+        size: None,
+    };
+    let source = io::read_source(path, &read_options)?;
+    let facade = match (source, options.elements) {
+        (Source::Layout(facade), false) => facade,
+        (Source::Layout(facade), true) => shape::elements_of_facade(&facade),
+        (Source::Cmp(cmp, width, height), true) => cmp.elements(width, height)?,
+        (Source::Picture(grid), true) => {
+            shape::elements_of_grid(&grid).map_err(|e| Error::content(path, e))?
+        }
+        (Source::Cmp(cmp, width, height), false) => tiling(path, &cmp.label_grid(width, height)?)?,
+        (Source::Picture(grid), false) => tiling(path, &grid)?,
+    };
+    io::write_facade(&facade, &options.output)?;
+    let count = facade.regions.len();
+    print::line(&format!("{}: {count} regions", options.output.display()))
+}
+
+/// Decomposes a picture and tells what had to be cut.
+fn tiling(path: &std::path::Path, grid: &LabelGrid) -> Result<Facade> {
+    let Decomposition {
+        facade,
+        cut_elements,
+        ..
+    } = shape::decompose(grid).map_err(|e| Error::content(path, e))?;
+    for cut in &cut_elements {
+        let r = cut.rect;
+        print::message(&format!(
+            "note: interlocked with its neighbours, cut into pieces: {} at ({}, {}), {} x {}",
+            cut.label, r.x, r.y, r.width, r.height
+        ));
+    }
+    Ok(facade)
 }

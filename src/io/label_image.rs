@@ -23,7 +23,7 @@ pub struct UnknownPixel {
     pub key: Key,
 }
 
-/// Reads a label image. Without a `map`, colours are those of [`LabelMap::ecp`]; a palette or grey
+/// Reads a label image. Without a `map`, colours are those of [`LabelMap::colors`]; a palette or grey
 /// image that has other colours than those has the numbers of [`LabelMap::cmp`].
 ///
 /// # Errors
@@ -43,11 +43,11 @@ pub fn parse(bytes: &[u8], path: &Path, map: Option<&LabelMap>) -> Result<LabelG
     let labelled = match map {
         Some(map) => label_pixels(&pixels, map, name),
         None => {
-            let ecp = label_pixels(&pixels, &LabelMap::ecp(), name.clone());
-            if ecp.is_err() && pixels.is_numbered() {
+            let colored = label_pixels(&pixels, &LabelMap::colors(), name.clone());
+            if colored.is_err() && pixels.is_numbered() {
                 label_pixels(&pixels, &LabelMap::cmp(), name)
             } else {
-                ecp
+                colored
             }
         }
     };

@@ -39,6 +39,18 @@ pub const CMP: [&str; 12] = [
     "shop",
 ];
 
+/// Colours of ours for the labels that only CMP has: its images carry numbers.
+pub const CMP_COLORS: [(&str, [u8; 3]); 8] = [
+    ("background", [200, 200, 200]),
+    ("facade", [240, 230, 140]),
+    ("cornice", [0, 128, 128]),
+    ("sill", [139, 69, 19]),
+    ("blind", [0, 100, 0]),
+    ("deco", [255, 105, 180]),
+    ("molding", [188, 143, 143]),
+    ("pillar", [72, 61, 139]),
+];
+
 /// What a pixel says: a colour, or a number (palette index, grey value, number in a matrix).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Key {
@@ -64,11 +76,11 @@ pub struct LabelMap {
 }
 
 impl LabelMap {
-    /// The colours of ECP and Graz: [`ECP`].
-    pub fn ecp() -> Self {
+    /// The colours that are known without a map: [`ECP`] and [`CMP_COLORS`].
+    pub fn colors() -> Self {
         let entry = |&(name, color): &(&str, [u8; 3])| (name.to_string(), Key::Color(color));
         Self {
-            entries: ECP.iter().map(entry).collect(),
+            entries: ECP.iter().chain(&CMP_COLORS).map(entry).collect(),
         }
     }
 

@@ -1,7 +1,8 @@
 //! Bytes to values and back: every file format of facades and grammars.
 //!
 //! Readers check everything at the door and name the file and the place of what is wrong. Writers
-//! go through [`write_atomic`], so that a failed run leaves nothing half-written.
+//! go through [`write_atomic`], so that a failed run leaves nothing half-written. [`read_facade`] and
+//! [`write_facade`] tell the format by the file name.
 
 pub mod building_json;
 pub mod cmp_xml;

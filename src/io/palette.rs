@@ -2,19 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::label_map::ECP;
-
-/// Further labels with a colour of their own, so that drawings of one database look alike.
-const OTHERS: [(&str, [u8; 3]); 8] = [
-    ("background", [200, 200, 200]),
-    ("facade", [240, 230, 140]),
-    ("cornice", [0, 128, 128]),
-    ("sill", [139, 69, 19]),
-    ("blind", [0, 100, 0]),
-    ("deco", [255, 105, 180]),
-    ("molding", [188, 143, 143]),
-    ("pillar", [72, 61, 139]),
-];
+use super::label_map::{CMP_COLORS, ECP};
 
 /// A colour for each label of a drawing, no two alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,12 +19,15 @@ impl Palette {
         let known = |label: &str| {
             let lower = label.to_lowercase();
             ECP.iter()
-                .chain(&OTHERS)
+                .chain(&CMP_COLORS)
                 .find(|(name, _)| *name == lower)
                 .map(|(_, color)| *color)
         };
-        let mut taken: std::collections::BTreeSet<[u8; 3]> =
-            ECP.iter().chain(&OTHERS).map(|(_, color)| *color).collect();
+        let mut taken: std::collections::BTreeSet<[u8; 3]> = ECP
+            .iter()
+            .chain(&CMP_COLORS)
+            .map(|(_, color)| *color)
+            .collect();
         for label in labels {
             // Labels that differ only in case may both claim a known colour: the first gets it.
             let claimed = known(label).filter(|c| !colors.values().any(|taken| taken == c));
