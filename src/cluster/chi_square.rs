@@ -31,6 +31,25 @@ impl<K: Ord + Clone + Debug> Histogram<K> {
         self
     }
 
+    /// The count of one key. Logarithmic in the number of keys.
+    pub fn get(&self, key: &K) -> f64 {
+        let place = self.bins.binary_search_by(|bin| bin.0.cmp(key));
+        place.map_or(0.0, |place| self.bins[place].1)
+    }
+
+    /// The bins whose key is wanted.
+    #[must_use]
+    pub fn filtered(&self, wanted: impl Fn(&K) -> bool) -> Self {
+        Self {
+            bins: self
+                .bins
+                .iter()
+                .filter(|bin| wanted(&bin.0))
+                .cloned()
+                .collect(),
+        }
+    }
+
     /// Key and count, in key order; counts are above zero.
     pub fn bins(&self) -> &[(K, f64)] {
         &self.bins

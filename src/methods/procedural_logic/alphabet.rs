@@ -10,13 +10,9 @@ pub struct Alphabet {
 }
 
 impl Alphabet {
-    /// The labels of a list, in its order; a name given twice counts once.
-    pub fn from_names(names: &[String]) -> Self {
-        let mut alphabet = Self::default();
-        for name in names {
-            alphabet.intern(name);
-        }
-        alphabet
+    /// The numbers of several labels.
+    pub fn intern_all(&mut self, names: &[String]) -> Vec<u32> {
+        names.iter().map(|name| self.intern(name)).collect()
     }
 
     /// The number of a label, new if it was not seen before.

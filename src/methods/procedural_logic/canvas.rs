@@ -10,8 +10,6 @@ use crate::shape::{Axis, Facade, LabelGrid, LayoutError};
 /// split anywhere; of a tiling every region is an asset of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Canvas {
-    /// Name of the facade.
-    pub name: String,
     /// Column boundaries, strictly increasing, `columns + 1` of them.
     pub xs: Vec<f64>,
     /// Row boundaries from the bottom, strictly increasing, `rows + 1` of them.
@@ -27,13 +25,10 @@ pub struct Canvas {
 impl Canvas {
     /// A label image: neighbouring equal rows and columns are merged, which loses nothing.
     ///
+    /// `labels` are the numbers of the grid's labels ([`Alphabet::intern_all`]).
+    ///
     /// Complexity: linear in the cells (rows are compared whole, columns on the merged rows).
-    pub fn from_grid(grid: &LabelGrid, alphabet: &mut Alphabet) -> Self {
-        let labels = grid
-            .labels
-            .iter()
-            .map(|name| alphabet.intern(name))
-            .collect();
+    pub fn from_grid(grid: &LabelGrid, labels: Vec<u32>) -> Self {
         let columns = grid.columns();
         let row = |j: usize| &grid.cells[j * columns..(j + 1) * columns];
         let keep_rows: Vec<usize> = (0..grid.rows())
@@ -47,7 +42,6 @@ impl Canvas {
             .flat_map(|&j| keep_columns.iter().map(move |&i| u32::from(row(j)[i])))
             .collect();
         Self {
-            name: grid.name.clone(),
             xs: boundaries(&keep_columns, &grid.xs),
             ys: boundaries(&keep_rows, &grid.ys),
             assets,
@@ -77,24 +71,12 @@ impl Canvas {
             .map(|region| alphabet.intern(&region.label))
             .collect();
         Ok(Self {
-            name: facade.name.clone(),
             xs,
             ys,
             assets,
             labels,
             rigid: true,
         })
-    }
-
-    /// The same facade with labels for assets, as a label image of it would say.
-    pub fn painted(mut self) -> Self {
-        for asset in &mut self.assets {
-            *asset = self.labels[*asset as usize];
-        }
-        let count = self.labels.iter().max().map_or(0, |&last| last + 1);
-        self.labels = (0..count).collect();
-        self.rigid = false;
-        self
     }
 
     /// Number of columns of cells.

@@ -1,7 +1,8 @@
 //! Transformation to n-ary split nodes (Sec. 4.1.1, Eq. 9).
 
+use super::alphabet::Alphabet;
 use super::parse::{BinaryNode, BinaryTree};
-use crate::shape::Axis;
+use crate::shape::{Axis, Rect, Region};
 
 /// A node of an n-ary split tree.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +76,32 @@ impl NaryTree {
             }
         }
         extents
+    }
+
+    /// The regions that the inserts fill.
+    pub(super) fn regions(&self, alphabet: &Alphabet) -> Vec<Region> {
+        let mut regions = Vec::new();
+        let mut todo = vec![(0_u32, Rect::new(0.0, 0.0, self.width, self.height))];
+        while let Some((node, rect)) = todo.pop() {
+            match &self.nodes[node as usize] {
+                NaryNode::Insert(label) => regions.push(Region {
+                    label: alphabet.name(*label).to_owned(),
+                    rect,
+                }),
+                NaryNode::Split {
+                    axis,
+                    sizes,
+                    children,
+                } => {
+                    let mut start = rect.start(*axis);
+                    for (&child, &size) in children.iter().zip(sizes) {
+                        todo.push((child, rect.strip(*axis, start, size)));
+                        start += size;
+                    }
+                }
+            }
+        }
+        regions
     }
 
     /// Number of split nodes.

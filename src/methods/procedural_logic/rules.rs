@@ -102,12 +102,14 @@ impl RuleSet {
             return rule;
         }
         let id = self.rules.len() as u32;
-        let carried: usize = key.1.iter().map(|&call| self.parameters(call)).sum();
+        let carried = key.1.iter().fold(0_usize, |sum, &call| {
+            sum.saturating_add(self.parameter_count(call))
+        });
         self.rules.push(ParametricRule {
             axis,
             children: key.1.clone(),
             uses: 0,
-            parameters: key.1.len() + carried,
+            parameters: carried.saturating_add(key.1.len()),
             mean: vec![0.0; key.1.len()],
             deviation: vec![0.0; key.1.len()],
         });
@@ -116,11 +118,24 @@ impl RuleSet {
     }
 
     /// Number of parameters of a call.
-    pub fn parameters(&self, call: Call) -> usize {
+    pub fn parameter_count(&self, call: Call) -> usize {
         match call {
             Call::Insert(_) => 0,
             Call::Rule(rule) => self.rules[rule as usize].parameters,
         }
+    }
+
+    /// The rules that a call applies, with repetition, itself first.
+    pub fn applied(&self, start: Call) -> Vec<u32> {
+        let mut applied = Vec::new();
+        let mut todo = vec![start];
+        while let Some(call) = todo.pop() {
+            if let Call::Rule(rule) = call {
+                applied.push(rule);
+                todo.extend(&self.rules[rule as usize].children);
+            }
+        }
+        applied
     }
 
     /// The n-ary tree that an instance stands for.
@@ -134,7 +149,7 @@ impl RuleSet {
         {
             return Err(InstanceError::UnknownRule { rule });
         }
-        let expected = self.parameters(instance.start);
+        let expected = self.parameter_count(instance.start);
         if expected != instance.parameters.len() {
             return Err(InstanceError::Parameters {
                 expected,
