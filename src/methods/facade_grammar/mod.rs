@@ -1,1 +1,3 @@
 //! Facade grammars (Wu et al. 2014).
+
+pub mod synthetic;

@@ -1,0 +1,43 @@
+use std::collections::HashSet;
+
+use super::*;
+use crate::grammar::{Costs, evaluate};
+
+#[test]
+fn layouts_are_splittable_tilings_that_their_grammars_derive() {
+    let made = layouts(1).unwrap();
+    assert_eq!(made.len(), 34);
+    let names: HashSet<_> = made.iter().map(|m| m.facade.name.clone()).collect();
+    assert_eq!(names.len(), 34);
+    for Synthetic { facade, grammar } in &made {
+        let count = facade.regions.len();
+        assert!(
+            (45..=1200).contains(&count),
+            "{}: {count} terminals",
+            facade.name
+        );
+        crate::shape::splittable(facade).unwrap();
+        evaluate(grammar, std::slice::from_ref(facade), &Costs::default())
+            .unwrap_or_else(|e| panic!("{}: {e}", facade.name));
+        let whole = |v: f64| v.fract() == 0.0;
+        assert!(
+            facade
+                .regions
+                .iter()
+                .all(|r| whole(r.rect.x) && whole(r.rect.top()))
+        );
+    }
+}
+
+#[test]
+fn same_seed_same_layouts() {
+    let names = |seed| -> Vec<_> {
+        layouts(seed)
+            .unwrap()
+            .into_iter()
+            .map(|m| m.facade)
+            .collect()
+    };
+    assert_eq!(names(3), names(3));
+    assert_ne!(names(3), names(4));
+}
