@@ -1,5 +1,9 @@
 //! Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts*: every table and figure.
 
+pub mod data;
+mod figure_10;
+mod picture;
+
 use super::{Artefact, Experiment};
 
 /// The paper's tables and figures.
@@ -9,4 +13,8 @@ pub const EXPERIMENT: Experiment = Experiment {
     artefacts: ARTEFACTS,
 };
 
-const ARTEFACTS: &[Artefact] = &[];
+const ARTEFACTS: &[Artefact] = &[Artefact {
+    name: "figure_10",
+    title: "the facades used for performance testing",
+    run: figure_10::run,
+}];
