@@ -1,5 +1,5 @@
-//! Makes the layouts of `datasets/facade_grammar/layouts` anew:
-//! `cargo run --release --example make_layouts -- FOLDER [SEED]`.
+//! Makes the facades of `datasets/facade_grammar` anew:
+//! `cargo run --release --example make_layouts -- datasets/facade_grammar [SEED]`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

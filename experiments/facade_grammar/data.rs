@@ -1,28 +1,146 @@
 //! The facades that the experiments run on.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::Result;
-use crate::grammar::Grammar;
-use crate::io;
+use crate::experiments::{Budget, Context};
+use crate::grammar::{Grammar, derive};
+use crate::io::{facade_json, grammar_cga, grammar_json, read_facade};
 use crate::methods::facade_grammar::synthetic;
-use crate::shape::Facade;
-use crate::{Error, file};
+use crate::shape::{Facade, splittable};
+use crate::{Error, Result, file};
 
 /// Seed of the shipped layouts.
 pub const LAYOUT_SEED: u64 = 1;
 
-/// Writes the made layouts and their grammars into a folder, as they ship in
-/// `datasets/facade_grammar/layouts`.
+/// Name of the facade of Fig. 9, facade (i) of Table 1.
+pub const FIGURE_9: &str = "wu2014_fig9";
+
+/// A facade and where it comes from.
+#[derive(Debug, Clone)]
+pub struct Instance {
+    /// `shipped`, `ecp2011`, `graz50` or `cmp`.
+    pub dataset: &'static str,
+    /// The facade.
+    pub facade: Facade,
+}
+
+/// The folder of the shipped data, with its digest recorded.
+pub fn folder(ctx: &mut Context) -> Result<PathBuf> {
+    ctx.shipped("facade_grammar")
+}
+
+/// The facade of Fig. 9.
+pub fn figure_9(ctx: &mut Context) -> Result<Facade> {
+    facade_json::read(&folder(ctx)?.join(format!("{FIGURE_9}.facade.json")))
+}
+
+/// The shipped facades: that of Fig. 9 first, then the 34 made ones by name; few and small ones at
+/// the smoke budget.
+pub fn shipped(ctx: &mut Context) -> Result<Vec<Facade>> {
+    let mut facades = vec![figure_9(ctx)?];
+    for path in layouts(ctx)? {
+        facades.push(facade_json::read(&path)?);
+    }
+    if ctx.budget() == Budget::Smoke {
+        facades.retain(|f| f.regions.len() < 80);
+        facades.truncate(3);
+    }
+    Ok(facades)
+}
+
+/// The made facades with the grammars they were derived from.
+pub fn known(ctx: &mut Context) -> Result<Vec<(Facade, Grammar)>> {
+    let mut known = Vec::new();
+    for path in layouts(ctx)? {
+        let name = path.display().to_string();
+        let grammar = PathBuf::from(name.replace(".facade.json", ".grammar.json"));
+        known.push((facade_json::read(&path)?, grammar_json::read(&grammar)?));
+    }
+    if ctx.budget() == Budget::Smoke {
+        known.retain(|(f, _)| f.regions.len() < 80);
+        known.truncate(2);
+    }
+    Ok(known)
+}
+
+fn layouts(ctx: &mut Context) -> Result<Vec<PathBuf>> {
+    files(&folder(ctx)?.join("layouts"), ".facade.json")
+}
+
+/// The real facades that the user has, decomposed into tilings; at most `limit` of each set, evenly
+/// spread. Facades that no full line can split are left out and counted in a note (Sec. 6.3).
+pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
+    let sets = [
+        ("ecp2011", "facades/ecp2011/labels", ".png"),
+        ("graz50", "facades/graz50/labels", ".png"),
+        ("cmp", "facades/cmp", ".xml"),
+    ];
+    let mut instances = Vec::new();
+    for (dataset, place, ending) in sets {
+        let Some(folder) = ctx.real(place)? else {
+            continue;
+        };
+        let all = files(&folder, ending)?;
+        let chosen = spread(all.len(), limit).map(|i| &all[i]);
+        let mut unsplittable = Vec::new();
+        for path in chosen {
+            let mut facade = read_facade(path, &Default::default())?;
+            facade.name = stem(path, ending);
+            match splittable(&facade) {
+                Ok(()) => instances.push(Instance { dataset, facade }),
+                Err(_) => unsplittable.push(facade.name),
+            }
+        }
+        if !unsplittable.is_empty() {
+            ctx.note(format!(
+                "{dataset}: no full line splits some part of {} facades, which are left out (Sec. 6.3): {}.",
+                unsplittable.len(),
+                unsplittable.join(", ")
+            ));
+        }
+    }
+    Ok(instances)
+}
+
+/// `limit` of `count` places, evenly spread.
+fn spread(count: usize, limit: usize) -> impl Iterator<Item = usize> {
+    let chosen = count.min(limit);
+    (0..chosen).map(move |i| i * count / chosen)
+}
+
+fn stem(path: &Path, ending: &str) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.trim_end_matches(ending).to_string()
+}
+
+/// Files of a folder by name.
+fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
+    let fail = |e| Error::io(folder, "read", e);
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(fail)? {
+        let path = entry.map_err(fail)?.path();
+        if path.to_string_lossy().ends_with(ending) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Makes the shipped facades anew in a folder like `datasets/facade_grammar`, where the printed
+/// grammar `wu2014_fig9.cga` already is.
 ///
 /// # Errors
-/// [`Error::Io`] when a file cannot be written.
+/// [`Error::Io`] when a file cannot be read or written, or what reading the printed grammar says.
 pub fn write_layouts(folder: &Path, seed: u64) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+    let layouts = folder.join("layouts");
+    std::fs::create_dir_all(&layouts).map_err(|e| Error::io(&layouts, "create", e))?;
     for (name, bytes) in layout_files(seed)? {
-        file::write_atomic(&folder.join(name), &bytes)?;
+        file::write_atomic(&layouts.join(name), &bytes)?;
     }
-    Ok(())
+    let printed = grammar_cga::read(&folder.join(format!("{FIGURE_9}.cga")))?;
+    let facade = derive(&printed, 0).map_err(Error::method)?;
+    facade_json::write(&facade, &folder.join(format!("{FIGURE_9}.facade.json")))
 }
 
 /// Name and content of each file of the made layouts.
@@ -34,18 +152,10 @@ pub fn layout_files(seed: u64) -> Result<Vec<(String, Vec<u8>)>> {
     let mut files = Vec::new();
     for one in &made {
         let name = &one.facade.name;
-        let facade = io::facade_json::to_string(&one.facade);
-        let grammar = io::grammar_json::to_string(&one.grammar);
+        let facade = facade_json::to_string(&one.facade);
+        let grammar = grammar_json::to_string(&one.grammar);
         files.push((format!("{name}.facade.json"), facade.into_bytes()));
         files.push((format!("{name}.grammar.json"), grammar.into_bytes()));
     }
     Ok(files)
-}
-
-/// A facade with the grammar it was derived from.
-pub struct Known {
-    /// The facade.
-    pub facade: Facade,
-    /// Its grammar.
-    pub grammar: Grammar,
 }
