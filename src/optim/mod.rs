@@ -1,1 +1,4 @@
 //! optim
+
+pub mod qp;
+pub mod qp_problem;

@@ -1,0 +1,336 @@
+//! Convex quadratic programming.
+//!
+//! ```text
+//! minimise    1/2 x' P x + q' x           x in R^n, P symmetric positive semidefinite
+//! subject to  E x  = e                    equalities
+//!             A x <= b                    inequalities
+//!             l <= x <= u                 bounds, infinite where there is none
+//! ```
+//! The mathematics is the interior-point method of Clarabel (Goulart and Chen 2024), wrapped as an
+//! argmin [`Solver`], so that limits, observers and statuses are those of every other optimizer here.
+//! Clarabel returns "solved" for a P that is not positive semidefinite: that is checked at the door.
+
+use std::time::Duration;
+
+use argmin::core::{
+    CostFunction, Error as ArgminError, Executor, IterState, KV, Problem, Solver, State,
+    TerminationReason, TerminationStatus,
+};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+};
+
+pub use super::qp_problem::{QpError, QuadraticProgram, Row};
+
+/// How a run ended. None of these is an error: the answer to a well-posed question.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QpOutcome {
+    /// Solved to the tolerance asked for.
+    Converged,
+    /// Solved, but less exactly than asked for.
+    AlmostConverged,
+    /// No point satisfies the constraints.
+    Infeasible,
+    /// The cost has no lower bound on the feasible set.
+    Unbounded,
+    /// The iteration limit was reached.
+    MaxIterations,
+    /// The time limit was reached.
+    TimeLimit,
+    /// Numbers of too different sizes; no progress.
+    Stalled,
+}
+
+/// Limits of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QpOptions {
+    /// Interior-point iterations at most.
+    pub max_iterations: u32,
+    /// Time at most; no limit unless given.
+    pub time_limit: Option<Duration>,
+    /// Relative and absolute tolerance of feasibility and optimality.
+    pub tolerance: f64,
+}
+
+impl Default for QpOptions {
+    fn default() -> Self {
+        Self {
+            max_iterations: 200,
+            time_limit: None,
+            tolerance: 1e-9,
+        }
+    }
+}
+
+/// Result of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QpSolution {
+    /// How it ended.
+    pub outcome: QpOutcome,
+    /// The last point, n numbers; meaningful when the outcome is converged or almost so.
+    pub x: Vec<f64>,
+    /// 1/2 x' P x + q' x at that point.
+    pub cost: f64,
+    /// Interior-point iterations taken.
+    pub iterations: u32,
+}
+
+/// Solves a convex quadratic program.
+///
+/// # Errors
+/// [`QpError`] when the program is not one: dimensions that do not fit, numbers that are not finite,
+/// crossed bounds, P not positive semidefinite. Stopping early is an outcome.
+///
+/// # Examples
+/// ```
+/// use edifice::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve};
+/// // The point nearest to (3, 1) on the line x + y = 2, with x at most 1.5.
+/// let mut program = QuadraticProgram::new(2);
+/// program.pull(0, 3.0, 1.0).pull(1, 1.0, 1.0);
+/// program.equalities.push(Row::new([(0, 1.0), (1, 1.0)], 2.0));
+/// program.upper[0] = 1.5;
+/// let solution = solve(&program, QpOptions::default()).unwrap();
+/// assert_eq!(solution.outcome, QpOutcome::Converged);
+/// assert!((solution.x[0] - 1.5).abs() < 1e-6 && (solution.x[1] - 0.5).abs() < 1e-6);
+/// ```
+pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<QpSolution, QpError> {
+    program.check()?;
+    let solver = InteriorPoint::new(options);
+    let run = Executor::new(program.clone(), solver)
+        .configure(|state| state.max_iters(1))
+        .timer(false)
+        .run()
+        .map_err(|e| QpError::Solver(e.to_string()))?;
+    let solver = run.solver;
+    let mut state = run.state;
+    Ok(QpSolution {
+        outcome: solver.outcome,
+        cost: state.get_cost(),
+        iterations: solver.iterations,
+        x: state.take_param().unwrap_or_default(),
+    })
+}
+
+/// The interior-point method as an argmin solver: one argmin iteration is a whole run.
+pub struct InteriorPoint {
+    options: QpOptions,
+    outcome: QpOutcome,
+    iterations: u32,
+}
+
+impl InteriorPoint {
+    /// A solver with the given limits.
+    pub fn new(options: QpOptions) -> Self {
+        Self {
+            options,
+            outcome: QpOutcome::MaxIterations,
+            iterations: 0,
+        }
+    }
+}
+
+impl CostFunction for QuadraticProgram {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, x: &Vec<f64>) -> Result<f64, ArgminError> {
+        Ok(self.value(x))
+    }
+}
+
+type QpState = IterState<Vec<f64>, (), (), (), (), f64>;
+
+impl Solver<QuadraticProgram, QpState> for InteriorPoint {
+    fn name(&self) -> &str {
+        "interior point (Clarabel)"
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<QuadraticProgram>,
+        state: QpState,
+    ) -> Result<(QpState, Option<KV>), ArgminError> {
+        let Some(program) = problem.problem.as_ref() else {
+            return Err(QpError::Solver("no problem to solve".into()).into());
+        };
+        program.check()?;
+        let (x, status, iterations) = run_clarabel(program, self.options)?;
+        self.iterations = iterations;
+        self.outcome = match status {
+            SolverStatus::Solved => QpOutcome::Converged,
+            SolverStatus::AlmostSolved => QpOutcome::AlmostConverged,
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                QpOutcome::Infeasible
+            }
+            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+                QpOutcome::Unbounded
+            }
+            SolverStatus::MaxIterations => QpOutcome::MaxIterations,
+            SolverStatus::MaxTime => QpOutcome::TimeLimit,
+            _ => QpOutcome::Stalled,
+        };
+        let reason = match self.outcome {
+            QpOutcome::Converged | QpOutcome::AlmostConverged => TerminationReason::SolverConverged,
+            QpOutcome::MaxIterations => TerminationReason::MaxItersReached,
+            QpOutcome::TimeLimit => TerminationReason::Timeout,
+            _ => TerminationReason::SolverExit(format!("{:?}", self.outcome)),
+        };
+        let cost = problem.cost(&x)?;
+        let state = state.param(x).cost(cost).terminate_with(reason);
+        Ok((state, Some(argmin::core::KV::new())))
+    }
+
+    fn terminate(&mut self, _state: &QpState) -> TerminationStatus {
+        TerminationStatus::NotTerminated
+    }
+}
+
+/// Clarabel's form: equalities, then inequalities, then bounds as rows of one matrix.
+fn run_clarabel(
+    program: &QuadraticProgram,
+    options: QpOptions,
+) -> Result<(Vec<f64>, SolverStatus, u32), QpError> {
+    let n = program.dimension();
+    let mut rows = Triplets::default();
+    for row in &program.equalities {
+        rows.push(row.terms.iter().copied(), row.right);
+    }
+    let equalities = rows.count();
+    for row in &program.inequalities {
+        rows.push(row.terms.iter().copied(), row.right);
+    }
+    for i in 0..n {
+        if program.upper[i] < f64::INFINITY {
+            rows.push([(i, 1.0)], program.upper[i]);
+        }
+        if program.lower[i] > f64::NEG_INFINITY {
+            rows.push([(i, -1.0)], -program.lower[i]);
+        }
+    }
+    let mut cones = Vec::new();
+    if equalities > 0 {
+        cones.push(SupportedConeT::ZeroConeT(equalities));
+    }
+    if rows.count() > equalities {
+        cones.push(SupportedConeT::NonnegativeConeT(rows.count() - equalities));
+    }
+    let mut upper = Triplets::default();
+    for &(i, j, value) in &program.quadratic {
+        upper.entry(i.min(j), i.max(j), value);
+    }
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .max_iter(options.max_iterations)
+        .time_limit(
+            options
+                .time_limit
+                .map_or(f64::INFINITY, |t| t.as_secs_f64()),
+        )
+        .tol_gap_abs(options.tolerance)
+        .tol_gap_rel(options.tolerance)
+        .tol_feas(options.tolerance)
+        .build()
+        .map_err(|e| QpError::Solver(e.to_string()))?;
+    let p = upper.matrix(n, n);
+    let right = std::mem::take(&mut rows.right);
+    let a = rows.matrix(right.len(), n);
+    let mut solver = DefaultSolver::new(&p, &program.linear, &a, &right, &cones, settings)
+        .map_err(|e| QpError::Solver(e.to_string()))?;
+    solver.solve();
+    let solution = solver.solution;
+    Ok((solution.x, solution.status, solution.iterations))
+}
+
+/// A sparse matrix while it is written.
+#[derive(Default)]
+struct Triplets {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Triplets {
+    fn entry(&mut self, row: usize, column: usize, value: f64) {
+        self.rows.push(row);
+        self.columns.push(column);
+        self.values.push(value);
+    }
+
+    fn push(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
+        let row = self.right.len();
+        for (column, value) in terms {
+            self.entry(row, column, value);
+        }
+        self.right.push(right);
+    }
+
+    fn count(&self) -> usize {
+        self.right.len()
+    }
+
+    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
+        CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn stopping_is_an_outcome() {
+        let mut program = QuadraticProgram::new(1);
+        program.linear[0] = 1.0;
+        let run = |p: &QuadraticProgram| solve(p, QpOptions::default()).unwrap().outcome;
+        assert_eq!(run(&program), QpOutcome::Unbounded);
+        program.inequalities.push(Row::new([(0, 1.0)], -1.0));
+        program.lower[0] = 0.0;
+        assert_eq!(run(&program), QpOutcome::Infeasible);
+        let mut far = QuadraticProgram::new(2);
+        far.pull(0, 1.0, 3.0).pull(1, 2.0, 1.0);
+        far.inequalities.push(Row::new([(0, 1.0), (1, 1.0)], 1.0));
+        let options = QpOptions {
+            max_iterations: 1,
+            ..QpOptions::default()
+        };
+        assert_eq!(
+            solve(&far, options).unwrap().outcome,
+            QpOutcome::MaxIterations
+        );
+    }
+
+    proptest! {
+        /// Oracle: projected gradient, slow and obvious, for a box.
+        #[test]
+        fn agrees_with_projected_gradient(
+            target in prop::collection::vec(-2.0f64..2.0, 3),
+            mix in prop::collection::vec(-1.0f64..1.0, 3),
+        ) {
+            // P = I + m m', so that P is positive definite; box -1..1.
+            let mut program = QuadraticProgram::new(3);
+            for i in 0..3 {
+                program.linear[i] = -target[i];
+                (program.lower[i], program.upper[i]) = (-1.0, 1.0);
+                for j in i..3 {
+                    let identity = if i == j { 1.0 } else { 0.0 };
+                    program.quadratic.push((i, j, identity + mix[i] * mix[j]));
+                }
+            }
+            let mut x = [0.0f64; 3];
+            for _ in 0..4000 {
+                let dot: f64 = (0..3).map(|i| mix[i] * x[i]).sum();
+                for i in 0..3 {
+                    x[i] = (x[i] - 0.2 * (x[i] + mix[i] * dot - target[i])).clamp(-1.0, 1.0);
+                }
+            }
+            let solution = solve(&program, QpOptions::default()).unwrap();
+            prop_assert_eq!(solution.outcome, QpOutcome::Converged);
+            for (found, expected) in solution.x.iter().zip(x) {
+                prop_assert!((found - expected).abs() < 1e-4);
+            }
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! The statement of a quadratic program, checked at the door.
+
+use nalgebra::DMatrix;
+
+/// minimise 1/2 x' P x + q' x subject to equalities, inequalities and bounds; see
+/// [`qp`](super::qp).
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuadraticProgram {
+    /// Entries `(i, j, value)` of the symmetric P, each pair `i`, `j` given once, in either order
+    /// (the mirrored entry is understood); entries given again are added.
+    pub quadratic: Vec<(usize, usize, f64)>,
+    /// q, n numbers.
+    pub linear: Vec<f64>,
+    /// Rows of E x = e.
+    pub equalities: Vec<Row>,
+    /// Rows of A x <= b.
+    pub inequalities: Vec<Row>,
+    /// l, n numbers, minus infinity where there is no bound.
+    pub lower: Vec<f64>,
+    /// u, n numbers, infinity where there is no bound.
+    pub upper: Vec<f64>,
+}
+
+/// One linear constraint: sum of `value * x[index]` against `right`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Terms `(index, value)`.
+    pub terms: Vec<(usize, f64)>,
+    /// Right-hand side.
+    pub right: f64,
+}
+
+impl Row {
+    /// A constraint from its terms `(index, value)` and its right-hand side.
+    pub fn new(terms: impl IntoIterator<Item = (usize, f64)>, right: f64) -> Self {
+        Self {
+            terms: terms.into_iter().collect(),
+            right,
+        }
+    }
+}
+
+/// Why numbers are not a convex quadratic program.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum QpError {
+    /// A list has not one number for each variable.
+    #[error("{what} has {found} numbers, expected {expected}")]
+    Dimension {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// Number of variables.
+        expected: usize,
+    },
+    /// A term names a variable that does not exist.
+    #[error("{what}[{row}] names variable {index}, there are {count}")]
+    Index {
+        /// Which list.
+        what: &'static str,
+        /// Which of its rows or entries.
+        row: usize,
+        /// The index named.
+        index: usize,
+        /// Number of variables.
+        count: usize,
+    },
+    /// A number is NaN or infinite where it must not be.
+    #[error("{what}[{row}] has the number {value}")]
+    Number {
+        /// Which list.
+        what: &'static str,
+        /// Which of its rows or entries.
+        row: usize,
+        /// The number.
+        value: f64,
+    },
+    /// A lower bound above the upper one.
+    #[error("variable {index} has the bounds {lower} to {upper}")]
+    CrossedBounds {
+        /// Variable.
+        index: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// P has a negative eigenvalue: the program is not convex.
+    #[error("the quadratic form is not positive semidefinite: eigenvalue {0}")]
+    NotConvex(f64),
+    /// The solver refused or failed.
+    #[error("quadratic programming failed: {0}")]
+    Solver(String),
+}
+
+impl QuadraticProgram {
+    /// n variables, no cost, no constraints.
+    pub fn new(n: usize) -> Self {
+        Self {
+            quadratic: Vec::new(),
+            linear: vec![0.0; n],
+            equalities: Vec::new(),
+            inequalities: Vec::new(),
+            lower: vec![f64::NEG_INFINITY; n],
+            upper: vec![f64::INFINITY; n],
+        }
+    }
+
+    /// Adds `weight / 2 * (x[index] - target)^2` to the cost, up to a constant.
+    pub fn pull(&mut self, index: usize, target: f64, weight: f64) -> &mut Self {
+        self.quadratic.push((index, index, weight));
+        self.linear[index] -= weight * target;
+        self
+    }
+
+    /// Number of variables, n.
+    pub fn dimension(&self) -> usize {
+        self.linear.len()
+    }
+
+    /// 1/2 x' P x + q' x.
+    pub fn value(&self, x: &[f64]) -> f64 {
+        let entry = |&(i, j, value): &(usize, usize, f64)| {
+            let factor = if i == j { 0.5 } else { 1.0 };
+            factor * value * x[i] * x[j]
+        };
+        let quadratic: f64 = self.quadratic.iter().map(entry).sum();
+        let linear: f64 = self.linear.iter().zip(x).map(|(q, x)| q * x).sum();
+        quadratic + linear
+    }
+
+    /// Checks dimensions, numbers, bounds and convexity.
+    ///
+    /// O(size), and O(n^3) for a P that is neither diagonal nor diagonally dominant.
+    ///
+    /// # Errors
+    /// [`QpError`] with the first culprit.
+    pub fn check(&self) -> Result<(), QpError> {
+        let n = self.dimension();
+        for (what, list) in [("lower", &self.lower), ("upper", &self.upper)] {
+            if list.len() != n {
+                return Err(QpError::Dimension {
+                    what,
+                    found: list.len(),
+                    expected: n,
+                });
+            }
+        }
+        let number = |what, row, value: f64| match value.is_finite() {
+            true => Ok(()),
+            false => Err(QpError::Number { what, row, value }),
+        };
+        let variable = |what, row, index| match index < n {
+            true => Ok(()),
+            false => Err(QpError::Index {
+                what,
+                row,
+                index,
+                count: n,
+            }),
+        };
+        for (row, &value) in self.linear.iter().enumerate() {
+            number("linear", row, value)?;
+        }
+        for (row, &(i, j, value)) in self.quadratic.iter().enumerate() {
+            variable("quadratic", row, i)?;
+            variable("quadratic", row, j)?;
+            number("quadratic", row, value)?;
+        }
+        let lists = [
+            ("equalities", &self.equalities),
+            ("inequalities", &self.inequalities),
+        ];
+        for (what, rows) in lists {
+            for (row, content) in rows.iter().enumerate() {
+                number(what, row, content.right)?;
+                for &(index, value) in &content.terms {
+                    variable(what, row, index)?;
+                    number(what, row, value)?;
+                }
+            }
+        }
+        for index in 0..n {
+            let (lower, upper) = (self.lower[index], self.upper[index]);
+            let empty = lower == f64::INFINITY || upper == f64::NEG_INFINITY;
+            if lower.is_nan() || upper.is_nan() || lower > upper || empty {
+                return Err(QpError::CrossedBounds {
+                    index,
+                    lower,
+                    upper,
+                });
+            }
+        }
+        self.check_convex()
+    }
+
+    fn check_convex(&self) -> Result<(), QpError> {
+        let n = self.dimension();
+        let mut diagonal = vec![0.0; n];
+        let mut beside = vec![0.0; n];
+        for &(i, j, value) in &self.quadratic {
+            if i == j {
+                diagonal[i] += value;
+            } else {
+                beside[i] += value.abs();
+                beside[j] += value.abs();
+            }
+        }
+        // Gershgorin: diagonally dominant with a diagonal not below zero is semidefinite.
+        if diagonal.iter().zip(&beside).all(|(d, b)| d >= b) {
+            return Ok(());
+        }
+        let mut p = DMatrix::<f64>::zeros(n, n);
+        for &(i, j, value) in &self.quadratic {
+            p[(i, j)] += value;
+            if i != j {
+                p[(j, i)] += value;
+            }
+        }
+        let eigenvalues = p.symmetric_eigenvalues();
+        let least = eigenvalues.min();
+        let rounding = 1e-10 * eigenvalues.amax().max(f64::MIN_POSITIVE);
+        if least >= -rounding {
+            Ok(())
+        } else {
+            Err(QpError::NotConvex(least))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_door_names_the_culprit() {
+        let mut program = QuadraticProgram::new(2);
+        program.quadratic = vec![(0, 0, 1.0), (0, 1, 2.0), (1, 1, 1.0)];
+        assert!(matches!(program.check(), Err(QpError::NotConvex(e)) if (e + 1.0).abs() < 1e-9));
+        // Rank one, semidefinite but not dominant.
+        program.quadratic = vec![(0, 0, 1.0), (0, 1, 2.0), (1, 1, 4.0)];
+        assert_eq!(program.check(), Ok(()));
+        program.equalities.push(Row::new([(2, 1.0)], 0.0));
+        assert!(matches!(
+            program.check(),
+            Err(QpError::Index { index: 2, .. })
+        ));
+        program.equalities[0] = Row::new([(1, f64::NAN)], 0.0);
+        assert!(matches!(
+            program.check(),
+            Err(QpError::Number { row: 0, .. })
+        ));
+        program.equalities.clear();
+        program.lower[1] = f64::NAN;
+        assert!(matches!(
+            program.check(),
+            Err(QpError::CrossedBounds { index: 1, .. })
+        ));
+        program.lower.pop();
+        assert!(matches!(
+            program.check(),
+            Err(QpError::Dimension { what: "lower", .. })
+        ));
+    }
+}
