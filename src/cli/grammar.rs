@@ -1,12 +1,39 @@
 //! Split grammars on the command line.
 
+mod derive;
+mod show;
+
 use clap::Subcommand;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {}
+pub enum Command {
+    /// Derive a facade from a grammar, at its own or another size.
+    Derive(derive::Args),
+    /// Show the rules of a grammar, what it costs and what it derives.
+    Show(show::Args),
+}
 
 /// Runs the command.
 pub fn run(command: Command) -> edifice::Result<()> {
-    match command {}
+    match command {
+        Command::Derive(args) => derive::run(&args),
+        Command::Show(args) => show::run(&args),
+    }
+}
+
+/// A size on the command line.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) && value > 0.0 => Ok(value),
+        _ => Err("expected a positive number".to_owned()),
+    }
+}
+
+/// A cost on the command line.
+fn cost(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) && value >= 0.0 => Ok(value),
+        _ => Err("expected a number of at least zero".to_owned()),
+    }
 }

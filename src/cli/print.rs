@@ -3,7 +3,6 @@
 use std::io::Write;
 
 /// Prints one line of result to standard output; a reader that has gone away is not an error.
-#[allow(dead_code)] // the first command to print a result takes this line out
 pub fn line(text: &str) -> edifice::Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {

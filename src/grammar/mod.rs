@@ -10,7 +10,9 @@ mod cost;
 mod derive;
 mod error;
 mod evaluate;
+mod listing;
 mod place;
+mod resize;
 mod rule;
 mod table;
 mod tiling;
@@ -20,5 +22,10 @@ pub use cost::Costs;
 pub use derive::{Derivation, NonTerminal, REGION_LIMIT, derivation, derive};
 pub use error::{GrammarError, Warning};
 pub use evaluate::{EvaluateError, Evaluation, evaluate};
+pub use listing::listing;
+pub use resize::{
+    Sampler, THIN_OF_FACADE, THIN_OF_NEIGHBOUR, derive_at, is_size_independent, scaled,
+    size_independent,
+};
 pub use rule::{Grammar, Operation, Rule, Size, Start, Successor};
 pub use tiling::{Difference, same_tiling, tiling_difference};

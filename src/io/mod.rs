@@ -10,6 +10,7 @@ pub mod draw;
 mod facade_file;
 pub mod facade_json;
 pub mod grammar_cga;
+mod grammar_file;
 pub mod grammar_json;
 pub mod label_image;
 pub mod label_map;
@@ -24,6 +25,7 @@ pub use crate::file::{read_bytes, write_atomic};
 pub use facade_file::{
     ReadOptions, Source, read_facade, read_label_grid, read_source, write_facade,
 };
+pub use grammar_file::{read_grammar, write_grammar};
 pub use label_map::LabelMap;
 
 /// Name of a facade that carries none: the file name up to its first dot.

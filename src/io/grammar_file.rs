@@ -1,0 +1,51 @@
+//! Grammars in whatever format: JSON or CGA, told by the file's extension, then by its content.
+
+use std::path::Path;
+
+use super::{grammar_cga, grammar_json, read_bytes};
+use crate::grammar::Grammar;
+use crate::{Error, Result};
+
+/// Whether the extension, or else the first character, says JSON rather than CGA.
+fn is_json(path: &Path, bytes: &[u8]) -> bool {
+    match extension(path).as_str() {
+        "json" => true,
+        "cga" => false,
+        _ => bytes.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{'),
+    }
+}
+
+fn extension(path: &Path) -> String {
+    let extension = path.extension().unwrap_or_default();
+    extension.to_string_lossy().to_lowercase()
+}
+
+/// Reads a grammar: `.grammar.json` or `.cga`.
+///
+/// # Errors
+/// Names the file and the place of what is wrong.
+pub fn read_grammar(path: &Path) -> Result<Grammar> {
+    let bytes = read_bytes(path)?;
+    match is_json(path, &bytes) {
+        true => grammar_json::parse(&bytes, path),
+        false => grammar_cga::parse(&bytes, path),
+    }
+}
+
+/// Writes a grammar in the format that the extension asks for.
+///
+/// # Errors
+/// [`Error::Option`] for an extension other than `.json` and `.cga`; [`Error::Io`] when the file
+/// cannot be written.
+pub fn write_grammar(grammar: &Grammar, path: &Path) -> Result<()> {
+    match extension(path).as_str() {
+        "json" => grammar_json::write(grammar, path),
+        "cga" => grammar_cga::write(grammar, path),
+        _ => {
+            let path = path.display().to_string();
+            let message =
+                format!("unknown grammar format {path:?}, expected .grammar.json or .cga");
+            Err(Error::option("output", message))
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! `edifice grammar derive` and `edifice grammar show`.
+
+use std::path::PathBuf;
+
+use assert_cmd::Command;
+use edifice::io::facade_json;
+
+fn edifice(args: &[&str]) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("edifice").unwrap();
+    let output = command.arg("grammar").args(args).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn fig9() -> String {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    folder
+        .join("datasets/facade_grammar/wu2014_fig9.cga")
+        .to_str()
+        .unwrap()
+        .to_owned()
+}
+
+#[test]
+fn show_prints_rules_and_counts() {
+    let (code, out, _) = edifice(&["show", &fig9(), "--json"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("NT2  → repeat(y){NT5}"), "{out}");
+    let last: serde_json::Value = serde_json::from_str(out.lines().last().unwrap()).unwrap();
+    assert_eq!(
+        (&last["cost"], &last["rules"], &last["terminals"]),
+        (&39.4.into(), &10.into(), &50.into())
+    );
+    let (_, out, _) = edifice(&[
+        "show",
+        &fig9(),
+        "--json",
+        "--split-cost",
+        "0",
+        "--repeat-cost",
+        "0",
+    ]);
+    assert!(out.contains("\"cost\":38.0"), "{out}");
+}
+
+#[test]
+fn derive_writes_every_format_at_every_size() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.facade.json", "a.svg", "a.png"] {
+        let path = folder.path().join(name);
+        let (code, _, err) = edifice(&["derive", &fig9(), "-o", path.to_str().unwrap()]);
+        assert_eq!(code, 0, "{err}");
+    }
+    let path = folder.path().join("a.facade.json");
+    let own = facade_json::read(&path).unwrap();
+    assert_eq!((own.regions.len(), own.name.as_str()), (50, "wu2014_fig9"));
+    let size = ["--width", "400", "--height", "500"];
+    let (code, _, err) = edifice(
+        &[
+            &["derive", &fig9(), "-o", path.to_str().unwrap()],
+            &size[..],
+        ]
+        .concat(),
+    );
+    assert_eq!(code, 0, "{err}");
+    let wide = facade_json::read(&path).unwrap();
+    assert_eq!((wide.width, wide.height), (400.0, 500.0));
+    assert_eq!(wide.check_tiling(), Ok(()));
+    assert!(wide.regions.len() > own.regions.len());
+}
+
+#[test]
+fn the_seed_picks_the_variation() {
+    let folder = tempfile::tempdir().unwrap();
+    let grammar = folder.path().join("g.cga");
+    let out = folder.path().join("a.facade.json");
+    let text = "//@ facade F 8 x 8\nF --> 50% : split(x) { ~1 : A | ~1 : B } else : split(y) { ~1 : A | ~2 : B }";
+    std::fs::write(&grammar, text).unwrap();
+    let derive = |seed: &str| {
+        let (grammar, out) = (grammar.to_str().unwrap(), out.to_str().unwrap());
+        let (code, _, err) = edifice(&["derive", grammar, "--seed", seed, "-o", out]);
+        assert_eq!(code, 0, "{err}");
+        std::fs::read(out).unwrap()
+    };
+    assert_eq!(derive("3"), derive("3"));
+    let first = derive("0");
+    assert!((1..20).any(|seed| derive(&seed.to_string()) != first));
+}
+
+#[test]
+fn bad_input_is_named_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let grammar = folder.path().join("g.cga");
+    let out = folder.path().join("a.facade.json");
+    let (grammar_path, out_path) = (grammar.to_str().unwrap(), out.to_str().unwrap());
+    let run = |text: &str| {
+        std::fs::write(&grammar, text).unwrap();
+        let (code, _, err) = edifice(&["derive", grammar_path, "-o", out_path]);
+        assert_eq!(code, 1, "{err}");
+        assert!(err.contains("g.cga"), "{err}");
+        assert!(!out.exists());
+        err
+    };
+    let err = run("//@ facade F 3 x 3\nF --> split(x) { 3 : G }\nG --> split(x) { 3 : F }");
+    assert!(
+        err.contains("line 2, column 1: the rules form a cycle: F -> G -> F"),
+        "{err}"
+    );
+    let err = run("//@ facade F 3 x 3\nF --> split(x) { 2 : G }");
+    assert!(err.contains("add up to 2, the region has 3"), "{err}");
+    let err = run("//@ facade H 3 x 3\nF --> split(x) { 3 : G }");
+    assert!(
+        err.contains("line 1, column 1: start symbol H is undefined"),
+        "{err}"
+    );
+    std::fs::write(&grammar, "//@ facade F 3 x 3\nF --> split(x) { 3 : G }").unwrap();
+    for bad in [["--width", "-3"], ["--height", "nan"], ["--width", "wide"]] {
+        let (code, _, err) = edifice(&["derive", grammar_path, "-o", out_path, bad[0], bad[1]]);
+        assert_eq!(code, 2, "{err}");
+    }
+    let (code, _, err) = edifice(&["derive", grammar_path, "-o", out_path, "--facade", "b"]);
+    assert_eq!(code, 1);
+    assert!(err.contains("--facade: no facade \"b\""), "{err}");
+    let missing = folder.path().join("none/a.svg");
+    let (code, _, err) = edifice(&["derive", grammar_path, "-o", missing.to_str().unwrap()]);
+    assert!(code == 1 && err.contains("none/a.svg"), "{err}");
+}

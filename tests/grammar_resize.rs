@@ -1,0 +1,129 @@
+//! Size-independent and stochastic grammars.
+
+mod grammar_support;
+
+use edifice::grammar::{
+    GrammarError, Operation, Size, check, derive, derive_at, is_size_independent, same_tiling,
+    scaled, size_independent,
+};
+use edifice::io::grammar_cga::from_str;
+use edifice::rng::stream;
+use grammar_support::{random_grammar, stochastic};
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn at_its_own_size_nothing_changes(seed: u64) {
+        let grammar = random_grammar(seed);
+        let relaxed = size_independent(&grammar);
+        prop_assert_eq!(check(&relaxed), Ok(vec![]));
+        let (own, same) = (derive(&grammar, 0).unwrap(), derive(&relaxed, 0).unwrap());
+        prop_assert!(same_tiling(&own, &same));
+        prop_assert_eq!(size_independent(&relaxed), relaxed);
+    }
+
+    #[test]
+    fn any_size_is_tiled(seed: u64, width in 0.5f64..3.0, height in 0.5f64..3.0) {
+        let grammar = size_independent(&random_grammar(seed));
+        let start = &grammar.starts[0];
+        let (width, height) = (width * start.width, height * start.height);
+        match derive_at(&grammar, 0, width, height, &mut stream(seed, "size", 0)) {
+            Ok(derivation) => prop_assert_eq!(derivation.facade.check_tiling(), Ok(())),
+            Err(error) => prop_assert!(matches!(error, GrammarError::TooSmall { .. }), "{}", error),
+        }
+    }
+
+    #[test]
+    fn a_seed_decides(seed: u64) {
+        let grammar = stochastic(&random_grammar(seed), seed);
+        let start = &grammar.starts[0];
+        let derive = |index| derive_at(&grammar, 0, start.width, start.height, &mut stream(seed, "choice", index));
+        let first = derive(0).unwrap();
+        prop_assert_eq!(&first, &derive(0).unwrap());
+        // One rule serves all regions of a symbol.
+        let mut rules = std::collections::BTreeMap::new();
+        for region in &first.non_terminals {
+            let symbol = &grammar.rules[region.rule].symbol;
+            prop_assert_eq!(*rules.entry(symbol).or_insert(region.rule), region.rule);
+        }
+    }
+
+    #[test]
+    fn a_change_of_unit_scales_the_facade(seed: u64) {
+        let grammar = random_grammar(seed);
+        let metres = scaled(&grammar, 0.05, "m");
+        let (px, m) = (derive(&grammar, 0).unwrap(), derive(&metres, 0).unwrap());
+        prop_assert_eq!(px.regions.len(), m.regions.len());
+        for (a, b) in px.regions.iter().zip(&m.regions) {
+            prop_assert!((a.rect.x * 0.05 - b.rect.x).abs() < 1e-9);
+            prop_assert!((a.rect.top() * 0.05 - b.rect.top()).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn thin_structures_keep_their_size() {
+    let text = "//@ facade F 100 x 50\nF --> split(x) { 2 : frame | 96 : glass | 2 : frame }";
+    let grammar = size_independent(&from_str(text).unwrap());
+    let Operation::Split { successors, .. } = &grammar.rules[0].operation else {
+        panic!("a split stays one");
+    };
+    let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
+    assert_eq!(
+        sizes,
+        [
+            Size::Absolute(2.0),
+            Size::Relative(96.0),
+            Size::Absolute(2.0)
+        ]
+    );
+    let mut rng = stream(0, "none", 0);
+    let wide = derive_at(&grammar, 0, 300.0, 50.0, &mut rng)
+        .unwrap()
+        .facade;
+    assert_eq!(wide.regions[1].rect.width, 296.0);
+    let narrow = derive_at(&grammar, 0, 3.0, 50.0, &mut rng);
+    assert!(matches!(
+        narrow,
+        Err(GrammarError::TooSmall {
+            needed: 4.0,
+            extent: 3.0,
+            ..
+        })
+    ));
+    // Without thicker neighbours nothing is thin.
+    let text = "//@ facade F 100 x 50\nF --> split(x) { { 1 : a | 1 : b }* }";
+    assert!(is_size_independent(&size_independent(
+        &from_str(text).unwrap()
+    )));
+}
+
+#[test]
+fn repeats_fill_the_space() {
+    let text = "//@ facade F 100 x 50\nF --> split(x) { { 8 : a | 12 : b }* }";
+    let grammar = size_independent(&from_str(text).unwrap());
+    let count = |width| {
+        let mut rng = stream(0, "none", 0);
+        derive_at(&grammar, 0, width, 50.0, &mut rng)
+            .unwrap()
+            .facade
+            .regions
+            .len()
+            / 2
+    };
+    assert_eq!(
+        [5.0, 29.0, 31.0, 100.0, 109.0, 111.0].map(count),
+        [1, 1, 2, 5, 5, 6]
+    );
+    let mut rng = stream(0, "none", 0);
+    let bad = derive_at(&grammar, 0, f64::NAN, 50.0, &mut rng);
+    assert!(matches!(
+        bad,
+        Err(GrammarError::AskedSize {
+            dimension: "width",
+            ..
+        })
+    ));
+}
