@@ -3,6 +3,7 @@
 //! | module | what | learned by |
 //! | --- | --- | --- |
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
+//! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
 //!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
 //! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
@@ -13,7 +14,9 @@ pub(crate) mod chunks;
 pub mod conjugate;
 pub mod em;
 mod error;
+pub mod gmm;
 pub mod hierarchy;
+pub(crate) mod kmeans;
 pub(crate) mod linalg;
 mod table;
 

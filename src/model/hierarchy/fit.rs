@@ -1,10 +1,11 @@
 //! EM for a fixed structure, and starts for it.
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 
 use super::super::chunks;
 use super::super::em::{Em, Fit, Stopping, run};
 use super::super::error::ModelError;
+use super::super::kmeans::kmeans;
 use super::super::table::MISSING;
 use super::infer::{Scratch, assignments};
 use super::params::{Params, Priors, Shape, Stats};
@@ -273,64 +274,4 @@ fn add_filled(scatter: &mut [f64], columns: &[usize], real: &[f64]) {
             scatter[i * q + i] += 1.0;
         }
     }
-}
-
-/// k-means++ seeding (Arthur and Vassilvitskii 2007) and `rounds` Lloyd rounds; the cluster of
-/// every point. Clusters may be empty when there are fewer distinct points than `k`.
-pub(crate) fn kmeans<R: Rng>(
-    points: &[f64],
-    width: usize,
-    k: usize,
-    rounds: usize,
-    rng: &mut R,
-) -> Vec<usize> {
-    let n = points.len().checked_div(width).unwrap_or(0);
-    let point = |i: usize| &points[i * width..(i + 1) * width];
-    let distance =
-        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>();
-    let mut centres: Vec<Vec<f64>> = vec![point(rng.random_range(0..n)).to_vec()];
-    let mut nearest: Vec<f64> = (0..n).map(|i| distance(point(i), &centres[0])).collect();
-    while centres.len() < k {
-        let total: f64 = nearest.iter().sum();
-        let mut at = rng.random::<f64>() * total;
-        let chosen = (0..n)
-            .find(|&i| {
-                at -= nearest[i];
-                at < 0.0
-            })
-            .unwrap_or(n - 1);
-        centres.push(point(chosen).to_vec());
-        for (i, best) in nearest.iter_mut().enumerate() {
-            *best = best.min(distance(point(i), point(chosen)));
-        }
-    }
-    let mut labels = vec![0; n];
-    for round in 0..=rounds {
-        let mut moved = false;
-        for (i, label) in labels.iter_mut().enumerate() {
-            let closest = (0..k)
-                .map(|c| (distance(point(i), &centres[c]), c))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .map_or(0, |(_, c)| c);
-            moved |= closest != *label;
-            *label = closest;
-        }
-        if round == rounds || (!moved && round > 0) {
-            break;
-        }
-        let mut counts = vec![0.0; k];
-        let mut sums = vec![vec![0.0; width]; k];
-        for (i, &label) in labels.iter().enumerate() {
-            counts[label] += 1.0;
-            for (s, v) in sums[label].iter_mut().zip(point(i)) {
-                *s += v;
-            }
-        }
-        for ((centre, sum), n) in centres.iter_mut().zip(sums).zip(counts) {
-            if n > 0.0 {
-                *centre = sum.into_iter().map(|v| v / n).collect();
-            }
-        }
-    }
-    labels
 }

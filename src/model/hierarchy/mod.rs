@@ -30,9 +30,12 @@
 //! - One more value of H_g starts from the current fit with one state cut in two, instead of from
 //!   scratch; while searching, EM stops at a small gain of the log posterior ([`Settings::search`]),
 //!   and only the winner is run to the paper's 1e-6.
-//! - Lateral edges of a candidate are proposed from its expected statistics (structural EM) and
-//!   kept when the Cheeseman-Stutz score after EM is higher.
-//! - After the first sweep S gets new starts from the posteriors of all H_g, then a second sweep.
+//! - Lateral edges are proposed from the expected statistics of a fit (structural EM) and kept when
+//!   the Cheeseman-Stutz score after EM is higher; they are searched anew around every accepted
+//!   configuration, while a candidate inherits those of the configuration it grows from.
+//! - After a sweep S gets new starts from the posteriors of all H_g. At the end every |S| is also
+//!   tried above the best second level found with any |S|, so that |S| is not chosen by the luck of
+//!   the local optima below it.
 //!
 //! Source: Fan and Wonka 2016, Sec. 5; Koller and Friedman 2009, Ch. 19.
 

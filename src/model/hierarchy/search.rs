@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 use super::super::em::Stopping;
 use super::super::error::ModelError;
+use super::super::kmeans::kmeans;
 use super::edges::{propose, states, wide};
-use super::fit::{Problem, Scored, kmeans};
+use super::fit::{Problem, Scored};
 use super::infer::Scratch;
 use super::params::Priors;
 use super::schema::{Rows, Schema};
@@ -29,20 +30,31 @@ impl<'a> Search<'a> {
             Variant::Directed => vec![1],
             _ => self.settings.styles.clone().collect(),
         };
-        let found: Vec<Result<(Scored, Vec<Step>), ModelError>> = styles
-            .into_par_iter()
-            .map(|s| self.for_styles(s, &mut stream(seed, "hierarchy", s as u64)))
+        let found: Result<Vec<(Scored, Vec<Step>)>, ModelError> = styles
+            .par_iter()
+            .map(|&s| self.for_styles(s, &mut stream(seed, "hierarchy", s as u64)))
             .collect();
         let mut best: Option<Scored> = None;
         let mut trace = Vec::new();
-        for result in found {
-            let (scored, steps) = result?;
+        for (scored, steps) in found? {
             trace.extend(steps);
-            if best.as_ref().is_none_or(|b| scored.score > b.score) {
-                best = Some(scored);
+            best = better(best, scored);
+        }
+        // Whatever |S| found the best second level, every other |S| may have it as well.
+        if let Some(leader) = best.clone().filter(|_| self.layered()) {
+            let found: Result<Vec<Scored>, ModelError> = styles
+                .par_iter()
+                .map(|&s| self.restyle(&leader, s, &mut stream(seed, "restyle", s as u64)))
+                .collect();
+            for scored in found? {
+                trace.push(self.step(&scored));
+                best = better(best, scored);
             }
         }
-        let best = best.ok_or(ModelError::Empty { what: "styles" })?;
+        let mut best = best.ok_or(ModelError::Empty { what: "styles" })?;
+        if self.layered() {
+            best = self.with_edges(self.grow(best, &mut trace)?)?;
+        }
         let problem = self.problem(best.shape.structure.clone())?;
         Ok((problem.fit(best.params, &self.settings.stopping)?, trace))
     }
@@ -68,10 +80,12 @@ impl<'a> Search<'a> {
         let mut best = self.restart(first, rng)?;
         best = self.with_edges(best)?;
         let mut trace = vec![self.step(&best)];
-        if matches!(selector, Selector::Hidden(_)) {
+        if self.layered() {
             best = self.grow(best, &mut trace)?;
-            best = self.restyle(best, rng)?;
-            best = self.grow(best, &mut trace)?;
+            let fresh = self.restyle(&best, styles, rng)?;
+            if fresh.score > best.score {
+                best = self.grow(fresh, &mut trace)?;
+            }
         }
         Ok((best, trace))
     }
@@ -85,10 +99,7 @@ impl<'a> Search<'a> {
         };
         let mut best: Option<Scored> = None;
         for _ in 0..self.settings.restarts.max(1) {
-            let scored = problem.fit(problem.start(rng)?, &short)?;
-            if best.as_ref().is_none_or(|b| scored.score > b.score) {
-                best = Some(scored);
-            }
+            best = better(best, problem.fit(problem.start(rng)?, &short)?);
         }
         let best = best.ok_or(ModelError::Empty { what: "starts" })?;
         problem.fit(best.params, &self.settings.search)
@@ -103,11 +114,10 @@ impl<'a> Search<'a> {
                 let mut structure = best.shape.structure.clone();
                 structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
                 let grown = self.problem(structure)?.fit(start, &self.settings.search)?;
-                let grown = self.with_edges(grown)?;
                 if grown.score <= best.score {
                     break;
                 }
-                best = grown;
+                best = self.with_edges(grown)?;
                 trace.push(self.step(&best));
             }
         }
@@ -138,10 +148,21 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
-    /// New starts for S alone: rows are clustered by the posteriors of their hidden variables.
-    fn restyle<R: Rng>(&self, mut best: Scored, rng: &mut R) -> Result<Scored, ModelError> {
-        let problem = self.problem(best.shape.structure.clone())?;
-        let shape = &best.shape;
+    /// Whether the model has a second level of hidden variables.
+    fn layered(&self) -> bool {
+        matches!(self.settings.variant, Variant::Full | Variant::NoLateral)
+    }
+
+    /// New starts for S alone, with `styles` values, above the second level of `given`: rows are
+    /// clustered by the posteriors of their hidden variables. The best of several.
+    fn restyle<R: Rng>(
+        &self,
+        given: &Scored,
+        styles: usize,
+        rng: &mut R,
+    ) -> Result<Scored, ModelError> {
+        let problem = self.problem(given.shape.structure.clone())?;
+        let shape = &given.shape;
         let mut scratch = Scratch::new(shape);
         let mut features: Vec<f64> = Vec::new();
         let mut assigned = vec![Vec::with_capacity(self.rows.rows); shape.groups()];
@@ -153,8 +174,8 @@ impl<'a> Search<'a> {
         for i in 0..self.rows.rows {
             let mut point = vec![0.0; width];
             let mut top = vec![0; shape.groups()];
-            problem.visit(&best.params, i, &mut scratch, |scratch, codes, _| {
-                for (g, r) in states(scratch, &best) {
+            problem.visit(&given.params, i, &mut scratch, |scratch, codes, _| {
+                for (g, r) in states(scratch, given) {
                     point[offsets[g]..offsets[g] + r.len()].copy_from_slice(&r);
                     top[g] = (0..r.len())
                         .max_by(|&a, &b| r[a].total_cmp(&r[b]))
@@ -173,20 +194,21 @@ impl<'a> Search<'a> {
                 list.push(top);
             }
         }
-        let styles = shape.structure.styles;
-        for _ in 0..self.settings.restarts {
+        let problem = self.problem(Structure {
+            styles,
+            ..shape.structure.clone()
+        })?;
+        let mut best = None;
+        for _ in 0..self.settings.restarts.max(1) {
             let labels = kmeans(&features, width, styles, 12, rng);
             let start = problem.assigned(&labels, &assigned)?;
             let start = super::params::Params {
-                linear: best.params.linear.clone(),
+                linear: given.params.linear.clone(),
                 ..start
             };
-            let scored = problem.fit(start, &self.settings.search)?;
-            if scored.score > best.score {
-                best = scored;
-            }
+            best = better(best, problem.fit(start, &self.settings.search)?);
         }
-        Ok(best)
+        best.ok_or(ModelError::Empty { what: "starts" })
     }
 
     fn step(&self, scored: &Scored) -> Step {
@@ -199,5 +221,13 @@ impl<'a> Search<'a> {
             lateral_edges: structure.parents.iter().map(Vec::len).sum(),
             score: scored.score,
         }
+    }
+}
+
+/// The first of highest score.
+fn better(best: Option<Scored>, other: Scored) -> Option<Scored> {
+    match best {
+        Some(best) if best.score >= other.score => Some(best),
+        _ => Some(other),
     }
 }

@@ -1,0 +1,101 @@
+//! Weighted points, checked at the door.
+
+use super::super::error::ModelError;
+
+/// Rows of d finite values, with weights.
+#[derive(Clone, Debug)]
+pub struct Points<'a> {
+    d: usize,
+    values: &'a [f64],
+    weights: Option<&'a [f64]>,
+}
+
+impl<'a> Points<'a> {
+    /// Rows of `d` values, one after the other.
+    ///
+    /// # Errors
+    /// [`ModelError::Empty`], [`ModelError::Rows`] for a broken last row, [`ModelError::NotFinite`].
+    pub fn new(d: usize, values: &'a [f64]) -> Result<Self, ModelError> {
+        if d == 0 || values.is_empty() {
+            return Err(ModelError::Empty { what: "points" });
+        }
+        if !values.len().is_multiple_of(d) {
+            return Err(ModelError::Rows {
+                column: (values.len() % d).to_string(),
+                got: values.len() / d,
+                expected: values.len() / d + 1,
+            });
+        }
+        if let Some(i) = values.iter().position(|v| !v.is_finite()) {
+            return Err(ModelError::NotFinite {
+                column: (i % d).to_string(),
+                row: i / d,
+                value: values[i],
+            });
+        }
+        Ok(Self {
+            d,
+            values,
+            weights: None,
+        })
+    }
+
+    /// The same rows, row i counted `weights[i]` times.
+    ///
+    /// # Errors
+    /// [`ModelError::Rows`], [`ModelError::Parameter`] for a weight that is negative or not
+    /// finite, or when all are zero.
+    pub fn weighted(self, weights: &'a [f64]) -> Result<Self, ModelError> {
+        if weights.len() != self.len() {
+            return Err(ModelError::Rows {
+                column: "weights".to_owned(),
+                got: weights.len(),
+                expected: self.len(),
+            });
+        }
+        if let Some(i) = weights.iter().position(|w| !(w.is_finite() && *w >= 0.0)) {
+            let problem = format!("row {i}: {} is no weight", weights[i]);
+            return Err(ModelError::parameter("weights", problem));
+        }
+        if weights.iter().sum::<f64>() <= 0.0 {
+            return Err(ModelError::parameter("weights", "all are zero"));
+        }
+        Ok(Self {
+            weights: Some(weights),
+            ..self
+        })
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.d
+    }
+
+    /// Never: points are checked at the door.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// d.
+    pub fn dimension(&self) -> usize {
+        self.d
+    }
+
+    /// The rows in order.
+    pub fn rows(&self) -> impl Iterator<Item = &'a [f64]> {
+        self.values.chunks(self.d)
+    }
+
+    pub(crate) fn row(&self, i: usize) -> &'a [f64] {
+        &self.values[i * self.d..(i + 1) * self.d]
+    }
+
+    pub(crate) fn weight(&self, i: usize) -> f64 {
+        self.weights.map_or(1.0, |w| w[i])
+    }
+
+    /// Sum of weights.
+    pub fn total(&self) -> f64 {
+        self.weights.map_or(self.len() as f64, |w| w.iter().sum())
+    }
+}

@@ -1,0 +1,421 @@
+//! E and M steps on blocks of rows.
+
+use ndarray::linalg::general_mat_mul;
+use ndarray::{ArrayView2, ArrayViewMut2};
+use rand::Rng;
+
+use super::super::chunks;
+use super::super::em::{Em, Fit};
+use super::super::error::ModelError;
+use super::super::kmeans::kmeans;
+use super::{Covariance, Fitted, Mixture, Points, Settings};
+
+/// Rows of one parallel piece of work.
+const CHUNK: usize = 8192;
+/// Rows of one matrix product.
+const BLOCK: usize = 256;
+/// Responsibilities below this are left out of the M step.
+const NEGLIGIBLE: f64 = 1e-14;
+
+/// Points relative to their mean, and what to fit to them.
+pub(crate) struct Steps<'a> {
+    points: &'a Points<'a>,
+    settings: &'a Settings,
+    k: usize,
+    centre: Vec<f64>,
+}
+
+/// Expected sufficient statistics.
+pub(crate) struct Moments {
+    /// Per component, lower triangle of `Σ r u uᵀ`, u = (1, x - centre), (d + 1)² values; with
+    /// diagonal covariances `Σ r`, `Σ r x`, `Σ r x²`, 2d + 1 values.
+    sums: Vec<Vec<f64>>,
+    log_likelihood: f64,
+}
+
+impl<'a> Steps<'a> {
+    pub fn new(
+        points: &'a Points<'a>,
+        k: usize,
+        settings: &'a Settings,
+    ) -> Result<Self, ModelError> {
+        if k == 0 {
+            return Err(ModelError::Empty { what: "components" });
+        }
+        if points.len() < k {
+            return Err(ModelError::TooFewRows {
+                rows: points.len(),
+                parameters: k,
+                variable: "components of the mixture".to_owned(),
+            });
+        }
+        let p = &settings.prior;
+        for (name, v) in [
+            ("mean", p.mean),
+            ("scatter", p.scatter),
+            ("freedom", p.freedom),
+        ] {
+            if !(v > 0.0 && v.is_finite()) {
+                return Err(ModelError::parameter(name, "must be positive and finite"));
+            }
+        }
+        let d = points.dimension();
+        let total = points.total();
+        let mut centre = vec![0.0; d];
+        for (i, x) in points.rows().enumerate() {
+            for (c, v) in centre.iter_mut().zip(x) {
+                *c += points.weight(i) / total * v;
+            }
+        }
+        Ok(Self {
+            points,
+            settings,
+            k,
+            centre,
+        })
+    }
+
+    /// The mixture relative to the centre.
+    pub fn centred(&self, mixture: &Mixture) -> Mixture {
+        self.moved(mixture, -1.0)
+    }
+
+    fn moved(&self, mixture: &Mixture, sign: f64) -> Mixture {
+        let mut moved = mixture.clone();
+        for mean in moved.means.chunks_mut(moved.d) {
+            for (m, c) in mean.iter_mut().zip(&self.centre) {
+                *m += sign * c;
+            }
+        }
+        moved
+    }
+
+    /// The fit in the points' own origin.
+    pub fn result(&self, fit: Fit<Mixture>) -> Fitted {
+        Fitted {
+            mixture: self.moved(&fit.model, 1.0),
+            log_likelihood: fit.log_likelihood,
+            trace: fit.trace,
+            outcome: fit.outcome,
+        }
+    }
+
+    /// One k-means++ start.
+    pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Mixture, ModelError> {
+        let d = self.points.dimension();
+        let mut scale = vec![0.0; d];
+        for x in self.points.rows() {
+            for ((s, v), c) in scale.iter_mut().zip(x).zip(&self.centre) {
+                *s += (v - c).powi(2);
+            }
+        }
+        let n = self.points.len();
+        scale
+            .iter_mut()
+            .for_each(|s| *s = (*s / n as f64).sqrt().max(f64::MIN_POSITIVE));
+        // Many rows are represented by a systematic sample.
+        let stride = n.div_ceil(20_000);
+        let sample: Vec<usize> = (0..n).step_by(stride).collect();
+        let mut scaled = Vec::with_capacity(sample.len() * d);
+        for &i in &sample {
+            let row = self.points.row(i).iter().zip(&self.centre).zip(&scale);
+            scaled.extend(row.map(|((v, c), s)| (v - c) / s));
+        }
+        let labels = kmeans(&scaled, d, self.k, 5, rng);
+        let mut moments = self.empty();
+        let mut u = vec![1.0; d + 1];
+        for (&i, label) in sample.iter().zip(labels) {
+            for ((u, v), c) in u[1..].iter_mut().zip(self.points.row(i)).zip(&self.centre) {
+                *u = v - c;
+            }
+            let w = self.points.weight(i);
+            add_row(&mut moments.sums[label], &u, w, self.settings.covariance);
+        }
+        self.maximize(&moments)
+    }
+
+    fn empty(&self) -> Moments {
+        let d = self.points.dimension();
+        let size = match self.settings.covariance {
+            Covariance::Diagonal => 2 * d + 1,
+            _ => (d + 1) * (d + 1),
+        };
+        Moments {
+            sums: vec![vec![0.0; size]; self.k],
+            log_likelihood: 0.0,
+        }
+    }
+
+    /// Both steps' sums over the rows `from..to`.
+    fn block(
+        &self,
+        model: &Mixture,
+        from: usize,
+        to: usize,
+        work: &mut Work,
+        moments: &mut Moments,
+    ) {
+        let d = model.d;
+        let n = to - from;
+        for (x, i) in work.x.chunks_mut(d).zip(from..to) {
+            for ((x, v), c) in x.iter_mut().zip(self.points.row(i)).zip(&self.centre) {
+                *x = v - c;
+            }
+        }
+        let x = &work.x[..n * d];
+        for k in 0..self.k {
+            let w = model.whitening_of(k);
+            let mean = model.mean(k);
+            let quad = &mut work.quad[..n];
+            if model.kind == Covariance::Diagonal {
+                for (q, x) in quad.iter_mut().zip(x.chunks_exact(d)) {
+                    *q = (0..d)
+                        .map(|i| (w[i * d + i] * (x[i] - mean[i])).powi(2))
+                        .sum();
+                }
+            } else {
+                if k == 0 || model.kind == Covariance::Full {
+                    product(x, n, w, d, &mut work.z[..n * d]);
+                }
+                for (i, m) in work.shift.iter_mut().enumerate() {
+                    *m = (0..=i).map(|j| w[i * d + j] * mean[j]).sum();
+                }
+                for (q, z) in quad.iter_mut().zip(work.z.chunks_exact(d)) {
+                    *q = z
+                        .iter()
+                        .zip(&work.shift)
+                        .map(|(z, m)| (z - m) * (z - m))
+                        .sum();
+                }
+            }
+            let norm = model.log_norms[k];
+            for (l, q) in work.logs.iter_mut().skip(k).step_by(self.k).zip(quad) {
+                *l = norm - 0.5 * *q;
+            }
+        }
+        for (i, logs) in work.logs.chunks_mut(self.k).take(n).enumerate() {
+            let max = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let mut sum = 0.0;
+            for l in logs.iter_mut() {
+                let shifted = *l - max;
+                *l = if shifted < -40.0 { 0.0 } else { shifted.exp() };
+                sum += *l;
+            }
+            let weight = self.points.weight(from + i);
+            moments.log_likelihood += weight * (max + sum.ln());
+            let scale = weight / sum;
+            logs.iter_mut().for_each(|l| *l *= scale);
+        }
+        for k in 0..self.k {
+            let sums = &mut moments.sums[k];
+            let mut m = 0;
+            for (i, x) in x.chunks_exact(d).enumerate() {
+                let r = work.logs[i * self.k + k];
+                if r <= NEGLIGIBLE {
+                    continue;
+                }
+                if model.kind == Covariance::Diagonal {
+                    sums[0] += r;
+                    let (first, second) = sums[1..].split_at_mut(d);
+                    for ((a, b), x) in first.iter_mut().zip(second).zip(x) {
+                        *a += r * x;
+                        *b += r * x * x;
+                    }
+                } else {
+                    let root = r.sqrt();
+                    let u = &mut work.u[m * (d + 1)..(m + 1) * (d + 1)];
+                    u[0] = root;
+                    for (u, x) in u[1..].iter_mut().zip(x) {
+                        *u = root * x;
+                    }
+                    m += 1;
+                }
+            }
+            if model.kind != Covariance::Diagonal && m > 0 {
+                gram(&work.u[..m * (d + 1)], m, d + 1, sums);
+            }
+        }
+    }
+}
+
+/// Buffers of one thread's blocks.
+struct Work {
+    x: Vec<f64>,
+    z: Vec<f64>,
+    u: Vec<f64>,
+    quad: Vec<f64>,
+    logs: Vec<f64>,
+    shift: Vec<f64>,
+}
+
+impl Em for Steps<'_> {
+    type Model = Mixture;
+    type Stats = Moments;
+
+    fn expect(&self, model: &Mixture) -> Result<(Moments, f64), ModelError> {
+        let d = model.d;
+        let moments = chunks::fold(
+            self.points.len(),
+            CHUNK,
+            |range| {
+                let mut moments = self.empty();
+                let mut work = Work {
+                    x: vec![0.0; BLOCK * d],
+                    z: vec![0.0; BLOCK * d],
+                    u: vec![0.0; BLOCK * (d + 1)],
+                    quad: vec![0.0; BLOCK],
+                    logs: vec![0.0; BLOCK * self.k],
+                    shift: vec![0.0; d],
+                };
+                for from in range.clone().step_by(BLOCK) {
+                    let to = (from + BLOCK).min(range.end);
+                    self.block(model, from, to, &mut work, &mut moments);
+                }
+                Ok(moments)
+            },
+            |total: &mut Moments, part| {
+                for (a, b) in total
+                    .sums
+                    .iter_mut()
+                    .flatten()
+                    .zip(part.sums.iter().flatten())
+                {
+                    *a += b;
+                }
+                total.log_likelihood += part.log_likelihood;
+            },
+        )?;
+        let log_likelihood = moments.log_likelihood;
+        if !log_likelihood.is_finite() {
+            let row = (0..self.points.len()).find(|&i| {
+                let x: Vec<f64> = self
+                    .points
+                    .row(i)
+                    .iter()
+                    .zip(&self.centre)
+                    .map(|(v, c)| v - c)
+                    .collect();
+                !super::log_sum_exp(&model.log_joint(&x)).is_finite()
+            });
+            return Err(ModelError::Contradiction {
+                row: row.unwrap_or(0),
+                variable: "mixture".to_owned(),
+            });
+        }
+        Ok((moments, log_likelihood))
+    }
+
+    fn maximize(&self, moments: &Moments) -> Result<Mixture, ModelError> {
+        let d = self.points.dimension();
+        let prior = &self.settings.prior;
+        let kind = self.settings.covariance;
+        let total: f64 = moments.sums.iter().map(|s| s[0]).sum();
+        let weights: Vec<f64> = moments.sums.iter().map(|s| s[0] / total).collect();
+        let mut means = Vec::with_capacity(self.k * d);
+        let tied = kind == Covariance::Tied;
+        let mut covariances = vec![0.0; if tied { 1 } else { self.k } * d * d];
+        let mut pooled = 0.0;
+        for (k, sums) in moments.sums.iter().enumerate() {
+            let n = sums[0];
+            let at = |i: usize, j: usize| match kind {
+                Covariance::Diagonal if i == j => sums[1 + d + i],
+                Covariance::Diagonal => 0.0,
+                _ => sums[(i.max(j) + 1) * (d + 1) + i.min(j) + 1],
+            };
+            let first = |i: usize| match kind {
+                Covariance::Diagonal => sums[1 + i],
+                _ => sums[(i + 1) * (d + 1)],
+            };
+            let mean: Vec<f64> = (0..d).map(|i| first(i) / (n + prior.mean)).collect();
+            let m = if tied { 0 } else { k };
+            let covariance = &mut covariances[m * d * d..(m + 1) * d * d];
+            let share = if tied { 1.0 } else { 1.0 / (n + prior.freedom) };
+            for i in 0..d {
+                for j in 0..d {
+                    if kind == Covariance::Diagonal && i != j {
+                        continue;
+                    }
+                    let ridge = if i == j { prior.scatter } else { 0.0 };
+                    let scatter = at(i, j) - (n + prior.mean) * mean[i] * mean[j];
+                    covariance[i * d + j] += share * (ridge + scatter);
+                }
+            }
+            pooled += n + prior.freedom;
+            means.extend(mean);
+        }
+        if tied {
+            covariances.iter_mut().for_each(|v| *v /= pooled);
+        }
+        Mixture::new(d, kind, weights, means, covariances)
+    }
+
+    fn log_prior(&self, model: &Mixture) -> f64 {
+        let d = model.d;
+        let prior = &self.settings.prior;
+        (0..self.k)
+            .map(|k| {
+                let w = model.whitening_of(k);
+                let mean = model.mean(k);
+                let trace: f64 = w.iter().map(|v| v * v).sum();
+                let quad: f64 = (0..d)
+                    .map(|i| (0..=i).map(|j| w[i * d + j] * mean[j]).sum::<f64>().powi(2))
+                    .sum();
+                let log_det: f64 = -2.0 * (0..d).map(|i| w[i * d + i].ln()).sum::<f64>();
+                -0.5 * (prior.scatter * trace + prior.mean * quad + prior.freedom * log_det)
+            })
+            .sum()
+    }
+
+    fn movement(&self, before: &Mixture, after: &Mixture) -> f64 {
+        let far = |a: &[f64], b: &[f64]| {
+            a.iter()
+                .zip(b)
+                .map(|(x, y)| (x - y).abs())
+                .fold(0.0, f64::max)
+        };
+        far(&before.weights, &after.weights)
+            .max(far(&before.means, &after.means))
+            .max(far(&before.covariances, &after.covariances))
+    }
+}
+
+fn add_row(sums: &mut [f64], u: &[f64], weight: f64, kind: Covariance) {
+    let q = u.len();
+    match kind {
+        Covariance::Diagonal => {
+            sums[0] += weight;
+            for i in 1..q {
+                sums[i] += weight * u[i];
+                sums[q - 1 + i] += weight * u[i] * u[i];
+            }
+        }
+        _ => {
+            for i in 0..q {
+                for j in 0..=i {
+                    sums[i * q + j] += weight * u[i] * u[j];
+                }
+            }
+        }
+    }
+}
+
+/// z (n x d) = x (n x d) wᵀ.
+fn product(x: &[f64], n: usize, w: &[f64], d: usize, z: &mut [f64]) {
+    if let (Ok(x), Ok(w), Ok(mut z)) = (
+        ArrayView2::from_shape((n, d), x),
+        ArrayView2::from_shape((d, d), w),
+        ArrayViewMut2::from_shape((n, d), z),
+    ) {
+        general_mat_mul(1.0, &x, &w.t(), 0.0, &mut z);
+    }
+}
+
+/// sums (q x q) += uᵀ u, u n x q.
+fn gram(u: &[f64], n: usize, q: usize, sums: &mut [f64]) {
+    if let (Ok(u), Ok(mut sums)) = (
+        ArrayView2::from_shape((n, q), u),
+        ArrayViewMut2::from_shape((q, q), sums),
+    ) {
+        general_mat_mul(1.0, &u.t(), &u, 1.0, &mut sums);
+    }
+}
