@@ -29,6 +29,7 @@
 
 mod frame;
 
+pub mod building_exteriors;
 pub mod facade_grammar;
 
 use std::process::ExitCode;

@@ -1,0 +1,157 @@
+//! The numbers of a house given the kinds of its attributes. Here are the nine dependencies: every
+//! mean that mentions another attribute is linear in it.
+
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::styles::Kinds;
+
+/// What the plan and the walls must come to; lengths in metres, positions as shares of the bounding
+/// box of the ground floor.
+#[derive(Debug, Clone)]
+pub(super) struct Numbers {
+    pub width: f64,
+    pub depth: f64,
+    pub floors: usize,
+    pub floor_height: f64,
+    pub bcr: f64,
+    pub bdry: f64,
+    /// Shares of the floors in the total floor area.
+    pub arf: [f64; 3],
+    /// How far the front rooms stand out.
+    pub front_step: f64,
+    pub garage: Option<Part>,
+    pub front_porch: Option<Part>,
+    pub back_porch: Option<Part>,
+    /// How far the back wall steps in beside a back porch.
+    pub back_step: f64,
+    /// Front, back, left, right.
+    pub wwr: [f64; 4],
+    pub symmetry: [f64; 4],
+}
+
+/// A garage or porch: its centre as shares of the bounding box, its size in metres.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    pub x: f64,
+    pub y: f64,
+    pub width: f64,
+    pub depth: f64,
+    pub height: f64,
+}
+
+/// Mean width, depth (m) and floors of the kinds of `bbox`.
+const BBOX: [(f64, f64, usize); 5] = [
+    (13.0, 11.5, 1),
+    (18.0, 11.5, 1),
+    (13.0, 12.0, 2),
+    (17.0, 13.5, 2),
+    (13.5, 12.5, 3),
+];
+const BCR: [f64; 3] = [0.85, 0.80, 0.75];
+const BDRY: [f64; 2] = [4.85, 5.11];
+const WWR: [[f64; 4]; 3] = [
+    [0.13, 0.12, 0.07, 0.08],
+    [0.18, 0.19, 0.10, 0.12],
+    [0.23, 0.25, 0.14, 0.15],
+];
+const SYMMETRY: [[f64; 4]; 3] = [
+    [0.72, 0.74, 0.70, 0.71],
+    [0.42, 0.68, 0.70, 0.68],
+    [0.26, 0.36, 0.45, 0.43],
+];
+
+pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
+    let mut noise = |sd: f64| sd * truncated(rng);
+
+    let (w, d, floors) = BBOX[kinds.bbox];
+    let common = noise(1.0);
+    let width = w + 0.6 * common + noise(0.9);
+    let depth = d + 0.3 * common + noise(0.6);
+    let floor_height = 2.9 + noise(0.06);
+    let height = floor_height * floors as f64;
+
+    // Wide houses cover less of their bounding box; longer and barer outlines have more boundary.
+    let bcr = BCR[kinds.bcr] - 0.009 * (width - 14.0) + noise(0.005);
+    let bdry = BDRY[kinds.bdry] + 0.03 * (width - 14.0) - 3.0 * (bcr - 0.8) + noise(0.02);
+    // Where the ground floor covers more, the floors above have a smaller share.
+    let lean = 0.5 * (bcr - 0.8);
+    let arf = match kinds.arf {
+        0 => [1.0, 0.0, 0.0],
+        1 => two_floors(0.665 + lean + noise(0.004)),
+        2 => two_floors(0.73 + lean + noise(0.004)),
+        _ => {
+            let ground = 0.56 + lean + noise(0.004);
+            let first = 0.62 * (1.0 - ground) + noise(0.003);
+            [ground, first, 1.0 - ground - first]
+        }
+    };
+
+    let garage = (kinds.garage > 0).then(|| {
+        let (w, in_left, in_front) = ([3.3, 5.7][kinds.garage - 1], 0.5, 0.45);
+        // Large houses have large garages.
+        let w = w + 0.14 * (width - 14.0) + noise(0.07);
+        let d = 5.7 + 0.12 * (depth - 12.0) + noise(0.07);
+        Part {
+            x: (in_left + noise(0.12) + w / 2.0) / width,
+            y: (in_front + noise(0.09) + d / 2.0) / depth,
+            width: w,
+            depth: d,
+            height: 2.45 + 0.04 * (height - 3.0) + noise(0.03),
+        }
+    });
+    // The front porch follows the garage, which stands on its left, and grows with the house.
+    let beside = garage.map_or([0.0; 4], |g| [g.x, g.y, g.width, g.height]);
+    let front_porch = matches!(kinds.porch, 1 | 2).then(|| Part {
+        x: 0.12 + beside[0] + 0.04 * beside[2] + noise(0.004),
+        y: 0.088 + 0.09 * beside[1] + noise(0.002),
+        width: 2.3 + 0.15 * (width - 14.0) + noise(0.06),
+        depth: 1.6 + noise(0.06),
+        height: 2.2 + 0.14 * beside[3] + noise(0.02),
+    });
+    let back_porch = matches!(kinds.porch, 2 | 3).then(|| {
+        let d = 1.9 + 0.1 * (depth - 12.0) + noise(0.05);
+        Part {
+            x: 0.90 + noise(0.004),
+            y: 1.0 - (0.4 + noise(0.05) + d / 2.0) / depth,
+            width: 2.2 + 0.1 * (width - 14.0) + noise(0.06),
+            depth: d,
+            height: 2.4 + noise(0.03),
+        }
+    });
+    let front_step = 1.25 + noise(0.05);
+    let back_step = 1.4 + noise(0.06);
+    let wwr = WWR[kinds.wwr].map(|mean| mean + noise(0.008));
+    let symmetry = SYMMETRY[kinds.symmetry].map(|mean| mean + noise(0.025));
+
+    Numbers {
+        width,
+        depth,
+        floors,
+        floor_height,
+        bcr,
+        bdry,
+        arf,
+        front_step,
+        garage,
+        front_porch,
+        back_porch,
+        back_step,
+        wwr,
+        symmetry,
+    }
+}
+
+fn two_floors(ground: f64) -> [f64; 3] {
+    [ground, 1.0 - ground, 0.0]
+}
+
+/// A standard normal draw within 2.5 standard deviations: builders avoid extremes.
+fn truncated(rng: &mut impl Rng) -> f64 {
+    loop {
+        let z: f64 = StandardNormal.sample(rng);
+        if z.abs() < 2.5 {
+            return z;
+        }
+    }
+}

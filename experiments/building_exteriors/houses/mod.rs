@@ -1,0 +1,81 @@
+//! A seeded generator of plausible contemporary houses, to have a database whose truth is known.
+//!
+//! A house is made from the top down: its hidden **style** (one of seven) draws the **kind** of each
+//! attribute (small or wide, with or without garage, ...); the kind and, for nine pairs of
+//! attributes ([`DEPENDENCIES`]), the value of another attribute draw the numbers ([`draw`]); then a
+//! plan of overlapping boxes ([`plan`]) and walls with windows and doors ([`walls`]) is built that
+//! has these numbers. Nothing but the finished building leaves the generator for the learner, which
+//! measures it anew. The kinds of a house are independent given its style.
+//!
+//! Deliberately not in the generator: mirrored plans (garages are on the left), garage doors (not
+//! annotated as facade elements), sites and views.
+
+mod draw;
+mod plan;
+mod styles;
+mod walls;
+
+use rayon::prelude::*;
+
+use crate::rng::stream;
+use crate::shape::Building;
+
+/// Number of hidden styles.
+pub const STYLES: usize = styles::STYLES.len();
+
+/// The nine dependencies between attributes beyond their kinds, as pairs of group names. Four of
+/// them are geometry (`far = bcr / arf.0`; the boundary grows with the aspect ratio and with what
+/// is cut out), five are habits of the builders.
+pub const DEPENDENCIES: [(&str, &str); 9] = [
+    ("bbox", "bcr"),
+    ("bbox", "bdry"),
+    ("bcr", "bdry"),
+    ("bcr", "far"),
+    ("bcr", "arf"),
+    ("arf", "far"),
+    ("bbox", "garage"),
+    ("bbox", "porch"),
+    ("garage", "porch"),
+];
+
+/// A generated house and its hidden style.
+#[derive(Debug, Clone)]
+pub struct House {
+    /// What the learner sees.
+    pub building: Building,
+    /// Its style, below [`STYLES`].
+    pub style: usize,
+}
+
+/// House number `index` of the database with this seed.
+pub fn house(seed: u64, index: u64) -> House {
+    let mut rng = stream(seed, "building_exteriors/house", index);
+    let style = styles::draw_style(&mut rng);
+    loop {
+        let kinds = styles::draw_kinds(style, &mut rng);
+        // Some numbers do not fit together (a garage too deep for its house): draw them anew; a few
+        // kinds never do (two cars, one floor, all walls symmetric), and are drawn anew in the end.
+        let built = (0..ATTEMPTS).find_map(|_| attempt(&kinds, index, &mut rng));
+        if let Some(building) = built {
+            return House { building, style };
+        }
+    }
+}
+
+/// Draws of the numbers before the kinds are given up.
+const ATTEMPTS: usize = 100;
+
+fn attempt(kinds: &styles::Kinds, index: u64, rng: &mut impl rand::Rng) -> Option<Building> {
+    let numbers = draw::numbers(kinds, rng);
+    let plan = plan::build(&numbers, kinds)?;
+    let facades = walls::build(&plan, &numbers, kinds, rng)?;
+    let name = format!("house_{:04}", index + 1);
+    let special = kinds.special.clone();
+    Building::new(name, "m", plan.floor_height, plan.boxes, facades, special).ok()
+}
+
+/// The first `count` houses of the database with this seed.
+pub fn houses(seed: u64, count: usize) -> Vec<House> {
+    let indices = (0..count as u64).into_par_iter();
+    indices.map(|index| house(seed, index)).collect()
+}
