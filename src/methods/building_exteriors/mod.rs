@@ -5,3 +5,4 @@
 //! vector of 49 [`attributes`] (Sec. 4.2, Appendix A).
 
 pub mod attributes;
+pub mod data;
