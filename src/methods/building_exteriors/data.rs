@@ -1,6 +1,6 @@
 //! From attribute rows to the tables and groups of the model layer.
 
-use super::attributes::{AttributeRow, COLUMNS, GROUPS, Level};
+use super::attributes::{AttributeRow, GROUPS, Level};
 use crate::model::hierarchy::Group;
 use crate::model::{ModelError, Table};
 
@@ -12,11 +12,13 @@ use crate::model::{ModelError, Table};
 pub fn table(rows: &[AttributeRow]) -> Result<Table, ModelError> {
     let mut table = Table::new();
     for group in &GROUPS {
-        for c in group.first..group.first + group.len {
-            let values = rows.iter().map(|row| row.get(c).copied().flatten());
+        for (k, name) in group.columns().iter().enumerate() {
+            let values = rows
+                .iter()
+                .map(|row| row.get(group.first + k).copied().flatten());
             table = match group.level {
-                Level::Element => table.binary(COLUMNS[c], values.map(|v| v.map(|v| v > 0.5)))?,
-                Level::Mass | Level::Facade => table.real(COLUMNS[c], values)?,
+                Level::Element => table.binary(name, values.map(|v| v.map(|v| v > 0.5)))?,
+                Level::Mass | Level::Facade => table.real(name, values)?,
             };
         }
     }
