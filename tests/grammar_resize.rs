@@ -127,3 +127,89 @@ fn repeats_fill_the_space() {
         })
     ));
 }
+
+mod combining {
+    use super::*;
+    use edifice::grammar::{Grammar, combine};
+
+    /// Ground floor, a stack of floors, a roof; `window` names the style.
+    fn house(window: &str, ground: f64, floors: f64) -> Grammar {
+        let height = ground + 30.0 * floors + 20.0;
+        from_str(&format!(
+            "//@ unit \"dm\"\n//@ facade House 100 x {height}\n\
+             House --> split(y) {{ {ground} : Ground | {} : Floors | 20 : Roof }}\n\
+             Ground --> split(x) {{ 40 : wall | 20 : door | 40 : wall }}\n\
+             Floors --> split(y) {{ {{ 30 : Floor }}* }}\n\
+             Floor --> split(x) {{ {{ 8 : wall | 12 : {window} }}* }}\n\
+             Roof --> split(x) {{ 50 : roof | 10 : dormer | 40 : roof }}",
+            30.0 * floors
+        ))
+        .unwrap()
+    }
+
+    #[test]
+    fn parts_of_one_role_become_alternatives() {
+        let combined = combine(&[house("window", 30.0, 3.0), house("glass", 35.0, 5.0)]).unwrap();
+        let of = |symbol: &str| combined.rules.iter().filter(|r| r.symbol == symbol).count();
+        let axiom = &combined.starts[0].symbol;
+        assert_eq!(of(axiom), 2);
+        for rule in combined.rules.iter().filter(|r| r.symbol == *axiom) {
+            assert_eq!(
+                rule.operation
+                    .symbols()
+                    .iter()
+                    .map(|s| of(s))
+                    .collect::<Vec<_>>(),
+                [2, 2, 2]
+            );
+        }
+        // Both kinds of window occur, never both in one facade.
+        let mut seen = std::collections::BTreeSet::new();
+        for seed in 0..40 {
+            let mut rng = stream(seed, "combined", 0);
+            let facade = derive_at(&combined, 0, 120.0, 210.0, &mut rng)
+                .unwrap()
+                .facade;
+            assert_eq!(facade.check_tiling(), Ok(()));
+            let labels: std::collections::BTreeSet<String> =
+                facade.regions.into_iter().map(|r| r.label).collect();
+            assert_eq!(labels.len(), 5);
+            seen.extend(labels);
+        }
+        assert_eq!(seen.len(), 6);
+    }
+
+    #[test]
+    fn one_grammar_stays_itself() {
+        let house = house("window", 30.0, 3.0);
+        let combined = combine(std::slice::from_ref(&house)).unwrap();
+        assert!(same_tiling(
+            &derive(&house, 0).unwrap(),
+            &derive(&combined, 0).unwrap()
+        ));
+        assert_eq!(combine(&[]), Err(GrammarError::NoStart));
+        let metres = scaled(&house, 0.1, "m");
+        assert!(matches!(
+            combine(&[house, metres]),
+            Err(GrammarError::Units { .. })
+        ));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+
+        #[test]
+        fn any_grammars_combine(seeds in proptest::collection::vec(any::<u64>(), 1..5)) {
+            let grammars: Vec<Grammar> = seeds.iter().map(|&s| random_grammar(s)).collect();
+            match combine(&grammars) {
+                Err(error) => prop_assert!(matches!(error, GrammarError::TooSmall { .. }), "{}", error),
+                Ok(combined) => {
+                    let start = &combined.starts[0];
+                    let mut rng = stream(1, "any", 0);
+                    let derived = derive_at(&combined, 0, start.width, start.height, &mut rng);
+                    prop_assert_eq!(derived.unwrap().facade.check_tiling(), Ok(()));
+                }
+            }
+        }
+    }
+}

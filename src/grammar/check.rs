@@ -1,6 +1,6 @@
 //! Is it a grammar? Every promise of the format, at the door.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::place::place;
 use super::table::Table;
@@ -20,7 +20,7 @@ const SIZES_TRIED: usize = 200_000;
 /// A terminal label may be any string, so a successor without a rule is a terminal and never an
 /// error; an undefined symbol shows only as a start without a rule in a grammar that has rules
 /// (in a joint grammar, when no start has one: a facade of one region starts from a terminal). A
-/// terminal spelt like a non-terminal but for case is a [`Warning`], as is a rule never used.
+/// rule that is never used is a [`Warning`].
 ///
 /// # Errors
 /// The first way in which the grammar is wrong, in the order above.
@@ -206,29 +206,13 @@ fn check_sizes(grammar: &Grammar, table: &Table<'_>) -> Result<(), GrammarError>
 fn warnings(table: &Table<'_>) -> Vec<Warning> {
     let reachable = table.reachable();
     let unreachable = table.left.iter().enumerate();
-    let mut found: Vec<Warning> = unreachable
+    unreachable
         .filter(|(_, left)| !reachable[**left])
         .map(|(rule, &left)| Warning::Unreachable {
             rule,
             symbol: table.names[left].to_owned(),
         })
-        .collect();
-    let symbols = 0..table.names.len();
-    let (defined, terminals): (Vec<usize>, Vec<usize>) =
-        symbols.partition(|&s| !table.rules_of[s].is_empty());
-    let lower: FxHashMap<String, usize> = defined
-        .into_iter()
-        .map(|s| (table.names[s].to_lowercase(), s))
-        .collect();
-    for terminal in terminals {
-        if let Some(&symbol) = lower.get(&table.names[terminal].to_lowercase()) {
-            found.push(Warning::Lookalike {
-                terminal: table.names[terminal].to_owned(),
-                symbol: table.names[symbol].to_owned(),
-            });
-        }
-    }
-    found
+        .collect()
 }
 
 fn positive(value: f64) -> bool {

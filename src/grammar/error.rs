@@ -159,6 +159,14 @@ pub enum GrammarError {
         /// Extent of the region.
         extent: f64,
     },
+    /// Grammars of different units were to be combined.
+    #[error("grammars in {first} and in {second} cannot be combined")]
+    Units {
+        /// Unit of one grammar.
+        first: String,
+        /// Unit of another.
+        second: String,
+    },
     /// The size asked for is not a positive number.
     #[error("{dimension} asked for is {value}, expected a positive number")]
     AskedSize {
@@ -203,6 +211,7 @@ impl GrammarError {
             | Self::UndefinedStart { .. }
             | Self::EmptySymbol { .. }
             | Self::Cycle { .. }
+            | Self::Units { .. }
             | Self::AskedSize { .. }
             | Self::TooManyRegions { .. }
             | Self::Stochastic { .. } => None,
@@ -230,14 +239,6 @@ pub enum Warning {
         /// Index of the rule.
         rule: usize,
         /// Its left-hand side.
-        symbol: String,
-    },
-    /// A terminal label is spelt like a non-terminal, but for case.
-    #[error("{terminal} has no rule and is taken as a terminal label; did you mean {symbol}?")]
-    Lookalike {
-        /// The terminal label.
-        terminal: String,
-        /// The non-terminal that it resembles.
         symbol: String,
     },
 }

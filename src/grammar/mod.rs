@@ -6,6 +6,7 @@
 //! ([`derive()`]); no method reports its own cost.
 
 mod check;
+mod combine;
 mod cost;
 mod derive;
 mod error;
@@ -18,6 +19,7 @@ mod table;
 mod tiling;
 
 pub use check::{TOLERANCE, check};
+pub use combine::{LEAST_SIMILARITY, combine};
 pub use cost::Costs;
 pub use derive::{Derivation, NonTerminal, REGION_LIMIT, derivation, derive};
 pub use error::{GrammarError, Warning};
