@@ -1,5 +1,5 @@
 //! Every facade of the ECP, Graz and CMP databases: reads, decomposes into a splittable tiling,
-//! repaints exactly.
+//! repaints exactly, and regularizes within the tolerance.
 //!
 //! Needs the data in the folder that `EDIFICE_DATA` names. `cargo test --release --test
 //! real_data_facades -- --nocapture` prints the statistics.
@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use edifice::io::{self, LabelMap, ReadOptions};
+use edifice::methods::facade_grammar::regularize::regularize_grid;
 use edifice::shape::{LabelGrid, decompose, splittable};
 
 /// The folder of real data, if there is one; says loudly when there is not.
@@ -151,4 +152,87 @@ fn agreement(a: &LabelGrid, b: &LabelGrid) -> f64 {
         }
     }
     same / (xs[xs.len() - 1] * ys[ys.len() - 1])
+}
+
+/// Regularizes every picture and prints one line for each tolerance.
+fn regularize_all(name: &str, grids: &[LabelGrid], label: &str) -> Vec<(f64, usize, usize)> {
+    let count = |grid: &LabelGrid| decompose(grid).unwrap().facade.regions.len() as f64;
+    let mut rows = vec![];
+    for tolerance in [1.0, 2.0, 3.0, 5.0] {
+        let (mut before, mut after, mut most) = (vec![], vec![], 0.0f64);
+        let (mut old, mut new, mut squared, mut seconds) = (vec![], vec![], 0, vec![]);
+        for grid in grids {
+            let start = Instant::now();
+            let (result, report) = regularize_grid(grid, tolerance).unwrap();
+            seconds.push(start.elapsed().as_secs_f64());
+            assert_eq!(result.check(), Ok(()));
+            let facade = decompose(&result).unwrap().facade;
+            assert_eq!(facade.check_tiling(), Ok(()), "{}", grid.name);
+            assert_eq!(splittable(&facade), Ok(()), "{}", grid.name);
+            assert_eq!(
+                (facade.width, facade.height),
+                (grid.xs[grid.columns()], grid.ys[grid.rows()])
+            );
+            assert!(
+                report.largest_move <= tolerance,
+                "{}: {}",
+                grid.name,
+                report.largest_move
+            );
+            let whole = result.xs.iter().chain(&result.ys).all(|v| v.fract() == 0.0);
+            assert!(whole, "{} left the pixel grid", grid.name);
+            most = most.max(report.largest_move);
+            squared += report.squared;
+            let (from, to) = report.sizes.get(label).copied().unwrap_or_default();
+            old.push(from as f64);
+            new.push(to as f64);
+            before.push(count(grid));
+            after.push(facade.regions.len() as f64);
+        }
+        let sum = |v: &[f64]| v.iter().sum::<f64>() as usize;
+        rows.push((tolerance, sum(&old), sum(&new)));
+        println!(
+            "{name}, tolerance {tolerance} px: distinct {label} sizes {} -> {} (all {} -> {}), largest move {most}, squared areas {squared}, terminals {} -> {} (all {} -> {}), seconds {}",
+            spread(old.clone()),
+            spread(new.clone()),
+            sum(&old),
+            sum(&new),
+            spread(before.clone()),
+            spread(after.clone()),
+            sum(&before),
+            sum(&after),
+            spread(seconds),
+        );
+    }
+    rows
+}
+
+#[test]
+fn regularized_ecp() {
+    let Some(grids) = label_images("facades/ecp2011/labels") else {
+        return;
+    };
+    for (_, before, after) in regularize_all("ecp2011", &grids, "window") {
+        assert!(after <= before);
+    }
+}
+
+#[test]
+fn regularized_graz() {
+    let Some(grids) = label_images("facades/graz50/labels") else {
+        return;
+    };
+    for (tolerance, before, after) in regularize_all("graz50", &grids, "window") {
+        assert!(after < before && (tolerance < 2.0 || 2 * after < before));
+    }
+}
+
+#[test]
+fn regularized_cmp() {
+    let Some(grids) = label_images("facades/cmp") else {
+        return;
+    };
+    for (_, before, after) in regularize_all("cmp", &grids[..40], "window") {
+        assert!(after <= before);
+    }
 }

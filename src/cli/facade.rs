@@ -1,9 +1,12 @@
 //! Facade files on the command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use edifice::io::{self, LabelMap, ReadOptions, Source};
+use edifice::methods::facade_grammar::regularize::{
+    RegularizeError, Report, regularize_facade, regularize_grid,
+};
 use edifice::shape::{self, Decomposition, Facade, LabelGrid};
 use edifice::{Error, Result};
 
@@ -37,6 +40,10 @@ pub struct Convert {
     /// Keep only elements (windows, doors, ...), not the wall.
     #[arg(long)]
     elements: bool,
+    /// Make nearly equal sizes equal and nearly aligned edges aligned, moving no edge further than
+    /// this, in the unit of the facade.
+    #[arg(long, value_name = "TOLERANCE")]
+    regularize: Option<f64>,
 }
 
 /// Runs the command.
@@ -57,7 +64,21 @@ fn convert(options: &Convert) -> Result<()> {
         label_map,
         size: None,
     };
-    let source = io::read_source(path, &read_options)?;
+    let source = match (io::read_source(path, &read_options)?, options.regularize) {
+        (source, None) => source,
+        (Source::Layout(facade), Some(tolerance)) => {
+            let moved = regularize_facade(&facade, tolerance);
+            Source::Layout(moved.map_err(|e| regularize_error(path, e)).map(report)?)
+        }
+        (Source::Picture(grid), Some(tolerance)) => {
+            let moved = regularize_grid(&grid, tolerance);
+            Source::Picture(moved.map_err(|e| regularize_error(path, e)).map(report)?)
+        }
+        (Source::Cmp(cmp, width, height), Some(tolerance)) => {
+            let moved = regularize_grid(&cmp.label_grid(width, height)?, tolerance);
+            Source::Picture(moved.map_err(|e| regularize_error(path, e)).map(report)?)
+        }
+    };
     let facade = match (source, options.elements) {
         (Source::Layout(facade), false) => facade,
         (Source::Layout(facade), true) => shape::elements_of_facade(&facade),
@@ -74,7 +95,7 @@ fn convert(options: &Convert) -> Result<()> {
 }
 
 /// Decomposes a picture and tells what had to be cut.
-fn tiling(path: &std::path::Path, grid: &LabelGrid) -> Result<Facade> {
+fn tiling(path: &Path, grid: &LabelGrid) -> Result<Facade> {
     let Decomposition {
         facade,
         cut_elements,
@@ -88,4 +109,24 @@ fn tiling(path: &std::path::Path, grid: &LabelGrid) -> Result<Facade> {
         ));
     }
     Ok(facade)
+}
+
+/// Tells what regularization did, and passes its result on.
+fn report<T>((value, report): (T, Report)) -> T {
+    let sizes: Vec<String> = (report.sizes.iter())
+        .map(|(label, (before, after))| format!("{label} {before} -> {after}"))
+        .collect();
+    print::message(&format!(
+        "regularized: largest move {}, distinct sizes: {}",
+        report.largest_move,
+        sizes.join(", ")
+    ));
+    value
+}
+
+fn regularize_error(path: &Path, error: RegularizeError) -> Error {
+    match error {
+        RegularizeError::Tolerance(_) => Error::option("--regularize", error.to_string()),
+        error => Error::content(path, error),
+    }
 }

@@ -24,6 +24,7 @@ pub use building::{
 };
 pub use building_error::BuildingError;
 pub use building_plan::{PlanEdge, PlanUnion, Visibility, visibility};
+pub use components::{Component, components};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};
 pub use elements::{BACKGROUND_LABELS, elements_of_facade, elements_of_grid, is_background};

@@ -1,0 +1,171 @@
+//! Areas between cut lines, as both axes of the problem see them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::RegularizeError;
+use super::axis::{self, Run, Strips};
+use crate::shape::{Facade, IndexedLayout, LabelGrid, Span, components, is_background};
+
+/// Areas on an irregular grid: connected areas of equal label, or regions of a tiling.
+pub struct Areas<'a> {
+    grid: &'a LabelGrid,
+    /// Area of each cell.
+    of_cell: Vec<u32>,
+    /// Label of each area, as a number.
+    labels: Vec<u16>,
+    /// Whether an area is a rectangular element, to be served first.
+    is_element: Vec<bool>,
+}
+
+impl<'a> Areas<'a> {
+    /// The connected areas of equal label.
+    pub fn of_grid(grid: &'a LabelGrid) -> Self {
+        let mut of_cell = vec![0; grid.cells.len()];
+        let areas = components(grid, whole(grid), &mut of_cell);
+        let behind: Vec<bool> = grid.labels.iter().map(|l| is_background(l)).collect();
+        let front = |label: u16| !behind[usize::from(label)];
+        Self {
+            grid,
+            of_cell,
+            labels: areas.iter().map(|a| a.label).collect(),
+            is_element: areas
+                .iter()
+                .map(|a| a.is_rectangle() && front(a.label))
+                .collect(),
+        }
+    }
+
+    /// The regions of a tiling, of which `grid` is the picture.
+    pub fn of_facade(facade: &Facade, layout: &IndexedLayout, grid: &'a LabelGrid) -> Self {
+        let columns = grid.columns();
+        let mut of_cell = vec![0; grid.cells.len()];
+        let mut labels = Vec::new();
+        for (number, span) in layout.spans.iter().enumerate() {
+            for j in span.bottom..span.top {
+                of_cell[j * columns + span.left..j * columns + span.right].fill(number as u32);
+            }
+            labels.push(grid.at(span.left, span.bottom));
+        }
+        let front = facade.regions.iter().map(|r| !is_background(&r.label));
+        Self {
+            grid,
+            of_cell,
+            labels,
+            is_element: front.collect(),
+        }
+    }
+
+    /// New positions of the cut lines along x and y; equal ones have become one line.
+    pub fn solve(&self, tolerance: f64) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
+        let grid = self.grid;
+        let (columns, rows) = (grid.columns(), grid.rows());
+        let turned = (0..columns).flat_map(|i| (0..rows).map(move |j| j * columns + i));
+        let turned: Vec<u32> = turned.map(|cell| self.of_cell[cell]).collect();
+        let xs = self.solve_axis(&grid.xs, &grid.ys, &self.of_cell, tolerance)?;
+        let ys = self.solve_axis(&grid.ys, &grid.xs, &turned, tolerance)?;
+        Ok((xs, ys))
+    }
+
+    /// Along one axis: `cells` are strips across which `cuts` run, `across` bounds the strips.
+    fn solve_axis(
+        &self,
+        cuts: &[f64],
+        across: &[f64],
+        cells: &[u32],
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RegularizeError> {
+        let strips = Strips {
+            cells,
+            length: cuts.len() - 1,
+        };
+        let mut runs: BTreeMap<(bool, u16, usize, usize), f64> = BTreeMap::new();
+        let mut weights = vec![0.0; cuts.len()];
+        for (strip, row) in strips.rows().enumerate() {
+            let thickness = across[strip + 1] - across[strip];
+            let mut from = 0;
+            for to in 1..=row.len() {
+                if to < row.len() && row[to] == row[from] {
+                    continue;
+                }
+                let area = row[from] as usize;
+                let key = (!self.is_element[area], self.labels[area], from, to);
+                *runs.entry(key).or_default() += thickness;
+                weights[to] += thickness;
+                from = to;
+            }
+        }
+        let runs: Vec<Run> = runs
+            .into_iter()
+            .map(|((behind, label, from, to), weight)| Run {
+                behind,
+                label,
+                from,
+                to,
+                weight,
+            })
+            .collect();
+        axis::solve(cuts, &weights, &runs, strips, tolerance)
+    }
+}
+
+fn whole(grid: &LabelGrid) -> Span {
+    Span {
+        left: 0,
+        right: grid.columns(),
+        bottom: 0,
+        top: grid.rows(),
+    }
+}
+
+/// Counts distinct sizes under each label; sizes within a billionth of the facade are one.
+struct SizeCount {
+    unit: f64,
+    sizes: BTreeMap<String, BTreeSet<(i64, i64)>>,
+}
+
+impl SizeCount {
+    fn new(width: f64, height: f64) -> Self {
+        Self {
+            unit: 1e-9 * width.max(height),
+            sizes: BTreeMap::new(),
+        }
+    }
+
+    fn add(&mut self, label: &str, width: f64, height: f64) {
+        let round = |v: f64| (v / self.unit).round() as i64;
+        let size = (round(width), round(height));
+        self.sizes
+            .entry(label.to_string())
+            .or_default()
+            .insert(size);
+    }
+
+    fn counts(self) -> BTreeMap<String, usize> {
+        self.sizes
+            .into_iter()
+            .map(|(label, sizes)| (label, sizes.len()))
+            .collect()
+    }
+}
+
+/// Number of distinct sizes of the areas of each label; of those that are not rectangles, the sizes of
+/// the rectangles around them.
+pub fn sizes(grid: &LabelGrid) -> BTreeMap<String, usize> {
+    let mut count = SizeCount::new(grid.xs[grid.columns()], grid.ys[grid.rows()]);
+    for area in components(grid, whole(grid), &mut vec![0; grid.cells.len()]) {
+        let b = area.bounds;
+        let width = grid.xs[b.right] - grid.xs[b.left];
+        let height = grid.ys[b.top] - grid.ys[b.bottom];
+        count.add(&grid.labels[usize::from(area.label)], width, height);
+    }
+    count.counts()
+}
+
+/// Number of distinct sizes of the regions of each label.
+pub fn region_sizes(facade: &Facade) -> BTreeMap<String, usize> {
+    let mut count = SizeCount::new(facade.width, facade.height);
+    for region in &facade.regions {
+        count.add(&region.label, region.rect.width, region.rect.height);
+    }
+    count.counts()
+}

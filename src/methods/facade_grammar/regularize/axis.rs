@@ -1,0 +1,418 @@
+//! Regularization along one axis; the program is stated in the parent module.
+
+use super::RegularizeError;
+use super::differences::{Difference, Differences, exactly};
+use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as solve_qp};
+
+/// Parts of the tolerance that are told apart when the input is not in whole numbers.
+const FINENESS: f64 = 256.0;
+
+/// Most sizes that are tried for one cluster.
+const MAX_TRIES: usize = 65;
+
+/// A stretch of one area along a strip, between cut lines `from` and `to`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Run {
+    /// Background and odd shapes are served after elements.
+    pub behind: bool,
+    /// Label number; only runs of one label become equal.
+    pub label: u16,
+    /// Cut line at its start.
+    pub from: usize,
+    /// Cut line at its end.
+    pub to: usize,
+    /// Thickness of the strips with this run, summed.
+    pub weight: f64,
+}
+
+/// The areas of all cells, strip by strip.
+#[derive(Clone, Copy)]
+pub struct Strips<'a> {
+    /// Area of each cell.
+    pub cells: &'a [u32],
+    /// Cells in a strip.
+    pub length: usize,
+}
+
+impl<'a> Strips<'a> {
+    /// The strips.
+    pub fn rows(self) -> impl Iterator<Item = &'a [u32]> {
+        self.cells.chunks_exact(self.length)
+    }
+
+    /// Whether the cells between lines `first` and `last` can vanish without any area vanishing or
+    /// two areas meeting that did not: in each strip they continue what lies before, then what lies
+    /// behind.
+    fn can_vanish(self, first: usize, last: usize) -> bool {
+        let inside = first > 0 && last < self.length;
+        inside
+            && self.rows().all(|row| {
+                let (before, behind) = (row[first - 1], row[last]);
+                let rest = row[first..last].iter().skip_while(|&&c| c == before);
+                rest.clone().all(|&c| c == behind)
+            })
+    }
+}
+
+/// Sizes that became one.
+struct Cluster {
+    /// Groups of lines at both ends of each member.
+    members: Vec<(usize, usize)>,
+    size: i64,
+}
+
+/// New positions of all cut lines, in order; merged ones are equal.
+pub fn solve(
+    cuts: &[f64],
+    weights: &[f64],
+    runs: &[Run],
+    strips: Strips,
+    tolerance: f64,
+) -> Result<Vec<f64>, RegularizeError> {
+    let quantum = quantum(cuts, tolerance);
+    let groups = merge_lines(cuts, weights, strips, tolerance, quantum);
+    let Some(mut system) = groups.system() else {
+        // No room to move at all: the tolerance is below the quantum.
+        return Ok(cuts.to_vec());
+    };
+    let mut clusters = choose_sizes(&groups, runs, tolerance / quantum, &mut system);
+
+    // Sizes: as the program would have them, rounded, where that stays feasible.
+    let (_, sizes) = groups.program(&clusters, true)?;
+    for (k, size) in sizes.into_iter().enumerate() {
+        let tried = size.round() as i64;
+        let old = std::mem::replace(&mut clusters[k].size, tried);
+        if tried != old {
+            match groups.system_with(&clusters) {
+                Some(better) => system = better,
+                None => clusters[k].size = old,
+            }
+        }
+    }
+    let (positions, _) = groups.program(&clusters, false)?;
+    let rounded = round_together(&positions);
+    let whole = match system.holds(&rounded, &groups.lower) {
+        true => rounded,
+        false => system.values().to_vec(),
+    };
+    let position = |k: usize| whole[groups.of_line[k]] as f64 * quantum;
+    let mut moved: Vec<f64> = (0..cuts.len()).map(position).collect();
+    // The total size is kept to the bit.
+    moved[cuts.len() - 1] = cuts[cuts.len() - 1];
+    Ok(moved)
+}
+
+/// The unit of positions: one if the input is in whole numbers, else a fraction of the tolerance that
+/// divides the total size.
+fn quantum(cuts: &[f64], tolerance: f64) -> f64 {
+    let total = cuts[cuts.len() - 1];
+    if cuts.iter().all(|c| (c - c.round()).abs() <= 1e-9 * total) {
+        1.0
+    } else {
+        total / (total * FINENESS / tolerance).round().clamp(1.0, 1e12)
+    }
+}
+
+/// Cut lines, merged into groups that share a position; everything in quanta.
+struct Groups {
+    /// Group of each line.
+    of_line: Vec<usize>,
+    /// Where the lines of each group want to be, on average, and how much.
+    center: Vec<f64>,
+    weight: Vec<f64>,
+    lower: Vec<i64>,
+    upper: Vec<i64>,
+    /// Least distance of each group to the next.
+    gap: Vec<i64>,
+}
+
+impl Groups {
+    /// Groups of consecutive lines, given the first line of each.
+    fn new(firsts: &[usize], cuts: &[f64], weights: &[f64], tolerance: f64, quantum: f64) -> Self {
+        let ends = firsts[1..].iter().copied().chain([cuts.len()]);
+        let mut groups = Self {
+            of_line: vec![0; cuts.len()],
+            center: Vec::new(),
+            weight: Vec::new(),
+            lower: Vec::new(),
+            upper: Vec::new(),
+            gap: Vec::new(),
+        };
+        for (number, (first, end)) in firsts.iter().copied().zip(ends).enumerate() {
+            groups.of_line[first..end].fill(number);
+            let weight: f64 = weights[first..end].iter().sum();
+            let at = |k: usize| cuts[k] / quantum;
+            let moment: f64 = (first..end).map(|k| weights[k] * at(k)).sum();
+            let center = if weight > 0.0 {
+                moment / weight
+            } else {
+                at(first)
+            };
+            // A hair's breadth of rounding must not cost a whole quantum.
+            let reach = tolerance / quantum + 1e-9;
+            let (mut lower, mut upper) = (at(end - 1) - reach, at(first) + reach);
+            if first == 0 || end == cuts.len() {
+                (lower, upper) = (at(first).round(), at(first).round());
+            }
+            groups.center.push(center);
+            groups.weight.push(weight.max(1e-3));
+            groups.lower.push(lower.ceil() as i64);
+            groups.upper.push(upper.floor() as i64);
+            if end < cuts.len() {
+                let distance = at(end) - at(end - 1);
+                groups.gap.push(((distance / 2.0).floor() as i64).max(1));
+            }
+        }
+        groups
+    }
+
+    /// The constraints of order and bounds; `None` when they leave no solution.
+    fn system(&self) -> Option<Differences> {
+        let mut system = Differences::new(self.lower.clone(), self.upper.clone())?;
+        let order: Vec<Difference> = (self.gap.iter().enumerate())
+            .map(|(k, &least)| Difference {
+                from: k,
+                to: k + 1,
+                least,
+            })
+            .collect();
+        system.add(&order).then_some(system)
+    }
+
+    fn system_with(&self, clusters: &[Cluster]) -> Option<Differences> {
+        let mut system = self.system()?;
+        let all: Vec<Difference> = clusters.iter().flat_map(constraints).collect();
+        system.add(&all).then_some(system)
+    }
+
+    /// Solves the quadratic program, with the sizes of the clusters free or as they are. Returns
+    /// positions and sizes; where the solver stalls, the centres and the sizes as they are.
+    fn program(
+        &self,
+        clusters: &[Cluster],
+        free: bool,
+    ) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
+        let n = self.center.len();
+        let extra = if free { clusters.len() } else { 0 };
+        let mut program = QuadraticProgram::new(n + extra);
+        for k in 0..n {
+            program.pull(k, self.center[k], self.weight[k]);
+            program.lower[k] = self.lower[k] as f64;
+            program.upper[k] = self.upper[k] as f64;
+        }
+        for (k, &gap) in self.gap.iter().enumerate() {
+            let row = Row::new([(k, 1.0), (k + 1, -1.0)], -gap as f64);
+            program.inequalities.push(row);
+        }
+        for (c, cluster) in clusters.iter().enumerate() {
+            for &(from, to) in &cluster.members {
+                let ends = [(to, 1.0), (from, -1.0)];
+                program.equalities.push(if free {
+                    Row::new(ends.into_iter().chain([(n + c, -1.0)]), 0.0)
+                } else {
+                    Row::new(ends, cluster.size as f64)
+                });
+            }
+        }
+        let mut x = solve_qp(&program, QpOptions::default())?;
+        let solved = matches!(x.outcome, QpOutcome::Converged | QpOutcome::AlmostConverged);
+        if solved && x.x.iter().all(|v| v.is_finite()) {
+            let sizes = x.x.split_off(n);
+            Ok((x.x, sizes))
+        } else {
+            let sizes = clusters.iter().map(|c| c.size as f64);
+            Ok((self.center.clone(), sizes.take(extra).collect()))
+        }
+    }
+}
+
+fn constraints(cluster: &Cluster) -> impl Iterator<Item = Difference> + '_ {
+    let member = |&(from, to): &(usize, usize)| exactly(from, to, cluster.size);
+    cluster.members.iter().flat_map(member)
+}
+
+/// Merges neighbouring lines, nearest first, that lie within the tolerance of each other.
+fn merge_lines(
+    cuts: &[f64],
+    weights: &[f64],
+    strips: Strips,
+    tolerance: f64,
+    quantum: f64,
+) -> Groups {
+    let mut firsts: Vec<usize> = (0..cuts.len()).collect();
+    let build = |firsts: &[usize]| Groups::new(firsts, cuts, weights, tolerance, quantum);
+    let last_of = |firsts: &[usize], g: usize| firsts.get(g + 1).map_or(cuts.len(), |&f| f) - 1;
+    // Boundaries between groups (by their line) that cannot go.
+    let mut fixed = vec![false; cuts.len()];
+    loop {
+        let spread = |g: usize| cuts[last_of(&firsts, g)] - cuts[firsts[g - 1]];
+        let candidates = (1..firsts.len()).filter(|&g| !fixed[firsts[g]]);
+        let near = candidates.filter(|&g| spread(g) <= tolerance);
+        let Some(g) = near.min_by(|&a, &b| spread(a).total_cmp(&spread(b))) else {
+            return build(&firsts);
+        };
+        let line = firsts.remove(g);
+        let (first, last) = (firsts[g - 1], last_of(&firsts, g - 1));
+        if !strips.can_vanish(first, last) || build(&firsts).system().is_none() {
+            firsts.insert(g, line);
+            fixed[line] = true;
+        }
+    }
+}
+
+/// A size that occurs: the runs that have it.
+#[derive(Clone)]
+struct Size {
+    value: f64,
+    weight: f64,
+    members: Vec<(usize, usize)>,
+}
+
+/// Clusters sizes of one label, elements first, heavy ones first, and gives each cluster one size.
+fn choose_sizes(
+    groups: &Groups,
+    runs: &[Run],
+    tolerance: f64,
+    system: &mut Differences,
+) -> Vec<Cluster> {
+    let mut sizes: Vec<(bool, u16, Size)> = Vec::new();
+    for run in runs {
+        let ends = (groups.of_line[run.from], groups.of_line[run.to]);
+        let known = |(behind, label, size): &&mut (bool, u16, Size)| {
+            (*behind, *label) == (run.behind, run.label) && size.members[0] == ends
+        };
+        if ends.0 == ends.1 {
+            continue;
+        }
+        match sizes.iter_mut().find(known) {
+            Some((_, _, size)) => size.weight += run.weight,
+            None => {
+                let value = groups.center[ends.1] - groups.center[ends.0];
+                let size = Size {
+                    value,
+                    weight: run.weight,
+                    members: vec![ends],
+                };
+                sizes.push((run.behind, run.label, size));
+            }
+        }
+    }
+    sizes.sort_by(|a, b| {
+        (a.0, a.1)
+            .cmp(&(b.0, b.1))
+            .then(a.2.value.total_cmp(&b.2.value))
+    });
+    let kinds = sizes.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+    let mut candidates: Vec<(bool, f64, Vec<Size>)> = Vec::new();
+    for kind in kinds {
+        let list = kind.iter().map(|(_, _, size)| size.clone()).collect();
+        for cluster in agglomerate(list, tolerance) {
+            let weight = cluster.iter().map(|s| s.weight).sum();
+            candidates.push((kind[0].0, weight, cluster));
+        }
+    }
+    candidates.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    let mut chosen = Vec::new();
+    for (_, _, cluster) in candidates {
+        settle(cluster, tolerance, system, &mut chosen);
+    }
+    chosen
+}
+
+/// Clusters sorted sizes: the two neighbours that make the tightest cluster are joined, as long as
+/// the cluster lies within the tolerance.
+fn agglomerate(sizes: Vec<Size>, tolerance: f64) -> Vec<Vec<Size>> {
+    let mut clusters: Vec<Vec<Size>> = sizes.into_iter().map(|s| vec![s]).collect();
+    let low = |c: &[Size]| c[0].value;
+    let high = |c: &[Size]| c[c.len() - 1].value;
+    loop {
+        let spread = |k: &usize| high(&clusters[k + 1]) - low(&clusters[*k]);
+        let pairs = 0..clusters.len().saturating_sub(1);
+        let tightest = pairs.min_by(|a, b| spread(a).total_cmp(&spread(b)));
+        match tightest {
+            Some(k) if spread(&k) <= tolerance => {
+                let mut next = clusters.remove(k + 1);
+                clusters[k].append(&mut next);
+            }
+            _ => return clusters,
+        }
+    }
+}
+
+/// Gives a cluster one size; splits it when that is not feasible.
+fn settle(cluster: Vec<Size>, tolerance: f64, system: &mut Differences, out: &mut Vec<Cluster>) {
+    let mut parts = vec![cluster];
+    while let Some(part) = parts.pop() {
+        let members: Vec<(usize, usize)> = part.iter().flat_map(|s| s.members.clone()).collect();
+        if members.len() < 2 {
+            continue;
+        }
+        let target = weighted_median(&part);
+        let accepted = tries(target, tolerance).into_iter().find(|&size| {
+            let members = members.clone();
+            let trial: Vec<Difference> = constraints(&Cluster { members, size }).collect();
+            system.add(&trial)
+        });
+        match accepted {
+            Some(size) => out.push(Cluster { members, size }),
+            None => {
+                let gap = |k: &usize| part[*k].value - part[k - 1].value;
+                let widest = (1..part.len()).max_by(|a, b| gap(a).total_cmp(&gap(b)));
+                let mut lower = part.clone();
+                match widest.map(|k| if gap(&k) > 0.0 { k } else { part.len() / 2 }) {
+                    Some(k) => {
+                        let higher = lower.split_off(k);
+                        parts.extend([higher, lower]);
+                    }
+                    None => continue,
+                }
+            }
+        }
+    }
+}
+
+fn weighted_median(sizes: &[Size]) -> f64 {
+    let half: f64 = sizes.iter().map(|s| s.weight).sum::<f64>() / 2.0;
+    let mut sum = 0.0;
+    for size in sizes {
+        sum += size.weight;
+        if sum >= half {
+            return size.value;
+        }
+    }
+    0.0
+}
+
+/// Whole sizes to try, nearest to the target first, within the tolerance.
+fn tries(target: f64, tolerance: f64) -> Vec<i64> {
+    let middle = target.round() as i64;
+    let reach = tolerance.floor() as i64;
+    let step = (2 * reach / MAX_TRIES as i64).max(1);
+    let mut sizes: Vec<i64> = (-reach / step..=reach / step)
+        .map(|k| middle + k * step)
+        .collect();
+    sizes.retain(|&s| s > 0);
+    sizes.sort_by(|a, b| {
+        (*a as f64 - target)
+            .abs()
+            .total_cmp(&(*b as f64 - target).abs())
+    });
+    sizes
+}
+
+/// Rounds all numbers at one threshold, which keeps every whole bound on their differences. The
+/// threshold is laid where no fraction is near, lest the solver's last digit decides.
+fn round_together(values: &[f64]) -> Vec<i64> {
+    let mut fractions: Vec<f64> = values.iter().map(|v| v - v.floor()).collect();
+    fractions.extend([0.25, 0.75]);
+    fractions.retain(|f| (0.25..=0.75).contains(f));
+    fractions.sort_by(f64::total_cmp);
+    let widest = fractions
+        .windows(2)
+        .max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    let threshold = widest.map_or(0.5, |pair| 0.5 * (pair[0] + pair[1]));
+    values
+        .iter()
+        .map(|v| (v + 1.0 - threshold).floor() as i64)
+        .collect()
+}

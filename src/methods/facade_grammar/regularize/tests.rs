@@ -1,0 +1,120 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::shape::{decompose, splittable};
+
+/// A wall with windows given as (x, y, width, height), in whole pixels.
+fn wall(width: usize, height: usize, windows: &[(usize, usize, usize, usize)]) -> LabelGrid {
+    let mut cells = vec![0; width * height];
+    for &(x, y, w, h) in windows {
+        for row in y..y + h {
+            cells[row * width + x..row * width + x + w].fill(1);
+        }
+    }
+    LabelGrid {
+        name: "w".into(),
+        unit: "px".into(),
+        xs: (0..=width).map(|k| k as f64).collect(),
+        ys: (0..=height).map(|k| k as f64).collect(),
+        labels: vec!["wall".into(), "window".into()],
+        cells,
+    }
+}
+
+#[test]
+fn nearly_equal_windows_become_equal() {
+    let grid = wall(
+        100,
+        60,
+        &[
+            (10, 10, 20, 15),
+            (41, 11, 19, 15),
+            (70, 10, 21, 14),
+            (10, 40, 20, 14),
+            (40, 40, 21, 15),
+            (71, 39, 20, 15),
+        ],
+    );
+    let (result, report) = regularize_grid(&grid, 2.0).unwrap();
+    assert_eq!(report.sizes["window"], (5, 1));
+    assert!(report.largest_move <= 2.0);
+    let before = decompose(&grid).unwrap().facade.regions.len();
+    let after = decompose(&result).unwrap().facade.regions.len();
+    // Three strips of wall and two floors of seven.
+    assert_eq!(after, 3 + 2 * 7);
+    assert!(before > after);
+    assert_eq!((result.xs[0], result.xs[result.columns()]), (0.0, 100.0));
+}
+
+#[test]
+fn thin_walls_between_windows_stay() {
+    let grid = wall(30, 10, &[(5, 2, 5, 5), (11, 2, 5, 5), (17, 2, 6, 5)]);
+    let (result, report) = regularize_grid(&grid, 3.0).unwrap();
+    assert_eq!(report.sizes["window"].1, 1);
+    let windows = decompose(&result).unwrap().facade.regions;
+    assert_eq!(windows.iter().filter(|r| r.label == "window").count(), 3);
+}
+
+#[test]
+fn missing_corners_are_filled() {
+    let mut grid = wall(30, 20, &[(5, 5, 8, 8), (18, 5, 8, 8)]);
+    grid.cells[5 * 30 + 5] = 0;
+    let (_, report) = regularize_grid(&grid, 1.0).unwrap();
+    assert_eq!((report.squared, report.sizes["window"]), (1, (1, 1)));
+}
+
+#[test]
+fn metres_work_like_pixels() {
+    let grid = wall(
+        100,
+        60,
+        &[(10, 10, 20, 15), (41, 11, 19, 15), (70, 10, 21, 14)],
+    );
+    let mut facade = decompose(&grid).unwrap().facade;
+    facade.width *= 0.013;
+    facade.height *= 0.013;
+    for region in &mut facade.regions {
+        let r = region.rect;
+        region.rect = Rect::new(r.x * 0.013, r.y * 0.013, r.width * 0.013, r.height * 0.013);
+    }
+    let (result, report) = regularize_facade(&facade, 0.03).unwrap();
+    assert_eq!(report.sizes["window"], (3, 1));
+    assert!(report.largest_move <= 0.03 + 1e-9);
+    assert_eq!(result.check_tiling(), Ok(()));
+    assert_eq!((result.width, result.height), (facade.width, facade.height));
+}
+
+#[test]
+fn bad_tolerances_are_refused() {
+    let grid = wall(3, 3, &[]);
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = regularize_grid(&grid, tolerance).unwrap_err();
+        assert!(matches!(error, RegularizeError::Tolerance(_)));
+    }
+}
+
+proptest! {
+    /// Rectangles anywhere: nothing vanishes, nothing moves too far, tilings stay splittable.
+    #[test]
+    fn areas_and_sizes_survive(
+        windows in prop::collection::vec((0usize..25, 0usize..25, 1usize..8, 1usize..8), 0..12),
+        tolerance in 1u8..5,
+    ) {
+        let grid = wall(33, 33, &windows);
+        let tolerance = f64::from(tolerance);
+        let (result, report) = regularize_grid(&grid, tolerance).unwrap();
+        prop_assert_eq!(result.check(), Ok(()));
+        prop_assert!(report.largest_move <= tolerance + 1e-9);
+        prop_assert_eq!(result.xs[result.columns()], 33.0);
+        prop_assert!(result.xs.iter().chain(&result.ys).all(|v| v.fract() == 0.0));
+        let tiling = decompose(&result).unwrap().facade;
+        prop_assert_eq!(splittable(&tiling), Ok(()));
+
+        let facade = decompose(&grid).unwrap().facade;
+        let (moved, report) = regularize_facade(&facade, tolerance).unwrap();
+        prop_assert_eq!(moved.check_tiling(), Ok(()));
+        prop_assert_eq!(splittable(&moved), Ok(()));
+        prop_assert_eq!(moved.regions.len(), facade.regions.len());
+        prop_assert!(report.largest_move <= tolerance + 1e-9);
+    }
+}
