@@ -1,4 +1,13 @@
-//! optim
+//! Generic optimizers, all `impl Solver` run by argmin's `Executor`: no models, no buildings.
+//!
+//! - [`adp`]: approximate dynamic programming with exploration and exploitation.
+//! - [`annealing`]: Metropolis simulated annealing on a landscape that changes in place.
+//! - [`qp`]: convex quadratic programming, the mathematics being Clarabel's.
 
+pub mod adp;
+pub mod annealing;
 pub mod qp;
 pub mod qp_problem;
+mod run;
+
+pub use run::Step;

@@ -1,0 +1,136 @@
+//! From rules over region types to a split grammar.
+
+use rustc_hash::FxHashMap;
+
+use super::choice::{Arrangement, Choice};
+use super::regions::{TypeId, Types};
+use super::walk::AddRule;
+use crate::grammar::{Grammar, Operation, Rule, Start, Successor};
+use crate::shape::Facade;
+
+/// Writes the rules that the facades need as a grammar, top down, with symbols that no label uses.
+pub(crate) fn grammar(types: &mut Types, facades: &[Facade], rules: &[AddRule]) -> Grammar {
+    let by_type: FxHashMap<TypeId, &Choice> = rules.iter().map(|r| (r.id, &*r.choice)).collect();
+    let mut names = Names::new(types, facades.len());
+    let mut starts = Vec::new();
+    let mut order: Vec<TypeId> = Vec::new();
+    for (facade, root) in facades.iter().zip(types.roots.clone()) {
+        let symbol = names.of(types, root, &mut order);
+        starts.push(Start {
+            name: facade.name.clone(),
+            symbol,
+            width: facade.width,
+            height: facade.height,
+        });
+    }
+    let mut written = Vec::new();
+    let mut next = 0;
+    while next < order.len() {
+        let id = order[next];
+        next += 1;
+        if let Some(choice) = by_type.get(&id) {
+            let symbol = names.of(types, id, &mut order);
+            let operation = operation(types, id, choice, &mut names, &mut order);
+            written.push(Rule {
+                symbol,
+                weight: None,
+                operation,
+            });
+        }
+    }
+    Grammar {
+        unit: facades.first().map_or_else(String::new, |f| f.unit.clone()),
+        starts,
+        rules: written,
+    }
+}
+
+fn operation(
+    types: &mut Types,
+    id: TypeId,
+    choice: &Choice,
+    names: &mut Names,
+    order: &mut Vec<TypeId>,
+) -> Operation {
+    let axis = choice.axis();
+    let strips = types.strips(id, axis);
+    let region = types.region(id);
+    let sheet = &types.sheets[usize::from(region.sheet)];
+    let coordinates = match axis {
+        crate::shape::Axis::X => &sheet.xs,
+        crate::shape::Axis::Y => &sheet.ys,
+    };
+    let at = |line: u16| coordinates[usize::from(strips.cuts[usize::from(line)])];
+    let sizes: Vec<f64> = choice
+        .lines
+        .windows(2)
+        .map(|w| at(w[1]) - at(w[0]))
+        .collect();
+    let mut successors: Vec<Successor> = choice
+        .successors
+        .iter()
+        .zip(sizes)
+        .map(|(&s, size)| Successor::new(names.of(types, s, order), size))
+        .collect();
+    match choice.arrangement {
+        Arrangement::Split(axis) => Operation::Split { axis, successors },
+        Arrangement::Repeat(axis) => Operation::Repeat { axis, successors },
+        Arrangement::Symmetric(axis, center) => Operation::SymSplit {
+            axis,
+            successors,
+            center,
+        },
+        Arrangement::RepeatAba(axis) => {
+            let b = successors.remove(1);
+            let a = successors.remove(0);
+            Operation::RepeatAba { axis, a, b }
+        }
+    }
+}
+
+/// Symbols of types: the label of a terminal, `Facade` for a root, `NT1`, `NT2`, ... for the rest.
+struct Names {
+    prefix: String,
+    axiom: String,
+    by_type: FxHashMap<TypeId, String>,
+    several: bool,
+}
+
+impl Names {
+    fn new(types: &Types, facades: usize) -> Self {
+        let free = |name: &str| !types.labels.iter().any(|l| l.starts_with(name));
+        let pick = |wanted: &str| {
+            let mut name = wanted.to_owned();
+            while !free(&name) {
+                name.push('_');
+            }
+            name
+        };
+        Self {
+            prefix: pick("NT"),
+            axiom: pick("Facade"),
+            by_type: FxHashMap::default(),
+            several: facades > 1,
+        }
+    }
+
+    fn of(&mut self, types: &Types, id: TypeId, order: &mut Vec<TypeId>) -> String {
+        if types.is_terminal(id) {
+            return types.labels[id as usize].clone();
+        }
+        if let Some(name) = self.by_type.get(&id) {
+            return name.clone();
+        }
+        let root = types.roots.contains(&id);
+        let count = self.by_type.len();
+        let name = match (root, self.several) {
+            (true, false) => self.axiom.clone(),
+            (true, true) => format!("{}{}", self.axiom, count + 1),
+            (false, false) => format!("{}{count}", self.prefix),
+            (false, true) => format!("{}{}", self.prefix, count + 1),
+        };
+        self.by_type.insert(id, name.clone());
+        order.push(id);
+        name
+    }
+}

@@ -1,0 +1,405 @@
+//! Second stage of `best`: annealing over the set of non-terminal types.
+//!
+//! A grammar is determined by its set `N` of non-terminal region types: given `N`, the best rule of
+//! each type is a shortest path over strips that are terminals or members of `N`, independent of
+//! all others, and the cost is the sum over the members. A move adds a type, removes one, or
+//! exchanges one for another with a shifted border; only the rules that the move touches are found
+//! anew. A type that no rule uses any more leaves the set; a member left without a rule gets one
+//! that calls in further members, priced with what approximate dynamic programming learnt.
+
+use std::rc::Rc;
+
+use rand::{Rng, RngExt};
+
+use super::choice::{Choice, Router};
+use super::regions::{TypeId, Types};
+use super::walk::{AddRule, SharedTypes};
+use crate::optim::annealing::Landscape;
+use crate::shape::Axis;
+
+/// A member's rule and its cost.
+type Ruled = (f64, Rc<Choice>);
+
+/// The set of non-terminal types with the best rule of each.
+pub(crate) struct Members {
+    types: SharedTypes,
+    router: Router,
+    /// What a type that is no member is thought to cost.
+    values: Vec<f64>,
+    rules: Vec<Option<Ruled>>,
+    /// 0 for terminals and members, infinite for other types.
+    prices: Vec<f64>,
+    /// Number of rules that name the type.
+    uses: Vec<u32>,
+    members: Vec<TypeId>,
+    position: Vec<u32>,
+    /// Types of all strips of a type, sorted.
+    strips: Vec<Option<Rc<[TypeId]>>>,
+    total: f64,
+    log: Vec<(TypeId, Option<Ruled>)>,
+    orphans: Vec<TypeId>,
+    /// Members called in by one move at most, so that a move stays a small change.
+    growth: usize,
+}
+
+/// A move calls in at most this many types.
+const GROWTH: usize = 24;
+
+impl Members {
+    /// Starts from the rules of a grammar; `values` prices types by what was learnt of them.
+    pub fn new(types: SharedTypes, router: Router, values: Vec<f64>, start: &[AddRule]) -> Self {
+        let mut members = Self {
+            types,
+            router,
+            values,
+            rules: Vec::new(),
+            prices: Vec::new(),
+            uses: Vec::new(),
+            members: Vec::new(),
+            position: Vec::new(),
+            strips: Vec::new(),
+            total: 0.0,
+            log: Vec::new(),
+            orphans: Vec::new(),
+            growth: 0,
+        };
+        members.extend();
+        for rule in start {
+            let cost = rule.choice.cost(&members.router.costs);
+            members.set_rule(rule.id, Some((cost, Rc::clone(&rule.choice))));
+        }
+        for rule in start {
+            members.improve(rule.id);
+        }
+        members.drop_orphans();
+        members.log.clear();
+        members
+    }
+
+    /// The set as rules.
+    fn rules(&self) -> Vec<AddRule> {
+        self.members
+            .iter()
+            .filter_map(|&id| {
+                self.rules[id as usize].as_ref().map(|(_, choice)| AddRule {
+                    id,
+                    choice: Rc::clone(choice),
+                })
+            })
+            .collect()
+    }
+
+    /// Tables follow the types discovered since the last call.
+    fn extend(&mut self) {
+        let types = self.types.borrow();
+        let (known, all) = (self.rules.len(), types.len());
+        self.rules.resize(all, None);
+        self.uses.resize(all, 0);
+        self.position.resize(all, u32::MAX);
+        self.strips.resize(all, None);
+        for id in known..all {
+            self.prices.push(if types.is_terminal(id as TypeId) {
+                0.0
+            } else {
+                f64::INFINITY
+            });
+        }
+        let costs = self.router.costs;
+        for id in self.values.len()..all {
+            self.values
+                .push(costs.split + costs.successor * f64::from(types.terminals(id as TypeId)));
+        }
+    }
+
+    fn is_root(&self, id: TypeId) -> bool {
+        self.types.borrow().roots.contains(&id)
+    }
+
+    /// Gives a type a rule, another rule, or none, and remembers how it was.
+    fn set_rule(&mut self, id: TypeId, rule: Option<Ruled>) {
+        let slot = id as usize;
+        if let Some((cost, choice)) = &rule {
+            self.total += cost;
+            for &s in &choice.successors {
+                self.uses[s as usize] += 1;
+            }
+        }
+        let old = std::mem::replace(&mut self.rules[slot], rule);
+        if let Some((cost, choice)) = &old {
+            self.total -= cost;
+            for &s in &choice.successors {
+                self.uses[s as usize] -= 1;
+                if self.uses[s as usize] == 0 && self.rules[s as usize].is_some() {
+                    self.orphans.push(s);
+                }
+            }
+        }
+        match (old.is_some(), self.rules[slot].is_some()) {
+            (false, true) => {
+                self.position[slot] = self.members.len() as u32;
+                self.members.push(id);
+                self.prices[slot] = 0.0;
+            }
+            (true, false) => {
+                let at = self.position[slot] as usize;
+                self.members.swap_remove(at);
+                if let Some(&moved) = self.members.get(at) {
+                    self.position[moved as usize] = at as u32;
+                }
+                self.position[slot] = u32::MAX;
+                self.prices[slot] = f64::INFINITY;
+            }
+            _ => {}
+        }
+        self.log.push((id, old));
+    }
+
+    /// Types of all strips of a type, sorted.
+    fn strip_types(&mut self, id: TypeId) -> Rc<[TypeId]> {
+        if let Some(list) = &self.strips[id as usize] {
+            return Rc::clone(list);
+        }
+        let mut list: Vec<TypeId> = Vec::new();
+        {
+            let mut types = self.types.borrow_mut();
+            for axis in Axis::BOTH {
+                list.extend(types.strips(id, axis).all());
+            }
+        }
+        self.extend();
+        list.sort_unstable();
+        list.dedup();
+        let list: Rc<[TypeId]> = list.into();
+        self.strips[id as usize] = Some(Rc::clone(&list));
+        list
+    }
+
+    /// The cheapest rule of a type over members and terminals.
+    fn cheapest(&mut self, id: TypeId) -> Option<Ruled> {
+        self.strip_types(id);
+        let prices = &self.prices;
+        let (cost, choice) = self
+            .router
+            .cheapest(&mut self.types.borrow_mut(), id, &|_, t| prices[t as usize])?;
+        Some((cost, Rc::new(choice)))
+    }
+
+    /// Finds the cheapest rule of a member anew.
+    fn improve(&mut self, id: TypeId) {
+        let Some(found) = self.cheapest(id) else {
+            return;
+        };
+        if self.rules[id as usize]
+            .as_ref()
+            .is_none_or(|(cost, _)| found.0 < cost - 1e-9)
+        {
+            self.set_rule(id, Some(found));
+        }
+    }
+
+    /// Makes a type a member, with whatever further members its rule needs.
+    fn insert(&mut self, id: TypeId) -> bool {
+        let mut waiting = vec![id];
+        let mut inserted = Vec::new();
+        while let Some(id) = waiting.pop() {
+            if self.rules[id as usize].is_some() {
+                continue;
+            }
+            if self.growth == 0 {
+                return false;
+            }
+            self.growth -= 1;
+            let Some((cost, choice)) = self
+                .cheapest(id)
+                .or_else(|| self.cheapest_with_newcomers(id, None))
+            else {
+                return false;
+            };
+            let terminals = self.types.borrow().label_count();
+            waiting.extend(
+                choice
+                    .successors
+                    .iter()
+                    .filter(|s| **s >= terminals && self.rules[**s as usize].is_none()),
+            );
+            self.set_rule(id, Some((cost, choice)));
+            inserted.push(id);
+        }
+        self.welcome(&inserted);
+        true
+    }
+
+    /// The cheapest rule when types outside the set may be called in at their learnt value.
+    fn cheapest_with_newcomers(&mut self, id: TypeId, banned: Option<TypeId>) -> Option<Ruled> {
+        let (prices, values) = (&self.prices, &self.values);
+        let price = |_: &Types, t: TypeId| {
+            if prices[t as usize] == 0.0 {
+                0.0
+            } else if Some(t) == banned {
+                f64::INFINITY
+            } else {
+                values[t as usize]
+            }
+        };
+        let (_, choice) = self
+            .router
+            .cheapest(&mut self.types.borrow_mut(), id, &price)?;
+        Some((choice.cost(&self.router.costs), Rc::new(choice)))
+    }
+
+    /// Rules that could use new members are found anew.
+    fn welcome(&mut self, inserted: &[TypeId]) {
+        for index in 0..self.members.len() {
+            let member = self.members[index];
+            let strips = self.strip_types(member);
+            if inserted
+                .iter()
+                .any(|t| *t != member && strips.binary_search(t).is_ok())
+            {
+                self.improve(member);
+            }
+        }
+    }
+
+    /// Takes a member out; rules that name it are found anew.
+    fn erase(&mut self, id: TypeId) -> bool {
+        let users: Vec<TypeId> = self
+            .members
+            .iter()
+            .copied()
+            .filter(|m| {
+                self.rules[*m as usize]
+                    .as_ref()
+                    .is_some_and(|(_, c)| c.successors.contains(&id))
+            })
+            .collect();
+        self.set_rule(id, None);
+        let terminals = self.types.borrow().label_count();
+        for user in users {
+            let Some(rule) = self
+                .cheapest(user)
+                .or_else(|| self.cheapest_with_newcomers(user, Some(id)))
+            else {
+                return false;
+            };
+            let newcomers: Vec<TypeId> = rule
+                .1
+                .successors
+                .iter()
+                .copied()
+                .filter(|s| *s >= terminals && self.rules[*s as usize].is_none())
+                .collect();
+            self.set_rule(user, Some(rule));
+            for newcomer in newcomers {
+                if !self.insert(newcomer) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Members that no rule names leave, and so may those that only they named.
+    fn drop_orphans(&mut self) {
+        while let Some(id) = self.orphans.pop() {
+            if self.uses[id as usize] == 0 && self.rules[id as usize].is_some() && !self.is_root(id)
+            {
+                self.set_rule(id, None);
+            }
+        }
+    }
+
+    /// A random strip of a random member that is neither terminal nor member.
+    fn outsider<R: Rng>(&mut self, rng: &mut R) -> Option<TypeId> {
+        let member = self.members[rng.random_range(0..self.members.len())];
+        let strips = self.strip_types(member);
+        let id = *strips.get(rng.random_range(0..strips.len().max(1)))?;
+        (self.prices[id as usize] > 0.0 && id != member).then_some(id)
+    }
+
+    /// A strip like one that a rule of the set names, with a border shifted by one line.
+    fn shifted<R: Rng>(&mut self, rng: &mut R) -> Option<(TypeId, TypeId)> {
+        let user = self.members[rng.random_range(0..self.members.len())];
+        let choice = Rc::clone(&self.rules[user as usize].as_ref()?.1);
+        let strips = self.types.borrow_mut().strips(user, choice.axis());
+        self.extend();
+        let at = rng.random_range(0..choice.successors.len());
+        let old = choice.successors[at];
+        let (a, b) = (
+            usize::from(choice.lines[at]),
+            usize::from(choice.lines[at + 1]),
+        );
+        let (a, b) = match rng.random_range(0..4) {
+            0 => (a.checked_sub(1)?, b),
+            1 => (a + 1, b),
+            2 => (a, b + 1),
+            _ => (a, b.checked_sub(1)?),
+        };
+        if a >= b || b > strips.intervals() || (a == 0 && b == strips.intervals()) {
+            return None;
+        }
+        let new = strips.strip(a, b);
+        (self.prices[new as usize] > 0.0).then_some((old, new))
+    }
+
+    fn change<R: Rng>(&mut self, rng: &mut R) -> Option<bool> {
+        match rng.random_range(0..8) {
+            0..4 => {
+                let id = self.outsider(rng)?;
+                Some(self.insert(id))
+            }
+            4..6 => {
+                let id = self.members[rng.random_range(0..self.members.len())];
+                (!self.is_root(id)).then(|| self.erase(id))
+            }
+            _ => {
+                let (old, new) = self.shifted(rng)?;
+                let member = self.rules[old as usize].is_some() && !self.is_root(old);
+                Some((!member || self.erase(old)) && self.insert(new))
+            }
+        }
+    }
+
+    fn undo(&mut self) {
+        while let Some((id, old)) = self.log.pop() {
+            self.set_rule(id, old);
+            self.log.pop();
+        }
+        self.orphans.clear();
+    }
+}
+
+impl Landscape for Members {
+    type Solution = Vec<AddRule>;
+
+    fn cost(&self) -> f64 {
+        self.total
+    }
+
+    fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64> {
+        self.growth = GROWTH;
+        match self.change(rng) {
+            Some(true) => {
+                self.drop_orphans();
+                Some(self.total)
+            }
+            Some(false) => {
+                self.undo();
+                None
+            }
+            None => None,
+        }
+    }
+
+    fn accept(&mut self) {
+        self.log.clear();
+    }
+
+    fn reject(&mut self) {
+        self.undo();
+    }
+
+    fn solution(&self) -> Vec<AddRule> {
+        self.rules()
+    }
+}

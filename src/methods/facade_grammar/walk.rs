@@ -1,0 +1,343 @@
+//! Grammar inference as a decision process (Sec. 4.1 and 4.2).
+//!
+//! A state is the set of rules so far; an action adds a rule for the next non-terminal region
+//! without one, bottom to top and left to right. Only the first instance of a region is split: all
+//! others have its type, and so its rule.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use rand::Rng;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::choice::{Choice, Router};
+use super::exploration::Exploration;
+use super::regions::{TypeId, Types};
+use crate::grammar::Costs;
+use crate::optim::adp::{Approximation, Heuristic, Process};
+
+/// Types are interned while the search discovers them, by every part of the solver.
+pub(crate) type SharedTypes = Rc<RefCell<Types>>;
+
+/// Adding a rule for a type.
+#[derive(Debug, Clone)]
+pub(crate) struct AddRule {
+    pub id: TypeId,
+    pub choice: Rc<Choice>,
+}
+
+/// Rules so far, and what is still to be split.
+#[derive(Debug)]
+pub(crate) struct Derivation {
+    /// Types that have a rule or wait for one, in the order of their discovery.
+    pub known: Vec<TypeId>,
+    known_set: FxHashSet<TypeId>,
+    /// Types that wait: place of the region (bottom to top, left to right), type.
+    waiting: Vec<((u16, u16, u16), TypeId)>,
+}
+
+impl Derivation {
+    /// Whether the type has a rule or waits for one.
+    pub fn knows(&self, id: TypeId) -> bool {
+        self.known_set.contains(&id)
+    }
+
+    /// The type to split next. The process is not final.
+    pub fn next(&self) -> TypeId {
+        self.waiting.last().map_or(TypeId::MAX, |(_, id)| *id)
+    }
+
+    fn discover(&mut self, types: &Types, id: TypeId) {
+        if !types.is_terminal(id) && self.known_set.insert(id) {
+            self.known.push(id);
+            let r = types.region(id);
+            self.waiting.push(((r.sheet, r.y0, r.x0), id));
+        }
+    }
+}
+
+/// The decision process of one or several facades.
+#[derive(Debug)]
+pub(crate) struct Inference {
+    pub types: SharedTypes,
+    pub costs: Costs,
+}
+
+impl Process for Inference {
+    type State = Derivation;
+    type Action = AddRule;
+
+    fn initial(&self) -> Derivation {
+        let mut state = Derivation {
+            known: Vec::new(),
+            known_set: FxHashSet::default(),
+            waiting: Vec::new(),
+        };
+        let types = self.types.borrow();
+        for &root in &types.roots {
+            state.discover(&types, root);
+        }
+        state.waiting.sort_unstable_by(|a, b| b.cmp(a));
+        state
+    }
+
+    fn is_final(&self, state: &Derivation) -> bool {
+        state.waiting.is_empty()
+    }
+
+    fn cost(&self, _: &Derivation, action: &AddRule) -> f64 {
+        action.choice.cost(&self.costs)
+    }
+
+    fn apply(&self, state: &mut Derivation, action: &AddRule) {
+        state.waiting.pop();
+        let types = self.types.borrow();
+        let before = state.waiting.len();
+        for &successor in &action.choice.successors {
+            state.discover(&types, successor);
+        }
+        if state.waiting.len() > before {
+            state.waiting.sort_unstable_by(|a, b| b.cmp(a));
+        }
+    }
+}
+
+/// Draws rules from the splitting heuristic.
+pub(crate) struct Explore {
+    pub types: SharedTypes,
+    pub exploration: Rc<RefCell<Exploration>>,
+}
+
+impl Heuristic<Inference> for Explore {
+    fn start_walk<R: Rng>(&mut self, _: &Inference, rng: &mut R) {
+        self.exploration.borrow_mut().protect_anew(rng);
+    }
+
+    fn sample<R: Rng>(&mut self, _: &Inference, state: &Derivation, rng: &mut R) -> AddRule {
+        let id = state.next();
+        let choice = self
+            .exploration
+            .borrow_mut()
+            .sample(&mut self.types.borrow_mut(), id, rng);
+        AddRule { id, choice }
+    }
+}
+
+/// The cost of the rules that each type of a walk needs, itself included: what the walk says of
+/// `V(R)` (Sec. 4.5). Rules that are shared inside a region count once.
+fn closure_costs(walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
+    let place: FxHashMap<TypeId, usize> = walk.iter().enumerate().map(|(i, a)| (a.id, i)).collect();
+    let children: Vec<Vec<usize>> = walk
+        .iter()
+        .map(|a| {
+            a.choice
+                .successors
+                .iter()
+                .filter_map(|s| place.get(s).copied())
+                .collect()
+        })
+        .collect();
+    let mut seen = vec![usize::MAX; walk.len()];
+    let mut stack = Vec::new();
+    (0..walk.len())
+        .map(|start| {
+            let mut sum = 0.0;
+            stack.push(start);
+            seen[start] = start;
+            while let Some(at) = stack.pop() {
+                sum += costs[at];
+                for &child in &children[at] {
+                    if seen[child] != start {
+                        seen[child] = start;
+                        stack.push(child);
+                    }
+                }
+            }
+            sum
+        })
+        .collect()
+}
+
+/// Rules remembered per type.
+const REMEMBERED_RULES: usize = 32;
+
+/// What is known of a type: the best `V(R)`, and the best rules tried, each with the value it
+/// reached.
+#[derive(Debug)]
+struct Known {
+    value: f64,
+    rules: Vec<(f64, Rc<Choice>)>,
+}
+
+impl Known {
+    fn remember(&mut self, value: f64, choice: &Rc<Choice>) {
+        self.value = self.value.min(value);
+        if let Some(known) = self.rules.iter_mut().find(|(_, c)| c == choice) {
+            known.0 = known.0.min(value);
+        } else if self.rules.len() < REMEMBERED_RULES {
+            self.rules.push((value, Rc::clone(choice)));
+        } else if let Some(worst) = self.rules.iter_mut().max_by(|a, b| a.0.total_cmp(&b.0))
+            && value < worst.0
+        {
+            *worst = (value, Rc::clone(choice));
+        }
+    }
+}
+
+/// The paper's value function approximation: the best known `V(R)` of each region, whatever
+/// subregions had rules then. Actions are the reasonable rules and the rules remembered.
+#[derive(Debug)]
+pub(crate) struct BestKnown {
+    exploration: Rc<RefCell<Exploration>>,
+    known: FxHashMap<TypeId, Known>,
+}
+
+impl BestKnown {
+    pub fn new(exploration: Rc<RefCell<Exploration>>) -> Self {
+        Self {
+            exploration,
+            known: FxHashMap::default(),
+        }
+    }
+
+    /// `C(S, a) + V(S')`: the rule, and the value of what it is the first to need.
+    fn price(
+        &self,
+        process: &Inference,
+        types: &Types,
+        state: &Derivation,
+        choice: &Choice,
+    ) -> f64 {
+        let mut sum = choice.cost(&process.costs);
+        for (i, s) in choice.successors.iter().enumerate() {
+            if !types.is_terminal(*s) && !state.knows(*s) && !choice.successors[..i].contains(s) {
+                sum += self.known.get(s).map_or(f64::INFINITY, |k| k.value);
+            }
+        }
+        sum
+    }
+}
+
+impl Approximation<Inference> for BestKnown {
+    fn best(&mut self, process: &Inference, state: &Derivation) -> Option<AddRule> {
+        let id = state.next();
+        let remembered = &self.known.get(&id)?.rules;
+        let types = &mut process.types.borrow_mut();
+        let reasonable = self.exploration.borrow_mut().rules(types, id);
+        let (cost, choice) = remembered
+            .iter()
+            .chain(reasonable.iter())
+            .map(|(_, choice)| (self.price(process, types, state, choice), choice))
+            .min_by(|a, b| a.0.total_cmp(&b.0))?;
+        cost.is_finite().then(|| AddRule {
+            id,
+            choice: Rc::clone(choice),
+        })
+    }
+
+    fn learn(&mut self, _: &Inference, walk: &[AddRule], costs: &[f64]) {
+        for (action, value) in walk.iter().zip(closure_costs(walk, costs)) {
+            let unknown = || Known {
+                value: f64::INFINITY,
+                rules: Vec::new(),
+            };
+            self.known
+                .entry(action.id)
+                .or_insert_with(unknown)
+                .remember(value, &action.choice);
+        }
+    }
+}
+
+/// The approximation of the `best` configuration: over all rules, by shortest paths, with the
+/// learnt values as prices.
+#[derive(Debug)]
+pub(crate) struct ShortestRoutes {
+    router: Router,
+    /// `V(R)` by type, infinite when unknown.
+    values: Vec<f64>,
+    /// Prices of this walk: 0 for what is known already.
+    prices: Vec<f64>,
+    settled: usize,
+    zeroed: Vec<TypeId>,
+}
+
+impl ShortestRoutes {
+    pub fn new(router: Router) -> Self {
+        Self {
+            router,
+            values: Vec::new(),
+            prices: Vec::new(),
+            settled: 0,
+            zeroed: Vec::new(),
+        }
+    }
+
+    /// `V(R)` by type.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+
+    /// What a type is thought to cost before it was ever split: a rule with all its terminals.
+    fn guess(types: &Types, id: TypeId, costs: &Costs) -> f64 {
+        if types.is_terminal(id) {
+            0.0
+        } else {
+            costs.split + costs.successor * f64::from(types.terminals(id))
+        }
+    }
+
+    fn extend(&mut self, types: &Types) {
+        let costs = self.router.costs;
+        for id in self.values.len()..types.len() {
+            let guess = Self::guess(types, id as TypeId, &costs);
+            self.values.push(guess);
+            self.prices.push(guess);
+        }
+    }
+
+    /// Prices follow the walk: what it knows already is free.
+    fn follow(&mut self, state: &Derivation) {
+        for &id in &state.known[self.settled..] {
+            self.prices[id as usize] = 0.0;
+            self.zeroed.push(id);
+        }
+        self.settled = state.known.len();
+    }
+}
+
+impl Approximation<Inference> for ShortestRoutes {
+    fn best(&mut self, process: &Inference, state: &Derivation) -> Option<AddRule> {
+        let id = state.next();
+        let types = &mut process.types.borrow_mut();
+        self.extend(types);
+        self.follow(state);
+        let (costs, prices) = (self.router.costs, &self.prices);
+        let price = |types: &Types, t: TypeId| {
+            prices
+                .get(t as usize)
+                .copied()
+                .unwrap_or_else(|| Self::guess(types, t, &costs))
+        };
+        let (_, choice) = self.router.cheapest(types, id, &price)?;
+        Some(AddRule {
+            id,
+            choice: Rc::new(choice),
+        })
+    }
+
+    fn learn(&mut self, process: &Inference, walk: &[AddRule], costs: &[f64]) {
+        self.extend(&process.types.borrow());
+        for (action, value) in walk.iter().zip(closure_costs(walk, costs)) {
+            let known = &mut self.values[action.id as usize];
+            *known = known.min(value);
+        }
+        for id in self.zeroed.drain(..) {
+            self.prices[id as usize] = self.values[id as usize];
+        }
+        for action in walk {
+            self.prices[action.id as usize] = self.values[action.id as usize];
+        }
+        self.settled = 0;
+    }
+}

@@ -1,0 +1,298 @@
+//! Approximate dynamic programming over a finite decision process.
+//!
+//! The problem: from an initial state, choose actions until the state is final, so that the sum of
+//! the costs is smallest. Bellman's equation, deterministic version (Powell 2011; Wu et al. 2014,
+//! Eq. 3):
+//!
+//! ```text
+//! V_t(S_t) = min_a ( C_t(S_t, a) + V_{t+1}(S_{t+1}) )
+//! ```
+//!
+//! Each iteration walks from the initial to a final state. At every step it *explores* with
+//! probability `epsilon`, drawing an action from a heuristic, or else *exploits* an approximation
+//! of the value function, taking the action that minimizes `C + V`. After the walk the
+//! approximation learns from what was seen. `epsilon` decays exponentially (Sec. 4.2).
+//!
+//! Three traits say what the problem is: [`Process`], [`Heuristic`] and [`Approximation`].
+//!
+//! # Examples
+//! ```
+//! use edifice::optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
+//! use rand::{Rng, RngExt};
+//!
+//! /// Climb to step 10, one or three steps at a time; odd steps cost twice.
+//! struct Stairs;
+//! impl Process for Stairs {
+//!     type State = usize;
+//!     type Action = usize;
+//!     fn initial(&self) -> usize { 0 }
+//!     fn is_final(&self, s: &usize) -> bool { *s >= 10 }
+//!     fn cost(&self, s: &usize, a: &usize) -> f64 { if (s + a) % 2 == 1 { 2.0 } else { 1.0 } }
+//!     fn apply(&self, s: &mut usize, a: &usize) { *s += a }
+//! }
+//! struct Coin;
+//! impl Heuristic<Stairs> for Coin {
+//!     fn sample<R: Rng>(&mut self, _: &Stairs, _: &usize, rng: &mut R) -> usize {
+//!         if rng.random::<bool>() { 1 } else { 3 }
+//!     }
+//! }
+//! struct Table([f64; 13]);
+//! impl Approximation<Stairs> for Table {
+//!     fn best(&mut self, p: &Stairs, s: &usize) -> Option<usize> {
+//!         [1, 3].into_iter().min_by(|a, b| (p.cost(s, a) + self.0[s + a]).total_cmp(&(p.cost(s, b) + self.0[s + b])))
+//!     }
+//!     fn learn(&mut self, _: &Stairs, walk: &[usize], costs: &[f64]) {
+//!         let (mut state, mut rest): (usize, f64) = (0, costs.iter().sum());
+//!         for (a, c) in walk.iter().zip(costs) {
+//!             self.0[state] = self.0[state].min(rest);
+//!             state += a;
+//!             rest -= c;
+//!         }
+//!     }
+//! }
+//! let table = Table(std::array::from_fn(|s| if s >= 10 { 0.0 } else { 100.0 }));
+//! let mut adp = Adp::new(Coin, table, Epsilon::default(), 500, 7);
+//! let best = adp.run(&Stairs).unwrap();
+//! assert_eq!(best.cost, 6.0); // 3 + 3 + 3 + 1 and its orders: 2 + 1 + 2 + 1
+//! ```
+
+use argmin::core::observers::ObserverMode;
+use argmin::core::{Error as ArgminError, Executor, IterState, KV, Problem, Solver, State};
+use rand::{Rng, RngExt};
+
+use super::run::{Step, Steps};
+use crate::rng::{Stream, stream};
+
+/// A finite decision process with additive costs.
+pub trait Process {
+    /// Where the walk stands.
+    type State;
+    /// What can be decided.
+    type Action: Clone;
+
+    /// The state `S_0`.
+    fn initial(&self) -> Self::State;
+    /// Whether nothing is left to decide.
+    fn is_final(&self, state: &Self::State) -> bool;
+    /// `C_t(S_t, a_t)`.
+    fn cost(&self, state: &Self::State, action: &Self::Action) -> f64;
+    /// Moves to the next state.
+    fn apply(&self, state: &mut Self::State, action: &Self::Action);
+}
+
+/// Where exploration draws its actions from.
+pub trait Heuristic<P: Process> {
+    /// An action that is possible in `state`, usually with probability proportional to `exp(-H)`.
+    fn sample<R: Rng>(&mut self, process: &P, state: &P::State, rng: &mut R) -> P::Action;
+    /// Called before each walk, for choices that hold for a whole walk.
+    fn start_walk<R: Rng>(&mut self, _process: &P, _rng: &mut R) {}
+}
+
+/// What was learnt about the value function.
+pub trait Approximation<P: Process> {
+    /// The action that minimizes `C + V`, or `None` when nothing is known of `state` yet.
+    fn best(&mut self, process: &P, state: &P::State) -> Option<P::Action>;
+    /// Learns from a finished walk and the cost of each of its actions.
+    fn learn(&mut self, process: &P, walk: &[P::Action], costs: &[f64]);
+}
+
+/// Probability of exploring at iteration `n` of `N`: `start (end / start)^(n / (N - 1))`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Epsilon {
+    /// At the first iteration: 0.9 in Wu et al. 2014, Sec. 6.1.
+    pub start: f64,
+    /// At the last iteration.
+    pub end: f64,
+}
+
+impl Default for Epsilon {
+    fn default() -> Self {
+        Self {
+            start: 0.9,
+            end: 0.1,
+        }
+    }
+}
+
+impl Epsilon {
+    /// Only the heuristic: importance sampling.
+    pub const ALWAYS_EXPLORE: Self = Self {
+        start: 1.0,
+        end: 1.0,
+    };
+
+    /// The probability at `iteration` of `iterations`.
+    pub fn at(self, iteration: u64, iterations: u64) -> f64 {
+        let progress = iteration as f64 / (iterations.max(2) - 1) as f64;
+        self.start * (self.end / self.start).powf(progress)
+    }
+}
+
+/// The best walk found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Walk<A> {
+    /// Its actions, in order.
+    pub actions: Vec<A>,
+    /// The sum of their costs.
+    pub cost: f64,
+}
+
+/// The solver.
+#[derive(Debug)]
+pub struct Adp<H, V> {
+    heuristic: H,
+    approximation: V,
+    epsilon: Epsilon,
+    iterations: u64,
+    rng: Stream,
+}
+
+/// What goes wrong in a run.
+#[derive(Debug, thiserror::Error)]
+pub enum AdpError {
+    /// Not a single iteration was asked for.
+    #[error("approximate dynamic programming needs at least one iteration")]
+    NoIterations,
+    /// The observer asked to stop before the first walk was complete, or argmin failed.
+    #[error("approximate dynamic programming stopped: {0}")]
+    Stopped(String),
+}
+
+impl<H, V> Adp<H, V> {
+    /// A solver that will walk `iterations` times with the randomness of `seed`.
+    pub fn new(
+        heuristic: H,
+        approximation: V,
+        epsilon: Epsilon,
+        iterations: u64,
+        seed: u64,
+    ) -> Self {
+        Self {
+            heuristic,
+            approximation,
+            epsilon,
+            iterations,
+            rng: stream(seed, "adp", 0),
+        }
+    }
+}
+
+impl<H, V> Adp<H, V> {
+    /// Runs all iterations by argmin's executor and returns the best walk.
+    ///
+    /// # Errors
+    /// [`AdpError`] when there is no iteration to run or argmin stops before the first walk.
+    pub fn run<P>(self, process: P) -> Result<Walk<P::Action>, AdpError>
+    where
+        P: Process,
+        H: Heuristic<P>,
+        V: Approximation<P>,
+    {
+        self.run_observed(process, |_| {}).map(|(walk, _, _)| walk)
+    }
+
+    /// As [`Adp::run`], telling `observer` of every iteration; also returns the process and what
+    /// was learnt.
+    ///
+    /// # Errors
+    /// As [`Adp::run`].
+    pub fn run_observed<P>(
+        self,
+        process: P,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<(Walk<P::Action>, P, V), AdpError>
+    where
+        P: Process,
+        H: Heuristic<P>,
+        V: Approximation<P>,
+    {
+        if self.iterations == 0 {
+            return Err(AdpError::NoIterations);
+        }
+        let iterations = self.iterations;
+        let result = Executor::new(process, self)
+            .configure(|state| state.max_iters(iterations))
+            .ctrlc(false)
+            .add_observer(Steps(observer), ObserverMode::Always)
+            .run()
+            .map_err(|error| AdpError::Stopped(error.to_string()))?;
+        let walk = result
+            .state
+            .best_param
+            .ok_or_else(|| AdpError::Stopped("no walk was completed".into()))?;
+        let process = result
+            .problem
+            .problem
+            .ok_or_else(|| AdpError::Stopped("the process was lost".into()))?;
+        Ok((
+            Walk {
+                actions: walk,
+                cost: result.state.best_cost,
+            },
+            process,
+            result.solver.approximation,
+        ))
+    }
+
+    /// One iteration of Sec. 4.2: from the initial to a final state.
+    fn walk<P>(&mut self, process: &P, epsilon: f64) -> (Vec<P::Action>, Vec<f64>)
+    where
+        P: Process,
+        H: Heuristic<P>,
+        V: Approximation<P>,
+    {
+        let (mut actions, mut costs) = (Vec::new(), Vec::new());
+        let mut state = process.initial();
+        self.heuristic.start_walk(process, &mut self.rng);
+        while !process.is_final(&state) {
+            let explore = self.rng.random::<f64>() < epsilon;
+            let known = if explore {
+                None
+            } else {
+                self.approximation.best(process, &state)
+            };
+            let action =
+                known.unwrap_or_else(|| self.heuristic.sample(process, &state, &mut self.rng));
+            costs.push(process.cost(&state, &action));
+            process.apply(&mut state, &action);
+            actions.push(action);
+        }
+        (actions, costs)
+    }
+}
+
+/// argmin's state for a walk: parameter and cost only.
+type WalkState<A> = IterState<Vec<A>, (), (), (), (), f64>;
+
+impl<P, H, V> Solver<P, WalkState<P::Action>> for Adp<H, V>
+where
+    P: Process,
+    H: Heuristic<P>,
+    V: Approximation<P>,
+{
+    fn name(&self) -> &str {
+        "approximate dynamic programming"
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<P>,
+        state: WalkState<P::Action>,
+    ) -> Result<(WalkState<P::Action>, Option<KV>), ArgminError> {
+        let process = problem
+            .problem
+            .as_ref()
+            .ok_or_else(|| ArgminError::msg("no process"))?;
+        let epsilon = self.epsilon.at(state.get_iter(), self.iterations);
+        let (walk, costs) = self.walk(process, epsilon);
+        self.approximation.learn(process, &walk, &costs);
+        let cost = costs.iter().sum::<f64>();
+        // The walk itself is kept only when it is the best so far: argmin clones what it is given.
+        let state = if cost < state.get_best_cost() {
+            state.param(walk)
+        } else {
+            state
+        };
+        Ok((state.cost(cost), None))
+    }
+}

@@ -1,0 +1,173 @@
+//! Simulated annealing on a landscape that changes in place.
+//!
+//! Metropolis acceptance: a move that changes the cost by `d > 0` is kept with probability
+//! `exp(-d / T)`. The temperature falls geometrically, `T_n = start (end / start)^(n / (N - 1))`.
+//! (argmin's own annealing accepts with `1 / (1 + exp(d / T))`, which is not Metropolis.)
+//!
+//! A [`Landscape`] tries a move in place and then either keeps it or takes it back, so that a move
+//! costs what it changes and not what there is.
+
+use argmin::core::observers::ObserverMode;
+use argmin::core::{Error as ArgminError, Executor, IterState, KV, Problem, Solver, State};
+use rand::{Rng, RngExt};
+
+use super::run::{Step, Steps};
+use crate::rng::{Stream, stream};
+
+/// A solution that can be changed a little and changed back.
+pub trait Landscape {
+    /// What to remember of the best solution.
+    type Solution: Clone;
+
+    /// Cost of the solution as it stands.
+    fn cost(&self) -> f64;
+    /// Changes the solution tentatively; returns the new cost, or `None` when there was nothing to
+    /// try (then nothing has changed).
+    fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64>;
+    /// Keeps the tentative change.
+    fn accept(&mut self);
+    /// Takes the tentative change back.
+    fn reject(&mut self);
+    /// The solution as it stands.
+    fn solution(&self) -> Self::Solution;
+}
+
+/// Geometric cooling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cooling {
+    /// Temperature of the first move, in units of cost.
+    pub start: f64,
+    /// Temperature of the last move.
+    pub end: f64,
+}
+
+impl Cooling {
+    /// Temperature at `iteration` of `iterations`.
+    pub fn at(self, iteration: u64, iterations: u64) -> f64 {
+        let progress = iteration as f64 / (iterations.max(2) - 1) as f64;
+        self.start * (self.end / self.start).powf(progress)
+    }
+}
+
+/// The solver. One iteration of argmin is `moves` proposals.
+#[derive(Debug)]
+pub struct Annealing {
+    cooling: Cooling,
+    iterations: u64,
+    moves: u32,
+    rng: Stream,
+}
+
+/// What goes wrong in a run.
+#[derive(Debug, thiserror::Error)]
+pub enum AnnealingError {
+    /// Temperatures must be positive numbers, the first at least the last.
+    #[error("annealing temperatures {start} to {end} are not positive and falling")]
+    Temperatures {
+        /// First.
+        start: f64,
+        /// Last.
+        end: f64,
+    },
+    /// argmin failed.
+    #[error("annealing stopped: {0}")]
+    Stopped(String),
+}
+
+impl Annealing {
+    /// A solver of `iterations` rounds of `moves` proposals each, with the randomness of `seed`.
+    ///
+    /// # Errors
+    /// [`AnnealingError::Temperatures`].
+    pub fn new(
+        cooling: Cooling,
+        iterations: u64,
+        moves: u32,
+        seed: u64,
+    ) -> Result<Self, AnnealingError> {
+        let Cooling { start, end } = cooling;
+        if !(start.is_finite() && end > 0.0 && start >= end) {
+            return Err(AnnealingError::Temperatures { start, end });
+        }
+        Ok(Self {
+            cooling,
+            iterations,
+            moves,
+            rng: stream(seed, "annealing", 0),
+        })
+    }
+
+    /// Anneals and returns the best solution, its cost, and the landscape as it was left.
+    ///
+    /// # Errors
+    /// [`AnnealingError::Stopped`] when argmin fails.
+    pub fn run<L: Landscape>(
+        self,
+        landscape: L,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<(L::Solution, f64, L), AnnealingError> {
+        let (iterations, start, cost) = (self.iterations, landscape.solution(), landscape.cost());
+        let result = Executor::new(landscape, self)
+            .configure(|state| state.param(start.clone()).cost(cost).max_iters(iterations))
+            .ctrlc(false)
+            .add_observer(Steps(observer), ObserverMode::Always)
+            .run()
+            .map_err(|error| AnnealingError::Stopped(error.to_string()))?;
+        let landscape = result
+            .problem
+            .problem
+            .ok_or_else(|| AnnealingError::Stopped("no landscape".into()))?;
+        let best_cost = result.state.best_cost.min(cost);
+        Ok((
+            result.state.best_param.unwrap_or(start),
+            best_cost,
+            landscape,
+        ))
+    }
+}
+
+impl<L: Landscape> Solver<L, IterState<L::Solution, (), (), (), (), f64>> for Annealing {
+    fn name(&self) -> &str {
+        "simulated annealing"
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<L>,
+        mut state: IterState<L::Solution, (), (), (), (), f64>,
+    ) -> Result<(IterState<L::Solution, (), (), (), (), f64>, Option<KV>), ArgminError> {
+        let landscape = problem
+            .problem
+            .as_mut()
+            .ok_or_else(|| ArgminError::msg("no landscape"))?;
+        let temperature = self.cooling.at(state.get_iter(), self.iterations);
+        let mut round_best = f64::INFINITY;
+        for _ in 0..self.moves {
+            let before = landscape.cost();
+            let Some(after) = landscape.propose(&mut self.rng) else {
+                continue;
+            };
+            if after <= before || self.rng.random::<f64>() < ((before - after) / temperature).exp()
+            {
+                landscape.accept();
+            } else {
+                landscape.reject();
+            }
+            let cost = landscape.cost();
+            if cost < round_best {
+                round_best = cost;
+                // A millionth keeps rounding noise from passing for progress.
+                if cost < state.get_best_cost() - 1e-6 {
+                    state = state.param(landscape.solution()).cost(cost);
+                    state.update();
+                }
+            }
+        }
+        let cost = if round_best.is_finite() {
+            round_best
+        } else {
+            landscape.cost()
+        };
+        Ok((state.cost(cost), None))
+    }
+}
