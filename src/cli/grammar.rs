@@ -1,6 +1,7 @@
 //! Split grammars on the command line.
 
 mod derive;
+mod infer;
 mod show;
 
 use clap::Subcommand;
@@ -8,6 +9,8 @@ use clap::Subcommand;
 /// Commands.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Infer the smallest split grammar of one or several facades.
+    Infer(infer::Args),
     /// Derive a facade from a grammar, at its own or another size.
     Derive(derive::Args),
     /// Show the rules of a grammar, what it costs and what it derives.
@@ -17,6 +20,7 @@ pub enum Command {
 /// Runs the command.
 pub fn run(command: Command) -> edifice::Result<()> {
     match command {
+        Command::Infer(args) => infer::run(&args),
         Command::Derive(args) => derive::run(&args),
         Command::Show(args) => show::run(&args),
     }

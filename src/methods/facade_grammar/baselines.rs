@@ -29,7 +29,10 @@ use super::walk::AddRule;
 use crate::shape::Axis;
 
 /// Chooses a rule for every type that the facades need.
-fn top_down(types: &mut Types, mut choose: impl FnMut(&mut Types, TypeId) -> Option<Rc<Choice>>) -> Vec<AddRule> {
+fn top_down(
+    types: &mut Types,
+    mut choose: impl FnMut(&mut Types, TypeId) -> Option<Rc<Choice>>,
+) -> Vec<AddRule> {
     let mut waiting: Vec<TypeId> = types.roots.clone();
     let mut known: FxHashSet<TypeId> = FxHashSet::default();
     let mut rules = Vec::new();
@@ -49,7 +52,10 @@ fn top_down(types: &mut Types, mut choose: impl FnMut(&mut Types, TypeId) -> Opt
 pub(crate) fn greedy(types: &mut Types, exploration: &mut Exploration) -> Vec<AddRule> {
     top_down(types, |types, id| {
         let rules = exploration.rules(types, id);
-        rules.iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, choice)| Rc::clone(choice))
+        rules
+            .iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, choice)| Rc::clone(choice))
     })
 }
 
@@ -59,7 +65,13 @@ pub(crate) fn all_lines(types: &mut Types) -> Vec<AddRule> {
         [Axis::Y, Axis::X].into_iter().find_map(|axis| {
             let strips = types.strips(id, axis);
             let lines = 0..=strips.intervals() as u16;
-            let all = || Rc::new(Choice::between(Arrangement::Split(axis), lines.collect(), &strips));
+            let all = || {
+                Rc::new(Choice::between(
+                    Arrangement::Split(axis),
+                    lines.collect(),
+                    &strips,
+                ))
+            };
             (strips.intervals() > 1).then(all)
         })
     })
@@ -126,7 +138,9 @@ fn mirror_sum(strips: &Strips, position: &[i64]) -> f64 {
         let doubled = position[left] + position[right];
         while left > 0 && right < n {
             let equal = strips.strip(left - 1, left) == strips.strip(right, right + 1);
-            if !equal || position[left] - position[left - 1] != position[right + 1] - position[right] {
+            if !equal
+                || position[left] - position[left - 1] != position[right + 1] - position[right]
+            {
                 break;
             }
             left -= 1;

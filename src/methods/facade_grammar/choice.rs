@@ -221,8 +221,8 @@ impl Router {
         let mut best = (f64::INFINITY, 0, false);
         for b in 0..mirrors.len() {
             let (left, right) = (usize::from(mirrors[b].0), usize::from(mirrors[b].1));
-            for a in 0..b {
-                let (start, end) = (usize::from(mirrors[a].0), usize::from(mirrors[a].1));
+            for (a, &(start, end)) in mirrors[..b].iter().enumerate() {
+                let (start, end) = (usize::from(start), usize::from(end));
                 let strip = strips.strip(start, left);
                 if strip != strips.strip(right, end) {
                     continue;

@@ -187,16 +187,32 @@ pub fn infer_observed(
     let search = Search::new(facades, settings);
     let (iterations, rules) = match settings.method {
         Method::AdpBest => (settings.iterations, search.best(observer)?),
-        Method::AdpPaper => (settings.iterations, search.paper(Epsilon::default(), observer)?),
-        Method::Importance => (settings.iterations, search.paper(Epsilon::ALWAYS_EXPLORE, observer)?),
-        Method::Greedy => {
-            (1, baselines::greedy(&mut search.types.borrow_mut(), &mut search.exploration.borrow_mut()))
-        }
+        Method::AdpPaper => (
+            settings.iterations,
+            search.paper(Epsilon::default(), observer)?,
+        ),
+        Method::Importance => (
+            settings.iterations,
+            search.paper(Epsilon::ALWAYS_EXPLORE, observer)?,
+        ),
+        Method::Greedy => (
+            1,
+            baselines::greedy(
+                &mut search.types.borrow_mut(),
+                &mut search.exploration.borrow_mut(),
+            ),
+        ),
         Method::Bayesian => (1, baselines::all_lines(&mut search.types.borrow_mut())),
-        Method::Symmetry => (1, baselines::symmetry_maximization(&mut search.types.borrow_mut())),
+        Method::Symmetry => (
+            1,
+            baselines::symmetry_maximization(&mut search.types.borrow_mut()),
+        ),
     };
     let grammar = extract::grammar(&mut search.types.borrow_mut(), facades, &rules);
-    Ok(Outcome { grammar, iterations })
+    Ok(Outcome {
+        grammar,
+        iterations,
+    })
 }
 
 /// Grid lines that a sheet may have along one axis, and cells in all: what fits in memory.
@@ -209,13 +225,28 @@ fn check(facades: &[Facade]) -> Result<(), InferError> {
     }
     for facade in facades {
         let name = || facade.name.clone();
-        facade.check_tiling().map_err(|source| InferError::NotATiling { name: name(), source })?;
-        let layout = facade.indexed().map_err(|source| InferError::NotATiling { name: name(), source })?;
-        let (columns, rows) = (layout.xs.len() - 1, layout.ys.len() - 1);
+        facade
+            .check_tiling()
+            .map_err(|source| InferError::NotATiling {
+                name: name(),
+                source,
+            })?;
+        let layout = facade.indexed().map_err(|source| InferError::NotATiling {
+            name: name(),
+            source,
+        })?;
+        let (columns, rows) = (layout.xs.values().len() - 1, layout.ys.values().len() - 1);
         if columns.max(rows) > MAX_LINES || columns * rows > MAX_CELLS {
-            return Err(InferError::TooLarge { name: name(), columns, rows });
+            return Err(InferError::TooLarge {
+                name: name(),
+                columns,
+                rows,
+            });
         }
-        splittable(facade).map_err(|source| InferError::Unsplittable { name: name(), source })?;
+        splittable(facade).map_err(|source| InferError::Unsplittable {
+            name: name(),
+            source,
+        })?;
     }
     Ok(())
 }
@@ -231,9 +262,18 @@ impl<'a> Search<'a> {
     fn new(facades: &[Facade], settings: &'a Settings) -> Self {
         let mut types = Types::new(facades);
         let repeated = symmetry::detect(&mut types);
-        let lambdas = Lambdas { rule: settings.lambda_rule, lines: settings.lambda_lines };
-        let exploration =
-            Exploration::new(&types, repeated, settings.costs, settings.operations, lambdas, settings.protect);
+        let lambdas = Lambdas {
+            rule: settings.lambda_rule,
+            lines: settings.lambda_lines,
+        };
+        let exploration = Exploration::new(
+            &types,
+            repeated,
+            settings.costs,
+            settings.operations,
+            lambdas,
+            settings.protect,
+        );
         Self {
             settings,
             types: Rc::new(RefCell::new(types)),
@@ -242,28 +282,58 @@ impl<'a> Search<'a> {
     }
 
     fn process(&self) -> Inference {
-        Inference { types: Rc::clone(&self.types), costs: self.settings.costs }
+        Inference {
+            types: Rc::clone(&self.types),
+            costs: self.settings.costs,
+        }
     }
 
     fn explore(&self) -> Explore {
-        Explore { types: Rc::clone(&self.types), exploration: Rc::clone(&self.exploration) }
+        Explore {
+            types: Rc::clone(&self.types),
+            exploration: Rc::clone(&self.exploration),
+        }
     }
 
     /// The text's algorithm (Sec. 4.2); importance sampling when it always explores.
-    fn paper(&self, epsilon: Epsilon, observer: impl FnMut(Step) + 'static) -> Result<Vec<AddRule>, InferError> {
+    fn paper(
+        &self,
+        epsilon: Epsilon,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<Vec<AddRule>, InferError> {
         let values = BestKnown::new(Rc::clone(&self.exploration));
-        let adp = Adp::new(self.explore(), values, epsilon, self.settings.iterations, self.settings.seed);
+        let adp = Adp::new(
+            self.explore(),
+            values,
+            epsilon,
+            self.settings.iterations,
+            self.settings.seed,
+        );
         Ok(adp.run_observed(self.process(), observer)?.0.actions)
     }
 
     /// Dynamic programming with shortest paths, then annealing over the set of types.
-    fn best(&self, observer: impl FnMut(Step) + Clone + 'static) -> Result<Vec<AddRule>, InferError> {
+    fn best(
+        &self,
+        observer: impl FnMut(Step) + Clone + 'static,
+    ) -> Result<Vec<AddRule>, InferError> {
         let router = || Router::new(self.settings.costs, self.settings.operations);
         let walks = (self.settings.iterations / WALKS_SHARE).max(1);
         let routes = ShortestRoutes::new(router());
-        let adp = Adp::new(self.explore(), routes, Epsilon::default(), walks, self.settings.seed);
+        let adp = Adp::new(
+            self.explore(),
+            routes,
+            Epsilon::default(),
+            walks,
+            self.settings.seed,
+        );
         let (walk, _, routes) = adp.run_observed(self.process(), observer.clone())?;
-        let members = Members::new(Rc::clone(&self.types), router(), routes.into_values(), &walk.actions);
+        let members = Members::new(
+            Rc::clone(&self.types),
+            router(),
+            routes.into_values(),
+            &walk.actions,
+        );
         let rounds = self.settings.iterations - walks;
         let annealing = Annealing::new(COOLING, rounds, MOVES_PER_ROUND, self.settings.seed)?;
         Ok(annealing.run(members, observer)?.0)
@@ -275,4 +345,7 @@ const WALKS_SHARE: u64 = 10;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 8;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.
-const COOLING: Cooling = Cooling { start: 1.0, end: 0.05 };
+const COOLING: Cooling = Cooling {
+    start: 1.0,
+    end: 0.05,
+};

@@ -1,0 +1,195 @@
+//! `edifice grammar infer`.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::ValueEnum;
+use edifice::grammar::{Costs, Evaluation, Grammar, evaluate, listing};
+use edifice::io::{self, LabelMap, ReadOptions};
+use edifice::methods::facade_grammar::{Method, Operations, Settings, infer_observed};
+use edifice::methods::procedural_logic;
+use edifice::shape::Facade;
+use edifice::{Error, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::cli::print;
+
+/// Options of `edifice grammar infer`.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  edifice grammar infer house.facade.json -o house.grammar.json
+  edifice grammar infer monge_42.png --ops split --seed 7 -o monge_42.cga --json
+  edifice grammar infer a.facade.json b.facade.json c.facade.json -o joint.grammar.json
+
+Several facades give one joint grammar, with the rules that they share written once.
+Without -o the grammar is listed on standard output.")]
+pub struct Args {
+    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml)
+    #[arg(required = true, value_name = "IN")]
+    inputs: Vec<PathBuf>,
+    /// How to search
+    #[arg(long, value_enum, default_value = "adp")]
+    method: MethodName,
+    /// Iterations of the methods that repeat themselves
+    #[arg(long, default_value_t = Settings::default().iterations, value_parser = clap::value_parser!(u64).range(1..))]
+    iterations: u64,
+    /// Seed of all randomness
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Operations that rules may use: split, repeat, repeat_aba, sym_split, grid_split
+    #[arg(long, default_value_t = Operations::default(), value_name = "LIST")]
+    ops: Operations,
+    /// Cost of a split, and of the extensions that split once
+    #[arg(long, value_parser = super::cost, default_value_t = Costs::default().split)]
+    split_cost: f64,
+    /// Cost of a repeat, and of a repeat of the form ABABA
+    #[arg(long, value_parser = super::cost, default_value_t = Costs::default().repeat)]
+    repeat_cost: f64,
+    /// Do not protect important regions (Sec. 4.7) in exploration
+    #[arg(long)]
+    no_protection: bool,
+    /// What the colours or numbers of label images stand for, as JSON
+    #[arg(long, value_name = "FILE")]
+    label_map: Option<PathBuf>,
+    /// Grammar to write: .grammar.json or .cga
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// End with one line of JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Names of the contract.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Approximate dynamic programming, then annealing over the set of non-terminal types
+    Adp,
+    /// Approximate dynamic programming as Wu et al. 2014 describe it
+    AdpPaper,
+    /// Importance sampling with the splitting heuristic
+    Importance,
+    /// Always the best rule by the splitting heuristic
+    Greedy,
+    /// Binary splits of Weissenberg et al. 2013, made n-ary
+    ProceduralLogic,
+    /// Initial step of Martinovic and Van Gool 2013
+    Bayesian,
+    /// Splitting heuristic of Zhang et al. 2013
+    Symmetry,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let facades = read(args)?;
+    let costs = Costs {
+        split: args.split_cost,
+        sym_split: args.split_cost,
+        grid_split: args.split_cost,
+        repeat: args.repeat_cost,
+        repeat_aba: args.repeat_cost,
+        ..Costs::default()
+    };
+    let started = Instant::now();
+    let (grammar, iterations) = search(args, &facades, costs)?;
+    let seconds = started.elapsed().as_secs_f64();
+    // No method marks its own work: the evaluator derives the grammar and compares.
+    let evaluation = evaluate(&grammar, &facades, &costs).map_err(Error::method)?;
+    match &args.output {
+        Some(path) => io::write_grammar(&grammar, path)?,
+        None => listing(&grammar, true)
+            .iter()
+            .try_for_each(|line| print::line(line))?,
+    }
+    report(args, &evaluation, iterations, seconds)
+}
+
+fn read(args: &Args) -> Result<Vec<Facade>> {
+    let label_map = args.label_map.as_deref().map(LabelMap::read).transpose()?;
+    let options = ReadOptions {
+        label_map,
+        size: None,
+    };
+    let checked = |path: &PathBuf| {
+        let facade = io::read_facade(path, &options)?;
+        facade
+            .check_tiling()
+            .map_err(|error| Error::content(path, error))?;
+        edifice::shape::splittable(&facade).map_err(|error| Error::content(path, error))?;
+        Ok(facade)
+    };
+    args.inputs.iter().map(checked).collect()
+}
+
+fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<(Grammar, u64)> {
+    let method = match args.method {
+        MethodName::Adp => Method::AdpBest,
+        MethodName::AdpPaper => Method::AdpPaper,
+        MethodName::Importance => Method::Importance,
+        MethodName::Greedy => Method::Greedy,
+        MethodName::Bayesian => Method::Bayesian,
+        MethodName::Symmetry => Method::Symmetry,
+        MethodName::ProceduralLogic => return procedural_logic_grammar(facades),
+    };
+    let settings = Settings {
+        method,
+        iterations: args.iterations,
+        seed: args.seed,
+        costs,
+        operations: args.ops,
+        protect: !args.no_protection,
+        ..Settings::default()
+    };
+    let bar = progress_bar(args.iterations);
+    let ticker = bar.clone();
+    let outcome = infer_observed(facades, &settings, move |step| {
+        if step.iteration % 64 == 0 {
+            ticker.set_position(step.iteration);
+            ticker.set_message(format!("cost {:.1}", step.best));
+        }
+    });
+    bar.finish_and_clear();
+    let outcome = outcome.map_err(Error::method)?;
+    Ok((outcome.grammar, outcome.iterations))
+}
+
+fn procedural_logic_grammar(facades: &[Facade]) -> Result<(Grammar, u64)> {
+    let [facade] = facades else {
+        return Err(Error::option(
+            "--method procedural-logic",
+            "takes one facade at a time",
+        ));
+    };
+    let parameters = procedural_logic::Parameters::COMPRESSION;
+    let grammar = procedural_logic::baseline_grammar(facade, &parameters).map_err(Error::method)?;
+    Ok((grammar, 1))
+}
+
+/// A bar on standard error; hidden when that is no terminal.
+fn progress_bar(iterations: u64) -> ProgressBar {
+    let bar = ProgressBar::new(iterations);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg} {eta}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+fn report(args: &Args, evaluation: &Evaluation, iterations: u64, seconds: f64) -> Result<()> {
+    let Evaluation {
+        cost,
+        rules,
+        terminals,
+    } = *evaluation;
+    let cost = (cost * 1e9).round() / 1e9;
+    if args.json {
+        let line = serde_json::json!({
+            "cost": cost, "rules": rules, "terminals": terminals,
+            "iterations": iterations, "seconds": seconds, "seed": args.seed,
+        });
+        return print::line(&line.to_string());
+    }
+    print::message(&format!(
+        "cost {cost}, {rules} rules for {terminals} terminals, {iterations} iterations in {seconds:.2} s"
+    ));
+    Ok(())
+}
