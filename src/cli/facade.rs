@@ -42,7 +42,7 @@ pub struct Convert {
     elements: bool,
     /// Make nearly equal sizes equal and nearly aligned edges aligned, moving no edge further than
     /// this, in the unit of the facade.
-    #[arg(long, value_name = "TOLERANCE")]
+    #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     regularize: Option<f64>,
 }
 

@@ -102,7 +102,7 @@ pub fn parse_json<T: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<T> {
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let value = serde_path_to_error::deserialize(&mut json).map_err(|e| {
         let place = match e.path().to_string() {
-            root if root == "." => {
+            unknown if unknown == "." || unknown.contains('?') => {
                 format!("line {}, column {}", e.inner().line(), e.inner().column())
             }
             place => place,
