@@ -13,6 +13,7 @@ mod parameters;
 mod parse;
 mod rules;
 mod split_grammar;
+mod synthesis;
 
 pub use affinity::{Affinity, Coefficients};
 pub use alphabet::Alphabet;
@@ -26,3 +27,4 @@ pub use parameters::{Extent, Facing, ParameterError, Parameters};
 pub use parse::{BinaryNode, BinaryTree, NoSplit, parse};
 pub use rules::{Call, Instance, InstanceError, ParametricRule, RuleSet};
 pub use split_grammar::split_grammar;
+pub use synthesis::{Style, StyleError, starting_rules, vector};

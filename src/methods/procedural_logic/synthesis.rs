@@ -1,0 +1,182 @@
+//! Virtual facade synthesis (Sec. 4.4): a starting rule with new parameters.
+//!
+//! The facades that share a starting rule have parameter vectors of one length. Extended by width
+//! and height, `v = (W, H, x)`, they satisfy the same linear equations: the sizes of every split sum
+//! to the extent of its scope. Mean and principal components of the vectors therefore satisfy them
+//! too, and so does every sample `v = mean + sigma sum_k sqrt(lambda_k) z_k u_k`, `z_k ~ N(0, 1)`:
+//! it fills the facade by construction. What remains to be ensured is that all sizes are positive.
+
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use super::model::{Known, Model};
+use super::rules::{Call, Instance};
+
+/// A component whose variance is below this share of the largest one is numerical noise.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// Draws per facade before the last one is pulled towards the mean.
+const DRAWS: usize = 1000;
+
+/// A Gaussian over the parameter vectors of one starting rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    /// The starting rule.
+    pub start: Call,
+    /// Number of facades it was learned from.
+    pub examples: usize,
+    /// Width, height and parameters, averaged over the facades.
+    pub mean: DVector<f64>,
+    /// One column per principal component, scaled by its standard deviation.
+    pub components: DMatrix<f64>,
+    /// Unit of the facades.
+    pub unit: String,
+}
+
+/// Why a starting rule gives no new facades.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StyleError {
+    /// Too few facades to see how the parameters vary.
+    #[error("{found} facades start with this rule, at least 2 are needed")]
+    TooFew {
+        /// Facades found.
+        found: usize,
+    },
+    /// A facade of the rule has another number of parameters.
+    #[error("facade {name} has {found} parameters, the others {expected}")]
+    Parameters {
+        /// Its name.
+        name: String,
+        /// Number of parameters of the others.
+        expected: usize,
+        /// Its own number.
+        found: usize,
+    },
+    /// `sigma` is negative or not finite.
+    #[error("sigma is {value}, expected a number from 0")]
+    Sigma {
+        /// The value found.
+        value: f64,
+    },
+}
+
+impl Style {
+    /// Learns mean and principal components of the facades that start with `start`.
+    ///
+    /// Complexity: `O(n^2 p)` for `n` facades and `p` parameters: the components come from the
+    /// `n x n` matrix of inner products, of which at most `n - 1` are not zero.
+    ///
+    /// # Errors
+    /// [`StyleError::TooFew`] for fewer than two facades, [`StyleError::Parameters`].
+    pub fn learn(model: &Model, start: Call) -> Result<Self, StyleError> {
+        let is_example = |known: &&Known| known.instance.start == start;
+        let examples: Vec<&Known> = model.facades.iter().filter(is_example).collect();
+        let count = examples.len();
+        if count < 2 {
+            return Err(StyleError::TooFew { found: count });
+        }
+        let vectors: Vec<DVector<f64>> = examples.iter().map(|k| vector(&k.instance)).collect();
+        let length = vectors[0].len();
+        for (known, vector) in examples.iter().zip(&vectors) {
+            if vector.len() != length {
+                return Err(StyleError::Parameters {
+                    name: known.name.clone(),
+                    expected: length,
+                    found: vector.len(),
+                });
+            }
+        }
+        let mean = vectors.iter().sum::<DVector<f64>>() / count as f64;
+        let deviations: Vec<DVector<f64>> = vectors.iter().map(|v| v - &mean).collect();
+        let centred = DMatrix::from_columns(&deviations) / ((count - 1) as f64).sqrt();
+        Ok(Self {
+            start,
+            examples: count,
+            mean,
+            components: scaled_components(&centred),
+            unit: examples[0].unit.clone(),
+        })
+    }
+
+    /// A new facade: same structure, sizes drawn with `sigma` times the deviations of the examples.
+    ///
+    /// A draw with a size that is not positive is thrown away; after a thousand of them the last
+    /// one is pulled towards the mean, whose sizes are all positive, until it is valid.
+    ///
+    /// # Errors
+    /// [`StyleError::Sigma`].
+    pub fn sample<R: Rng>(&self, sigma: f64, rng: &mut R) -> Result<Instance, StyleError> {
+        if !(sigma.is_finite() && sigma >= 0.0) {
+            return Err(StyleError::Sigma { value: sigma });
+        }
+        let smallest = 1e-6 * self.mean.min();
+        let mut offset = DVector::zeros(self.mean.len());
+        for _ in 0..DRAWS {
+            let z = DVector::from_fn(self.components.ncols(), |_, _| rng.sample(StandardNormal));
+            offset = &self.components * (z * sigma);
+            if (&self.mean + &offset).min() >= smallest {
+                return Ok(self.instance(&(&self.mean + &offset)));
+            }
+        }
+        let reach = self.mean.iter().zip(&offset).map(|(&mean, &offset)| {
+            if mean + offset < smallest {
+                (mean - smallest) / -offset
+            } else {
+                1.0
+            }
+        });
+        let share = reach.fold(1.0, f64::min);
+        Ok(self.instance(&(&self.mean + offset * share)))
+    }
+
+    fn instance(&self, vector: &DVector<f64>) -> Instance {
+        Instance {
+            width: vector[0],
+            height: vector[1],
+            start: self.start,
+            parameters: vector.iter().skip(2).copied().collect(),
+        }
+    }
+}
+
+/// `(W, H, x)`.
+pub fn vector(instance: &Instance) -> DVector<f64> {
+    let sizes = [instance.width, instance.height];
+    let all: Vec<f64> = sizes
+        .into_iter()
+        .chain(instance.parameters.iter().copied())
+        .collect();
+    DVector::from_vec(all)
+}
+
+/// Principal directions of the columns, each scaled by its standard deviation.
+///
+/// With `X = U S V'`, the directions scaled are `U S = X V`, and `V` diagonalizes `X' X`.
+fn scaled_components(centred: &DMatrix<f64>) -> DMatrix<f64> {
+    let eigen = (centred.transpose() * centred).symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let kept: Vec<DVector<f64>> = order
+        .into_iter()
+        .filter(|&k| eigen.eigenvalues[k] > NEGLIGIBLE * largest.max(f64::MIN_POSITIVE))
+        .map(|k| centred * eigen.eigenvectors.column(k))
+        .collect();
+    if kept.is_empty() {
+        DMatrix::zeros(centred.nrows(), 0)
+    } else {
+        DMatrix::from_columns(&kept)
+    }
+}
+
+/// The starting rules with the number of facades of each, most frequent first.
+pub fn starting_rules(model: &Model) -> Vec<(Call, usize)> {
+    let mut counts = std::collections::BTreeMap::new();
+    for known in &model.facades {
+        *counts.entry(known.instance.start).or_insert(0) += 1;
+    }
+    let mut starts: Vec<(Call, usize)> = counts.into_iter().collect();
+    starts.sort_by_key(|&(start, count)| (std::cmp::Reverse(count), start));
+    starts
+}
