@@ -2,7 +2,7 @@
 
 pub mod data;
 mod figure_10;
-mod picture;
+use super::picture;
 
 use super::{Artefact, Experiment};
 

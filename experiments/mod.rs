@@ -28,16 +28,18 @@
 //! takes them from there. Time a unit inside its function (it runs on one thread), never around [`Context::units`].
 
 mod frame;
+mod picture;
 
 pub mod building_exteriors;
 pub mod facade_grammar;
+pub mod procedural_logic;
 
 use std::process::ExitCode;
 
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
 
 /// Every paper's experiment, in the order of the report.
-pub const ALL: &[&Experiment] = &[&facade_grammar::EXPERIMENT];
+pub const ALL: &[&Experiment] = &[&facade_grammar::EXPERIMENT, &procedural_logic::EXPERIMENT];
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.
 pub fn main(experiment: &'static Experiment) -> ExitCode {

@@ -6,6 +6,7 @@
 
 pub mod adp;
 pub mod annealing;
+pub mod grid;
 pub mod qp;
 pub mod qp_problem;
 mod run;

@@ -1,0 +1,95 @@
+//! Weissenberg et al. 2013, *Is there a Procedural Logic to Architecture?*: every figure and every
+//! number of the text.
+
+mod compression;
+pub mod data;
+mod figure_3;
+mod figure_4;
+mod figure_5;
+mod figure_6;
+mod frequent_rules;
+pub mod gold;
+mod lossless;
+mod made;
+mod readings;
+mod retrieval_search;
+pub mod words;
+
+use super::{Artefact, Experiment};
+use crate::report::Row;
+
+/// The paper's figures and the numbers of its text.
+pub const EXPERIMENT: Experiment = Experiment {
+    slug: "procedural_logic",
+    paper: "Weissenberg, Riemenschneider, Prasad, Van Gool 2013: Is there a Procedural Logic to Architecture?",
+    artefacts: ARTEFACTS,
+};
+
+const ARTEFACTS: &[Artefact] = &[
+    Artefact {
+        name: "lossless",
+        title: "every facade from its rules, pixel by pixel (Sec. 5.2)",
+        run: lossless::run,
+    },
+    Artefact {
+        name: "compression",
+        title: "number of rules over alpha, b_p and b_h (Sec. 5.3, Eq. 12)",
+        run: compression::run,
+    },
+    Artefact {
+        name: "figure_3",
+        title: "distance matrices in the order of the dendrogram",
+        run: figure_3::run,
+    },
+    Artefact {
+        name: "figure_4",
+        title: "cumulative match characteristics of facade retrieval",
+        run: figure_4::run,
+    },
+    Artefact {
+        name: "retrieval_search",
+        title: "parameters searched for retrieval (Sec. 5.4)",
+        run: retrieval_search::run,
+    },
+    Artefact {
+        name: "figure_5",
+        title: "time and number of rules against the number of facades",
+        run: figure_5::run,
+    },
+    Artefact {
+        name: "figure_6",
+        title: "virtual facades: starting rules by sigma",
+        run: figure_6::run,
+    },
+    Artefact {
+        name: "frequent_rules",
+        title: "the most frequent rules, in words (Sec. 5.5)",
+        run: frequent_rules::run,
+    },
+    Artefact {
+        name: "readings",
+        title: "what the text leaves open: rules and retrieval under each reading",
+        run: readings::run,
+    },
+];
+
+/// The values of `alpha` that the searches try; Sec. 5.3 names 0.25 to 1.
+const ALPHAS: [f64; 6] = [0.0, 0.25, 0.5, 0.6, 0.75, 1.0];
+/// The values of `b_p`; Sec. 5.3 names 0.0625 to 0.5.
+const PARENTAL: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
+/// The values of `b_h`; Sec. 5.3 names 0.125 to 1.
+const HORIZONTAL: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
+/// Ranks of Fig. 4.
+const RANKS: usize = 20;
+
+/// A row of an artefact's CSV.
+fn row(dataset: &str, method: &str, instance: impl Into<String>, metric: &str, value: f64) -> Row {
+    Row {
+        dataset: dataset.into(),
+        method: method.into(),
+        instance: instance.into(),
+        metric: metric.into(),
+        value,
+        ..Row::default()
+    }
+}
