@@ -2,6 +2,7 @@
 //!
 //! - [`adp`]: approximate dynamic programming with exploration and exploitation.
 //! - [`annealing`]: Metropolis simulated annealing on a landscape that changes in place.
+//! - [`grid`]: exhaustive search over a grid of values.
 //! - [`qp`]: convex quadratic programming, the mathematics being Clarabel's.
 
 pub mod adp;
