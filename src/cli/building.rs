@@ -1,12 +1,56 @@
 //! Houses on the command line.
 
+mod attributes;
+mod data;
+mod draw;
+mod evaluate;
+mod learn;
+mod show;
+
 use clap::Subcommand;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {}
+pub enum Command {
+    /// Measure the 49 attributes of buildings; prints CSV.
+    #[command(after_help = "Examples:
+  edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv")]
+    Attributes(attributes::Args),
+    /// Learn the hierarchical model from a database of buildings or a CSV with a schema.
+    #[command(after_help = "Examples:
+  edifice building learn datasets/building_exteriors/houses.buildings.jsonl -o model.houses.json
+  edifice building learn ames_raw.csv.gz --schema datasets/building_exteriors/ames.schema.json --max-styles 8 -o ames.houses.json")]
+    Learn(learn::Args),
+    /// Show styles, cardinalities and lateral edges of a model, and draw its network.
+    #[command(after_help = "Examples:
+  edifice building show model.houses.json --svg network.svg")]
+    Show(show::Args),
+    /// Sample houses, as attributes; prints CSV.
+    #[command(after_help = "Examples:
+  edifice building sample model.houses.json -n 5
+  edifice building sample model.houses.json --given garage=none --given bbox.w=14 --given roof.hip=yes
+  edifice building sample model.houses.json --given wwr=0.2,0.2,0.1,0.1 --most-probable")]
+    Sample(draw::SampleArgs),
+    /// Complete houses whose attributes are partly missing; prints CSV.
+    #[command(after_help = "Examples:
+  edifice building complete model.houses.json partial.building.json -n 5 --most-probable
+  edifice building complete ames.houses.json some.csv --schema datasets/building_exteriors/ames.schema.json
+A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
+    Complete(draw::CompleteArgs),
+    /// Compare models by the negative log-likelihood of houses they have not seen.
+    #[command(after_help = "Examples:
+  edifice building evaluate datasets/building_exteriors/houses.buildings.jsonl --splits 2 --models ours,gmm")]
+    Evaluate(evaluate::Args),
+}
 
 /// Runs the command.
 pub fn run(command: Command) -> edifice::Result<()> {
-    match command {}
+    match command {
+        Command::Attributes(args) => attributes::run(&args),
+        Command::Learn(args) => learn::run(&args),
+        Command::Show(args) => show::run(&args),
+        Command::Sample(args) => draw::sample(&args),
+        Command::Complete(args) => draw::complete(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+    }
 }

@@ -4,6 +4,7 @@
 //! go through [`write_atomic`], so that a failed run leaves nothing half-written. [`read_facade`] and
 //! [`write_facade`] tell the format by the file name.
 
+pub mod building_csv;
 pub mod building_json;
 pub mod cmp_xml;
 pub mod draw;

@@ -4,6 +4,36 @@ use super::attributes::{AttributeRow, GROUPS, Level};
 use crate::model::hierarchy::Group;
 use crate::model::{ModelError, Table};
 
+/// A table and its attributes.
+#[derive(Debug, Clone)]
+pub struct Dataset {
+    /// One house a row.
+    pub table: Table,
+    /// Which columns belong together.
+    pub groups: Vec<Group>,
+}
+
+impl Dataset {
+    /// The houses of the given rows.
+    pub fn select(&self, rows: &[usize]) -> Self {
+        Self {
+            table: self.table.select(rows),
+            groups: self.groups.clone(),
+        }
+    }
+}
+
+/// The 49 attributes of many buildings with the paper's 13 groups.
+///
+/// # Errors
+/// As [`table`].
+pub fn dataset(rows: &[AttributeRow]) -> Result<Dataset, ModelError> {
+    Ok(Dataset {
+        table: table(rows)?,
+        groups: groups(),
+    })
+}
+
 /// The 49 attributes of many buildings as a table: continuous groups as real columns, elements as
 /// yes/no columns, missing kept missing.
 ///

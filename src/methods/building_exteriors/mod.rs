@@ -5,4 +5,10 @@
 //! vector of 49 [`attributes`] (Sec. 4.2, Appendix A).
 
 pub mod attributes;
+pub mod baseline;
+pub mod compare;
 pub mod data;
+pub mod given;
+pub mod model_file;
+pub mod network;
+pub mod schema;

@@ -1,0 +1,120 @@
+//! `edifice building sample` and `complete`.
+
+use std::path::PathBuf;
+
+use edifice::methods::building_exteriors::given::evidence;
+use edifice::methods::building_exteriors::model_file::ModelFile;
+use edifice::model::Table;
+use edifice::rng::stream;
+use edifice::{Error, Result};
+
+use super::data::{self, Input, csv_lines};
+use crate::cli::print;
+
+/// Samples among which the most probable are sought.
+const POOL: usize = 2000;
+/// Root mean square distance, in standard deviations, below which two houses are the same.
+const APART: f64 = 0.05;
+
+/// What to draw.
+#[derive(clap::Args)]
+struct Draw {
+    /// Houses to draw.
+    #[arg(short = 'n', long, default_value_t = 10)]
+    count: usize,
+    /// Draw many and keep the most probable that differ.
+    #[arg(long)]
+    most_probable: bool,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Options of `sample`.
+#[derive(clap::Args)]
+pub struct SampleArgs {
+    /// The model (`*.houses.json`).
+    model: PathBuf,
+    /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none (all zero); repeatable.
+    #[arg(long)]
+    given: Vec<String>,
+    /// Sample from this style only (the first is 1).
+    #[arg(long, conflicts_with_all = ["given", "most_probable"])]
+    style: Option<usize>,
+    #[command(flatten)]
+    draw: Draw,
+}
+
+/// Options of `complete`.
+#[derive(clap::Args)]
+pub struct CompleteArgs {
+    /// The model (`*.houses.json`).
+    model: PathBuf,
+    #[command(flatten)]
+    input: Input,
+    /// Attributes to take as observed; all others are completed. All by default.
+    #[arg(long, value_delimiter = ',')]
+    keep: Vec<String>,
+    #[command(flatten)]
+    draw: Draw,
+}
+
+/// Runs `sample`.
+pub fn sample(args: &SampleArgs) -> Result<()> {
+    let file = data::model(&args.model)?;
+    let mut rng = stream(args.draw.seed, "building/sample", 0);
+    if args.draw.count == 0 {
+        return Err(Error::option("--count", "must be at least 1"));
+    }
+    if let Some(style) = args.style {
+        let index = style
+            .checked_sub(1)
+            .ok_or_else(|| Error::option("--style", "the first style is 1"))?;
+        let draws = file.model.sample_style(index, args.draw.count, &mut rng);
+        let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
+        return print::line(&csv_lines(&draws.table).join("\n"));
+    }
+    let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
+    let given = evidence(&file, &kinds.table, &args.given)
+        .map_err(|e| Error::option("--given", e.to_string()))?;
+    print::line(&drawn(&file, &given, &args.draw, 0)?.join("\n"))
+}
+
+/// Runs `complete`.
+pub fn complete(args: &CompleteArgs) -> Result<()> {
+    let file = data::model(&args.model)?;
+    let mut table = args.input.read()?.table;
+    if !args.keep.is_empty() {
+        let mut columns: Vec<&str> = Vec::new();
+        for name in &args.keep {
+            let group = file.groups.iter().find(|g| &g.name == name);
+            let group =
+                group.ok_or_else(|| Error::option("--keep", format!("no attribute `{name}`")))?;
+            columns.extend(group.columns.iter().map(String::as_str));
+        }
+        table = table.only(&columns).map_err(Error::method)?;
+    }
+    for row in 0..table.rows() {
+        let lines = drawn(&file, &table.select(&[row]), &args.draw, row as u64)?;
+        // The header stands once, before the first house.
+        let first = usize::from(row > 0);
+        print::line(&lines[first..].join("\n"))?;
+    }
+    Ok(())
+}
+
+/// Completions of one row as CSV lines, the header first.
+fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<String>> {
+    let mut rng = stream(draw.seed, "building/draw", row);
+    let model = &file.model;
+    let draws = if draw.most_probable {
+        let pool = POOL.max(draw.count);
+        model.most_probable(given, draw.count, pool, APART, None, &mut rng)
+    } else if given.columns().is_empty() {
+        model.sample(draw.count, &mut rng)
+    } else {
+        model.complete(given, draw.count, &mut rng)
+    };
+    let draws = draws.map_err(Error::method)?;
+    Ok(csv_lines(&draws.table))
+}

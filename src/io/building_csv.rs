@@ -1,0 +1,49 @@
+//! Houses as a CSV table of text cells, plain or gzipped (`*.csv`, `*.csv.gz`).
+
+use std::io::Read;
+use std::path::Path;
+
+use super::read_bytes;
+use crate::{Error, Result};
+
+/// A CSV file: its header and its rows, all of the header's length.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextTable {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// Reads a CSV file with a header line.
+///
+/// # Errors
+/// Names the file and the line of a row that is malformed or has too few or too many cells; a file
+/// without rows is an error too.
+pub fn read(path: &Path) -> Result<TextTable> {
+    let bytes = read_bytes(path)?;
+    let text = if bytes.starts_with(&[0x1f, 0x8b]) {
+        let mut text = Vec::new();
+        let mut gz = flate2::read::GzDecoder::new(bytes.as_slice());
+        gz.read_to_end(&mut text)
+            .map_err(|e| Error::content(path, e))?;
+        text
+    } else {
+        bytes
+    };
+    let at = |e: csv::Error| {
+        let line = e.position().map_or(1, csv::Position::line);
+        Error::input(path, format!("line {line}"), e)
+    };
+    let mut reader = csv::Reader::from_reader(text.as_slice());
+    let header = reader.headers().map_err(at)?;
+    let header = header.iter().map(str::to_owned).collect();
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        rows.push(record.map_err(at)?.iter().map(str::to_owned).collect());
+    }
+    if rows.is_empty() {
+        return Err(Error::content(path, "the table has no rows"));
+    }
+    Ok(TextTable { header, rows })
+}

@@ -1,0 +1,177 @@
+//! The paper's baseline (Sec. 7): a Gaussian mixture over the concatenated attributes, its number
+//! of components chosen by MDL.
+//!
+//! Real columns are standardised by the training houses. A category (or yes/no) code c becomes
+//! `c + u`, u uniform on (-1/2, 1/2), and its probability is the mass of that unit interval,
+//! estimated over [`DRAWS`] draws of u: so that a density over all columns can be set beside the
+//! other models, whose discrete columns have probabilities. Every component has the same
+//! normal-inverse-Wishart prior as the Gaussians of the hierarchical model.
+
+use rand::{Rng, RngExt};
+
+use crate::model::conjugate::LinearPrior;
+use crate::model::gmm::{Criterion, Mixture, Points, Prior, Settings, select};
+use crate::model::{Cell, ModelError, Table};
+use crate::rng::stream;
+
+/// Draws of u per house.
+pub const DRAWS: usize = 200;
+
+/// A learned mixture over the columns of a table.
+#[derive(Debug, Clone)]
+pub struct Baseline {
+    columns: Vec<Column>,
+    mixture: Mixture,
+}
+
+#[derive(Debug, Clone)]
+struct Column {
+    name: String,
+    /// Number of categories; `None` for a real column.
+    categories: Option<usize>,
+    mean: f64,
+    scale: f64,
+}
+
+impl Baseline {
+    /// Fits mixtures of 1 to `most` components to complete rows and keeps the one of least
+    /// description length.
+    ///
+    /// # Errors
+    /// [`ModelError::Missing`] for a missing value, which a joint density over concatenated
+    /// vectors has no place for.
+    pub fn learn(
+        train: &Table,
+        prior: &LinearPrior,
+        most: usize,
+        seed: u64,
+    ) -> Result<Self, ModelError> {
+        let mut columns = Vec::new();
+        for column in train.columns() {
+            let categories = column.categories().map(<[String]>::len);
+            let values = (0..train.rows()).map(|row| value(column.name(), column.cell(row), row));
+            let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+            let n = values.len().max(1) as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
+            // A category code keeps its own scale, a constant column unit scale, as in the
+            // hierarchical model.
+            let plain = categories.is_some() || variance <= 1e-24 * mean * mean;
+            columns.push(Column {
+                name: column.name().to_owned(),
+                categories,
+                mean,
+                scale: if plain { 1.0 } else { variance.sqrt() },
+            });
+        }
+        let mut rng = stream(seed, "building_exteriors/dequantize", 0);
+        let mut values = encode(&columns, train)?;
+        for row in values.chunks_mut(columns.len()) {
+            jitter(&columns, row, &mut rng);
+        }
+        let points = Points::new(columns.len(), &values)?;
+        let settings = Settings {
+            prior: Prior::of_linear(prior, columns.len()),
+            ..Settings::default()
+        };
+        let selected = select(&points, most, Criterion::Mdl, &settings, seed)?;
+        Ok(Self {
+            columns,
+            mixture: selected.fitted.mixture,
+        })
+    }
+
+    /// Number of components.
+    pub fn components(&self) -> usize {
+        self.mixture.components()
+    }
+
+    /// Mean of component `k` in the columns' own units.
+    pub fn mean(&self, k: usize) -> Vec<f64> {
+        self.decode(self.mixture.mean(k))
+    }
+
+    /// `log p(row)` of every complete row, nats, in the columns' own units.
+    ///
+    /// # Errors
+    /// As [`Baseline::learn`].
+    pub fn log_likelihood(&self, data: &Table, seed: u64) -> Result<Vec<f64>, ModelError> {
+        let d = self.columns.len();
+        let values = encode(&self.columns, data)?;
+        let units: f64 = self.columns.iter().map(|c| c.scale.ln()).sum();
+        let mut rng = stream(seed, "building_exteriors/dequantize", 1);
+        let mut out = Vec::with_capacity(data.rows());
+        for row in values.chunks(d) {
+            let mut draws = Vec::with_capacity(DRAWS * d);
+            for _ in 0..DRAWS {
+                let mut draw = row.to_vec();
+                jitter(&self.columns, &mut draw, &mut rng);
+                draws.extend(draw);
+            }
+            let logs = self.mixture.log_density(&Points::new(d, &draws)?)?;
+            let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let mean = logs.iter().map(|l| (l - top).exp()).sum::<f64>() / DRAWS as f64;
+            out.push(top + mean.ln() - units);
+        }
+        Ok(out)
+    }
+
+    /// Draws `count` houses with the named columns given, in the columns' own units and order.
+    pub fn sample_given<R: Rng>(
+        &self,
+        given: &[(&str, f64)],
+        count: usize,
+        rng: &mut R,
+    ) -> Vec<Vec<f64>> {
+        let fixed: Vec<Option<f64>> = self
+            .columns
+            .iter()
+            .map(|c| {
+                let value = given.iter().find(|(name, _)| *name == c.name);
+                value.map(|(_, v)| (v - c.mean) / c.scale)
+            })
+            .collect();
+        let draws = self.mixture.sample_given(&fixed, count, rng);
+        draws
+            .chunks(self.columns.len())
+            .map(|row| self.decode(row))
+            .collect()
+    }
+
+    fn decode(&self, row: &[f64]) -> Vec<f64> {
+        let columns = self.columns.iter().zip(row);
+        columns.map(|(c, v)| v * c.scale + c.mean).collect()
+    }
+}
+
+fn value(column: &str, cell: Cell, row: usize) -> Result<f64, ModelError> {
+    match cell {
+        Cell::Real(v) => Ok(v),
+        Cell::Code(c) => Ok(c as f64),
+        Cell::Missing => Err(ModelError::Missing {
+            column: column.to_owned(),
+            row,
+        }),
+    }
+}
+
+/// Standardised rows, one after the other.
+fn encode(columns: &[Column], data: &Table) -> Result<Vec<f64>, ModelError> {
+    let mut out = Vec::with_capacity(columns.len() * data.rows());
+    for row in 0..data.rows() {
+        for column in columns {
+            let cell = data.column(&column.name)?.cell(row);
+            out.push((value(&column.name, cell, row)? - column.mean) / column.scale);
+        }
+    }
+    Ok(out)
+}
+
+/// Spreads category codes over their unit intervals.
+fn jitter<R: Rng>(columns: &[Column], row: &mut [f64], rng: &mut R) {
+    for (column, value) in columns.iter().zip(row) {
+        if column.categories.is_some() {
+            *value += rng.random::<f64>() - 0.5;
+        }
+    }
+}

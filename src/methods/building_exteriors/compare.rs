@@ -1,0 +1,98 @@
+//! The models of Fig. 12, learned from the same houses with the same priors and judged on others.
+
+use super::baseline::Baseline;
+use super::data::Dataset;
+use crate::model::ModelError;
+use crate::model::hierarchy::{Settings, Variant, learn};
+
+/// A model of Fig. 12.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contender {
+    /// The hierarchical model with lateral edges.
+    Ours,
+    /// Without lateral edges.
+    Model1,
+    /// Without the second hidden level (Fig. 4b).
+    Model2,
+    /// A directed model without hidden variables (Fig. 4a).
+    Model3,
+    /// A Gaussian mixture chosen by MDL.
+    Gmm,
+}
+
+impl Contender {
+    /// All five, in the order of Fig. 12.
+    pub const ALL: [Contender; 5] = [
+        Contender::Ours,
+        Contender::Model1,
+        Contender::Model2,
+        Contender::Model3,
+        Contender::Gmm,
+    ];
+
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Contender::Ours => "ours",
+            Contender::Model1 => "model_1",
+            Contender::Model2 => "model_2",
+            Contender::Model3 => "model_3",
+            Contender::Gmm => "gmm",
+        }
+    }
+
+    fn variant(self) -> Option<Variant> {
+        match self {
+            Contender::Ours => Some(Variant::Full),
+            Contender::Model1 => Some(Variant::NoLateral),
+            Contender::Model2 => Some(Variant::NoSecondLevel),
+            Contender::Model3 => Some(Variant::Directed),
+            Contender::Gmm => None,
+        }
+    }
+}
+
+/// Negative log-likelihood of each house of `test`, in nats, under a model learned from `train`.
+/// `settings.variant` is set by the contender; the mixture shares the prior of the Gaussians.
+///
+/// # Errors
+/// As [`learn`] and [`Baseline::learn`].
+pub fn held_out(
+    contender: Contender,
+    train: &Dataset,
+    test: &Dataset,
+    settings: &Settings,
+    seed: u64,
+) -> Result<Vec<f64>, ModelError> {
+    let logs = match contender.variant() {
+        Some(variant) => {
+            let settings = Settings {
+                variant,
+                ..settings.clone()
+            };
+            let learned = learn(&train.table, &train.groups, &settings, seed)?;
+            learned.model.log_likelihood(&test.table)?
+        }
+        None => {
+            let most = *settings.styles.end();
+            let prior = &settings.priors.linear;
+            Baseline::learn(&train.table, prior, most, seed)?.log_likelihood(&test.table, seed)?
+        }
+    };
+    Ok(logs.into_iter().map(|log| -log).collect())
+}
+
+/// Row numbers of split `index`: the houses to learn from, then the others.
+///
+/// `share` of `rows` are learned from; the same seed gives the same splits to every model.
+pub fn split(rows: usize, share: f64, seed: u64, index: u64) -> (Vec<usize>, Vec<usize>) {
+    use rand::seq::SliceRandom;
+    let mut order: Vec<usize> = (0..rows).collect();
+    order.shuffle(&mut crate::rng::stream(
+        seed,
+        "building_exteriors/split",
+        index,
+    ));
+    let test = order.split_off(((rows as f64) * share).round() as usize);
+    (order, test)
+}

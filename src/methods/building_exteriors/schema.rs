@@ -1,0 +1,200 @@
+//! Which columns of a table of houses are which attributes: `*.schema.json`.
+//!
+//! ```json
+//! { "format": "edifice/attributes", "version": 1,
+//!   "keep": { "Bldg Type": ["1Fam"] },
+//!   "missing": ["", "NA"],
+//!   "groups": [
+//!     { "name": "bbox", "kind": "continuous", "columns": ["bbox_w", "bbox_d"] },
+//!     { "name": "porch", "kind": "binary", "columns": ["porch_front", "porch_back"] },
+//!     { "name": "roof", "kind": "category", "columns": ["roof_style"] } ] }
+//! ```
+//! `keep` leaves only rows with one of the listed texts; `missing` lists the texts that mean "not
+//! known" (empty cells by default). Binary cells are 0/1, no/yes or false/true.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::data::Dataset;
+use crate::model::hierarchy::Group;
+use crate::model::{ModelError, Table};
+
+/// The value of the key `format`.
+pub const FORMAT: &str = "edifice/attributes";
+/// The only version.
+pub const VERSION: u64 = 1;
+
+/// How the cells of a group are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Numbers: one vector-valued attribute with a hidden variable of its own.
+    Continuous,
+    /// Yes or no: a binary vector.
+    Binary,
+    /// One of a few texts; the categories are those that occur, in alphabetical order.
+    Category,
+}
+
+/// One attribute and its columns.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SchemaGroup {
+    /// Name of the attribute.
+    pub name: String,
+    /// How its cells are read.
+    pub kind: Kind,
+    /// Names of its columns.
+    pub columns: Vec<String>,
+}
+
+/// A schema.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Schema {
+    /// Rows to keep, by column.
+    #[serde(default)]
+    pub keep: BTreeMap<String, Vec<String>>,
+    /// Texts that mean "not known".
+    #[serde(default = "empty_cell")]
+    pub missing: Vec<String>,
+    /// The attributes.
+    pub groups: Vec<SchemaGroup>,
+}
+
+fn empty_cell() -> Vec<String> {
+    vec![String::new()]
+}
+
+/// Why a table does not fit a schema.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SchemaError {
+    /// A column of the schema is not in the table.
+    #[error("the table has no column `{column}`")]
+    UnknownColumn {
+        /// The column.
+        column: String,
+    },
+    /// A cell is not a finite number.
+    #[error("row {row}, column `{column}`: {text:?} is not a finite number")]
+    NotANumber {
+        /// Row of the table, the first is 1.
+        row: usize,
+        /// The column.
+        column: String,
+        /// The text found.
+        text: String,
+    },
+    /// A cell is neither yes nor no.
+    #[error("row {row}, column `{column}`: {text:?} is neither 0/1, no/yes nor false/true")]
+    NotBinary {
+        /// Row of the table, the first is 1.
+        row: usize,
+        /// The column.
+        column: String,
+        /// The text found.
+        text: String,
+    },
+    /// No row is left after `keep`.
+    #[error("no row has the values that `keep` asks for")]
+    NothingKept,
+    /// The model layer refuses the table.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+impl Schema {
+    /// Reads the cells of a table by this schema.
+    ///
+    /// # Errors
+    /// [`SchemaError`] names the column and the row.
+    pub fn read(&self, header: &[String], rows: &[Vec<String>]) -> Result<Dataset, SchemaError> {
+        let find = |column: &String| {
+            let place = header.iter().position(|h| h == column);
+            place.ok_or_else(|| SchemaError::UnknownColumn {
+                column: column.clone(),
+            })
+        };
+        let mut kept: Vec<usize> = (0..rows.len()).collect();
+        for (column, values) in &self.keep {
+            let c = find(column)?;
+            kept.retain(|&r| rows[r].get(c).is_some_and(|text| values.contains(text)));
+        }
+        if kept.is_empty() {
+            return Err(SchemaError::NothingKept);
+        }
+        let mut table = Table::new();
+        for group in &self.groups {
+            for column in &group.columns {
+                let c = find(column)?;
+                let cells: Vec<(usize, Option<&str>)> = kept
+                    .iter()
+                    .map(|&r| (r + 1, self.cell(rows[r].get(c).map_or("", String::as_str))))
+                    .collect();
+                table = add(table, group.kind, column, &cells)?;
+            }
+        }
+        let groups = self.groups.iter().map(|g| Group {
+            name: g.name.clone(),
+            columns: g.columns.clone(),
+        });
+        Ok(Dataset {
+            table,
+            groups: groups.collect(),
+        })
+    }
+
+    fn cell<'t>(&self, text: &'t str) -> Option<&'t str> {
+        let text = text.trim();
+        (!self.missing.iter().any(|m| m == text)).then_some(text)
+    }
+}
+
+/// Adds a column of the given kind; cells come with their row, the first is 1.
+fn add(
+    table: Table,
+    kind: Kind,
+    column: &str,
+    cells: &[(usize, Option<&str>)],
+) -> Result<Table, SchemaError> {
+    match kind {
+        Kind::Continuous => {
+            let mut values = Vec::with_capacity(cells.len());
+            for &(row, text) in cells {
+                let number = |text: &str| match text.parse() {
+                    Ok(value) if f64::is_finite(value) => Ok(value),
+                    _ => Err(SchemaError::NotANumber {
+                        row,
+                        column: column.to_owned(),
+                        text: text.to_owned(),
+                    }),
+                };
+                values.push(text.map(number).transpose()?);
+            }
+            Ok(table.real(column, values)?)
+        }
+        Kind::Binary => {
+            let mut values = Vec::with_capacity(cells.len());
+            for &(row, text) in cells {
+                let flag = |text: &str| match text.to_ascii_lowercase().as_str() {
+                    "0" | "0.0" | "no" | "false" => Ok(false),
+                    "1" | "1.0" | "yes" | "true" => Ok(true),
+                    _ => Err(SchemaError::NotBinary {
+                        row,
+                        column: column.to_owned(),
+                        text: text.to_owned(),
+                    }),
+                };
+                values.push(text.map(flag).transpose()?);
+            }
+            Ok(table.binary(column, values)?)
+        }
+        Kind::Category => {
+            let texts = cells.iter().filter_map(|(_, text)| *text);
+            let categories: Vec<&str> = std::collections::BTreeSet::from_iter(texts)
+                .into_iter()
+                .collect();
+            let values = cells.iter().map(|(_, text)| *text);
+            Ok(table.categorical(column, &categories, values)?)
+        }
+    }
+}
