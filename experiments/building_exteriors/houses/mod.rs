@@ -38,6 +38,11 @@ pub const DEPENDENCIES: [(&str, &str); 9] = [
     ("garage", "porch"),
 ];
 
+/// Seed of the shipped database.
+pub const SHIPPED_SEED: u64 = 2016;
+/// Houses in the shipped database, as many as the paper has.
+pub const SHIPPED: usize = 200;
+
 /// A generated house and its hidden style.
 #[derive(Debug, Clone)]
 pub struct House {
