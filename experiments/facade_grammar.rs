@@ -1,10 +1,35 @@
 //! Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts*: every table and figure.
+//!
+//! Settings stand here; each artefact is a file of its own. Seeds and facades for each budget are in
+//! `facade_grammar/compare.rs`.
 
+mod compare;
 pub mod data;
 mod figure_10;
-use super::picture;
+mod figure_13;
+mod figure_14;
+mod figure_9;
+mod likeness;
+mod published;
+mod ratios;
+mod runs;
+mod table_1;
+mod table_2;
+mod table_3;
+mod table_4;
 
-use super::{Artefact, Experiment};
+use super::{Artefact, Budget, Experiment, picture};
+use crate::methods::facade_grammar::Method;
+
+/// This project's configuration of approximate dynamic programming.
+const BEST: Method = Method::AdpBest;
+/// The paper's, as far as its text says.
+const PAPER: Method = Method::AdpPaper;
+
+/// The two numbers of iterations of Table 1.
+fn iterations(budget: Budget) -> (u64, u64) {
+    budget.choose((20, 100), (2_000, 10_000), (2_000, 10_000))
+}
 
 /// The paper's tables and figures.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -13,8 +38,55 @@ pub const EXPERIMENT: Experiment = Experiment {
     artefacts: ARTEFACTS,
 };
 
-const ARTEFACTS: &[Artefact] = &[Artefact {
-    name: "figure_10",
-    title: "the facades used for performance testing",
-    run: figure_10::run,
-}];
+const ARTEFACTS: &[Artefact] = &[
+    Artefact {
+        name: "table_1",
+        title: "cost, rules and time of ADP, importance sampling and greedy",
+        run: table_1::run,
+    },
+    Artefact {
+        name: "table_2",
+        title: "cost of the automatic methods, split rule only",
+        run: table_2::run,
+    },
+    Artefact {
+        name: "table_3",
+        title: "scores that people gave",
+        run: table_3::run,
+    },
+    Artefact {
+        name: "table_4",
+        title: "precision and recall of non-terminal regions",
+        run: table_4::table_4,
+    },
+    Artefact {
+        name: "table_5",
+        title: "costs of the rules and what they do to precision and recall",
+        run: table_4::table_5,
+    },
+    Artefact {
+        name: "figure_9",
+        title: "the grammar of the example",
+        run: figure_9::figure_9,
+    },
+    Artefact {
+        name: "figure_10",
+        title: "the facades used for performance testing",
+        run: figure_10::run,
+    },
+    Artefact {
+        name: "figure_11",
+        title: "the example with repeatABA, symsplit and gridsplit",
+        run: figure_9::figure_11,
+    },
+    Artefact {
+        name: "figure_13",
+        title: "joint extraction from four facades",
+        run: figure_13::run,
+    },
+    Artefact {
+        name: "figure_14",
+        title: "cost and time against iterations",
+        run: figure_14::run,
+    },
+];

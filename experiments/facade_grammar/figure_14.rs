@@ -1,0 +1,197 @@
+//! Fig. 14: cost and time against iterations.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::runs::{Solver, mean};
+use super::{BEST, PAPER, data};
+use crate::experiments::Context;
+use crate::methods::facade_grammar::{Method, Settings, infer_observed};
+use crate::report::{Chart, Corner, Figure, Row, Scale, Series};
+use crate::shape::Facade;
+use crate::{Error, Result};
+
+/// State of a run after some iterations.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Point {
+    iteration: u64,
+    /// Lowest cost so far.
+    best: f64,
+    /// Seconds since the point before this one, per iteration.
+    pace: f64,
+}
+
+/// Facades of the paper's middle sizes, the smallest first.
+const FACADES: [&str; 3] = ["tenement_1", "office_1", "boulevard_1"];
+
+/// Best cost so far and seconds per iteration of three methods on three facades.
+pub fn run(ctx: &mut Context) -> Result<()> {
+    let (few, many) = super::iterations(ctx.budget());
+    let seeds = ctx.budget().choose(1, 3, 10);
+    let count = ctx.budget().choose(1, 3, 3);
+    let every = (many / 20).max(1);
+    ctx.setting("iterations", many);
+    ctx.setting("seeds", seeds);
+    ctx.setting("every", every);
+    let folder = data::folder(ctx)?.join("layouts");
+    let facades: Result<Vec<Facade>> = FACADES[..count]
+        .iter()
+        .map(|name| crate::io::facade_json::read(&folder.join(format!("{name}.facade.json"))))
+        .collect();
+    let facades = facades?;
+    let methods = [BEST, PAPER, Method::Importance];
+    let mut units = Vec::new();
+    for f in 0..facades.len() {
+        for method in methods {
+            units.extend((0..seeds).map(|run| (f, method, ctx.seed() + run)));
+        }
+    }
+    let name = |method| Solver::Infer(method, many).name();
+    let traces = ctx.units(
+        &units,
+        |(f, method, seed)| format!("{}/{}/{seed}", facades[*f].name, name(*method)),
+        |&(f, method, seed)| trace(&facades[f], method, many, every, seed),
+    )?;
+    let mut figure = Figure::new("cost and time against iterations", 2).cell(560.0, 360.0);
+    for (f, facade) in facades.iter().enumerate() {
+        let mut cost = Chart::new(
+            format!("{} ({} terminals)", facade.name, facade.regions.len()),
+            Scale::new("iterations"),
+            Scale::new("lowest cost so far"),
+        );
+        let mut pace = Chart::new(
+            "Time",
+            Scale::new("iterations"),
+            Scale::new("ms per iteration").log(),
+        )
+        .legend(Corner::None);
+        for method in methods {
+            let mine: Vec<&Vec<Point>> = units
+                .iter()
+                .zip(&traces)
+                .filter(|((g, m, _), _)| *g == f && *m == method)
+                .map(|(_, trace)| trace)
+                .collect();
+            let (line, band, times) = curves(&mine);
+            cost = cost.series(Series::line(name(method), line).band(band));
+            pace = pace.series(Series::line(name(method), times));
+        }
+        figure = figure.panel(cost).panel(pace);
+    }
+    ctx.figure("figure_14", &figure)?;
+    for ((f, method, seed), trace) in units.iter().zip(&traces) {
+        observe(ctx, &facades[*f].name, name(*method), *seed, trace);
+    }
+    ends(ctx, &units, &traces, few);
+    ctx.note(
+        "The paper measures every 500 iterations on one facade of Fig. 5. Its time per iteration falls because exploitation is \
+         faster than exploration. `adp_best` walks for a tenth of its iterations and anneals over the set of non-terminals for the rest, \
+         so that its cost first follows ADP and then drops again. Bands run from the lowest to the highest seed.",
+    );
+    Ok(())
+}
+
+/// How the first and the last part of a run compare.
+fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>], few: u64) {
+    let of = |method: Method, pick: &dyn Fn(&Vec<Point>) -> Option<f64>| -> f64 {
+        let mine = units
+            .iter()
+            .zip(traces)
+            .filter(|((_, m, _), _)| *m == method);
+        mean(&mine.filter_map(|(_, t)| pick(t)).collect::<Vec<_>>())
+    };
+    let early = |t: &Vec<Point>| t.iter().find(|p| p.iteration >= few).map(|p| p.best);
+    let late = |t: &Vec<Point>| t.last().map(|p| p.best);
+    for method in [BEST, PAPER, Method::Importance] {
+        ctx.compare(
+            format!("{method}: mean cost at {few} iterations and at the end"),
+            "falls for ADP, hardly for IS",
+            format!("{:.1}, {:.1}", of(method, &early), of(method, &late)),
+        );
+    }
+    let start = |t: &Vec<Point>| t.first().map(|p| 1e3 * p.pace);
+    let end = |t: &Vec<Point>| t.last().map(|p| 1e3 * p.pace);
+    ctx.compare(
+        "adp-paper: ms per iteration at the start and at the end",
+        "falls",
+        format!("{:.3}, {:.3}", of(PAPER, &start), of(PAPER, &end)),
+    );
+}
+
+/// Runs and notes the state every so many iterations.
+fn trace(
+    facade: &Facade,
+    method: Method,
+    iterations: u64,
+    every: u64,
+    seed: u64,
+) -> Result<Vec<Point>> {
+    let settings = Settings {
+        method,
+        iterations,
+        seed,
+        ..Settings::default()
+    };
+    let points = Rc::new(RefCell::new(Vec::new()));
+    let last = Rc::new(RefCell::new((Instant::now(), 0u64, f64::INFINITY)));
+    let (seen, clock) = (Rc::clone(&points), Rc::clone(&last));
+    let observer = move |step: crate::optim::Step| {
+        let mut clock = clock.borrow_mut();
+        clock.2 = clock.2.min(step.best);
+        clock.1 += 1;
+        if clock.1 % every == 0 {
+            seen.borrow_mut().push(Point {
+                iteration: clock.1,
+                best: clock.2,
+                pace: clock.0.elapsed().as_secs_f64() / every as f64,
+            });
+            clock.0 = Instant::now();
+        }
+    };
+    infer_observed(std::slice::from_ref(facade), &settings, observer).map_err(Error::method)?;
+    let points = points.borrow().clone();
+    Ok(points)
+}
+
+type Line = Vec<(f64, f64)>;
+
+/// Mean cost, its band over the seeds, and mean milliseconds per iteration.
+fn curves(traces: &[&Vec<Point>]) -> (Line, Vec<(f64, f64, f64)>, Line) {
+    let length = traces.iter().map(|t| t.len()).min().unwrap_or(0);
+    let (mut line, mut band, mut times) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..length {
+        let x = traces[0][i].iteration as f64;
+        let costs: Vec<f64> = traces.iter().map(|t| t[i].best).collect();
+        let paces: Vec<f64> = traces.iter().map(|t| 1e3 * t[i].pace).collect();
+        let range = costs
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(l, h), &c| (l.min(c), h.max(c)));
+        line.push((x, mean(&costs)));
+        band.push((x, range.0, range.1));
+        times.push((x, mean(&paces)));
+    }
+    (line, band, times)
+}
+
+fn observe(ctx: &mut Context, facade: &str, method: String, seed: u64, trace: &[Point]) {
+    for point in trace {
+        for (metric, value, unit) in [
+            ("cost", point.best, ""),
+            ("seconds_per_iteration", point.pace, "s"),
+        ] {
+            ctx.observe(Row {
+                dataset: "shipped".into(),
+                method: method.clone(),
+                instance: format!("{facade}@{}", point.iteration),
+                seed: Some(seed),
+                metric: metric.into(),
+                value,
+                unit: unit.into(),
+                ..Row::default()
+            });
+        }
+    }
+}

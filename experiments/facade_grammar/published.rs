@@ -1,0 +1,33 @@
+//! The numbers that the paper printed, `datasets/facade_grammar/published.csv`.
+
+use crate::experiments::Context;
+use crate::{Error, Result};
+
+/// The printed numbers.
+pub struct Published(Vec<[String; 7]>);
+
+impl Published {
+    /// Reads them.
+    pub fn read(ctx: &mut Context) -> Result<Self> {
+        let path = ctx.shipped("facade_grammar/published.csv")?;
+        let mut reader = csv::Reader::from_path(&path).map_err(|e| Error::content(&path, e))?;
+        let rows: std::result::Result<_, _> = reader.deserialize().collect();
+        Ok(Self(rows.map_err(|e| Error::content(&path, e))?))
+    }
+
+    /// A number as printed; a dash when the paper has none.
+    pub fn text(&self, key: [&str; 5]) -> String {
+        self.find(key).unwrap_or("–").to_string()
+    }
+
+    /// A number.
+    pub fn number(&self, key: [&str; 5]) -> Option<f64> {
+        self.find(key)?.parse().ok()
+    }
+
+    /// By artefact, method, instance, metric and statistic.
+    fn find(&self, key: [&str; 5]) -> Option<&str> {
+        let row = self.0.iter().find(|row| row[..5] == key)?;
+        Some(&row[5])
+    }
+}

@@ -1,0 +1,49 @@
+//! How much more than approximate dynamic programming the other methods cost.
+
+use super::compare::Comparison;
+use super::published::Published;
+use super::runs::Solver;
+use super::{BEST, PAPER};
+use crate::experiments::Context;
+use crate::methods::facade_grammar::Method;
+use crate::report::Row;
+
+/// Sets the ratio of average costs of each method to both configurations of ADP beside the ratio
+/// of the paper's printed averages. `(name, random)`; random methods have `many` iterations.
+pub fn compare(
+    ctx: &mut Context,
+    found: &Comparison,
+    printed: &Published,
+    many: u64,
+    methods: &[(&str, bool)],
+) {
+    for (name, random) in methods {
+        let method = match random {
+            true => Solver::Infer(Method::Importance, many).name(),
+            false => name.to_string(),
+        };
+        let theirs = printed.text(["ratios", name, "avg", "cost_over_adp", "value"]);
+        for dataset in found.datasets() {
+            let mut parts = Vec::new();
+            for adp in [BEST, PAPER] {
+                let adp = Solver::Infer(adp, many).name();
+                let (Some(a), Some(m)) = (found.column(&adp), found.column(&method)) else {
+                    continue;
+                };
+                // As the paper's averages: least over the runs, averaged over the facades.
+                let ratio = found.average_least(dataset, m) / found.average_least(dataset, a);
+                ctx.observe(Row {
+                    dataset: dataset.into(),
+                    method: method.clone(),
+                    instance: "average".into(),
+                    metric: format!("cost_over_{adp}"),
+                    value: ratio,
+                    ..Row::default()
+                });
+                parts.push(format!("{ratio:.2} ({adp})"));
+            }
+            let what = format!("cost of {name} over ADP, {dataset}");
+            ctx.compare(what, theirs.clone(), parts.join(", "));
+        }
+    }
+}

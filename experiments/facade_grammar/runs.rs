@@ -1,0 +1,124 @@
+//! One run of one method on one facade, measured and checked.
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::grammar::{Costs, Grammar, evaluate};
+use crate::methods::facade_grammar::{Method, Operations, Settings, infer};
+use crate::methods::procedural_logic::{Parameters, baseline_grammar};
+use crate::shape::Facade;
+use crate::{Error, Result};
+
+/// A method with its number of iterations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Solver {
+    /// A method of this paper, or one that its authors rebuilt.
+    Infer(Method, u64),
+    /// Weissenberg et al. 2013.
+    ProceduralLogic,
+}
+
+impl Solver {
+    /// Name in tables: `adp_best_10k`; without the iterations for methods that have none.
+    pub fn name(self) -> String {
+        match self {
+            Solver::ProceduralLogic => "procedural_logic".into(),
+            Solver::Infer(Method::Greedy, _) => "greedy".into(),
+            Solver::Infer(Method::Bayesian, _) => "bayesian".into(),
+            Solver::Infer(Method::Symmetry, _) => "symmetry".into(),
+            Solver::Infer(method, iterations) => {
+                let name = match method {
+                    Method::AdpBest => "adp_best",
+                    Method::AdpPaper => "adp_paper",
+                    _ => "importance",
+                };
+                match iterations {
+                    n if n % 1000 == 0 => format!("{name}_{}k", n / 1000),
+                    n => format!("{name}_{n}"),
+                }
+            }
+        }
+    }
+
+    /// Whether chance has a part in it, so that more than one seed says more.
+    pub fn random(self) -> bool {
+        matches!(
+            self,
+            Solver::Infer(Method::AdpBest | Method::AdpPaper | Method::Importance, _)
+        )
+    }
+}
+
+/// What a run is asked.
+#[derive(Debug, Clone, Copy)]
+pub struct Question {
+    /// The method.
+    pub solver: Solver,
+    /// Its seed.
+    pub seed: u64,
+    /// Costs of rules.
+    pub costs: Costs,
+    /// Operations allowed.
+    pub operations: Operations,
+}
+
+/// What a run found, as the independent evaluator says.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Answer {
+    /// Cost of the grammar (Eq. 1).
+    pub cost: f64,
+    /// Its rules.
+    pub rules: usize,
+    /// Terminal regions.
+    pub terminals: usize,
+    /// Seconds of inference on one thread.
+    pub seconds: f64,
+}
+
+/// Runs a method on a facade, or on several for one joint grammar; the grammar derives back to
+/// them, or this fails.
+pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer)> {
+    let start = Instant::now();
+    let grammar = match (question.solver, facades) {
+        (Solver::ProceduralLogic, [facade]) => {
+            baseline_grammar(facade, &Parameters::default()).map_err(Error::method)?
+        }
+        (Solver::ProceduralLogic, _) => {
+            return Err(Error::method("procedural logic takes one facade"));
+        }
+        (Solver::Infer(method, iterations), _) => {
+            let settings = Settings {
+                method,
+                iterations,
+                seed: question.seed,
+                costs: question.costs,
+                operations: question.operations,
+                ..Settings::default()
+            };
+            infer(facades, &settings).map_err(Error::method)?.grammar
+        }
+    };
+    let seconds = start.elapsed().as_secs_f64();
+    let found = evaluate(&grammar, facades, &question.costs).map_err(Error::method)?;
+    let answer = Answer {
+        cost: found.cost,
+        rules: found.rules,
+        terminals: found.terminals,
+        seconds,
+    };
+    Ok((grammar, answer))
+}
+
+/// Least of a list; zero when it is empty.
+pub fn least(values: &[f64]) -> f64 {
+    values.iter().copied().reduce(f64::min).unwrap_or_default()
+}
+
+/// Mean of a list; zero when it is empty.
+pub fn mean(values: &[f64]) -> f64 {
+    match values.len() {
+        0 => 0.0,
+        n => values.iter().sum::<f64>() / n as f64,
+    }
+}
