@@ -61,7 +61,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             format!("{} ({} terminals)", facade.name, facade.regions.len()),
             Scale::new("iterations"),
             Scale::new("lowest cost so far"),
-        );
+        )
+        .legend(Corner::Above);
         let mut pace = Chart::new(
             "Time",
             Scale::new("iterations"),

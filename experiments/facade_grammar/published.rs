@@ -20,11 +20,6 @@ impl Published {
         self.find(key).unwrap_or("–").to_string()
     }
 
-    /// A number.
-    pub fn number(&self, key: [&str; 5]) -> Option<f64> {
-        self.find(key)?.parse().ok()
-    }
-
     /// By artefact, method, instance, metric and statistic.
     fn find(&self, key: [&str; 5]) -> Option<&str> {
         let row = self.0.iter().find(|row| row[..5] == key)?;

@@ -82,7 +82,7 @@ pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer
     let start = Instant::now();
     let grammar = match (question.solver, facades) {
         (Solver::ProceduralLogic, [facade]) => {
-            baseline_grammar(facade, &Parameters::default()).map_err(Error::method)?
+            baseline_grammar(facade, &Parameters::COMPRESSION).map_err(Error::method)?
         }
         (Solver::ProceduralLogic, _) => {
             return Err(Error::method("procedural logic takes one facade"));

@@ -31,3 +31,6 @@ pub struct Experiment {
     /// Its tables and figures, in the order of the report.
     pub artefacts: &'static [Artefact],
 }
+
+#[cfg(test)]
+mod tests;

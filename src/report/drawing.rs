@@ -183,8 +183,9 @@ impl Drawing {
     /// Adds the outline of a rectangle.
     pub fn outline(&mut self, area: Area, width: f64, colour: Colour) {
         let mut points = corners(area);
+        // Closed by hand; the start reaches over the corner that the end leaves open.
         points.push(points[0]);
-        points.push(points[1]);
+        points[0].0 -= width / 2.0;
         self.path(points, width, colour);
     }
 

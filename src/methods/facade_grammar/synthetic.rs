@@ -57,6 +57,17 @@ pub fn layouts(seed: u64) -> Result<Vec<Synthetic>, GrammarError> {
     single.chain(family).collect()
 }
 
+/// A facade of about `terminals` terminals, from 50 up to any number, for measurements of speed.
+///
+/// # Errors
+/// As [`layouts`].
+pub fn sized(seed: u64, terminals: usize) -> Result<Synthetic, GrammarError> {
+    let name = format!("sized_{terminals}");
+    let theme = theme::scaled(terminals);
+    let style = Style::draw(&mut stream(seed, &name, TRIES), theme.glazing);
+    near(seed, &name, &theme, terminals, Some(&style))
+}
+
 /// Which facade of its theme this is, from 1.
 fn number(k: usize) -> usize {
     1 + PLAN[..k]

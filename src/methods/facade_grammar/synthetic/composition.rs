@@ -173,7 +173,11 @@ impl Designer<'_> {
         let mut parts = vec![leaf("wall", edge, height), gap.clone()];
         let mut i = 0;
         while i < columns.len() {
-            let (period, times) = run(&columns[i..]);
+            let (period, mut times) = run(&columns[i..]);
+            // The last wall of the floor belongs to its edge, not to a period.
+            if i + period * times as usize == columns.len() {
+                times -= 1;
+            }
             if times > 1 {
                 let inner = columns[i..i + period].iter();
                 let inner = inner.flat_map(|c| [c.clone(), gap.clone()]).collect();

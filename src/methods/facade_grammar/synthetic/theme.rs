@@ -274,3 +274,20 @@ pub const FAMILY: &[(&Theme, usize)] = &[
     (&TERRACES[2], 140),
     (&TERRACES[3], 52),
 ];
+
+/// A boulevard house with as many floors and columns as give about this number of terminals.
+pub fn scaled(terminals: usize) -> Theme {
+    // About a dozen terminals to a window.
+    let windows = (terminals as f64 / 12.0).max(4.0);
+    let floors = (windows / 1.5).sqrt().max(1.5);
+    let columns = windows / floors;
+    let range = |middle: f64, least: u32| {
+        let low = ((0.75 * middle) as u32).max(least);
+        (low, low.max((1.25 * middle).ceil() as u32))
+    };
+    Theme {
+        floors: range(floors, 1),
+        columns: range(columns, 2),
+        ..BOULEVARD
+    }
+}

@@ -1,0 +1,92 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::*;
+use crate::report::Row;
+
+static RUNS: AtomicUsize = AtomicUsize::new(0);
+static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
+
+/// Five units; the run breaks off at the limit, as a kill would.
+fn squares(ctx: &mut Context) -> crate::Result<()> {
+    let units = [1u64, 2, 3, 4, 5];
+    let answers: Vec<f64> = ctx.units(
+        &units,
+        |u| format!("square/{u}"),
+        |u| {
+            if RUNS.fetch_add(1, Ordering::SeqCst) >= LIMIT.load(Ordering::SeqCst) {
+                return Err(crate::Error::Interrupted);
+            }
+            Ok((u * u) as f64 + 0.1)
+        },
+    )?;
+    for (unit, value) in units.iter().zip(answers) {
+        ctx.observe(Row {
+            instance: unit.to_string(),
+            metric: "square".into(),
+            value,
+            ..Row::default()
+        });
+    }
+    ctx.compare("five squared", "25", "25.1");
+    Ok(())
+}
+
+fn nothing(ctx: &mut Context) -> crate::Result<()> {
+    ctx.skip("there is no data");
+    Ok(())
+}
+
+static FAKE: Experiment = Experiment {
+    slug: "fake",
+    paper: "Nobody 2000: Squares",
+    artefacts: &[
+        Artefact {
+            name: "table_1",
+            title: "squares",
+            run: squares,
+        },
+        Artefact {
+            name: "table_2",
+            title: "nothing",
+            run: nothing,
+        },
+    ],
+};
+
+fn options(out: &std::path::Path) -> Options {
+    Options {
+        only: Vec::new(),
+        data: None,
+        seed: 1,
+        budget: Budget::Smoke,
+        out: out.to_path_buf(),
+        threads: 1,
+        command: "test".into(),
+    }
+}
+
+#[test]
+fn a_run_that_was_stopped_goes_on_where_it_was() {
+    let whole = tempfile::tempdir().unwrap();
+    let parts = tempfile::tempdir().unwrap();
+    let csv = |out: &std::path::Path| std::fs::read(out.join("fake/table_1.csv")).unwrap();
+    run(&[&FAKE], &options(whole.path())).unwrap();
+    assert_eq!(RUNS.load(Ordering::SeqCst), 5);
+
+    RUNS.store(0, Ordering::SeqCst);
+    LIMIT.store(3, Ordering::SeqCst);
+    let stopped = run(&[&FAKE], &options(parts.path()));
+    assert!(matches!(stopped, Err(crate::Error::Interrupted)));
+    assert!(parts.path().join("fake/.work").exists());
+
+    RUNS.store(0, Ordering::SeqCst);
+    LIMIT.store(usize::MAX, Ordering::SeqCst);
+    let report = run(&[&FAKE], &options(parts.path())).unwrap();
+    assert_eq!(RUNS.load(Ordering::SeqCst), 2, "three of five units were finished");
+    assert_eq!(csv(whole.path()), csv(parts.path()));
+    assert_eq!(report.made, ["fake/table_1"]);
+    assert_eq!(report.skipped[0].0, "fake/table_2");
+    assert!(!parts.path().join("fake/.work").exists());
+    let index = std::fs::read_to_string(&report.index).unwrap();
+    assert!(index.contains("five squared") && index.contains("25.1"));
+}
