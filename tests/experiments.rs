@@ -76,5 +76,8 @@ fn an_unknown_artefact_is_named() {
     let mut options = options(out.path(), 1);
     options.only = vec!["table_99".into()];
     let message = run(ALL, &options).expect_err("no such table").to_string();
-    assert!(message.contains("table_99") && message.contains("table_1"), "{message}");
+    assert!(
+        message.contains("table_99") && message.contains("table_1"),
+        "{message}"
+    );
 }

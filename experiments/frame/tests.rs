@@ -82,7 +82,11 @@ fn a_run_that_was_stopped_goes_on_where_it_was() {
     RUNS.store(0, Ordering::SeqCst);
     LIMIT.store(usize::MAX, Ordering::SeqCst);
     let report = run(&[&FAKE], &options(parts.path())).unwrap();
-    assert_eq!(RUNS.load(Ordering::SeqCst), 2, "three of five units were finished");
+    assert_eq!(
+        RUNS.load(Ordering::SeqCst),
+        2,
+        "three of five units were finished"
+    );
     assert_eq!(csv(whole.path()), csv(parts.path()));
     assert_eq!(report.made, ["fake/table_1"]);
     assert_eq!(report.skipped[0].0, "fake/table_2");

@@ -47,7 +47,10 @@ fn any_number_of_terminals_can_be_had() {
     for terminals in [60, 400, 5_000] {
         let made = sized(1, terminals).unwrap();
         let count = made.facade.regions.len();
-        assert!(count.abs_diff(terminals) * 4 < terminals, "{count} for {terminals}");
+        assert!(
+            count.abs_diff(terminals) * 4 < terminals,
+            "{count} for {terminals}"
+        );
         crate::shape::splittable(&made.facade).unwrap();
     }
 }
