@@ -6,24 +6,26 @@ use edifice::rng::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-/// Rows of three groups (2 + 1 + 2 real columns) and three bits, of `k` styles; the second group
+/// Rows of five groups (2 + 1 + 2 + 1 + 1 real columns) and three bits, of `k` styles; the second group
 /// depends on the first, and style 0 has no garage.
 fn made(n: usize, k: usize, seed: u64) -> (Table, Vec<usize>) {
     let mut rng = stream(seed, "made", 0);
-    let mut real: Vec<Vec<Option<f64>>> = vec![Vec::new(); 5];
+    let mut real: Vec<Vec<Option<f64>>> = vec![Vec::new(); 7];
     let mut bits: Vec<Vec<Option<bool>>> = vec![Vec::new(); 3];
     let mut styles = Vec::new();
     for i in 0..n {
         let s = i % k;
         styles.push(s);
-        let z: [f64; 5] = std::array::from_fn(|_| rng.sample(StandardNormal));
+        let z: [f64; 7] = std::array::from_fn(|_| rng.sample(StandardNormal));
         let a = 10.0 + 3.0 * (s % 2) as f64 + 0.5 * z[0];
         let b = 5.0 + 2.0 * (s / 2) as f64 + 0.4 * z[1];
         let c = 100.0 + 20.0 * a - 3.0 * b + 2.0 * z[2];
         let garage = if s == 0 { 0.0 } else { 1.0 };
         let d = garage * (8.0 + s as f64 + 0.3 * z[3]);
         let e = garage * (2.0 + 0.2 * z[4]);
-        for (column, v) in real.iter_mut().zip([a, b, c, d, e]) {
+        let f = 4.0 * ((s + 1) % 3) as f64 + 0.5 * z[5];
+        let g = 4.0 * (s * s % 3) as f64 + 0.5 * z[6];
+        for (column, v) in real.iter_mut().zip([a, b, c, d, e, f, g]) {
             column.push(Some(v));
         }
         for (bit, column) in bits.iter_mut().enumerate() {
@@ -46,6 +48,8 @@ fn groups() -> Vec<Group> {
         Group::new("size", &["x0", "x1"]),
         Group::new("area", &["x2"]),
         Group::new("garage", &["x3", "x4"]),
+        Group::new("porch", &["x5"]),
+        Group::new("glass", &["x6"]),
         Group::new("bits", &["b0", "b1", "b2"]),
     ]
 }
