@@ -3,6 +3,7 @@
 //! | module | what | learned by |
 //! | --- | --- | --- |
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
+//! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
 //!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
@@ -18,6 +19,7 @@ pub mod gmm;
 pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
+pub mod network;
 mod table;
 
 pub use error::ModelError;

@@ -168,48 +168,43 @@ impl Component {
         }
         weight
     }
+}
 
-    /// E[u uᵀ] of group `g` under `particle`, lower triangle added to `scatter` times `weight`.
-    pub fn add_scatter(
-        &self,
-        shape: &Shape,
-        particle: &Particle,
-        g: usize,
-        real: &[f64],
-        weight: f64,
-        scatter: &mut [f64],
-    ) {
-        let columns = &shape.columns[g];
-        let q = columns.len() + 1;
-        let place: Vec<Option<usize>> = std::iter::once(None)
-            .chain(
-                columns
-                    .iter()
-                    .map(|c| self.missing.iter().position(|m| m == c)),
-            )
-            .collect();
-        let u: Vec<f64> = (0..q)
-            .map(|i| match place[i] {
-                Some(m) => particle.mean[m],
-                None if i == 0 => 1.0,
-                None => real[columns[i - 1]],
-            })
-            .collect();
-        let m = self.missing.len();
-        for i in 0..q {
-            for j in 0..=i {
-                let mut v = u[i] * u[j];
-                if let (Some(a), Some(b)) = (place[i], place[j]) {
-                    v += particle.cov[a * m + b];
-                }
-                scatter[i * q + j] += weight * v;
+/// E[u uᵀ] under `particle`, u = (1, columns), lower triangle added to `scatter` times `weight`;
+/// `missing` are the columns the particle's Gaussian is over.
+pub(crate) fn add_scatter(
+    particle: &Particle,
+    missing: &[usize],
+    columns: &[usize],
+    real: &[f64],
+    weight: f64,
+    scatter: &mut [f64],
+) {
+    let q = columns.len() + 1;
+    let place: Vec<Option<usize>> = std::iter::once(None)
+        .chain(columns.iter().map(|c| missing.iter().position(|m| m == c)))
+        .collect();
+    let u: Vec<f64> = (0..q)
+        .map(|i| match place[i] {
+            Some(m) => particle.mean[m],
+            None if i == 0 => 1.0,
+            None => real[columns[i - 1]],
+        })
+        .collect();
+    let m = missing.len();
+    for i in 0..q {
+        for j in 0..=i {
+            let mut v = u[i] * u[j];
+            if let (Some(a), Some(b)) = (place[i], place[j]) {
+                v += particle.cov[a * m + b];
             }
+            scatter[i * q + j] += weight * v;
         }
     }
 }
 
 /// Extends a particle by a group with Gaussian `linear`, conditioned on the group's own values.
-fn extend(
+pub(crate) fn extend(
     particle: &Particle,
     missing: &[usize],
     columns: &[usize],

@@ -8,7 +8,7 @@
 use super::super::error::ModelError;
 use super::super::linalg::log_sum_exp;
 use super::super::table::MISSING;
-use super::component::{Component, Pattern};
+use super::component::{Component, Pattern, add_scatter};
 use super::params::{Params, Shape, Stats};
 use super::structure::{Selector, configuration};
 
@@ -231,7 +231,8 @@ impl Scratch {
             for (particle, joint) in component.particles.iter().zip(&joint) {
                 let w: f64 = joint.iter().sum();
                 for (&g, &h) in component.groups.iter().zip(&particle.states) {
-                    component.add_scatter(shape, particle, g, real, w, &mut stats.scatter[g][h]);
+                    let (columns, scatter) = (&shape.columns[g], &mut stats.scatter[g][h]);
+                    add_scatter(particle, &component.missing, columns, real, w, scatter);
                     if shape.hidden(g) {
                         let row = &mut stats.tables[g][h * styles..(h + 1) * styles];
                         for (n, j) in row.iter_mut().zip(joint) {

@@ -39,7 +39,7 @@
 //!
 //! Source: Fan and Wonka 2016, Sec. 5; Koller and Friedman 2009, Ch. 19.
 
-mod component;
+pub(crate) mod component;
 mod edges;
 mod fit;
 mod infer;
@@ -57,8 +57,10 @@ use super::em::Stopping;
 use super::error::ModelError;
 use super::table::Table;
 pub use params::Priors;
-pub use query::Hierarchy;
+pub(crate) use query::gaussian;
+pub use query::{Draws, Hierarchy};
 pub use schema::{Constant, Group};
+pub(crate) use structure::order;
 
 /// Which of the paper's models to learn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -489,7 +489,7 @@ fn draw_linear<R: Rng>(linear: &Linear, columns: &[usize], real: &mut [f64], rng
 }
 
 /// A draw from N(mean, cov); directions in which `cov` is singular stay at the mean.
-fn gaussian<R: Rng>(mean: &[f64], cov: &[f64], rng: &mut R) -> Vec<f64> {
+pub(crate) fn gaussian<R: Rng>(mean: &[f64], cov: &[f64], rng: &mut R) -> Vec<f64> {
     let n = mean.len();
     let mut l = cov.to_vec();
     let mut raise = 1e-14;

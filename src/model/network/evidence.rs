@@ -1,0 +1,306 @@
+//! Evidence, and the factors it leaves over the unobserved discrete variables.
+
+use super::super::conjugate::Linear;
+use super::super::error::ModelError;
+use super::super::hierarchy::component::{Particle, extend};
+use super::factor::{Factor, advance};
+use super::{Cpd, Network};
+
+/// What is known.
+#[derive(Clone, Debug, Default)]
+pub struct Evidence {
+    discrete: Vec<(String, String)>,
+    real: Vec<(String, Vec<Option<f64>>)>,
+}
+
+impl Evidence {
+    /// Nothing is known.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A discrete variable has this category.
+    pub fn is(mut self, name: &str, category: &str) -> Self {
+        self.discrete.push((name.to_owned(), category.to_owned()));
+        self
+    }
+
+    /// A real vector has these coordinates.
+    pub fn real(self, name: &str, values: &[f64]) -> Self {
+        let values: Vec<Option<f64>> = values.iter().map(|v| Some(*v)).collect();
+        self.partly(name, &values)
+    }
+
+    /// Some coordinates of a real vector are known.
+    pub fn partly(mut self, name: &str, values: &[Option<f64>]) -> Self {
+        self.real.push((name.to_owned(), values.to_vec()));
+        self
+    }
+}
+
+/// Evidence by index.
+#[derive(Clone, Debug)]
+pub(crate) struct Known {
+    /// Per node.
+    pub discrete: Vec<Option<usize>>,
+    /// Per coordinate, NaN for unknown.
+    pub real: Vec<f64>,
+}
+
+/// Continuous variables that unknown values link, given the discrete parents of all of them.
+#[derive(Debug)]
+pub(crate) struct Linked {
+    /// Nodes, parents first.
+    pub nodes: Vec<usize>,
+    /// Unknown coordinates, in the order of the Gaussians.
+    pub missing: Vec<usize>,
+    /// Unobserved discrete parents.
+    pub vars: Vec<usize>,
+    /// One Gaussian per configuration of `vars`, the last fastest.
+    pub particles: Vec<Particle>,
+}
+
+/// A question made ready for elimination.
+#[derive(Debug)]
+pub(crate) struct Question {
+    pub known: Known,
+    pub factors: Vec<Factor>,
+    pub linked: Vec<Linked>,
+    /// Continuous nodes without evidence on or below them.
+    pub free: Vec<usize>,
+}
+
+impl Network {
+    pub(crate) fn known(&self, evidence: &Evidence) -> Result<Known, ModelError> {
+        let mut known = Known {
+            discrete: vec![None; self.nodes.len()],
+            real: vec![f64::NAN; self.width],
+        };
+        for (name, category) in &evidence.discrete {
+            let node = self.find(name)?;
+            let found = self.nodes[node]
+                .categories
+                .iter()
+                .position(|c| c == category);
+            let value = found.ok_or_else(|| ModelError::UnseenCategory {
+                column: name.clone(),
+                row: 0,
+                category: category.clone(),
+            })?;
+            if known.discrete[node].is_some_and(|v| v != value) {
+                return Err(ModelError::Contradiction {
+                    row: 0,
+                    variable: name.clone(),
+                });
+            }
+            known.discrete[node] = Some(value);
+        }
+        for (name, values) in &evidence.real {
+            let range = self.nodes[self.find(name)?].coordinates.clone();
+            if range.len() != values.len() || range.is_empty() {
+                let problem = format!("has {} coordinates", range.len());
+                return Err(ModelError::parameter(name, problem));
+            }
+            for (at, value) in range.zip(values) {
+                match value {
+                    Some(v) if v.is_finite() => known.real[at] = *v,
+                    None => known.real[at] = f64::NAN,
+                    Some(v) => {
+                        return Err(ModelError::NotFinite {
+                            column: name.clone(),
+                            row: 0,
+                            value: *v,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(known)
+    }
+
+    /// Factors over the unobserved discrete variables; continuous ones integrated out.
+    pub(crate) fn question(&self, known: Known) -> Result<Question, ModelError> {
+        self.question_about(known, usize::MAX)
+    }
+
+    /// The same, with node `asked` (if any) among the linked ones even without evidence below it.
+    pub(crate) fn question_about(
+        &self,
+        known: Known,
+        asked: usize,
+    ) -> Result<Question, ModelError> {
+        let unknown = |n: usize| {
+            self.nodes[n]
+                .coordinates
+                .clone()
+                .any(|c| known.real[c].is_nan())
+        };
+        // Active: with evidence on it or below, or asked for.
+        let mut active = vec![false; self.nodes.len()];
+        for &n in self.order.iter().rev() {
+            let node = &self.nodes[n];
+            active[n] = active[n]
+                || n == asked
+                || known.discrete[n].is_some()
+                || node.coordinates.clone().any(|c| !known.real[c].is_nan());
+            if active[n] {
+                for &p in &node.parents {
+                    active[p] = true;
+                }
+            }
+        }
+        // Other discrete variables are left out only below a softmax of unknown values.
+        let mut left_out = vec![false; self.nodes.len()];
+        for &n in &self.order {
+            let node = &self.nodes[n];
+            let gap = matches!(node.cpd, Cpd::Softmax(_))
+                && node.regressors.iter().any(|&c| known.real[c].is_nan());
+            left_out[n] = !active[n] && (gap || node.discrete.iter().any(|&p| left_out[p]));
+            active[n] |= node.is_discrete() && !left_out[n];
+        }
+        let mut factors = Vec::new();
+        for (n, node) in self.nodes.iter().enumerate() {
+            let mut vars = node.discrete.clone();
+            vars.push(n);
+            match &node.cpd {
+                Cpd::Table(table) if active[n] => {
+                    let values = table.iter().map(|p| p.ln()).collect();
+                    factors.push(Factor { vars, values }.reduce(&known.discrete, &self.sizes));
+                }
+                Cpd::Softmax(weights) if active[n] => {
+                    if node.regressors.iter().any(|&c| known.real[c].is_nan()) {
+                        let problem = "a continuous parent must be observed here";
+                        return Err(ModelError::parameter(&node.name, problem));
+                    }
+                    let values = softmax(weights, &node.regressors, &known.real, self.sizes[n]);
+                    factors.push(Factor { vars, values }.reduce(&known.discrete, &self.sizes));
+                }
+                _ => {}
+            }
+        }
+        let mut label: Vec<usize> = (0..self.nodes.len()).collect();
+        let real = |n: &usize| matches!(self.nodes[*n].cpd, Cpd::Linear(_));
+        for &n in self.order.iter().filter(|n| real(n) && active[**n]) {
+            for &p in self.nodes[n]
+                .parents
+                .iter()
+                .filter(|p| real(p) && unknown(**p))
+            {
+                let (from, to) = (label[p], label[n]);
+                label
+                    .iter_mut()
+                    .filter(|l| **l == from)
+                    .for_each(|l| *l = to);
+            }
+        }
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut free = Vec::new();
+        for &n in self.order.iter().filter(|n| real(n)) {
+            if !active[n] {
+                free.push(n);
+                continue;
+            }
+            match groups.iter_mut().find(|g| label[g[0]] == label[n]) {
+                Some(group) => group.push(n),
+                None => groups.push(vec![n]),
+            }
+        }
+        let linked: Vec<Linked> = groups.into_iter().map(|g| self.link(g, &known)).collect();
+        for l in &linked {
+            factors.push(Factor {
+                vars: l.vars.clone(),
+                values: l.particles.iter().map(|p| p.log_density).collect(),
+            });
+        }
+        Ok(Question {
+            known,
+            factors,
+            linked,
+            free,
+        })
+    }
+
+    fn link(&self, nodes: Vec<usize>, known: &Known) -> Linked {
+        let mut vars: Vec<usize> = nodes
+            .iter()
+            .flat_map(|&n| self.nodes[n].discrete.clone())
+            .filter(|&v| known.discrete[v].is_none())
+            .collect();
+        vars.sort_unstable();
+        vars.dedup();
+        let count: usize = vars.iter().map(|&v| self.sizes[v]).product();
+        let mut assignment: Vec<usize> = known.discrete.iter().map(|v| v.unwrap_or(0)).collect();
+        let mut particles = Vec::with_capacity(count);
+        let mut missing = Vec::new();
+        for _ in 0..count {
+            missing.clear();
+            let mut particle = Particle {
+                log_density: 0.0,
+                states: Vec::new(),
+                mean: Vec::new(),
+                cov: Vec::new(),
+            };
+            for &n in &nodes {
+                let columns = self.columns(n);
+                if let Some(linear) = self.state(n, &assignment) {
+                    particle = extend(&particle, &missing, &columns, linear, &known.real);
+                }
+                let own = self.nodes[n].coordinates.clone();
+                missing.extend(own.filter(|&c| known.real[c].is_nan()));
+            }
+            particles.push(particle);
+            advance(&vars, &self.sizes, &mut assignment);
+        }
+        Linked {
+            nodes,
+            missing,
+            vars,
+            particles,
+        }
+    }
+
+    /// Coordinates of u after the leading 1.
+    pub(crate) fn columns(&self, n: usize) -> Vec<usize> {
+        let node = &self.nodes[n];
+        let own = node.coordinates.clone();
+        node.regressors.iter().copied().chain(own).collect()
+    }
+
+    /// Index of the configuration of a node's discrete parents.
+    pub(crate) fn configuration(&self, n: usize, assignment: &[usize]) -> usize {
+        let parents = &self.nodes[n].discrete;
+        parents
+            .iter()
+            .fold(0, |i, &p| i * self.sizes[p] + assignment[p])
+    }
+
+    /// The linear Gaussian of a real vector under an assignment of discrete variables.
+    pub(crate) fn state(&self, n: usize, assignment: &[usize]) -> Option<&Linear> {
+        match &self.nodes[n].cpd {
+            Cpd::Linear(states) => states.get(self.configuration(n, assignment)),
+            _ => None,
+        }
+    }
+}
+
+/// Log probabilities of every category for every configuration of discrete parents.
+pub(crate) fn softmax(weights: &[f64], regressors: &[usize], real: &[f64], k: usize) -> Vec<f64> {
+    let p = regressors.len() + 1;
+    let scores: Vec<f64> = weights
+        .chunks(p)
+        .map(|w| {
+            w[0] + w[1..]
+                .iter()
+                .zip(regressors)
+                .map(|(w, &c)| w * real[c])
+                .sum::<f64>()
+        })
+        .collect();
+    scores
+        .chunks(k)
+        .flat_map(|s| {
+            let total = super::super::linalg::log_sum_exp(s);
+            s.iter().map(move |v| v - total).collect::<Vec<_>>()
+        })
+        .collect()
+}
