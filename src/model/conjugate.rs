@@ -215,6 +215,16 @@ impl Linear {
         })
     }
 
+    /// B, row-major, p x d.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+
+    /// Σ, row-major, d x d.
+    pub fn covariance(&self) -> &[f64] {
+        &self.covariance
+    }
+
     /// `log|Σ|`.
     fn log_det(&self) -> f64 {
         -2.0 * (self.log_norm + 0.5 * self.d as f64 * LN_2PI)

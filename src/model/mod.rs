@@ -5,6 +5,7 @@
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
 //! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
+//! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
 //!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
 //! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
@@ -15,6 +16,7 @@ pub(crate) mod chunks;
 pub mod conjugate;
 pub mod em;
 mod error;
+pub mod factor_graph;
 pub mod gmm;
 pub mod hierarchy;
 pub(crate) mod kmeans;

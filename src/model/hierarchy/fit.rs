@@ -14,6 +14,8 @@ use super::structure::{Selector, Structure, configuration};
 
 /// Rows of one parallel piece of work.
 const CHUNK: usize = 2048;
+/// Rows that a start looks at.
+const SAMPLE: usize = 10_000;
 
 /// A structure to be fitted to rows: the [`Em`] of hierarchical models.
 pub(crate) struct Problem<'a> {
@@ -138,13 +140,18 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Parameters from hard assignments: style and state per group of every row.
-    pub fn assigned(&self, styles: &[usize], states: &[Vec<usize>]) -> Result<Params, ModelError> {
+    /// Parameters from hard assignments: style, and state per group, of the given rows.
+    pub fn assigned(
+        &self,
+        rows: &[usize],
+        styles: &[usize],
+        states: &[Vec<usize>],
+    ) -> Result<Params, ModelError> {
         let shape = &self.shape;
         let s_count = shape.structure.styles;
         let mut stats = shape.stats();
-        for (i, &s) in styles.iter().enumerate() {
-            let (real, codes) = (self.rows.real(i), self.rows.code(i));
+        for (i, (&row, &s)) in rows.iter().zip(styles).enumerate() {
+            let (real, codes) = (self.rows.real(row), self.rows.code(row));
             stats.style[s] += 1.0;
             for (c, &code) in codes.iter().enumerate().filter(|(_, v)| **v != MISSING) {
                 let parents = &shape.structure.code_parents[c];
@@ -172,35 +179,41 @@ impl<'a> Problem<'a> {
     }
 
     /// A start from k-means++ clusters: of whole rows for S, of each group for its hidden variable.
+    /// Many rows are represented by a systematic sample.
     pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Params, ModelError> {
+        let n = self.rows.rows;
+        let rows: Vec<usize> = (0..n).step_by(n.div_ceil(SAMPLE).max(1)).collect();
         let all: Vec<usize> = (0..self.rows.d).collect();
-        let styles = self.cluster(&all, true, self.shape.structure.styles, rng);
+        let styles = self.cluster(&rows, &all, true, self.shape.structure.styles, rng);
         let states: Vec<Vec<usize>> = (0..self.shape.groups())
             .map(|g| match self.shape.structure.selectors[g] {
                 Selector::Hidden(k) => {
                     let own: Vec<usize> = self.schema.columns(g).collect();
-                    self.cluster(&own, false, k, rng)
+                    self.cluster(&rows, &own, false, k, rng)
                 }
                 _ => Vec::new(),
             })
             .collect();
-        self.assigned(&styles, &states)
+        self.assigned(&rows, &styles, &states)
     }
 
     /// k-means++ and a few Lloyd rounds over the standardised real columns `reals` (0 for missing),
     /// and the categories as indicators.
-    fn cluster<R: Rng>(&self, reals: &[usize], codes: bool, k: usize, rng: &mut R) -> Vec<usize> {
+    fn cluster<R: Rng>(
+        &self,
+        rows: &[usize],
+        reals: &[usize],
+        codes: bool,
+        k: usize,
+        rng: &mut R,
+    ) -> Vec<usize> {
         if k <= 1 {
-            return vec![0; self.rows.rows];
+            return vec![0; rows.len()];
         }
-        let width = reals.len()
-            + if codes {
-                self.shape.sizes.iter().sum()
-            } else {
-                0
-            };
-        let mut points = vec![0.0; self.rows.rows * width];
-        for (i, point) in points.chunks_mut(width.max(1)).enumerate() {
+        let indicators: usize = self.shape.sizes.iter().sum();
+        let width = reals.len() + if codes { indicators } else { 0 };
+        let mut points = vec![0.0; rows.len() * width];
+        for (point, &i) in points.chunks_mut(width.max(1)).zip(rows) {
             let real = self.rows.real(i);
             for (p, &c) in point.iter_mut().zip(reals) {
                 *p = if real[c].is_nan() { 0.0 } else { real[c] };

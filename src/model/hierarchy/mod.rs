@@ -26,6 +26,9 @@
 //! - Sigmoid CPDs of bits given the one discrete parent S are saturated: a table says the same.
 //! - All variables of a binary vector are independent given S.
 //! - Lateral edges run between real groups, as in Eq. 1; all columns of the parent enter.
+//! - Model 3: real groups may depend on real groups (linearly) and on categorical columns (one
+//!   Gaussian for each configuration), categorical columns on categorical columns (tables); edges
+//!   greedily by closed-form evidence. A categorical column never depends on a real one.
 //! - Priors: P(B, Σ) matrix-normal inverse-Wishart on standardised columns, Dirichlet on tables.
 //! - One more value of H_g starts from the current fit with one state cut in two, instead of from
 //!   scratch; while searching, EM stops at a small gain of the log posterior ([`Settings::search`]),
@@ -40,6 +43,7 @@
 //! Source: Fan and Wonka 2016, Sec. 5; Koller and Friedman 2009, Ch. 19.
 
 pub(crate) mod component;
+mod directed;
 mod edges;
 mod fit;
 mod infer;
@@ -201,5 +205,62 @@ pub fn learn(
         bic: scored.stats.log_likelihood - penalty,
         trace,
         model: Hierarchy::new(schema, scored.shape, scored.params, settings.variant),
+    })
+}
+
+/// Result of [`fit`].
+#[derive(Clone, Debug)]
+pub struct Fixed {
+    /// The model.
+    pub model: Hierarchy,
+    /// Cheeseman-Stutz score, nats, on standardised columns.
+    pub score: f64,
+}
+
+/// One run of EM for given cardinalities (`states` per real group, in order) without lateral
+/// edges, from k-means++ clusters of at most 10,000 of the rows: for data too large to search.
+/// Time is linear in rows; besides the data themselves one standardised copy is held.
+///
+/// # Errors
+/// As [`learn`]; [`ModelError::Parameter`] for cardinalities that do not fit the groups.
+pub fn fit(
+    data: &Table,
+    groups: &[Group],
+    styles: usize,
+    states: &[usize],
+    priors: &Priors,
+    stopping: &Stopping,
+    seed: u64,
+) -> Result<Fixed, ModelError> {
+    priors.check()?;
+    let schema = schema::Schema::learn(data, groups, Constant::Refuse)?;
+    if styles == 0 || states.len() != schema.groups.len() || states.contains(&0) {
+        let problem = format!(
+            "one cardinality for each of {} real groups",
+            schema.groups.len()
+        );
+        return Err(ModelError::parameter("states", problem));
+    }
+    let rows = schema.encode(data)?;
+    let selectors = states
+        .iter()
+        .map(|&k| structure::Selector::Hidden(k))
+        .collect();
+    let empty = structure::Selector::Style;
+    let structure = structure::Structure {
+        selectors,
+        ..structure::Structure::new(styles, &empty, states.len(), schema.codes.len())
+    };
+    let problem = fit::Problem::new(&schema, &rows, priors, structure)?;
+    let start = problem.start(&mut crate::rng::stream(seed, "fixed", 0))?;
+    let scored = problem.fit(start, stopping)?;
+    Ok(Fixed {
+        score: scored.score,
+        model: Hierarchy::new(
+            schema.clone(),
+            scored.shape,
+            scored.params,
+            Variant::NoLateral,
+        ),
     })
 }

@@ -77,6 +77,12 @@ impl<'a> Search<'a> {
         };
         let (groups, codes) = (self.schema.groups.len(), self.schema.codes.len());
         let first = Structure::new(styles, &selector, groups, codes);
+        if self.settings.variant == Variant::Directed {
+            let structure = super::directed::propose(self, first);
+            let best = self.restart(structure, rng)?;
+            let trace = vec![self.step(&best)];
+            return Ok((best, trace));
+        }
         let mut best = self.restart(first, rng)?;
         best = self.with_edges(best)?;
         let mut trace = vec![self.step(&best)];
@@ -198,10 +204,11 @@ impl<'a> Search<'a> {
             styles,
             ..shape.structure.clone()
         })?;
+        let all: Vec<usize> = (0..self.rows.rows).collect();
         let mut best = None;
         for _ in 0..self.settings.restarts.max(1) {
             let labels = kmeans(&features, width, styles, 12, rng);
-            let start = problem.assigned(&labels, &assigned)?;
+            let start = problem.assigned(&all, &labels, &assigned)?;
             let start = super::params::Params {
                 linear: given.params.linear.clone(),
                 ..start
