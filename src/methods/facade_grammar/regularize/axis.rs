@@ -10,6 +10,9 @@ const FINENESS: f64 = 256.0;
 /// Most sizes that are tried for one cluster.
 const MAX_TRIES: usize = 65;
 
+/// Most sizes that are tried for a part of a cluster.
+const MAX_PARTIAL_TRIES: usize = 9;
+
 /// A stretch of one area along a strip, between cut lines `from` and `to`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Run {
@@ -268,6 +271,14 @@ struct Size {
     members: Vec<(usize, usize)>,
 }
 
+impl Size {
+    fn constraints(&self, size: i64) -> impl Iterator<Item = Difference> + '_ {
+        self.members
+            .iter()
+            .flat_map(move |&(from, to)| exactly(from, to, size))
+    }
+}
+
 /// Clusters sizes of one label, elements first, heavy ones first, and gives each cluster one size.
 fn choose_sizes(
     groups: &Groups,
@@ -339,35 +350,58 @@ fn agglomerate(sizes: Vec<Size>, tolerance: f64) -> Vec<Vec<Size>> {
     }
 }
 
-/// Gives a cluster one size; splits it when that is not feasible.
+/// Gives a cluster one size. Where no size fits all, the one that fits most is given to those whom it
+/// fits, and the rest is a cluster of its own.
 fn settle(cluster: Vec<Size>, tolerance: f64, system: &mut Differences, out: &mut Vec<Cluster>) {
-    let mut parts = vec![cluster];
-    while let Some(part) = parts.pop() {
-        let members: Vec<(usize, usize)> = part.iter().flat_map(|s| s.members.clone()).collect();
-        if members.len() < 2 {
-            continue;
+    let mut rest = cluster;
+    while rest.iter().map(|s| s.members.len()).sum::<usize>() > 1 {
+        let target = weighted_median(&rest);
+        let sizes = tries(target, tolerance);
+        let all = |size: i64| {
+            rest.iter()
+                .flat_map(move |s| s.constraints(size))
+                .collect::<Vec<_>>()
+        };
+        if let Some(size) = sizes.iter().copied().find(|&size| system.add(&all(size))) {
+            let members = rest.iter().flat_map(|s| s.members.clone()).collect();
+            out.push(Cluster { members, size });
+            return;
         }
-        let target = weighted_median(&part);
-        let accepted = tries(target, tolerance).into_iter().find(|&size| {
-            let members = members.clone();
-            let trial: Vec<Difference> = constraints(&Cluster { members, size }).collect();
-            system.add(&trial)
-        });
-        match accepted {
-            Some(size) => out.push(Cluster { members, size }),
-            None => {
-                let gap = |k: &usize| part[*k].value - part[k - 1].value;
-                let widest = (1..part.len()).max_by(|a, b| gap(a).total_cmp(&gap(b)));
-                let mut lower = part.clone();
-                match widest.map(|k| if gap(&k) > 0.0 { k } else { part.len() / 2 }) {
-                    Some(k) => {
-                        let higher = lower.split_off(k);
-                        parts.extend([higher, lower]);
-                    }
-                    None => continue,
-                }
+        let mut best: Option<(f64, i64, Vec<bool>, Differences)> = None;
+        for size in sizes.into_iter().take(MAX_PARTIAL_TRIES) {
+            let mut trial = system.clone();
+            let mut fits = vec![false; rest.len()];
+            // Those that are nearest to the size first: they need to move least.
+            let mut order: Vec<usize> = (0..rest.len()).collect();
+            let distance = |k: usize| (rest[k].value - size as f64).abs();
+            order.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+            let mut weight = 0.0;
+            for k in order {
+                let constraints: Vec<Difference> = rest[k].constraints(size).collect();
+                fits[k] = trial.add(&constraints);
+                weight += if fits[k] { rest[k].weight } else { 0.0 };
+            }
+            if best.as_ref().is_none_or(|(most, ..)| weight > *most) {
+                best = Some((weight, size, fits, trial));
             }
         }
+        let Some((_, size, fits, trial)) = best else {
+            return;
+        };
+        let mut fit = fits.into_iter();
+        let (together, others): (Vec<Size>, Vec<Size>) =
+            rest.into_iter().partition(|_| fit.next().unwrap_or(false));
+        let members: Vec<(usize, usize)> = together.into_iter().flat_map(|s| s.members).collect();
+        // One alone needs no constraint; none means that nothing here can be helped.
+        match members.len() {
+            0 => return,
+            1 => {}
+            _ => {
+                *system = trial;
+                out.push(Cluster { members, size });
+            }
+        }
+        rest = others;
     }
 }
 
