@@ -73,12 +73,6 @@ const ARTEFACTS: &[Artefact] = &[
     },
 ];
 
-/// The values of `alpha` that the searches try; Sec. 5.3 names 0.25 to 1.
-const ALPHAS: [f64; 6] = [0.0, 0.25, 0.5, 0.6, 0.75, 1.0];
-/// The values of `b_p`; Sec. 5.3 names 0.0625 to 0.5.
-const PARENTAL: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
-/// The values of `b_h`; Sec. 5.3 names 0.125 to 1.
-const HORIZONTAL: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 /// Ranks of Fig. 4.
 const RANKS: usize = 20;
 

@@ -1,12 +1,11 @@
 //! Section 5.3: the number of rules over `alpha`, `b_p` and `b_h` (Eq. 12).
 
 use super::data::sources;
-use super::{ALPHAS, HORIZONTAL, PARENTAL, row};
+use super::row;
 use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{Inference, Model, Parameters};
-use crate::optim::grid::{GridOutcome, minimize};
+use crate::methods::procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
+use crate::optim::grid::GridOutcome;
 use crate::report::{Align, Figure, HeatMap, Table};
-use crate::shape::LabelGrid;
 use crate::{Error, Result};
 
 /// What the paper says of every value of its ranges.
@@ -37,20 +36,13 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             if grids.is_empty() {
                 continue;
             }
-            let found = minimize(&axes, |point| {
-                rules(grids, point).map(|i| i.rules.len() as f64)
-            })
-            .map_err(Error::method)?;
+            let found = fewest_rules(grids, &axes).map_err(Error::method)?;
             for (point, count) in &found.evaluated {
                 ctx.observe(row(dataset, "inferred", name(point), "rules", *count));
             }
             let printed = Parameters::COMPRESSION;
-            let at = [
-                printed.alpha,
-                printed.parental_bias,
-                printed.horizontal_bias,
-            ];
-            let inference = rules(grids, &at)?;
+            let model = Model::fit(grids, printed).map_err(Error::method)?;
+            let inference = model.inference;
             let count = inference.rules.len() as f64;
             let ratio = inference.binary_splits as f64 / count;
             table.row([
@@ -94,15 +86,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 fn axes(budget: Budget) -> [Vec<f64>; 3] {
     match budget {
         Budget::Smoke => [vec![0.6, 1.0], vec![0.25], vec![0.5, 1.0]],
-        _ => [ALPHAS.to_vec(), PARENTAL.to_vec(), HORIZONTAL.to_vec()],
+        _ => search_axes(),
     }
-}
-
-/// The inference at one point of the grid.
-fn rules(grids: &[LabelGrid], point: &[f64]) -> Result<Inference> {
-    let parameters = Parameters::new(point[0], point[1], point[2]).map_err(Error::method)?;
-    let model = Model::fit(grids, parameters).map_err(Error::method)?;
-    Ok(model.inference)
 }
 
 fn name(point: &[f64]) -> String {

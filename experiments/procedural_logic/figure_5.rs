@@ -134,7 +134,7 @@ fn seconds(
     alphabet: &Alphabet,
     coefficients: &Coefficients,
 ) -> Result<Chart> {
-    let repeats = ctx.budget().choose(1, 7, 15);
+    let repeats = ctx.budget().choose(1, 25, 50);
     let mut chart = Chart::new(
         format!("{dataset}: seconds, one thread"),
         Scale::new("facades"),

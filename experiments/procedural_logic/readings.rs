@@ -3,7 +3,7 @@
 use super::data::sources;
 use super::figure_4::retrieve;
 use super::gold::Doors;
-use super::{HORIZONTAL, PARENTAL, row};
+use super::row;
 use crate::Error;
 use crate::Result;
 use crate::experiments::{Budget, Context};
@@ -14,7 +14,11 @@ use crate::report::{Align, Table};
 pub fn run(ctx: &mut Context) -> Result<()> {
     let (alphas, parental, horizontal): (&[f64], &[f64], &[f64]) = match ctx.budget() {
         Budget::Smoke => (&[0.6], &[0.25], &[0.5]),
-        _ => (&[0.25, 0.6, 1.0], &PARENTAL[..4], &HORIZONTAL[1..]),
+        _ => (
+            &[0.25, 0.6, 1.0],
+            &[0.0625, 0.125, 0.25, 0.5],
+            &[0.125, 0.25, 0.5, 1.0],
+        ),
     };
     let mut table = Table::new("Rules over the paper's ranges, and powerset retrieval, by reading")
         .column("data", Align::Left)

@@ -3,9 +3,9 @@
 use super::data::{Source, sources};
 use super::figure_4::retrieve;
 use super::gold::Doors;
-use super::{ALPHAS, HORIZONTAL, PARENTAL, row};
+use super::row;
 use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{Measure, Model, Parameters};
+use crate::methods::procedural_logic::{Measure, Model, Parameters, search_axes};
 use crate::optim::grid::minimize;
 use crate::report::{Align, Table};
 use crate::{Error, Result};
@@ -14,7 +14,7 @@ use crate::{Error, Result};
 pub fn run(ctx: &mut Context) -> Result<()> {
     let axes = match ctx.budget() {
         Budget::Smoke => [vec![0.5], vec![0.0625, 1.0], vec![0.125]],
-        _ => [ALPHAS.to_vec(), PARENTAL.to_vec(), HORIZONTAL.to_vec()],
+        _ => search_axes(),
     };
     ctx.setting("alpha", axes[0].clone());
     ctx.setting("b_p", axes[1].clone());

@@ -53,7 +53,8 @@ impl Structure {
             [] => "no running balcony".into(),
             floors => {
                 let names: Vec<String> = floors.iter().map(|&f| ordinal(f)).collect();
-                format!("running balconies on floors {}", names.join(", "))
+                let s = if names.len() == 1 { "" } else { "s" };
+                format!("running balconies on the {} floor{s}", names.join(" and "))
             }
         };
         let ground = match (self.shops, self.doors) {

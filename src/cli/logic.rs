@@ -1,12 +1,36 @@
 //! Procedural logic on the command line.
 
+mod cluster;
+mod compare;
+mod fit;
+mod input;
+mod parse;
+mod synthesize;
+
 use clap::Subcommand;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {}
+pub enum Command {
+    /// Learn rules from facades, or add facades to rules learned before.
+    Fit(fit::Args),
+    /// Parse facades into split grammars.
+    Parse(parse::Args),
+    /// Rank facades by structural distance.
+    Compare(compare::Args),
+    /// Cluster facades by structural distance.
+    Cluster(cluster::Args),
+    /// Draw new facades from learned rules.
+    Synthesize(synthesize::Args),
+}
 
 /// Runs the command.
 pub fn run(command: Command) -> edifice::Result<()> {
-    match command {}
+    match command {
+        Command::Fit(args) => fit::run(&args),
+        Command::Parse(args) => parse::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Cluster(args) => cluster::run(&args),
+        Command::Synthesize(args) => synthesize::run(&args),
+    }
 }

@@ -80,6 +80,15 @@ impl Affinity {
         }
     }
 
+    /// Whether the matrices are square, over at most `labels` labels, of finite numbers from zero.
+    pub(super) fn is_sound(&self, labels: usize) -> bool {
+        let sound = |sums: &Vec<f64>| {
+            self.labels.checked_mul(self.labels) == Some(sums.len())
+                && sums.iter().all(|sum| sum.is_finite() && *sum >= 0.0)
+        };
+        self.labels <= labels && self.sums.iter().all(sound)
+    }
+
     fn grow(&mut self, labels: usize) {
         if labels <= self.labels {
             return;

@@ -6,7 +6,10 @@ use super::nary::{NaryNode, NaryTree};
 use crate::shape::Axis;
 
 /// What a rule calls for one of its parts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
 pub enum Call {
     /// Insert the asset with this label.
     Insert(u32),
@@ -138,24 +141,53 @@ impl RuleSet {
         applied
     }
 
-    /// The n-ary tree that an instance stands for.
+    /// Adds a rule with its statistics, as a file tells them; `false` when there is such a rule.
+    pub(super) fn restore(
+        &mut self,
+        axis: Axis,
+        children: Vec<Call>,
+        uses: u64,
+        mean: Vec<f64>,
+        deviation: Vec<f64>,
+    ) -> bool {
+        let before = self.rules.len();
+        let id = self.intern(axis, children) as usize;
+        if id < before {
+            return false;
+        }
+        let rule = &mut self.rules[id];
+        rule.uses = uses;
+        rule.mean = mean;
+        rule.deviation = deviation;
+        true
+    }
+
+    /// Checks that an instance calls a rule that exists with as many parameters as it takes.
     ///
     /// # Errors
-    /// [`InstanceError`] for a call of a rule that does not exist, or a parameter vector of the
-    /// wrong length.
-    pub fn expand(&self, instance: &Instance) -> Result<NaryTree, InstanceError> {
+    /// [`InstanceError`].
+    pub fn check(&self, instance: &Instance) -> Result<(), InstanceError> {
         if let Call::Rule(rule) = instance.start
             && rule as usize >= self.rules.len()
         {
             return Err(InstanceError::UnknownRule { rule });
         }
         let expected = self.parameter_count(instance.start);
-        if expected != instance.parameters.len() {
-            return Err(InstanceError::Parameters {
-                expected,
-                found: instance.parameters.len(),
-            });
+        let found = instance.parameters.len();
+        if expected == found {
+            Ok(())
+        } else {
+            Err(InstanceError::Parameters { expected, found })
         }
+    }
+
+    /// The n-ary tree that an instance stands for.
+    ///
+    /// # Errors
+    /// [`InstanceError`] for a call of a rule that does not exist, or a parameter vector of the
+    /// wrong length.
+    pub fn expand(&self, instance: &Instance) -> Result<NaryTree, InstanceError> {
+        self.check(instance)?;
         let mut nodes = vec![NaryNode::Insert(0)];
         let mut at = 0;
         let mut todo = vec![(0_usize, instance.start)];

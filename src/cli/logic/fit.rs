@@ -1,0 +1,86 @@
+//! `edifice logic fit`.
+
+use std::path::PathBuf;
+
+use edifice::methods::procedural_logic::{Model, Parameters, fewest_rules, search_axes};
+use edifice::{Error, Result};
+
+use super::input::{Energy, Facades, read_model, write_model};
+use crate::cli::print;
+
+/// Options of `logic fit`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  edifice logic fit labels/ -o paris.logic.json\n  edifice logic fit labels/ --search -o paris.logic.json\n  edifice logic fit new.png --into paris.logic.json -o paris.logic.json"
+)]
+pub struct Args {
+    #[command(flatten)]
+    facades: Facades,
+    /// Model to add the facades to, with its parameters and affinities as they are.
+    #[arg(long, value_name = "MODEL", conflicts_with_all = ["search", "alpha", "parental_bias", "horizontal_bias"])]
+    into: Option<PathBuf>,
+    #[command(flatten)]
+    energy: Energy,
+    /// Search the parameters that give the fewest rules.
+    #[arg(long, conflicts_with_all = ["alpha", "parental_bias", "horizontal_bias"])]
+    search: bool,
+    /// Model file to write.
+    #[arg(short, long, value_name = "MODEL")]
+    output: PathBuf,
+    /// End standard output with one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let grids = args.facades.read()?;
+    let model = match &args.into {
+        Some(path) => {
+            let mut model = read_model(path)?;
+            model.add_all(&grids).map_err(Error::method)?;
+            model
+        }
+        None => {
+            let mut parameters = args.energy.parameters(Parameters::COMPRESSION)?;
+            if args.search {
+                let found = fewest_rules(&grids, &search_axes()).map_err(Error::method)?;
+                parameters = Parameters {
+                    alpha: found.best[0],
+                    parental_bias: found.best[1],
+                    horizontal_bias: found.best[2],
+                    ..parameters
+                };
+            }
+            Model::fit(&grids, parameters).map_err(Error::method)?
+        }
+    };
+    write_model(&model, &args.output)?;
+    let inference = &model.inference;
+    let p = model.parameters;
+    print::message(&format!(
+        "alpha {}, b_p {}, b_h {}",
+        p.alpha, p.parental_bias, p.horizontal_bias
+    ));
+    if args.json {
+        return print::line(
+            &serde_json::json!({
+                "facades": inference.facades,
+                "binary_splits": inference.binary_splits,
+                "nary_splits": inference.nary_splits,
+                "rules": inference.rules.len(),
+                "alpha": p.alpha,
+                "parental_bias": p.parental_bias,
+                "horizontal_bias": p.horizontal_bias,
+            })
+            .to_string(),
+        );
+    }
+    print::line(&format!(
+        "{} facades: {} binary splits, {} n-ary splits, {} rules",
+        inference.facades,
+        inference.binary_splits,
+        inference.nary_splits,
+        inference.rules.len()
+    ))
+}

@@ -1,0 +1,180 @@
+//! Facades, parameters and models from the command line.
+
+use std::path::{Path, PathBuf};
+
+use edifice::io::{self, LabelMap, ReadOptions, facade_json};
+use edifice::methods::procedural_logic::{
+    MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters,
+};
+use edifice::shape::LabelGrid;
+use edifice::{Error, Result, cluster, methods::procedural_logic};
+
+/// Facades to read.
+#[derive(clap::Args)]
+pub struct Facades {
+    /// Facade files (.png, .facade.json, .xml, .txt), and folders of .png and .facade.json files.
+    #[arg(value_name = "IN")]
+    pub inputs: Vec<PathBuf>,
+    /// What the colours or numbers of label images stand for, as JSON.
+    #[arg(long, value_name = "FILE")]
+    label_map: Option<PathBuf>,
+}
+
+impl Facades {
+    /// Reads all facades as label pictures, folders in the order of their file names.
+    pub fn read(&self) -> Result<Vec<LabelGrid>> {
+        let label_map = self.label_map.as_deref().map(LabelMap::read).transpose()?;
+        let options = ReadOptions {
+            label_map,
+            ..ReadOptions::default()
+        };
+        let mut grids = Vec::new();
+        for input in &self.inputs {
+            for path in files(input)? {
+                grids.push(io::read_label_grid(&path, &options)?);
+            }
+        }
+        Ok(grids)
+    }
+}
+
+/// The file, or the facade files of a folder.
+fn files(path: &Path) -> Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_path_buf()]);
+    }
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(path).map_err(|e| Error::io(path, "read", e))? {
+        let file = entry.map_err(|e| Error::io(path, "read", e))?.path();
+        let name = file.to_string_lossy().to_lowercase();
+        if name.ends_with(".png") || name.ends_with(".facade.json") {
+            files.push(file);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(Error::content(path, NoFacades));
+    }
+    Ok(files)
+}
+
+/// A folder without facades.
+#[derive(Debug, thiserror::Error)]
+#[error("the folder holds no .png and no .facade.json file")]
+struct NoFacades;
+
+/// Parameters of the energy of Eq. 3.
+#[derive(clap::Args)]
+pub struct Energy {
+    /// Weight of the edge term against the affinity term, 0 to 1.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha: Option<f64>,
+    /// Factor on splits in the direction of the last one, above 0, at most 1.
+    #[arg(long, value_name = "B", allow_negative_numbers = true)]
+    parental_bias: Option<f64>,
+    /// Factor on horizontal lines, above 0, at most 1.
+    #[arg(long, value_name = "B", allow_negative_numbers = true)]
+    horizontal_bias: Option<f64>,
+}
+
+impl Energy {
+    /// The parameters given, the others from `defaults`.
+    pub fn parameters(&self, defaults: Parameters) -> Result<Parameters> {
+        let parameters = Parameters {
+            alpha: self.alpha.unwrap_or(defaults.alpha),
+            parental_bias: self.parental_bias.unwrap_or(defaults.parental_bias),
+            horizontal_bias: self.horizontal_bias.unwrap_or(defaults.horizontal_bias),
+            ..defaults
+        };
+        parameters.checked().map_err(|error| {
+            let option = match error.name {
+                "b_p" => "--parental-bias",
+                "b_h" => "--horizontal-bias",
+                _ => "--alpha",
+            };
+            Error::option(option, error.to_string())
+        })
+    }
+
+    /// Whether any parameter is given.
+    pub fn is_given(&self) -> bool {
+        self.alpha.is_some() || self.parental_bias.is_some() || self.horizontal_bias.is_some()
+    }
+}
+
+/// Reads a model file.
+pub fn read_model(path: &Path) -> Result<Model> {
+    let bytes = io::read_bytes(path)?;
+    facade_json::check_header(&bytes, path, MODEL_FORMAT, MODEL_VERSION)?;
+    let file: ModelFile = facade_json::parse_json(&bytes, path)?;
+    Model::try_from(file).map_err(|error| Error::content(path, error))
+}
+
+/// Writes a model file.
+pub fn write_model(model: &Model, path: &Path) -> Result<()> {
+    let mut bytes = serde_json::to_vec(&ModelFile::from(model)).map_err(Error::method)?;
+    bytes.push(b'\n');
+    io::write_atomic(path, &bytes)
+}
+
+/// The facades of a model file and of other files together, under the model's parameters; without
+/// a model file, a model fitted to the facades with the parameters of Sec. 5.4.
+pub fn model(path: Option<&Path>, facades: &Facades, energy: &Energy) -> Result<Model> {
+    let grids = facades.read()?;
+    let Some(path) = path else {
+        let parameters = energy.parameters(Parameters::RETRIEVAL)?;
+        return Model::fit(&grids, parameters).map_err(Error::method);
+    };
+    if energy.is_given() {
+        let message = "a model keeps the parameters that it was fitted with";
+        return Err(Error::option("--model", message));
+    }
+    let mut model = read_model(path)?;
+    model.add_all(&grids).map_err(Error::method)?;
+    Ok(model)
+}
+
+/// Distances on the command line.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Measure {
+    /// Chi-square over operations and labels of the parts of the parse trees.
+    Powerset,
+    /// Chi-square over the rules that two facades share.
+    CommonRules,
+    /// Chi-square over the rules of two facades.
+    AllRules,
+    /// Rules of both facades together over the sum of the rules of each.
+    RuleUnion,
+}
+
+impl From<Measure> for procedural_logic::Measure {
+    fn from(measure: Measure) -> Self {
+        match measure {
+            Measure::Powerset => Self::Powerset,
+            Measure::CommonRules => Self::CommonRules,
+            Measure::AllRules => Self::AllRules,
+            Measure::RuleUnion => Self::RuleUnion,
+        }
+    }
+}
+
+/// Linkages on the command line.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Linkage {
+    /// Smallest distance.
+    Single,
+    /// Largest distance.
+    Complete,
+    /// Mean distance.
+    Average,
+}
+
+impl From<Linkage> for cluster::Linkage {
+    fn from(linkage: Linkage) -> Self {
+        match linkage {
+            Linkage::Single => Self::Single,
+            Linkage::Complete => Self::Complete,
+            Linkage::Average => Self::Average,
+        }
+    }
+}

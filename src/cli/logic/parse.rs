@@ -1,0 +1,74 @@
+//! `edifice logic parse`.
+
+use std::path::{Path, PathBuf};
+
+use edifice::grammar::Grammar;
+use edifice::io::write_grammar;
+use edifice::methods::procedural_logic::{Model, NaryTree, Parameters, split_grammar};
+use edifice::shape::LabelGrid;
+use edifice::{Error, Result};
+
+use super::input::{Energy, Facades, read_model};
+use crate::cli::print;
+
+/// Options of `logic parse`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  edifice logic parse monge_42.png -o monge_42.grammar.json\n  edifice logic parse monge_42.png --model paris.logic.json -o monge_42.cga\n  edifice logic parse labels/ -o grammars/"
+)]
+pub struct Args {
+    #[command(flatten)]
+    facades: Facades,
+    /// Model whose affinities and parameters to use; without one, those of the facades given.
+    #[arg(long, value_name = "MODEL", conflicts_with_all = ["alpha", "parental_bias", "horizontal_bias"])]
+    model: Option<PathBuf>,
+    #[command(flatten)]
+    energy: Energy,
+    /// Grammar file to write (.grammar.json or .cga); a folder for several facades.
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let grids = args.facades.read()?;
+    let mut model = match &args.model {
+        Some(path) => read_model(path)?,
+        None => {
+            let parameters = args.energy.parameters(Parameters::COMPRESSION)?;
+            Model::fit(&grids, parameters).map_err(Error::method)?
+        }
+    };
+    if let [grid] = grids.as_slice() {
+        return write(&parse(&mut model, grid)?, &args.output);
+    }
+    let folder = &args.output;
+    std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+    for grid in &grids {
+        let grammar = parse(&mut model, grid)?;
+        write(
+            &grammar,
+            &folder.join(format!("{}.grammar.json", grid.name)),
+        )?;
+    }
+    Ok(())
+}
+
+fn parse(model: &mut Model, grid: &LabelGrid) -> Result<Grammar> {
+    let tree = NaryTree::from_binary(&model.parse(grid).map_err(Error::method)?);
+    Ok(split_grammar(
+        &tree,
+        &model.alphabet,
+        &grid.name,
+        &grid.unit,
+    ))
+}
+
+fn write(grammar: &Grammar, path: &Path) -> Result<()> {
+    write_grammar(grammar, path)?;
+    print::line(&format!(
+        "{}: {} rules",
+        path.display(),
+        grammar.rules.len()
+    ))
+}
