@@ -10,7 +10,7 @@ mod figure_6;
 mod frequent_rules;
 pub mod gold;
 mod lossless;
-mod made;
+pub mod made;
 mod readings;
 mod retrieval_search;
 pub mod words;
