@@ -1,3 +1,72 @@
-//! Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings*.
+//! Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings*: how houses
+//! look, on a database with a known truth and on two sets of real houses.
 
+mod data;
+mod figure_10;
+mod figure_11;
+mod figure_12;
+mod figure_14;
 pub mod houses;
+mod learning;
+
+use super::{Artefact, Context, Experiment};
+use crate::model::hierarchy::{Constant, Settings};
+
+/// The paper's tables and figures.
+pub const EXPERIMENT: Experiment = Experiment {
+    slug: "building_exteriors",
+    paper: "Fan, Wonka 2016: A Probabilistic Model for Exteriors of Residential Buildings",
+    artefacts: ARTEFACTS,
+};
+
+const ARTEFACTS: &[Artefact] = &[
+    Artefact {
+        name: "figure_10",
+        title: "the styles found, and what sets them apart",
+        run: figure_10::run,
+    },
+    Artefact {
+        name: "figure_11_left",
+        title: "lateral edges, beside those of the generator",
+        run: figure_11::left,
+    },
+    Artefact {
+        name: "figure_11_right",
+        title: "training houses that contribute to a sample",
+        run: figure_11::right,
+    },
+    Artefact {
+        name: "figure_12_left",
+        title: "held-out negative log-likelihood of five models",
+        run: figure_12::left,
+    },
+    Artefact {
+        name: "figure_12_right",
+        title: "held-out negative log-likelihood by training houses",
+        run: figure_12::right,
+    },
+    Artefact {
+        name: "figure_14",
+        title: "garage and front porch on top of each other (also Fig. 13)",
+        run: figure_14::run,
+    },
+    Artefact {
+        name: "learning",
+        title: "seconds of the whole structure search",
+        run: learning::run,
+    },
+];
+
+/// Settings of every model: cardinalities as in the paper at the paper's budget, up to 12 styles by
+/// default. Columns that are constant among the training houses stay.
+fn settings(ctx: &mut Context) -> Settings {
+    let most = ctx.budget().choose(3, 12, 25);
+    ctx.setting("most_styles", most);
+    Settings {
+        styles: 2..=most,
+        most_states: ctx.budget().choose(4, 25, 25),
+        restarts: ctx.budget().choose(1, 4, 4),
+        constant: Constant::Keep,
+        ..Settings::default()
+    }
+}

@@ -39,7 +39,11 @@ use std::process::ExitCode;
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
 
 /// Every paper's experiment, in the order of the report.
-pub const ALL: &[&Experiment] = &[&facade_grammar::EXPERIMENT, &procedural_logic::EXPERIMENT];
+pub const ALL: &[&Experiment] = &[
+    &building_exteriors::EXPERIMENT,
+    &facade_grammar::EXPERIMENT,
+    &procedural_logic::EXPERIMENT,
+];
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.
 pub fn main(experiment: &'static Experiment) -> ExitCode {

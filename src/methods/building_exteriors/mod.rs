@@ -4,6 +4,7 @@
 //! A building of any number of boxes and facade pieces ([`crate::shape::Building`]) becomes a
 //! vector of 49 [`attributes`] (Sec. 4.2, Appendix A).
 
+pub mod agreement;
 pub mod attributes;
 pub mod baseline;
 pub mod compare;

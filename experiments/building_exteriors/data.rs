@@ -1,0 +1,118 @@
+//! The three sets of houses.
+
+use serde::Deserialize;
+
+use crate::experiments::Context;
+use crate::io::{building_csv, building_json, facade_json, read_bytes};
+use crate::methods::building_exteriors::attributes::attributes;
+use crate::methods::building_exteriors::compare::split;
+use crate::methods::building_exteriors::data::{Dataset, dataset};
+use crate::methods::building_exteriors::schema::{FORMAT, Schema, VERSION};
+use crate::model::{Cell, Table};
+use crate::shape::Building;
+use crate::{Error, Result};
+
+/// What the generator knows.
+#[derive(Deserialize)]
+pub struct Truth {
+    /// Hidden style of each house.
+    pub styles: Vec<usize>,
+    /// Dependencies between attributes.
+    pub dependencies: Vec<(String, String)>,
+}
+
+/// The shipped database.
+pub struct Shipped {
+    pub buildings: Vec<Building>,
+    pub data: Dataset,
+    pub truth: Truth,
+}
+
+/// Reads the shipped database and, for judging only, its truth.
+pub fn shipped(ctx: &mut Context) -> Result<Shipped> {
+    let path = ctx.shipped("building_exteriors/houses.buildings.jsonl")?;
+    let buildings = building_json::read(&path)?;
+    let path = ctx.shipped("building_exteriors/truth.json")?;
+    let truth: Truth = facade_json::parse_json(&read_bytes(&path)?, &path)?;
+    let data = measure(&buildings)?;
+    Ok(Shipped {
+        buildings,
+        data,
+        truth,
+    })
+}
+
+/// The attributes of buildings.
+pub fn measure(buildings: &[Building]) -> Result<Dataset> {
+    let rows = buildings.iter().map(attributes);
+    let rows = rows.collect::<std::result::Result<Vec<_>, _>>();
+    dataset(&rows.map_err(Error::method)?).map_err(Error::method)
+}
+
+/// Real sets: name, schema in `datasets/building_exteriors`, table in the data folder.
+const REAL: [(&str, &str, &str); 2] = [
+    (
+        "h2k",
+        "building_exteriors/h2k.schema.json",
+        "houses/h2k/single_detached_clean.csv.gz",
+    ),
+    (
+        "ames",
+        "building_exteriors/ames.schema.json",
+        "houses/ames_raw.csv.gz",
+    ),
+];
+
+/// The real sets that are there: of each, up to `most` houses without missing values (a mixture
+/// over concatenated vectors has no place for these, and all models see the same houses).
+pub fn real(ctx: &mut Context, most: usize) -> Result<Vec<(&'static str, Dataset)>> {
+    let mut sets = Vec::new();
+    for (name, schema, table) in REAL {
+        let schema = ctx.shipped(schema)?;
+        let Some(path) = ctx.real(table)? else {
+            continue;
+        };
+        let bytes = read_bytes(&schema)?;
+        facade_json::check_header(&bytes, &schema, FORMAT, VERSION)?;
+        let schema: Schema = facade_json::parse_json(&bytes, &schema)?;
+        let text = building_csv::read(&path)?;
+        let all = schema
+            .read(&text.header, &text.rows)
+            .map_err(|e| Error::content(&path, e))?;
+        let complete = complete_rows(&all.table);
+        let seed = ctx.seed();
+        let (chosen, _) = split(complete.len(), 1.0, seed, 999);
+        let chosen: Vec<usize> = chosen.iter().take(most).map(|&i| complete[i]).collect();
+        ctx.note(format!(
+            "`{name}`: {} of {} houses, drawn from the {} without missing values; {} attributes.",
+            chosen.len(),
+            all.table.rows(),
+            complete.len(),
+            all.table.columns().len()
+        ));
+        sets.push((name, all.select(&chosen)));
+    }
+    if sets.len() < REAL.len() {
+        ctx.note("Real sets that are not there are left out: give their folder with `--data`.");
+    }
+    Ok(sets)
+}
+
+fn complete_rows(table: &Table) -> Vec<usize> {
+    let known = |row: usize| table.columns().iter().all(|c| c.cell(row) != Cell::Missing);
+    (0..table.rows()).filter(|&row| known(row)).collect()
+}
+
+/// The real value in a named column; NaN never leaves: `None` for a missing or categorical cell.
+pub fn number(table: &Table, column: &str, row: usize) -> Option<f64> {
+    match table.column(column).ok()?.cell(row) {
+        Cell::Real(value) => Some(value),
+        _ => None,
+    }
+}
+
+/// Index of the largest value; 0 of none.
+pub fn argmax(values: &[f64]) -> usize {
+    let best = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+    best.map_or(0, |(i, _)| i)
+}

@@ -1,0 +1,169 @@
+//! Fig. 10: the styles found.
+
+use super::{data, settings};
+use crate::experiments::Context;
+use crate::methods::building_exteriors::agreement::adjusted_rand_index;
+use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::model::hierarchy::learn;
+use crate::model::{Cell, Table as Data};
+use crate::report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};
+use crate::shape::{BoxStyle, Building, PlanUnion, Rect};
+use crate::{Error, Result};
+
+/// Learns from the shipped houses and shows the styles, their most typical houses and means.
+pub fn run(ctx: &mut Context) -> Result<()> {
+    let shipped = data::shipped(ctx)?;
+    let settings = settings(ctx);
+    let table = &shipped.data.table;
+    let learned =
+        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let model = learned.model;
+    let posterior = model.style_posterior(table).map_err(Error::method)?;
+    let labels: Vec<usize> = posterior.iter().map(|p| data::argmax(p)).collect();
+    let agreement = adjusted_rand_index(&labels, &shipped.truth.styles);
+    for (metric, value) in [
+        ("styles", model.styles() as f64),
+        ("adjusted_rand_index", agreement),
+    ] {
+        ctx.observe(Row {
+            dataset: "shipped".into(),
+            method: "ours".into(),
+            instance: "all".into(),
+            seed: Some(ctx.seed()),
+            metric: metric.into(),
+            value,
+            ..Row::default()
+        });
+    }
+    ctx.compare("styles learned", "7", model.styles().to_string());
+    ctx.compare(
+        "agreement with the generator's styles (adjusted Rand index)",
+        "unknown truth",
+        format!("{agreement:.3}"),
+    );
+
+    let densities = model.log_likelihood(table).map_err(Error::method)?;
+    let mut figure = Figure::new(
+        "the two most probable houses of each style, ground floor from above: main, garage, porch",
+        4,
+    )
+    .cell(240.0, 230.0);
+    for style in 0..model.styles() {
+        let mut members: Vec<usize> = (0..labels.len()).filter(|&i| labels[i] == style).collect();
+        members.sort_by(|&a, &b| densities[b].total_cmp(&densities[a]));
+        for &i in members.iter().take(2) {
+            let name = format!("style {}: {}", style + 1, shipped.buildings[i].name);
+            figure = figure.panel(plan(&name, &shipped.buildings[i]));
+        }
+    }
+    ctx.figure("figure_10", &figure)?;
+    ctx.figure("figure_10_means", &means(table, &labels, model.styles()))?;
+
+    let mut kinds = Table::new("Hidden variables of the attributes")
+        .column("attribute", Align::Left)
+        .column("kinds", Align::Right);
+    for (group, count) in model.real_groups().iter().zip(model.cardinalities()) {
+        kinds.row([group.clone(), count.to_string()]);
+    }
+    ctx.table(&kinds);
+    let mut apart = Table::new("What sets the styles apart")
+        .column("style", Align::Left)
+        .column("houses", Align::Right)
+        .column(
+            "stands out by (standard deviations from the mean of all houses)",
+            Align::Left,
+        );
+    for style in 0..model.styles() {
+        let houses = labels.iter().filter(|&&l| l == style).count();
+        let mut scores = deviations(table, &labels, style);
+        scores.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let words = scores.iter().take(5).map(|(c, z)| format!("{c} {z:+.1}"));
+        let words = words.collect::<Vec<_>>().join(", ");
+        apart.row([(style + 1).to_string(), houses.to_string(), words]);
+    }
+    ctx.table(&apart);
+    ctx.note(
+        "The paper samples two buildings of each style and builds their geometry (its Sec. 6, not part of this \
+         project yet); here the two training houses of highest density stand for them.",
+    );
+    Ok(())
+}
+
+/// Mean of each column among the houses of a style, in standard deviations of all houses.
+fn deviations(table: &Data, labels: &[usize], style: usize) -> Vec<(&'static str, f64)> {
+    let value = |column: &str, row: usize| match table.column(column).map(|c| c.cell(row)) {
+        Ok(Cell::Real(v)) => v,
+        Ok(Cell::Code(c)) => c as f64,
+        _ => 0.0,
+    };
+    let scores = COLUMNS.iter().map(|column| {
+        let values: Vec<f64> = (0..table.rows()).map(|row| value(column, row)).collect();
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let sd = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let of_style = values.iter().zip(labels).filter(|(_, l)| **l == style);
+        let (sum, count) = of_style.fold((0.0, 0.0), |(s, c), (v, _)| (s + v, c + 1.0));
+        let z = if sd > 0.0 && count > 0.0 {
+            (sum / count - mean) / sd
+        } else {
+            0.0
+        };
+        (*column, z)
+    });
+    scores.collect()
+}
+
+fn means(table: &Data, labels: &[usize], styles: usize) -> Figure {
+    let rows: Vec<Vec<f64>> = (0..styles)
+        .map(|s| {
+            deviations(table, labels, s)
+                .iter()
+                .map(|(_, z)| *z)
+                .collect()
+        })
+        .collect();
+    let columns: Vec<&str> = COLUMNS.to_vec();
+    let by_column: Vec<Vec<f64>> = (0..columns.len())
+        .map(|c| rows.iter().map(|row| row[c]).collect())
+        .collect();
+    let names = (1..=styles).map(|s| format!("style {s}")).collect();
+    let map = HeatMap::new("means of the styles", by_column, "standard deviations")
+        .names(columns.iter().map(|c| (*c).to_owned()).collect(), names)
+        .range(-2.0, 2.0);
+    Figure::new("means of the attributes by style", 1)
+        .cell(620.0, 900.0)
+        .panel(map)
+}
+
+const MAIN: Colour = Colour::new(200, 204, 210);
+const GARAGE: Colour = Colour::new(88, 160, 96);
+const PORCH: Colour = Colour::new(76, 120, 200);
+
+/// The boxes of a house from above.
+fn plan(name: &str, building: &Building) -> Tiles {
+    let all: Vec<Rect> = building.boxes.iter().map(|b| b.plan()).collect();
+    let bounds = PlanUnion::new(&all)
+        .bounding_box()
+        .unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0));
+    let tiles = building.boxes.iter().map(|b| {
+        let r = b.plan();
+        Tile {
+            x: r.x - bounds.x,
+            y: r.y - bounds.y,
+            width: r.width,
+            height: r.height,
+            colour: match b.style {
+                BoxStyle::Main => MAIN,
+                BoxStyle::Garage => GARAGE,
+                BoxStyle::Porch => PORCH,
+            },
+        }
+    });
+    let caption = format!(
+        "{:.0} m x {:.0} m, {} floors",
+        bounds.width,
+        bounds.height,
+        building.floors()
+    );
+    Tiles::new(name, bounds.width, bounds.height, tiles.collect()).caption(caption)
+}
