@@ -10,6 +10,7 @@ pub mod cmp_xml;
 pub mod draw;
 mod facade_file;
 pub mod facade_json;
+pub mod gltf;
 pub mod grammar_cga;
 mod grammar_file;
 pub mod grammar_json;
@@ -19,6 +20,7 @@ pub mod label_text;
 pub mod palette;
 pub mod pixels;
 pub mod raster;
+pub mod scene_png;
 
 use std::path::Path;
 

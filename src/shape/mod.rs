@@ -15,6 +15,7 @@ mod elements;
 mod facade;
 mod label_grid;
 mod rect;
+pub mod scene;
 mod splittable;
 mod tiling;
 

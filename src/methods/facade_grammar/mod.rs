@@ -48,6 +48,7 @@ mod operations;
 mod regions;
 pub mod regularize;
 mod symmetry;
+pub mod scene;
 pub mod synthetic;
 mod walk;
 
