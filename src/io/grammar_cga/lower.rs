@@ -1,5 +1,9 @@
 //! From statements to a grammar.
 
+mod chance;
+mod natural;
+mod written_out;
+
 use chumsky::span::SimpleSpan;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -8,12 +12,10 @@ use super::note::Note;
 use super::syntax::{Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Target};
 use crate::grammar::{Grammar, GrammarError, Operation, Rule, Size, Start, Successor, check};
 use crate::shape::Axis;
+use natural::natural_extent;
 
 /// The unit of text that names none: CityEngine's metre.
 const UNIT: &str = "m";
-
-/// Two percentages are the same when they differ by at most this much.
-const PERCENT_SLACK: f64 = 1e-6;
 
 /// Builds the grammar and checks it.
 pub(super) fn lower(
@@ -142,44 +144,6 @@ impl<'a> Builder<'a> {
             self.rules[index].operation = self.alternative(alternative, &symbol)?;
         }
         Ok(())
-    }
-
-    /// The weight of each alternative: its percentage, or what a comment says that it was.
-    fn weights(&self, rule: &CgaRule<'_>) -> Result<Vec<Option<f64>>, Fault> {
-        let mut shares = Vec::new();
-        for alternative in &rule.alternatives {
-            let rest = || 100.0 - shares.iter().flatten().sum::<f64>();
-            let share = match &alternative.chance {
-                Chance::Always => None,
-                Chance::Percent(value) => Some(self.value(value)?),
-                Chance::Else => Some(rest()).map(|r| if r.abs() < PERCENT_SLACK { 0.0 } else { r }),
-            };
-            shares.push(share);
-        }
-        for &(text, span) in &rule.notes {
-            let Note::Weights(weights) = Note::parse(text, span)? else {
-                return Err(Fault::new(span, "this comment belongs below the arrow"));
-            };
-            let total: f64 = weights.iter().sum();
-            let explains = |(weight, share): (&f64, &Option<f64>)| {
-                share.is_some_and(|s| (100.0 * weight / total - s).abs() <= PERCENT_SLACK)
-            };
-            // A closing `else : NIL` of nothing has no weight.
-            let extra = shares.len() - weights.len().min(shares.len());
-            let rest_is_nothing =
-                shares[weights.len().min(shares.len())..] == vec![Some(0.0); extra];
-            if weights.len() > shares.len()
-                || !rest_is_nothing
-                || !weights.iter().zip(&shares).all(explains)
-            {
-                let message = "these weights do not match the percentages below; correct or remove the comment";
-                return Err(Fault::new(span, message));
-            }
-            for (share, weight) in shares.iter_mut().zip(weights) {
-                *share = Some(weight);
-            }
-        }
-        Ok(shares)
     }
 
     fn alternative(
@@ -327,70 +291,6 @@ impl<'a> Builder<'a> {
         symbol
     }
 
-    fn sym_split(
-        &mut self,
-        axis: Axis,
-        entries: &[Entry<'_>],
-        symbol: &str,
-        at: SimpleSpan,
-    ) -> Result<Operation, Fault> {
-        let asymmetric = || {
-            Fault::new(
-                at,
-                "the split below is not the same from both ends; correct it or remove the comment",
-            )
-        };
-        let parts = plain(entries).ok_or_else(asymmetric)?;
-        let mut all = self.successors(parts, symbol)?;
-        let mirrored = all.iter().eq(all.iter().rev());
-        if !mirrored {
-            return Err(asymmetric());
-        }
-        let center = all.len() % 2 == 1;
-        all.truncate(all.len().div_ceil(2));
-        Ok(Operation::SymSplit {
-            axis,
-            successors: all,
-            center,
-        })
-    }
-
-    fn grid_split(&mut self, entries: &[Entry<'_>], at: SimpleSpan) -> Result<Operation, Fault> {
-        let no_grid = || {
-            Fault::new(
-                at,
-                "the splits below are not one grid of symbols; correct them or remove the comment",
-            )
-        };
-        let mut columns: Option<Vec<Size>> = None;
-        let (mut rows, mut cells) = (Vec::new(), Vec::new());
-        for part in plain(entries).ok_or_else(no_grid)? {
-            rows.push(self.size(part)?);
-            let Target::Split(Axis::X, inner) = &part.target.0 else {
-                return Err(no_grid());
-            };
-            let inner = plain(inner).ok_or_else(no_grid)?;
-            let mut row = Vec::new();
-            let mut sizes = Vec::new();
-            for part in inner {
-                let Target::Symbol(name) = &part.target.0 else {
-                    return Err(no_grid());
-                };
-                row.push(self.symbol(name));
-                sizes.push(self.size(part)?);
-            }
-            if *columns.get_or_insert_with(|| sizes.clone()) != sizes {
-                return Err(no_grid());
-            }
-            cells.push(row);
-        }
-        Ok(Operation::GridSplit {
-            columns: columns.unwrap_or_default(),
-            rows,
-            cells,
-        })
-    }
-
     fn finish(
         self,
         header: &[At<Note>],
@@ -476,66 +376,4 @@ impl<'a> Builder<'a> {
             (_, Some(fault)) => Err(fault),
         }
     }
-}
-
-/// The parts, when no entry is a repeat.
-fn plain<'p, 'a>(entries: &'p [Entry<'a>]) -> Option<Vec<&'p Part<'a>>> {
-    let part = |entry: &'p Entry<'a>| match entry {
-        Entry::Part(part) => Some(part),
-        Entry::Repeat(..) => None,
-    };
-    entries.iter().map(part).collect()
-}
-
-/// Extent of a symbol along `wanted`, where absolute sizes alone say it.
-fn natural_extent(rules: &[Rule], symbol: &str, wanted: Axis) -> Option<f64> {
-    let mut by_symbol: FxHashMap<&str, &Operation> = FxHashMap::default();
-    for rule in rules {
-        by_symbol.entry(&rule.symbol).or_insert(&rule.operation);
-    }
-    let sum = |sizes: Vec<Size>| {
-        sizes.into_iter().try_fold(0.0, |sum, size| match size {
-            Size::Absolute(v) => Some(sum + v),
-            Size::Relative(_) => None,
-        })
-    };
-    let mut todo = vec![symbol];
-    let mut seen: FxHashSet<&str> = FxHashSet::default();
-    while let Some(symbol) = todo.pop() {
-        let Some(operation) = by_symbol.get(symbol).filter(|_| seen.insert(symbol)) else {
-            continue;
-        };
-        let found = match operation {
-            Operation::Split { axis, successors } if *axis == wanted => {
-                sum(successors.iter().map(|s| s.size).collect())
-            }
-            Operation::SymSplit {
-                axis,
-                successors,
-                center,
-            } if *axis == wanted => {
-                let half = sum(successors.iter().map(|s| s.size).collect());
-                let middle = successors.last().filter(|_| *center);
-                half.map(|h| 2.0 * h - middle.map_or(0.0, |s| s.size.value()))
-            }
-            Operation::Repeat { axis, .. } | Operation::RepeatAba { axis, .. }
-                if *axis == wanted =>
-            {
-                None
-            }
-            Operation::GridSplit { columns, rows, .. } => match wanted {
-                Axis::X => sum(columns.clone()),
-                Axis::Y => sum(rows.clone()),
-            },
-            across => {
-                // Every part shares the extent across the split.
-                todo.extend(across.symbols());
-                None
-            }
-        };
-        if found.is_some() {
-            return found;
-        }
-    }
-    None
 }

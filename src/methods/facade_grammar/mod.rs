@@ -47,8 +47,8 @@ mod members;
 mod operations;
 mod regions;
 pub mod regularize;
-mod symmetry;
 pub mod scene;
+mod symmetry;
 pub mod synthetic;
 mod walk;
 
