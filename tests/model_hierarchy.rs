@@ -192,10 +192,10 @@ fn two_rows_still_answer() {
 
 #[test]
 fn missing_values_still_answer() {
-    let (table, _) = made(120, 4, 1);
+    let (table, _) = made(60, 4, 1);
     let mut holes = Table::new();
     for (j, column) in table.columns().iter().enumerate() {
-        let cells = (0..120).map(|i| match column.cell(i) {
+        let cells = (0..60).map(|i| match column.cell(i) {
             cell if !(i * 7 + j * 5).is_multiple_of(3) => cell,
             _ => Cell::Missing,
         });
@@ -220,7 +220,8 @@ fn missing_values_still_answer() {
     for variant in VARIANTS {
         let settings = Settings {
             variant,
-            styles: 2..=4,
+            styles: 2..=2,
+            most_states: 3,
             ..settings()
         };
         let learned = learn(&holes, &groups(), &settings, 7).unwrap();
@@ -228,6 +229,121 @@ fn missing_values_still_answer() {
         assert!(l.iter().all(|l| l.is_finite()), "{variant:?}");
         let mut rng = stream(1, "d", 0);
         let draws = learned.model.complete(&holes, 1, &mut rng).unwrap();
-        assert_eq!(draws.table.rows(), 120);
+        assert_eq!(draws.table.rows(), 60);
     }
+}
+
+#[test]
+fn a_missing_value_is_integrated_out() {
+    // log p(rest) = log of the integral of p(rest, x) over x, by the trapezoid rule: once over a
+    // parent of a lateral edge, once over a child.
+    let (learned, table, _) = learned(100);
+    for (column, from, to) in [("x0", 0.0, 30.0), ("x1", -10.0, 20.0), ("x2", 0.0, 700.0)] {
+        for row in [1, 2, 6] {
+            let steps = 30_000;
+            let width = (to - from) / f64::from(steps);
+            let mut grid = Table::new();
+            let mut hole = Table::new();
+            let copies: Vec<usize> = vec![row; steps as usize];
+            let many = table.select(&copies);
+            for c in table.columns() {
+                let name = c.name();
+                let value = match c.cell(row) {
+                    Cell::Real(v) => Some(v),
+                    _ => None,
+                };
+                (grid, hole) = if name == column {
+                    let values = (0..steps).map(|i| Some(from + width * f64::from(i)));
+                    (
+                        grid.real(name, values).unwrap(),
+                        hole.real(name, [None]).unwrap(),
+                    )
+                } else if value.is_some() {
+                    let values = copies.iter().map(|_| value);
+                    (
+                        grid.real(name, values).unwrap(),
+                        hole.real(name, [value]).unwrap(),
+                    )
+                } else {
+                    let code = |t: &Table, i: usize| match t.column(name).unwrap().cell(i) {
+                        Cell::Code(v) => Some(v == 1),
+                        _ => None,
+                    };
+                    let values: Vec<Option<bool>> =
+                        (0..copies.len()).map(|i| code(&many, i)).collect();
+                    (
+                        grid.binary(name, values).unwrap(),
+                        hole.binary(name, [code(&table, row)]).unwrap(),
+                    )
+                };
+            }
+            let slow: f64 = learned
+                .model
+                .log_likelihood(&grid)
+                .unwrap()
+                .iter()
+                .map(|l| l.exp() * width)
+                .sum();
+            let fast = learned.model.log_likelihood(&hole).unwrap()[0];
+            assert!(
+                (fast - slow.ln()).abs() < 1e-4,
+                "{column} {row}: {fast} {}",
+                slow.ln()
+            );
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_named() {
+    let (table, _) = made(30, 4, 1);
+    let fit = |t: &Table, g: &[Group]| learn(t, g, &settings(), 1).map(|_| ());
+    let one = |name: &str| [Group::new("g", &[name])];
+    let extra = |v: Vec<Option<f64>>| table.clone().real("extra", v).unwrap();
+    assert!(matches!(
+        fit(&extra(vec![None; 30]), &one("extra")),
+        Err(ModelError::AllMissing { column }) if column == "extra"
+    ));
+    assert!(matches!(
+        fit(&extra(vec![Some(0.1); 30]), &one("extra")),
+        Err(ModelError::Constant { column, .. }) if column == "extra"
+    ));
+    assert!(matches!(
+        table
+            .clone()
+            .real("extra", (0..30).map(|i| Some(1.0 / f64::from(i)))),
+        Err(ModelError::NotFinite { row: 0, .. })
+    ));
+    assert!(matches!(
+        fit(&table, &one("none")),
+        Err(ModelError::Unknown { .. })
+    ));
+    assert!(matches!(
+        fit(&table, &[Group::new("g", &["x0", "b0"])]),
+        Err(ModelError::Kind { column, .. }) if column == "b0"
+    ));
+    let styled = Table::new().categorical("roof", &["flat", "hip"], [Some("flat"), Some("hip")]);
+    let settings = Settings {
+        styles: 1..=1,
+        ..settings()
+    };
+    let model = learn(&styled.unwrap(), &one("roof"), &settings, 1)
+        .unwrap()
+        .model;
+    let new = Table::new()
+        .categorical("roof", &["gable"], [Some("gable")])
+        .unwrap();
+    assert!(matches!(
+        model.log_likelihood(&new),
+        Err(ModelError::UnseenCategory { column, row: 0, category })
+            if column == "roof" && category == "gable"
+    ));
+    let text = model.to_json().unwrap();
+    for cut in (0..text.len() - 2).step_by(31) {
+        assert!(matches!(
+            Hierarchy::from_json(&text[..cut]),
+            Err(ModelError::Corrupt { .. })
+        ));
+    }
+    assert!(Hierarchy::from_json(&text.replace("0.5", "0.7")).is_err());
 }
