@@ -29,6 +29,7 @@
 mod areas;
 mod axis;
 mod differences;
+mod sizes;
 mod square;
 
 use std::collections::BTreeMap;
