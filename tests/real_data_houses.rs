@@ -1,0 +1,58 @@
+//! Real houses through the shipped schemas. Needs the data folder (`EDIFICE_DATA`).
+
+use std::path::{Path, PathBuf};
+
+use edifice::io::{building_csv, facade_json, read_bytes};
+use edifice::methods::building_exteriors::data::Dataset;
+use edifice::methods::building_exteriors::schema::Schema;
+use edifice::model::hierarchy::{Constant, Settings, learn};
+
+fn folder() -> Option<PathBuf> {
+    let near = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let folder = std::env::var_os("EDIFICE_DATA").map_or(near, PathBuf::from);
+    folder.join("houses").is_dir().then_some(folder)
+}
+
+fn read(schema: &str, table: &str) -> Option<Dataset> {
+    let Some(folder) = folder() else {
+        eprintln!("SKIPPED: no real houses; set EDIFICE_DATA to the data folder");
+        return None;
+    };
+    let schema = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("datasets/building_exteriors")
+        .join(schema);
+    let schema: Schema = facade_json::parse_json(&read_bytes(&schema).unwrap(), &schema).unwrap();
+    let text = building_csv::read(&folder.join("houses").join(table)).unwrap();
+    Some(schema.read(&text.header, &text.rows).unwrap())
+}
+
+/// Learns from the first houses, missing values and all, and asks for densities of all.
+fn learns(data: &Dataset) {
+    let few = data.select(&(0..150).collect::<Vec<_>>());
+    let settings = Settings {
+        styles: 2..=2,
+        most_states: 2,
+        restarts: 1,
+        constant: Constant::Keep,
+        ..Settings::default()
+    };
+    let learned = learn(&few.table, &few.groups, &settings, 1).unwrap();
+    let logs = learned.model.log_likelihood(&data.table).unwrap();
+    assert!(logs.iter().all(|l| l.is_finite()));
+}
+
+#[test]
+fn h2k_has_4874_detached_houses() {
+    if let Some(data) = read("h2k.schema.json", "h2k/single_detached_clean.csv.gz") {
+        assert_eq!(data.table.rows(), 4874);
+        learns(&data);
+    }
+}
+
+#[test]
+fn ames_has_2425_single_family_houses() {
+    if let Some(data) = read("ames.schema.json", "ames_raw.csv.gz") {
+        assert_eq!(data.table.rows(), 2425);
+        learns(&data);
+    }
+}
