@@ -207,7 +207,9 @@ fn explain(
             missed,
         ));
     }
-    ctx.table(&table);
+    if !table.is_empty() {
+        ctx.table(&table);
+    }
 }
 
 fn describe(a: &Architecture) -> String {

@@ -1,0 +1,220 @@
+//! `edifice logic` from files to files.
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use edifice::experiments::procedural_logic::made::{boulevard, plain};
+use edifice::grammar::derive;
+use edifice::io::{facade_json, grammar_json};
+use edifice::methods::procedural_logic::{Model, ModelFile, Parameters};
+use edifice::shape::{Facade, LabelGrid, Rect, Region};
+
+fn edifice(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("edifice").expect("the program");
+    command.current_dir(folder).args(words);
+    command
+}
+
+fn output(folder: &Path, words: &[&str]) -> String {
+    let done = edifice(folder, words).assert().success();
+    String::from_utf8_lossy(&done.get_output().stdout).into_owned()
+}
+
+fn complaint(folder: &Path, words: &[&str], code: i32) -> String {
+    let done = edifice(folder, words).assert().failure().code(code);
+    String::from_utf8_lossy(&done.get_output().stderr).into_owned()
+}
+
+/// The cells of a label image as a layout.
+fn layout(grid: &LabelGrid) -> Facade {
+    let model = Model::fit(std::slice::from_ref(grid), Parameters::COMPRESSION).expect("fits");
+    model.layout(&model.facades[0]).expect("its own facade")
+}
+
+/// A folder with ten boulevard facades and three plain ones.
+fn facades() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, count) in [("boulevard", 10), ("plain", 3)] {
+        let below = folder.path().join(name);
+        std::fs::create_dir(&below).expect("a folder");
+        for index in 0..count {
+            let grid = match name {
+                "plain" => plain(1, index),
+                _ => boulevard(1, index).0,
+            };
+            let path = below.join(format!("{}.facade.json", grid.name));
+            facade_json::write(&layout(&grid), &path).expect("written");
+        }
+    }
+    folder
+}
+
+#[test]
+fn from_facades_to_new_facades() {
+    let folder = facades();
+    let at = folder.path();
+    let line = output(at, &["logic", "fit", "boulevard", "-o", "m.json", "--json"]);
+    let fitted: serde_json::Value = serde_json::from_str(&line).expect("one JSON object");
+    assert_eq!(fitted["facades"], 10);
+
+    // Parsed facades derive back.
+    let input = "boulevard/boulevard_3.facade.json";
+    output(
+        at,
+        &[
+            "logic",
+            "parse",
+            input,
+            "--model",
+            "m.json",
+            "-o",
+            "g.grammar.json",
+        ],
+    );
+    let grammar = grammar_json::read(&at.join("g.grammar.json")).expect("a grammar");
+    let derived = derive(&grammar, 0).expect("derives");
+    let given = facade_json::read(&at.join(input)).expect("the facade");
+    assert_eq!((derived.width, derived.height), (given.width, given.height));
+
+    // A facade with labels never seen joins online.
+    let mut strange = given.clone();
+    strange.name = "strange".into();
+    strange.regions[0].label = "graffiti".into();
+    facade_json::write(&strange, &at.join("strange.facade.json")).expect("written");
+    let words = [
+        "logic",
+        "fit",
+        "strange.facade.json",
+        "--into",
+        "m.json",
+        "-o",
+        "n.json",
+    ];
+    assert!(output(at, &words).starts_with("11 facades"));
+    let near = output(
+        at,
+        &[
+            "logic", "compare", "--model", "n.json", "--query", "strange", "--top", "1",
+        ],
+    );
+    assert!(near.starts_with("strange: boulevard_"), "{near}");
+
+    // Two styles fall apart.
+    let clusters = output(at, &["logic", "cluster", "boulevard", "plain"]);
+    for line in clusters.lines() {
+        let (cluster, name) = line.split_once('\t').expect("cluster and name");
+        let first = clusters
+            .lines()
+            .find(|l| l.contains(&name[..5]))
+            .expect("itself");
+        assert_eq!(
+            first.split_once('\t').map(|pair| pair.0),
+            Some(cluster),
+            "{clusters}"
+        );
+    }
+
+    // The same seed draws the same valid facades.
+    let bytes =
+        |folder: &str| std::fs::read(at.join(folder).join("virtual_2.facade.json")).expect("drawn");
+    for folder in ["a", "b"] {
+        output(
+            at,
+            &[
+                "logic",
+                "synthesize",
+                "m.json",
+                "-n",
+                "2",
+                "--sigma",
+                "2",
+                "-o",
+                folder,
+            ],
+        );
+    }
+    assert_eq!(bytes("a"), bytes("b"));
+    let drawn = facade_json::read(&at.join("a/virtual_2.facade.json")).expect("a facade");
+    drawn.check_tiling().expect("a tiling");
+}
+
+#[test]
+fn says_what_is_wrong() {
+    let folder = facades();
+    let at = folder.path();
+    output(at, &["logic", "fit", "boulevard", "-o", "m.json"]);
+    let text = std::fs::read_to_string(at.join("m.json")).expect("a model");
+    let cases: [(&str, &str, &str); 4] = [
+        (
+            "\"format\":\"edifice/logic-model\"",
+            "\"format\":\"edifice/facade\"",
+            "format",
+        ),
+        ("\"version\":1", "\"version\":7", "version"),
+        ("\"alpha\":0.6", "\"alpha\":6", "alpha is 6"),
+        ("\"parts\":[{\"insert\":", "\"parts\":[{\"rule\":", "rules["),
+    ];
+    for (from, to, word) in cases {
+        std::fs::write(at.join("bad.json"), text.replacen(from, to, 1)).expect("written");
+        let said = complaint(at, &["logic", "synthesize", "bad.json", "-o", "v"], 1);
+        assert!(said.contains("bad.json") && said.contains(word), "{said}");
+    }
+    std::fs::create_dir(at.join("empty")).expect("a folder");
+    for (words, word) in [
+        (&["logic", "fit", "empty", "-o", "x"][..], "empty"),
+        (&["logic", "fit", "-o", "x"], "no facades"),
+        (
+            &["logic", "fit", "boulevard", "--alpha", "nan", "-o", "x"],
+            "--alpha",
+        ),
+        (
+            &["logic", "compare", "boulevard", "--query", "nobody"],
+            "nobody",
+        ),
+        (
+            &["logic", "synthesize", "m.json", "--start", "0", "-o", "v"],
+            "--start",
+        ),
+        (
+            &["logic", "synthesize", "m.json", "--sigma", "-1", "-o", "v"],
+            "sigma",
+        ),
+    ] {
+        let said = complaint(at, words, 1);
+        assert!(said.contains(word), "{said}");
+    }
+    complaint(
+        at,
+        &[
+            "logic",
+            "fit",
+            "boulevard",
+            "-o",
+            "x",
+            "--search",
+            "--alpha",
+            "1",
+        ],
+        2,
+    );
+
+    // A layout with a gap is no label picture.
+    let rect = Rect::new(0.0, 0.0, 1.0, 1.0);
+    let label = "wall".into();
+    let gap = Facade::new("gap", "m", 2.0, 1.0, vec![Region { label, rect }]).expect("a layout");
+    facade_json::write(&gap, &at.join("gap.facade.json")).expect("written");
+    let said = complaint(at, &["logic", "fit", "gap.facade.json", "-o", "x"], 1);
+    assert!(
+        said.contains("gap.facade.json") && said.contains("no region covers"),
+        "{said}"
+    );
+}
+
+#[test]
+fn models_come_back_from_files() {
+    let grids: Vec<LabelGrid> = (0..8).map(|index| boulevard(2, index).0).collect();
+    let model = Model::fit(&grids, Parameters::RETRIEVAL).expect("fits");
+    let text = serde_json::to_string(&ModelFile::from(&model)).expect("JSON");
+    let file: ModelFile = serde_json::from_str(&text).expect("a record");
+    assert_eq!(Model::try_from(file), Ok(model));
+}
