@@ -318,8 +318,8 @@ impl Exploration {
     }
 }
 
-/// Draws of protected regions per walk.
-const PROTECTION_DRAWS: usize = 24;
+/// Draws of protected regions per walk, at most.
+const PROTECTION_DRAWS: usize = 60;
 
 impl Candidate {
     /// The candidate's lines without the blocked ones, `None` when it cannot do without them.

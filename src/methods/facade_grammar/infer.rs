@@ -301,7 +301,7 @@ impl<'a> Search<'a> {
         epsilon: Epsilon,
         observer: impl FnMut(Step) + 'static,
     ) -> Result<Vec<AddRule>, InferError> {
-        let values = BestKnown::new(Rc::clone(&self.exploration));
+        let values = BestKnown::default();
         let adp = Adp::new(
             self.explore(),
             values,

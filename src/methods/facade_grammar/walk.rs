@@ -159,7 +159,7 @@ fn closure_costs(walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
 }
 
 /// Rules remembered per type.
-const REMEMBERED_RULES: usize = 32;
+const REMEMBERED_RULES: usize = 64;
 
 /// What is known of a type: the best `V(R)`, and the best rules tried, each with the value it
 /// reached.
@@ -185,22 +185,14 @@ impl Known {
 }
 
 /// The paper's value function approximation: the best known `V(R)` of each region, whatever
-/// subregions had rules then. Actions are the reasonable rules and the rules remembered.
-#[derive(Debug)]
+/// subregions had rules then. Actions are the rules tried before.
+#[derive(Debug, Default)]
 pub(crate) struct BestKnown {
-    exploration: Rc<RefCell<Exploration>>,
     known: FxHashMap<TypeId, Known>,
 }
 
 impl BestKnown {
-    pub fn new(exploration: Rc<RefCell<Exploration>>) -> Self {
-        Self {
-            exploration,
-            known: FxHashMap::default(),
-        }
-    }
-
-    /// `C(S, a) + V(S')`: the rule, and the value of what it is the first to need.
+    /// `C(S, a) + V(S')` of Eq. 4: the rule, and the value of what it is the first to need.
     fn price(
         &self,
         process: &Inference,
@@ -221,15 +213,15 @@ impl BestKnown {
 impl Approximation<Inference> for BestKnown {
     fn best(&mut self, process: &Inference, state: &Derivation) -> Option<AddRule> {
         let id = state.next();
-        let remembered = &self.known.get(&id)?.rules;
-        let types = &mut process.types.borrow_mut();
-        let reasonable = self.exploration.borrow_mut().rules(types, id);
-        let (cost, choice) = remembered
+        let types = process.types.borrow();
+        let (_, choice) = self
+            .known
+            .get(&id)?
+            .rules
             .iter()
-            .chain(reasonable.iter())
-            .map(|(_, choice)| (self.price(process, types, state, choice), choice))
+            .map(|(_, choice)| (self.price(process, &types, state, choice), choice))
             .min_by(|a, b| a.0.total_cmp(&b.0))?;
-        cost.is_finite().then(|| AddRule {
+        Some(AddRule {
             id,
             choice: Rc::clone(choice),
         })
