@@ -3,16 +3,20 @@
 //! Settings stand here; each artefact is a file of its own. Seeds and facades for each budget are in
 //! `facade_grammar/compare.rs`.
 
+mod city;
 mod compare;
 pub mod data;
 mod figure_10;
+mod figure_12;
 mod figure_13;
 mod figure_14;
 mod figure_9;
 mod likeness;
 mod published;
 mod ratios;
+mod regularization;
 mod runs;
+mod speed;
 mod table_1;
 mod table_2;
 mod table_3;
@@ -80,6 +84,11 @@ const ARTEFACTS: &[Artefact] = &[
         run: figure_9::figure_11,
     },
     Artefact {
+        name: "figure_12",
+        title: "a facade resized by its grammar, windows aligned",
+        run: figure_12::run,
+    },
+    Artefact {
         name: "figure_13",
         title: "joint extraction from four facades",
         run: figure_13::run,
@@ -88,5 +97,25 @@ const ARTEFACTS: &[Artefact] = &[
         name: "figure_14",
         title: "cost and time against iterations",
         run: figure_14::run,
+    },
+    Artefact {
+        name: "figure_15",
+        title: "a low-rise town of stochastic variations",
+        run: city::figure_15,
+    },
+    Artefact {
+        name: "figure_16",
+        title: "high-rise buildings of stochastic variations",
+        run: city::figure_16,
+    },
+    Artefact {
+        name: "regularization",
+        title: "regularization of annotations by quadratic programming (Sec. 3.3)",
+        run: regularization::run,
+    },
+    Artefact {
+        name: "speed",
+        title: "cost per iteration against terminals",
+        run: speed::run,
     },
 ];

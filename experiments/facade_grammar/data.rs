@@ -108,13 +108,14 @@ fn spread(count: usize, limit: usize) -> impl Iterator<Item = usize> {
     (0..chosen).map(move |i| i * count / chosen)
 }
 
-fn stem(path: &Path, ending: &str) -> String {
+/// Name of a file without its ending.
+pub fn stem(path: &Path, ending: &str) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     name.trim_end_matches(ending).to_string()
 }
 
 /// Files of a folder by name.
-fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
+pub fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
     let fail = |e| Error::io(folder, "read", e);
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(fail)? {
