@@ -48,8 +48,8 @@ const BBOX: [(f64, f64, usize); 5] = [
     (17.0, 13.5, 2),
     (13.5, 12.5, 3),
 ];
-const BCR: [f64; 3] = [0.85, 0.81, 0.77];
-const BDRY: [f64; 2] = [4.95, 5.17];
+const BCR: [f64; 3] = [0.85, 0.80, 0.75];
+const BDRY: [f64; 2] = [4.85, 5.11];
 const WWR: [[f64; 4]; 3] = [
     [0.13, 0.12, 0.07, 0.08],
     [0.18, 0.19, 0.10, 0.12],
@@ -71,15 +71,15 @@ pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
     let floor_height = 2.9 + noise(0.06);
     let height = floor_height * floors as f64;
 
-    // Wide houses cover less of their bounding box; bare corners have more boundary.
+    // Wide houses cover less of their bounding box; longer and barer outlines have more boundary.
     let bcr = BCR[kinds.bcr] - 0.009 * (width - 14.0) + noise(0.005);
-    let bdry = BDRY[kinds.bdry] - 4.0 * (bcr - 0.8) + noise(0.02);
-    // Where the ground floor is wide or covers more, the floors above have a smaller share.
-    let lean = 0.5 * (bcr - 0.8) + 0.01 * (width - 14.0);
+    let bdry = BDRY[kinds.bdry] + 0.03 * (width - 14.0) - 3.0 * (bcr - 0.8) + noise(0.02);
+    // Where the ground floor covers more, the floors above have a smaller share.
+    let lean = 0.5 * (bcr - 0.8);
     let arf = match kinds.arf {
         0 => [1.0, 0.0, 0.0],
-        1 => two_floors(0.65 + lean + noise(0.004)),
-        2 => two_floors(0.74 + lean + noise(0.004)),
+        1 => two_floors(0.665 + lean + noise(0.004)),
+        2 => two_floors(0.73 + lean + noise(0.004)),
         _ => {
             let ground = 0.56 + lean + noise(0.004);
             let first = 0.62 * (1.0 - ground) + noise(0.003);

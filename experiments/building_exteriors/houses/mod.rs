@@ -17,19 +17,18 @@ mod walls;
 
 use rayon::prelude::*;
 
-use crate::methods::building_exteriors::attributes::{GROUPS, Group, attributes};
 use crate::rng::stream;
 use crate::shape::Building;
 
 /// Number of hidden styles.
 pub const STYLES: usize = styles::STYLES.len();
 
-/// The nine dependencies between attributes beyond their kinds, as pairs of group names. Three of
-/// them are geometry (`far = bcr / arf.0`, twice; the number of floors shows in `bbox.h` and in
-/// `arf`), the others are habits of the builders.
+/// The nine dependencies between attributes beyond their kinds, as pairs of group names. Four of
+/// them are geometry (`far = bcr / arf.0`; the boundary grows with the aspect ratio and with what
+/// is cut out), five are habits of the builders.
 pub const DEPENDENCIES: [(&str, &str); 9] = [
     ("bbox", "bcr"),
-    ("bbox", "arf"),
+    ("bbox", "bdry"),
     ("bcr", "bdry"),
     ("bcr", "far"),
     ("bcr", "arf"),
@@ -68,9 +67,6 @@ pub fn house(seed: u64, index: u64) -> House {
     }
 }
 
-/// The attribute `alignment`.
-const ALIGNMENT: Group = GROUPS[9];
-
 /// Draws of the numbers before the kinds are given up.
 const ATTEMPTS: usize = 100;
 
@@ -80,18 +76,7 @@ fn attempt(kinds: &styles::Kinds, index: u64, rng: &mut impl rand::Rng) -> Optio
     let facades = walls::build(&plan, &numbers, kinds, rng)?;
     let name = format!("house_{:04}", index + 1);
     let special = kinds.special.clone();
-    let floor = plan.floor_height;
-    let building = Building::new(name, "m", floor, plan.boxes, facades, special).ok()?;
-    // Edges of windows that meet by chance would align sides that should not be.
-    let measured = attributes(&building).ok()?;
-    let wanted = walls::aligned_sides(kinds.alignment, numbers.floors);
-    let as_wanted = |(m, w): (&Option<f64>, bool)| *m == Some(f64::from(u8::from(w)));
-    let alignment = &measured[ALIGNMENT.first..];
-    alignment
-        .iter()
-        .zip(wanted)
-        .all(as_wanted)
-        .then_some(building)
+    Building::new(name, "m", plan.floor_height, plan.boxes, facades, special).ok()
 }
 
 /// The first `count` houses of the database with this seed.

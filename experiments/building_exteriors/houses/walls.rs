@@ -71,22 +71,16 @@ pub(super) fn build(
     choose_styles(&mut strips, &kinds.windows, rng)?;
 
     let mut pieces = Vec::new();
-    let aligned_sides = aligned_sides(kinds.alignment, numbers.floors);
-    for ((side, ratio), aligned) in Side::ALL.into_iter().zip(numbers.wwr).zip(aligned_sides) {
+    for (side, ratio) in Side::ALL.into_iter().zip(numbers.wwr) {
+        let aligned = match kinds.alignment {
+            0 => true,
+            1 => matches!(side, Side::Front | Side::Back),
+            _ => false,
+        };
         let strips: Vec<&Strip> = strips.iter().filter(|s| s.side == side).collect();
         pieces.extend(glaze(&strips, aligned, ratio, plan.floor_height)?);
     }
     Some(pieces)
-}
-
-/// Which of the front, back, left and right side are aligned.
-pub(super) fn aligned_sides(kind: usize, floors: usize) -> [bool; 4] {
-    match kind {
-        _ if floors == 1 => [false; 4],
-        0 => [true; 4],
-        1 => [true, true, false, false],
-        _ => [false; 4],
-    }
 }
 
 /// Outline of the walls of floor `k`: porches have none.
