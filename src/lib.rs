@@ -32,3 +32,8 @@ pub mod rng;
 pub mod shape;
 
 pub use error::{Error, Result};
+
+/// The examples of the README, compiled and run with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

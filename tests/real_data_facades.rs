@@ -4,6 +4,8 @@
 //! Needs the data in the folder that `EDIFICE_DATA` names. `cargo test --release --test
 //! real_data_facades -- --nocapture` prints the statistics.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -11,16 +13,7 @@ use edifice::io::{self, LabelMap, ReadOptions};
 use edifice::methods::facade_grammar::regularize::regularize_grid;
 use edifice::shape::{LabelGrid, decompose, splittable};
 
-/// The folder of real data, if there is one; says loudly when there is not.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let named = std::env::var_os("EDIFICE_DATA").map(PathBuf::from);
-    let found = named.or_else(|| beside.is_dir().then_some(beside));
-    if found.is_none() {
-        eprintln!("SKIPPED: no real data. Set EDIFICE_DATA to the folder that holds facades/.");
-    }
-    found
-}
+use common::real_data;
 
 /// Files of a folder with an extension, sorted.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
@@ -75,7 +68,7 @@ fn check_all(name: &str, grids: &[LabelGrid]) {
 }
 
 fn label_images(folder: &str) -> Option<Vec<LabelGrid>> {
-    let folder = data()?.join(folder);
+    let folder = real_data(folder)?.join(folder);
     let read = |file: &PathBuf| io::read_label_grid(file, &ReadOptions::default()).unwrap();
     Some(files(&folder, "png").iter().map(read).collect())
 }
@@ -109,7 +102,9 @@ fn cmp_images() {
 
 #[test]
 fn cmp_rectangles() {
-    let Some(data) = data() else { return };
+    let Some(data) = real_data("facades/cmp") else {
+        return;
+    };
     let (mut grids, mut agreements) = (vec![], vec![]);
     for file in files(&data.join("facades/cmp"), "xml") {
         let grid = io::read_label_grid(&file, &ReadOptions::default()).unwrap();

@@ -1,28 +1,22 @@
 //! Real houses through the shipped schemas. Needs the data folder (`EDIFICE_DATA`).
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 
 use edifice::io::{building_csv, facade_json, read_bytes};
 use edifice::methods::building_exteriors::data::Dataset;
 use edifice::methods::building_exteriors::schema::Schema;
 use edifice::model::hierarchy::{Constant, Settings, learn};
 
-fn folder() -> Option<PathBuf> {
-    let near = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let folder = std::env::var_os("EDIFICE_DATA").map_or(near, PathBuf::from);
-    folder.join("houses").is_dir().then_some(folder)
-}
-
 fn read(schema: &str, table: &str) -> Option<Dataset> {
-    let Some(folder) = folder() else {
-        eprintln!("SKIPPED: no real houses; set EDIFICE_DATA to the data folder");
-        return None;
-    };
+    let table = format!("houses/{table}");
+    let folder = common::real_data(&table)?;
     let schema = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("datasets/building_exteriors")
         .join(schema);
     let schema: Schema = facade_json::parse_json(&read_bytes(&schema).unwrap(), &schema).unwrap();
-    let text = building_csv::read(&folder.join("houses").join(table)).unwrap();
+    let text = building_csv::read(&folder.join(table)).unwrap();
     Some(schema.read(&text.header, &text.rows).unwrap())
 }
 

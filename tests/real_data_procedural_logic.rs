@@ -1,5 +1,7 @@
 //! Procedural logic on the published annotations (needs `EDIFICE_DATA` or `../shared/data`).
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
 use edifice::cluster::{Linkage, Query, agglomerate, cumulative_match, purity};
@@ -11,22 +13,16 @@ use edifice::methods::procedural_logic::{
 };
 use edifice::shape::{Facade, LabelGrid};
 
-/// The data folder, or `None` with a loud word.
-fn data() -> Option<PathBuf> {
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let folder =
-        std::env::var_os("EDIFICE_DATA").map_or(here.join("../shared/data"), PathBuf::from);
-    if folder.join("facades/ecp2011/labels").is_dir() {
-        return Some(folder);
-    }
-    eprintln!("SKIPPED: no data at {}; set EDIFICE_DATA", folder.display());
-    None
-}
+use common::real_data;
+
+const LABELS: &str = "facades/ecp2011/labels";
+const LINES: &str = "facades/ecp2011/floor_column_lines";
 
 #[test]
 fn baseline_of_facade_i() {
-    let Some(data) = data() else { return };
-    let path = data.join("facades/wu2014_fig9.facade.json");
+    let file = "facades/wu2014_fig9.facade.json";
+    let Some(data) = real_data(file) else { return };
+    let path = data.join(file);
     let facade = facade_json::read(&path).expect("the facade");
     let grammar = baseline_grammar(&facade, &Parameters::COMPRESSION).expect("a grammar");
     let found = evaluate(&grammar, &[facade], &Costs::default()).expect("derives back");
@@ -74,7 +70,9 @@ fn wrong_pixels(grid: &LabelGrid, facade: &Facade) -> usize {
 
 #[test]
 fn lossless_on_all_facades() {
-    let Some(data) = data() else { return };
+    let Some(data) = real_data(LABELS) else {
+        return;
+    };
     for (set, count) in [("ecp2011", 104), ("graz50", 30)] {
         let grids = label_images(&data, set);
         assert_eq!(grids.len(), count);
@@ -93,7 +91,9 @@ fn lossless_on_all_facades() {
 /// Section 5.3: 68 rules "for all values of" these ranges.
 #[test]
 fn sixty_eight_rules() {
-    let Some(data) = data() else { return };
+    let Some(data) = real_data(LABELS) else {
+        return;
+    };
     let grids = label_images(&data, "ecp2011");
     let mut parameters = vec![Parameters::COMPRESSION, Parameters::RETRIEVAL];
     for alpha in [0.25, 0.5, 1.0] {
@@ -116,12 +116,8 @@ fn sixty_eight_rules() {
 /// (the roof floor, or a floor behind a tall shop, is not annotated): they stand as they are.
 #[test]
 fn gold_standard_checked_by_eye() {
-    let Some(data) = data() else { return };
-    let lines = data.join("facades/ecp2011/floor_column_lines");
-    if !lines.is_dir() {
-        eprintln!("SKIPPED: no annotation at {}", lines.display());
-        return;
-    }
+    let Some(data) = real_data(LINES) else { return };
+    let lines = data.join(LINES);
     let annotations = Annotations::read(&lines).expect("the annotation");
     // Name, floors annotated, floors by eye, columns, column of the door, floors with running balconies.
     type Checked = (
@@ -173,12 +169,8 @@ fn gold_standard_checked_by_eye() {
 /// Fig. 4 and Fig. 3 in two numbers each, so that nothing loses them unnoticed.
 #[test]
 fn retrieval_and_separation() {
-    let Some(data) = data() else { return };
-    let lines = data.join("facades/ecp2011/floor_column_lines");
-    if !lines.is_dir() {
-        eprintln!("SKIPPED: no annotation at {}", lines.display());
-        return;
-    }
+    let Some(data) = real_data(LINES) else { return };
+    let lines = data.join(LINES);
     let annotations = Annotations::read(&lines).expect("the annotation");
     let ecp = label_images(&data, "ecp2011");
     let gold: Vec<_> = ecp
