@@ -64,10 +64,10 @@ pub fn derive(grammar: &Grammar, start_index: usize) -> Result<Facade, GrammarEr
     derivation(grammar, start_index).map(|d| d.facade)
 }
 
-/// As [`derive`], with the non-terminal regions.
+/// As [`derive()`], with the non-terminal regions.
 ///
 /// # Errors
-/// As [`derive`].
+/// As [`derive()`].
 pub fn derivation(grammar: &Grammar, start_index: usize) -> Result<Derivation, GrammarError> {
     let table = check_structure(grammar)?;
     let start = grammar

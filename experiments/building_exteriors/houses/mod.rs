@@ -2,8 +2,8 @@
 //!
 //! A house is made from the top down: its hidden **style** (one of seven) draws the **kind** of each
 //! attribute (small or wide, with or without garage, ...); the kind and, for nine pairs of
-//! attributes ([`DEPENDENCIES`]), the value of another attribute draw the numbers ([`draw`]); then a
-//! plan of overlapping boxes ([`plan`]) and walls with windows and doors ([`walls`]) is built that
+//! attributes ([`DEPENDENCIES`]), the value of another attribute draw the numbers (`draw`); then a
+//! plan of overlapping boxes (`plan`) and walls with windows and doors (`walls`) is built that
 //! has these numbers. Nothing but the finished building leaves the generator for the learner, which
 //! measures it anew. The kinds of a house are independent given its style.
 //!
