@@ -50,6 +50,7 @@ fn top_down(
 
 /// Always the best rule by the splitting heuristic.
 pub(crate) fn greedy(types: &mut Types, exploration: &mut Exploration) -> Vec<AddRule> {
+    exploration.unprotect();
     top_down(types, |types, id| {
         let rules = exploration.rules(types, id);
         rules

@@ -126,6 +126,11 @@ impl Exploration {
         }
     }
 
+    /// Protects nothing.
+    pub fn unprotect(&mut self) {
+        self.protected.clear();
+    }
+
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
     pub fn sample<R: Rng>(&mut self, types: &mut Types, id: TypeId, rng: &mut R) -> Rc<Choice> {
         let mut rules = self.rules(types, id);

@@ -328,11 +328,12 @@ impl<'a> Search<'a> {
             self.settings.seed,
         );
         let (walk, _, routes) = adp.run_observed(self.process(), observer.clone())?;
+        let start = self.cheaper_start(walk.actions);
         let members = Members::new(
             Rc::clone(&self.types),
             router(),
             routes.into_values(),
-            &walk.actions,
+            &start,
         );
         let rounds = self.settings.iterations - walks;
         let annealing = Annealing::new(COOLING, rounds, MOVES_PER_ROUND, self.settings.seed)?;
@@ -340,10 +341,32 @@ impl<'a> Search<'a> {
     }
 }
 
+impl Search<'_> {
+    /// The walk, or what a deterministic method finds when that is cheaper already.
+    fn cheaper_start(&self, walk: Vec<AddRule>) -> Vec<AddRule> {
+        let types = &mut self.types.borrow_mut();
+        let cost = |rules: &[AddRule]| {
+            rules
+                .iter()
+                .map(|r| r.choice.cost(&self.settings.costs))
+                .sum::<f64>()
+        };
+        let lines = baselines::all_lines(types);
+        let greedy = baselines::greedy(types, &mut self.exploration.borrow_mut());
+        [lines, greedy].into_iter().fold(walk, |best, other| {
+            if cost(&other) < cost(&best) {
+                other
+            } else {
+                best
+            }
+        })
+    }
+}
+
 /// One in this many iterations of `best` is a walk, the others are rounds of annealing.
 const WALKS_SHARE: u64 = 10;
 /// Moves of a round of annealing.
-const MOVES_PER_ROUND: u32 = 8;
+const MOVES_PER_ROUND: u32 = 24;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.
 const COOLING: Cooling = Cooling {
     start: 1.0,
