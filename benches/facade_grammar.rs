@@ -5,17 +5,26 @@ use edifice::grammar::derive;
 use edifice::methods::facade_grammar::{Method, Settings, infer, synthetic};
 
 fn settings(method: Method, iterations: u64) -> Settings {
-    Settings { method, iterations, ..Settings::default() }
+    Settings {
+        method,
+        iterations,
+        ..Settings::default()
+    }
 }
 
 /// 10,000 iterations on about 600 terminals: at most 2 s on one core.
 fn ten_thousand_iterations(c: &mut Criterion) {
-    let facade = synthetic::sized(600, 0);
+    let Ok(made) = synthetic::sized(0, 600) else {
+        return;
+    };
+    let facade = made.facade;
     let mut group = c.benchmark_group("infer_10000_iterations");
     group.sample_size(10);
     for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
         let id = BenchmarkId::new(method.to_string(), facade.regions.len());
-        group.bench_function(id, |b| b.iter(|| infer(std::slice::from_ref(&facade), &settings(method, 10_000))));
+        group.bench_function(id, |b| {
+            b.iter(|| infer(std::slice::from_ref(&facade), &settings(method, 10_000)))
+        });
     }
     group.finish();
 }
@@ -25,12 +34,19 @@ fn scaling(c: &mut Criterion) {
     let mut group = c.benchmark_group("scaling");
     group.sample_size(10);
     for terminals in [50, 200, 1_000, 5_000, 20_000] {
-        let facade = synthetic::sized(terminals, 0);
+        let Ok(made) = synthetic::sized(0, terminals) else {
+            continue;
+        };
+        let facade = made.facade;
         let count = facade.regions.len();
         let greedy = || infer(std::slice::from_ref(&facade), &settings(Method::Greedy, 1));
-        group.bench_function(BenchmarkId::new("symmetry_and_greedy", count), |b| b.iter(greedy));
+        group.bench_function(BenchmarkId::new("symmetry_and_greedy", count), |b| {
+            b.iter(greedy)
+        });
         if let Ok(outcome) = greedy() {
-            group.bench_function(BenchmarkId::new("derive", count), |b| b.iter(|| derive(&outcome.grammar, 0)));
+            group.bench_function(BenchmarkId::new("derive", count), |b| {
+                b.iter(|| derive(&outcome.grammar, 0))
+            });
         }
     }
     group.finish();

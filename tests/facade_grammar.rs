@@ -18,19 +18,34 @@ const METHODS: [Method; 6] = [
 ];
 
 fn facade_i() -> Facade {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/facade_grammar/wu2014_fig9.facade.json");
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/datasets/facade_grammar/wu2014_fig9.facade.json"
+    );
     read_facade(path.as_ref(), &ReadOptions::default()).unwrap()
 }
 
 fn cost(facade: &Facade, settings: &Settings) -> f64 {
     let facades = std::slice::from_ref(facade);
     let outcome = infer(facades, settings).unwrap();
-    evaluate(&outcome.grammar, facades, &settings.costs).unwrap().cost
+    evaluate(&outcome.grammar, facades, &settings.costs)
+        .unwrap()
+        .cost
 }
 
 fn ten_seeds(method: Method, operations: Operations) -> Vec<f64> {
     (0..10)
-        .map(|seed| cost(&facade_i(), &Settings { method, operations, seed, ..Settings::default() }))
+        .map(|seed| {
+            cost(
+                &facade_i(),
+                &Settings {
+                    method,
+                    operations,
+                    seed,
+                    ..Settings::default()
+                },
+            )
+        })
         .collect()
 }
 
@@ -53,19 +68,31 @@ fn paper_does_as_well_as_printed_on_facade_i() {
     let costs = ten_seeds(Method::AdpPaper, Operations::default());
     let mean = costs.iter().sum::<f64>() / 10.0;
     let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(mean <= 43.1 && least <= 40.3 + 1e-6, "mean {mean}, best {least}: {costs:?}");
+    assert!(
+        mean <= 43.1 && least <= 40.3 + 1e-6,
+        "mean {mean}, best {least}: {costs:?}"
+    );
 }
 
 #[test]
 fn all_full_lines_cost_what_table_2_prints() {
-    let settings = Settings { method: Method::Bayesian, operations: Operations::split_only(), ..Settings::default() };
+    let settings = Settings {
+        method: Method::Bayesian,
+        operations: Operations::split_only(),
+        ..Settings::default()
+    };
     assert!((cost(&facade_i(), &settings) - 43.4).abs() < 1e-9);
 }
 
 #[test]
 fn the_same_seed_gives_the_same_grammar() {
     for method in METHODS {
-        let settings = Settings { method, iterations: 200, seed: 5, ..Settings::default() };
+        let settings = Settings {
+            method,
+            iterations: 200,
+            seed: 5,
+            ..Settings::default()
+        };
         let run = || infer(&[facade_i()], &settings).unwrap().grammar;
         assert_eq!(run(), run(), "{method}");
     }
@@ -73,17 +100,37 @@ fn the_same_seed_gives_the_same_grammar() {
 
 #[test]
 fn extensions_never_cost_more_than_split_and_repeat() {
-    let with = Operations { repeat_aba: true, sym_split: true, ..Operations::default() };
-    let extended = cost(&facade_i(), &Settings { operations: with, ..Settings::default() });
+    let with = Operations {
+        repeat_aba: true,
+        sym_split: true,
+        ..Operations::default()
+    };
+    let extended = cost(
+        &facade_i(),
+        &Settings {
+            operations: with,
+            ..Settings::default()
+        },
+    );
     assert!(extended < 38.1 + 1e-6, "{extended}");
 }
 
 #[test]
 fn a_facade_of_one_region_is_its_own_axiom() {
-    let wall = Region { label: "wall".into(), rect: Rect::new(0.0, 0.0, 3.0, 2.0) };
+    let wall = Region {
+        label: "wall".into(),
+        rect: Rect::new(0.0, 0.0, 3.0, 2.0),
+    };
     let facade = Facade::new("blank", "m", 3.0, 2.0, vec![wall]).unwrap();
     for method in METHODS {
-        let outcome = infer(std::slice::from_ref(&facade), &Settings { method, ..Settings::default() }).unwrap();
+        let outcome = infer(
+            std::slice::from_ref(&facade),
+            &Settings {
+                method,
+                ..Settings::default()
+            },
+        )
+        .unwrap();
         assert!(outcome.grammar.rules.is_empty());
         assert_eq!(outcome.grammar.starts[0].symbol, "wall");
     }
@@ -91,7 +138,10 @@ fn a_facade_of_one_region_is_its_own_axiom() {
 
 #[test]
 fn two_equal_facades_need_no_more_rules_than_one() {
-    let settings = Settings { iterations: 500, ..Settings::default() };
+    let settings = Settings {
+        iterations: 500,
+        ..Settings::default()
+    };
     let one = infer(&[facade_i()], &settings).unwrap().grammar;
     let two = [facade_i(), facade_i()];
     let joint = infer(&two, &settings).unwrap().grammar;
@@ -102,7 +152,10 @@ fn two_equal_facades_need_no_more_rules_than_one() {
 
 #[test]
 fn what_cannot_be_split_is_reported() {
-    let at = |label: &str, x, y, w, h| Region { label: label.into(), rect: Rect::new(x, y, w, h) };
+    let at = |label: &str, x, y, w, h| Region {
+        label: label.into(),
+        rect: Rect::new(x, y, w, h),
+    };
     let pinwheel = vec![
         at("a", 0.0, 0.0, 2.0, 1.0),
         at("b", 2.0, 0.0, 1.0, 2.0),
@@ -113,7 +166,10 @@ fn what_cannot_be_split_is_reported() {
     let facade = Facade::new("pinwheel", "m", 3.0, 3.0, pinwheel).unwrap();
     let error = infer(&[facade], &Settings::default()).unwrap_err();
     assert!(matches!(error, InferError::Unsplittable { .. }), "{error}");
-    assert!(matches!(infer(&[], &Settings::default()), Err(InferError::NoFacade)));
+    assert!(matches!(
+        infer(&[], &Settings::default()),
+        Err(InferError::NoFacade)
+    ));
 }
 
 /// A layout made by cutting at random: every such layout can be split by full lines.
@@ -126,12 +182,31 @@ fn random_layout(seed: u64, depth: u32) -> Facade {
             return regions.push(Region { label, rect });
         }
         let first = rng.random_range(1..extent as u32).into();
-        let axis = if across { edifice::shape::Axis::X } else { edifice::shape::Axis::Y };
-        cut(rect.strip(axis, rect.start(axis), first), depth - 1, rng, regions);
-        cut(rect.strip(axis, rect.start(axis) + first, extent - first), depth - 1, rng, regions);
+        let axis = if across {
+            edifice::shape::Axis::X
+        } else {
+            edifice::shape::Axis::Y
+        };
+        cut(
+            rect.strip(axis, rect.start(axis), first),
+            depth - 1,
+            rng,
+            regions,
+        );
+        cut(
+            rect.strip(axis, rect.start(axis) + first, extent - first),
+            depth - 1,
+            rng,
+            regions,
+        );
     }
     let mut regions = Vec::new();
-    cut(Rect::new(0.0, 0.0, 8.0, 6.0), depth, &mut stream(seed, "layout", 0), &mut regions);
+    cut(
+        Rect::new(0.0, 0.0, 8.0, 6.0),
+        depth,
+        &mut stream(seed, "layout", 0),
+        &mut regions,
+    );
     Facade::new("random", "m", 8.0, 6.0, regions).unwrap()
 }
 
