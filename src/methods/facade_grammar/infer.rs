@@ -312,38 +312,46 @@ impl<'a> Search<'a> {
         Ok(adp.run_observed(self.process(), observer)?.0.actions)
     }
 
-    /// Dynamic programming with shortest paths, then annealing over the set of types.
+    /// Dynamic programming, by shortest paths and by the paper's approximation, then annealing over
+    /// the set of types from the cheapest grammar found.
     fn best(
         &self,
         observer: impl FnMut(Step) + Clone + 'static,
     ) -> Result<Vec<AddRule>, InferError> {
+        let Settings {
+            iterations, seed, ..
+        } = *self.settings;
         let router = || Router::new(self.settings.costs, self.settings.operations);
-        let walks = (self.settings.iterations / WALKS_SHARE).max(1);
-        let routes = ShortestRoutes::new(router());
+        let (routed, remembered) = (
+            (iterations / ROUTED_SHARE).max(1),
+            (iterations / REMEMBERED_SHARE).max(1),
+        );
         let adp = Adp::new(
             self.explore(),
-            routes,
+            ShortestRoutes::new(router()),
             Epsilon::default(),
-            walks,
-            self.settings.seed,
+            routed,
+            seed,
         );
-        let (walk, _, routes) = adp.run_observed(self.process(), observer.clone())?;
-        let start = self.cheaper_start(walk.actions);
-        let members = Members::new(
-            Rc::clone(&self.types),
-            router(),
-            routes.into_values(),
-            &start,
+        let (by_routes, _, routes) = adp.run_observed(self.process(), observer.clone())?;
+        let adp = Adp::new(
+            self.explore(),
+            BestKnown::default(),
+            Epsilon::default(),
+            remembered,
+            seed,
         );
-        let rounds = self.settings.iterations - walks;
-        let annealing = Annealing::new(COOLING, rounds, MOVES_PER_ROUND, self.settings.seed)?;
+        let (by_memory, _, known) = adp.run_observed(self.process(), observer.clone())?;
+        let start = self.cheapest([by_routes.actions, by_memory.actions]);
+        let values = known.at_most(routes.into_values());
+        let members = Members::new(Rc::clone(&self.types), router(), values, &start);
+        let rounds = iterations.saturating_sub(routed + remembered);
+        let annealing = Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?;
         Ok(annealing.run(members, observer)?.0)
     }
-}
 
-impl Search<'_> {
-    /// The walk, or what a deterministic method finds when that is cheaper already.
-    fn cheaper_start(&self, walk: Vec<AddRule>) -> Vec<AddRule> {
+    /// The cheapest of the walks and of what the deterministic methods find.
+    fn cheapest(&self, walks: [Vec<AddRule>; 2]) -> Vec<AddRule> {
         let types = &mut self.types.borrow_mut();
         let cost = |rules: &[AddRule]| {
             rules
@@ -353,18 +361,27 @@ impl Search<'_> {
         };
         let lines = baselines::all_lines(types);
         let greedy = baselines::greedy(types, &mut self.exploration.borrow_mut());
-        [lines, greedy].into_iter().fold(walk, |best, other| {
-            if cost(&other) < cost(&best) {
-                other
+        walks.into_iter().fold(
+            if cost(&greedy) < cost(&lines) {
+                greedy
             } else {
-                best
-            }
-        })
+                lines
+            },
+            |best, walk| {
+                if cost(&walk) < cost(&best) {
+                    walk
+                } else {
+                    best
+                }
+            },
+        )
     }
 }
 
-/// One in this many iterations of `best` is a walk, the others are rounds of annealing.
-const WALKS_SHARE: u64 = 10;
+/// One in this many iterations of `best` is a walk that exploits by shortest paths.
+const ROUTED_SHARE: u64 = 10;
+/// One in this many is a walk that exploits as `paper` does; the others are rounds of annealing.
+const REMEMBERED_SHARE: u64 = 2;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 24;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.

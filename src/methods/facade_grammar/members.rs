@@ -309,9 +309,15 @@ impl Members {
         }
     }
 
+    /// A random member; none when the facades are single terminals.
+    fn any<R: Rng>(&self, rng: &mut R) -> Option<TypeId> {
+        let count = self.members.len();
+        (count > 0).then(|| self.members[rng.random_range(0..count)])
+    }
+
     /// A random strip of a random member that is neither terminal nor member.
     fn outsider<R: Rng>(&mut self, rng: &mut R) -> Option<TypeId> {
-        let member = self.members[rng.random_range(0..self.members.len())];
+        let member = self.any(rng)?;
         let strips = self.strip_types(member);
         let id = *strips.get(rng.random_range(0..strips.len().max(1)))?;
         (self.prices[id as usize] > 0.0 && id != member).then_some(id)
@@ -319,7 +325,7 @@ impl Members {
 
     /// A strip like one that a rule of the set names, with a border shifted by one line.
     fn shifted<R: Rng>(&mut self, rng: &mut R) -> Option<(TypeId, TypeId)> {
-        let user = self.members[rng.random_range(0..self.members.len())];
+        let user = self.any(rng)?;
         let choice = Rc::clone(&self.rules[user as usize].as_ref()?.1);
         let strips = self.types.borrow_mut().strips(user, choice.axis());
         self.extend();
@@ -349,7 +355,7 @@ impl Members {
                 Some(self.insert(id))
             }
             4..6 => {
-                let id = self.members[rng.random_range(0..self.members.len())];
+                let id = self.any(rng)?;
                 (!self.is_root(id)).then(|| self.erase(id))
             }
             _ => {

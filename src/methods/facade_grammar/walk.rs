@@ -192,6 +192,16 @@ pub(crate) struct BestKnown {
 }
 
 impl BestKnown {
+    /// `values`, indexed by type, lowered to what is known here.
+    pub fn at_most(&self, mut values: Vec<f64>) -> Vec<f64> {
+        for (id, known) in &self.known {
+            if let Some(value) = values.get_mut(*id as usize) {
+                *value = value.min(known.value);
+            }
+        }
+        values
+    }
+
     /// `C(S, a) + V(S')` of Eq. 4: the rule, and the value of what it is the first to need.
     fn price(
         &self,
