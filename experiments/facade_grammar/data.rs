@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use crate::experiments::{Budget, Context};
 use crate::grammar::{Grammar, derive};
-use crate::io::{facade_json, grammar_cga, grammar_json, read_facade};
+use crate::io::{facade_json, grammar_cga, grammar_json, read_label_grid};
+use crate::methods::facade_grammar::regularize::regularize_grid;
 use crate::methods::facade_grammar::synthetic;
-use crate::shape::{Facade, splittable};
+use crate::shape::{Facade, decompose, splittable};
 use crate::{Error, Result, file};
 
 /// Seed of the shipped layouts.
@@ -67,16 +68,17 @@ fn layouts(ctx: &mut Context) -> Result<Vec<PathBuf>> {
     files(&folder(ctx)?.join("layouts"), ".facade.json")
 }
 
-/// The real facades that the user has, decomposed into tilings; at most `limit` of each set, evenly
-/// spread. Facades that no full line can split are left out and counted in a note (Sec. 6.3).
+/// The real facades that the user has, regularized as the paper assumes its input to be (Sec. 3.3) and
+/// decomposed into tilings; at most `limit` of each set, evenly spread. Facades that no full line can
+/// split are left out and counted in a note (Sec. 6.3).
 pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
     let sets = [
-        ("ecp2011", "facades/ecp2011/labels", ".png"),
-        ("graz50", "facades/graz50/labels", ".png"),
-        ("cmp", "facades/cmp", ".xml"),
+        ("ecp2011", "facades/ecp2011/labels", ".png", 3.0),
+        ("graz50", "facades/graz50/labels", ".png", 3.0),
+        ("cmp", "facades/cmp", ".xml", 8.0),
     ];
     let mut instances = Vec::new();
-    for (dataset, place, ending) in sets {
+    for (dataset, place, ending, tolerance) in sets {
         let Some(folder) = ctx.real(place)? else {
             continue;
         };
@@ -84,13 +86,21 @@ pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
         let chosen = spread(all.len(), limit).map(|i| &all[i]);
         let mut unsplittable = Vec::new();
         for path in chosen {
-            let mut facade = read_facade(path, &Default::default())?;
+            let grid = read_label_grid(path, &Default::default())?;
+            let (grid, _) =
+                regularize_grid(&grid, tolerance).map_err(|e| Error::content(path, e))?;
+            let mut facade = decompose(&grid)
+                .map_err(|e| Error::content(path, e))?
+                .facade;
             facade.name = stem(path, ending);
             match splittable(&facade) {
                 Ok(()) => instances.push(Instance { dataset, facade }),
                 Err(_) => unsplittable.push(facade.name),
             }
         }
+        ctx.note(format!(
+            "{dataset}: regularized, no edge moved by more than {tolerance} px (Sec. 3.3)."
+        ));
         if !unsplittable.is_empty() {
             ctx.note(format!(
                 "{dataset}: no full line splits some part of {} facades, which are left out (Sec. 6.3): {}.",
