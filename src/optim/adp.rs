@@ -52,7 +52,7 @@
 //! }
 //! let table = Table(std::array::from_fn(|s| if s >= 10 { 0.0 } else { 100.0 }));
 //! let mut adp = Adp::new(Coin, table, Epsilon::default(), 500, 7);
-//! let best = adp.run(&Stairs).unwrap();
+//! let best = adp.run(Stairs).unwrap();
 //! assert_eq!(best.cost, 6.0); // 3 + 3 + 3 + 1 and its orders: 2 + 1 + 2 + 1
 //! ```
 
