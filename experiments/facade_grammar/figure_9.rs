@@ -68,7 +68,7 @@ pub fn figure_11(ctx: &mut Context) -> Result<()> {
     ctx.note(
         "The printed rules of Fig. 11 ask for equal walls above and below NT10, while our sizes of Fig. 9 differ there (8 and 12); \
          their cost is therefore the sum over the rules as printed, with repeatABA and symsplit costed as repeat and split. \
-         All extensions are allowed: repeat_aba, sym_split, grid_split.",
+         Also allowed are repeat_aba and sym_split.",
     );
     ctx.note(format!("```\n{}\n```", grammar_cga::to_string(&extended.0)));
     let figure = Figure::new("non-terminals without and with the extensions", 2)
