@@ -41,6 +41,7 @@
 //!   terminals, most important first; the text gives no bound.
 
 mod baselines;
+mod bound;
 mod choice;
 mod exploration;
 mod extract;
@@ -54,5 +55,6 @@ mod symmetry;
 pub mod synthetic;
 mod walk;
 
+pub use bound::{Bound, BoundLimits, lower_bound};
 pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer, infer_observed};
 pub use operations::{Operations, UnknownOperation};
