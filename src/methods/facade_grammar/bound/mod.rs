@@ -67,9 +67,9 @@ impl Default for BoundLimits {
     fn default() -> Self {
         Self {
             types: 5_000,
-            root_steps: 600,
-            branch_steps: 60,
-            nodes: 200,
+            root_steps: 1_000,
+            branch_steps: 40,
+            nodes: 5_000,
         }
     }
 }
