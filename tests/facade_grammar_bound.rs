@@ -68,7 +68,7 @@ fn rules(root: &Cells, repeat: bool) -> Vec<Vec<(f64, u64)>> {
                     if place == fresh {
                         blocks.push(strip);
                     }
-                    bits | 1 << place
+                    bits | (1 << place)
                 })
             };
             for end in 1..=n {
@@ -84,7 +84,7 @@ fn rules(root: &Cells, repeat: bool) -> Vec<Vec<(f64, u64)>> {
                 }
                 for inner in 0..1usize << (end - 1) {
                     let lines: Vec<usize> = std::iter::once(0)
-                        .chain((1..end).filter(|l| inner >> (l - 1) & 1 == 1))
+                        .chain((1..end).filter(|l| (inner >> (l - 1)) & 1 == 1))
                         .chain([end])
                         .collect();
                     let count = lines.len() - 1;
@@ -105,10 +105,10 @@ fn rules(root: &Cells, repeat: bool) -> Vec<Vec<(f64, u64)>> {
 fn exhaustive(rules: &[Vec<(f64, u64)>]) -> f64 {
     let mut best = f64::INFINITY;
     for half in 0..1u64 << (rules.len() - 1) {
-        let set = half << 1 | 1;
+        let set = (half << 1) | 1;
         let mut cost = 0.0;
         for (place, block) in rules.iter().enumerate() {
-            if set >> place & 1 == 1 {
+            if (set >> place) & 1 == 1 {
                 cost += block
                     .iter()
                     .filter(|(_, needs)| needs & !set == 0)

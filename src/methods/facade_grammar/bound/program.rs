@@ -156,16 +156,19 @@ impl Program {
     }
 }
 
-/// Where two terminals of the facade touch: extent of the contact and its class, by line.
+/// Contacts on a line: where each begins and ends, and its class.
+type Contacts = Vec<(u16, u16, u32)>;
+
+/// Where two terminals of the facade touch, by axis and line.
 struct Seams {
-    by_line: [FxHashMap<u16, Vec<(u16, u16, u32)>>; 2],
+    by_line: [FxHashMap<u16, Contacts>; 2],
 }
 
 impl Seams {
     /// All contacts, and the number of classes: equal labels, sizes and offset are one class.
     fn new(sheet: &Sheet) -> (Self, usize) {
         let mut classes = FxHashMap::default();
-        let mut by_line = [FxHashMap::default(), FxHashMap::default()];
+        let mut by_line: [FxHashMap<u16, Contacts>; 2] = Default::default();
         let what = |(r, label): (Region, u32)| (label, sheet.extent_x(r), sheet.extent_y(r));
         for axis in Axis::BOTH {
             let (along, quanta) = match axis {
