@@ -197,7 +197,7 @@ impl Seams {
                         .or_insert(fresh);
                     by_line[axis as usize]
                         .entry(line)
-                        .or_insert_with(Vec::new)
+                        .or_default()
                         .push((low, high, class));
                 }
             }
