@@ -1,6 +1,6 @@
 //! Speed of the procedural logic: parse, n-ary, rules and statistics, from the label image in memory.
 //!
-//! On made facades, and on ECP2011 when `EDIFICE_DATA` names the data folder. The bound is
+//! On made facades, and on ECP2011 when `EDIFICE_DATA` names the data folder. The target is
 //! 1 ms per facade on one core; the paper's own time is 32 ms.
 
 use std::hint::black_box;
