@@ -1,13 +1,14 @@
 //! Speed of the procedural logic: parse, n-ary, rules and statistics, from the label image in memory.
 //!
-//! On made facades, and on ECP2011 when `EDIFICE_DATA` names the data folder. The target is
+//! On the shipped layouts, and on ECP2011 when `EDIFICE_DATA` names the data folder. The target is
 //! 1 ms per facade on one core; the paper's own time is 32 ms.
 
 use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use edifice::experiments::procedural_logic::{data::label_images, made::boulevard};
+use edifice::experiments::layouts;
+use edifice::experiments::procedural_logic::data::{label_images, shipped_source};
 use edifice::methods::procedural_logic::{
     Alphabet, Canvas, Coefficients, Inference, Parameters, Profile, learn_affinity, parse,
 };
@@ -16,8 +17,13 @@ use edifice::shape::LabelGrid;
 const PARAMETERS: Parameters = Parameters::COMPRESSION;
 
 fn sets() -> Vec<(&'static str, Vec<LabelGrid>)> {
-    let made = (0..60).map(|index| boulevard(1, index).0).collect();
-    let mut sets = vec![("shipped", made)];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar");
+    let shipped = layouts::read_all(&folder).and_then(|layouts| shipped_source(&layouts));
+    let shipped = shipped.expect("the shipped layouts are read");
+    let mut sets = vec![
+        ("shipped_houses", shipped.grids),
+        ("shipped_blocks", shipped.other),
+    ];
     if let Some(data) = std::env::var_os("EDIFICE_DATA") {
         let folder = Path::new(&data).join("facades/ecp2011/labels");
         if let Ok(grids) = label_images(&folder) {

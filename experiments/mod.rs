@@ -28,6 +28,7 @@
 //! takes them from there. Time a unit inside its function (it runs on one thread), never around [`Context::units`].
 
 mod frame;
+pub mod layouts;
 mod picture;
 
 pub mod building_exteriors;

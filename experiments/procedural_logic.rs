@@ -10,13 +10,14 @@ mod figure_6;
 mod frequent_rules;
 pub mod gold;
 mod lossless;
-pub mod made;
+pub mod outline;
 mod readings;
 mod retrieval_search;
+pub mod shipped;
 pub mod words;
 
 use super::{Artefact, Experiment};
-use crate::report::Row;
+use crate::report::{Align, Row, Table};
 
 /// The paper's figures and the numbers of its text.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -75,6 +76,13 @@ const ARTEFACTS: &[Artefact] = &[
 
 /// Ranks of Fig. 4.
 const RANKS: usize = 20;
+
+/// A table with the data set in its first column, then words, then numbers.
+fn data_table(title: impl Into<String>, words: &[&str], numbers: &[&str]) -> Table {
+    let named = std::iter::once(&"data").chain(words);
+    let table = named.fold(Table::new(title), |t, &name| t.column(name, Align::Left));
+    table.numbers(numbers.iter().copied())
+}
 
 /// A row of an artefact's CSV.
 fn row(dataset: &str, method: &str, instance: impl Into<String>, metric: &str, value: f64) -> Row {

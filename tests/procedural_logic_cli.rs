@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use assert_cmd::Command;
-use edifice::experiments::procedural_logic::made::{boulevard, plain};
+use edifice::experiments::{layouts, procedural_logic::shipped};
 use edifice::grammar::derive;
 use edifice::io::{facade_json, grammar_json};
 use edifice::methods::procedural_logic::{Model, ModelFile, Parameters};
@@ -31,17 +31,29 @@ fn layout(grid: &LabelGrid) -> Facade {
     model.layout(&model.facades[0]).expect("its own facade")
 }
 
-/// A folder with ten boulevard facades and three plain ones.
+/// Shipped layouts of the families named, each as it is and at another size.
+fn pictures(families: &[&str]) -> Vec<LabelGrid> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar");
+    let layouts = layouts::read_all(&folder).expect("the shipped layouts");
+    let chosen = layouts
+        .iter()
+        .filter(|facade| families.iter().any(|name| facade.name.starts_with(name)));
+    let grids = chosen.map(|facade| shipped::picture(facade).expect("a tiling"));
+    grids
+        .flat_map(|grid| [shipped::resized(&grid, 2), grid])
+        .collect()
+}
+
+/// A folder with ten facades of houses and four of blocks.
 fn facades() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    for (name, count) in [("boulevard", 10), ("plain", 3)] {
+    for (name, families) in [
+        ("houses", &["terrace", "townhouse_1"][..]),
+        ("blocks", &["hotel_3", "tenement_2"]),
+    ] {
         let below = folder.path().join(name);
         std::fs::create_dir(&below).expect("a folder");
-        for index in 0..count {
-            let grid = match name {
-                "plain" => plain(1, index),
-                _ => boulevard(1, index).0,
-            };
+        for grid in pictures(families) {
             let path = below.join(format!("{}.facade.json", grid.name));
             facade_json::write(&layout(&grid), &path).expect("written");
         }
@@ -53,12 +65,12 @@ fn facades() -> tempfile::TempDir {
 fn from_facades_to_new_facades() {
     let folder = facades();
     let at = folder.path();
-    let line = output(at, &["logic", "fit", "boulevard", "-o", "m.json", "--json"]);
+    let line = output(at, &["logic", "fit", "houses", "-o", "m.json", "--json"]);
     let fitted: serde_json::Value = serde_json::from_str(&line).expect("one JSON object");
     assert_eq!(fitted["facades"], 10);
 
     // Parsed facades derive back.
-    let input = "boulevard/boulevard_3.facade.json";
+    let input = "houses/terrace_c.facade.json";
     output(
         at,
         &[
@@ -97,22 +109,18 @@ fn from_facades_to_new_facades() {
             "logic", "compare", "--model", "n.json", "--query", "strange", "--top", "1",
         ],
     );
-    assert!(near.starts_with("strange: boulevard_"), "{near}");
+    assert!(near.starts_with("strange: terrace_c"), "{near}");
 
     // Two styles fall apart.
-    let clusters = output(at, &["logic", "cluster", "boulevard", "plain"]);
-    for line in clusters.lines() {
-        let (cluster, name) = line.split_once('\t').expect("cluster and name");
-        let first = clusters
-            .lines()
-            .find(|l| l.contains(&name[..5]))
-            .expect("itself");
-        assert_eq!(
-            first.split_once('\t').map(|pair| pair.0),
-            Some(cluster),
-            "{clusters}"
-        );
-    }
+    let clusters = output(at, &["logic", "cluster", "houses", "blocks"]);
+    let lines = clusters.lines().map(|line| line.split_once('\t'));
+    let (houses, blocks): (Vec<_>, Vec<_>) = lines
+        .map(|line| line.expect("cluster and name"))
+        .partition(|(_, name)| name.starts_with('t') && !name.starts_with("tenement"));
+    assert_eq!((houses.len(), blocks.len()), (10, 4));
+    let together = |facades: &[(&str, &str)]| facades.iter().all(|f| f.0 == facades[0].0);
+    assert!(together(&houses) && together(&blocks), "{clusters}");
+    assert_ne!(houses[0].0, blocks[0].0, "{clusters}");
 
     // The same seed draws the same valid facades.
     let bytes =
@@ -142,7 +150,7 @@ fn from_facades_to_new_facades() {
 fn says_what_is_wrong() {
     let folder = facades();
     let at = folder.path();
-    output(at, &["logic", "fit", "boulevard", "-o", "m.json"]);
+    output(at, &["logic", "fit", "houses", "-o", "m.json"]);
     let text = std::fs::read_to_string(at.join("m.json")).expect("a model");
     let cases: [(&str, &str, &str); 4] = [
         (
@@ -164,11 +172,11 @@ fn says_what_is_wrong() {
         (&["logic", "fit", "empty", "-o", "x"][..], "empty"),
         (&["logic", "fit", "-o", "x"], "no facades"),
         (
-            &["logic", "fit", "boulevard", "--alpha", "nan", "-o", "x"],
+            &["logic", "fit", "houses", "--alpha", "nan", "-o", "x"],
             "--alpha",
         ),
         (
-            &["logic", "compare", "boulevard", "--query", "nobody"],
+            &["logic", "compare", "houses", "--query", "nobody"],
             "nobody",
         ),
         (
@@ -186,14 +194,7 @@ fn says_what_is_wrong() {
     complaint(
         at,
         &[
-            "logic",
-            "fit",
-            "boulevard",
-            "-o",
-            "x",
-            "--search",
-            "--alpha",
-            "1",
+            "logic", "fit", "houses", "-o", "x", "--search", "--alpha", "1",
         ],
         2,
     );
@@ -212,7 +213,7 @@ fn says_what_is_wrong() {
 
 #[test]
 fn models_come_back_from_files() {
-    let grids: Vec<LabelGrid> = (0..8).map(|index| boulevard(2, index).0).collect();
+    let grids = pictures(&["cottage", "shophouse"]);
     let model = Model::fit(&grids, Parameters::RETRIEVAL).expect("fits");
     let text = serde_json::to_string(&ModelFile::from(&model)).expect("JSON");
     let file: ModelFile = serde_json::from_str(&text).expect("a record");

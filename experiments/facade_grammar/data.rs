@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::experiments::{Budget, Context};
+use crate::experiments::{Budget, Context, layouts};
 use crate::grammar::{Grammar, derive};
 use crate::io::{facade_json, grammar_cga, grammar_json, read_label_grid};
 use crate::methods::facade_grammar::regularize::regularize_grid;
@@ -10,11 +10,10 @@ use crate::methods::facade_grammar::synthetic;
 use crate::shape::{Facade, decompose, splittable};
 use crate::{Error, Result, file};
 
+pub use crate::experiments::layouts::{FIGURE_9, files, folder};
+
 /// Seed of the shipped layouts.
 pub const LAYOUT_SEED: u64 = 1;
-
-/// Name of the facade of Fig. 9, facade (i) of Table 1.
-pub const FIGURE_9: &str = "wu2014_fig9";
 
 /// A facade and where it comes from.
 #[derive(Debug, Clone)]
@@ -25,11 +24,6 @@ pub struct Instance {
     pub facade: Facade,
 }
 
-/// The folder of the shipped data, with its digest recorded.
-pub fn folder(ctx: &mut Context) -> Result<PathBuf> {
-    ctx.shipped("facade_grammar")
-}
-
 /// The facade of Fig. 9.
 pub fn figure_9(ctx: &mut Context) -> Result<Facade> {
     facade_json::read(&folder(ctx)?.join(format!("{FIGURE_9}.facade.json")))
@@ -38,10 +32,7 @@ pub fn figure_9(ctx: &mut Context) -> Result<Facade> {
 /// The shipped facades: that of Fig. 9 first, then the 34 made ones by name; few and small ones at
 /// the smoke budget.
 pub fn shipped(ctx: &mut Context) -> Result<Vec<Facade>> {
-    let mut facades = vec![figure_9(ctx)?];
-    for path in layouts(ctx)? {
-        facades.push(facade_json::read(&path)?);
-    }
+    let mut facades = layouts::read_all(&folder(ctx)?)?;
     if ctx.budget() == Budget::Smoke {
         facades.retain(|f| f.regions.len() < 80);
         facades.truncate(3);
@@ -52,7 +43,7 @@ pub fn shipped(ctx: &mut Context) -> Result<Vec<Facade>> {
 /// The made facades with the grammars they were derived from.
 pub fn known(ctx: &mut Context) -> Result<Vec<(Facade, Grammar)>> {
     let mut known = Vec::new();
-    for path in layouts(ctx)? {
+    for path in layouts::made(&folder(ctx)?)? {
         let name = path.display().to_string();
         let grammar = PathBuf::from(name.replace(".facade.json", ".grammar.json"));
         known.push((facade_json::read(&path)?, grammar_json::read(&grammar)?));
@@ -62,10 +53,6 @@ pub fn known(ctx: &mut Context) -> Result<Vec<(Facade, Grammar)>> {
         known.truncate(2);
     }
     Ok(known)
-}
-
-fn layouts(ctx: &mut Context) -> Result<Vec<PathBuf>> {
-    files(&folder(ctx)?.join("layouts"), ".facade.json")
 }
 
 /// The real facades that the user has, regularized as the paper assumes its input to be (Sec. 3.3) and
@@ -122,20 +109,6 @@ fn spread(count: usize, limit: usize) -> impl Iterator<Item = usize> {
 pub fn stem(path: &Path, ending: &str) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     name.trim_end_matches(ending).to_string()
-}
-
-/// Files of a folder by name.
-pub fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
-    let fail = |e| Error::io(folder, "read", e);
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(fail)? {
-        let path = entry.map_err(fail)?.path();
-        if path.to_string_lossy().ends_with(ending) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
 }
 
 /// Makes the shipped facades anew in a folder like `datasets/facade_grammar`, where the printed

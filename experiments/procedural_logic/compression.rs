@@ -1,11 +1,11 @@
 //! Section 5.3: the number of rules over `alpha`, `b_p` and `b_h` (Eq. 12).
 
-use super::data::sources;
-use super::row;
+use super::data::{Source, sources};
+use super::{data_table, row};
 use crate::experiments::{Budget, Context};
 use crate::methods::procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
 use crate::optim::grid::GridOutcome;
-use crate::report::{Align, Figure, HeatMap, Table};
+use crate::report::{Figure, HeatMap};
 use crate::{Error, Result};
 
 /// What the paper says of every value of its ranges.
@@ -17,25 +17,20 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("alpha", axes[0].clone());
     ctx.setting("b_p", axes[1].clone());
     ctx.setting("b_h", axes[2].clone());
-    let mut table =
-        Table::new("Rules at the paper's parameters (0.6, 0.25, 0.5) and at the best found")
-            .column("data", Align::Left)
-            .numbers([
-                "facades",
-                "binary splits",
-                "n-ary splits",
-                "rules",
-                "compression",
-                "fewest rules",
-            ]);
+    let mut table = data_table(
+        "Rules at the paper's parameters (0.6, 0.25, 0.5) and at the best found",
+        &[],
+        &[
+            "facades",
+            "binary splits",
+            "n-ary splits",
+            "rules",
+            "compression",
+            "fewest rules",
+        ],
+    );
     for source in sources(ctx)? {
-        for (dataset, grids) in [
-            (source.dataset, &source.grids),
-            (source.other_dataset, &source.other),
-        ] {
-            if grids.is_empty() {
-                continue;
-            }
+        for (dataset, grids) in source.sets() {
             let found = fewest_rules(grids, &axes).map_err(Error::method)?;
             for (point, count) in &found.evaluated {
                 ctx.observe(row(dataset, "inferred", name(point), "rules", *count));
@@ -54,24 +49,19 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 format!("{ratio:.0} : 1"),
                 format!("{} at {}", found.cost, name(&found.best)),
             ]);
-            ctx.observe(row(dataset, "inferred", "paper", "rules", count));
-            ctx.observe(row(
-                dataset,
-                "binary",
-                "paper",
-                "rules",
-                inference.binary_splits as f64,
-            ));
-            ctx.observe(row(
-                dataset,
-                "nary",
-                "paper",
-                "rules",
-                inference.nary_splits as f64,
-            ));
+            for (method, rules) in [
+                ("inferred", count),
+                ("binary", inference.binary_splits as f64),
+                ("nary", inference.nary_splits as f64),
+            ] {
+                ctx.observe(row(dataset, method, "paper", "rules", rules));
+            }
             ctx.observe(row(dataset, "inferred", "best", "rules", found.cost));
-            if dataset == "ecp2011" {
-                report(ctx, &found, &inference)?;
+            if dataset == source.dataset {
+                if source.is_paper() {
+                    compare(ctx, &found, &inference);
+                }
+                draw(ctx, &source, &found)?;
             }
         }
     }
@@ -94,8 +84,8 @@ fn name(point: &[f64]) -> String {
     format!("alpha={} b_p={} b_h={}", point[0], point[1], point[2])
 }
 
-/// The paper's claim about the ranges, and the picture.
-fn report(ctx: &mut Context, found: &GridOutcome, inference: &Inference) -> Result<()> {
+/// The paper's claim about the ranges.
+fn compare(ctx: &mut Context, found: &GridOutcome, inference: &Inference) {
     let in_range = |p: &[f64]| p[0] >= 0.25 && p[1] <= 0.5 && p[2] >= 0.125;
     let named: Vec<f64> = found
         .evaluated
@@ -127,10 +117,15 @@ fn report(ctx: &mut Context, found: &GridOutcome, inference: &Inference) -> Resu
             inference.binary_splits as f64 / inference.rules.len() as f64
         ),
     );
-    let mut figure = Figure::new(
-        "Number of rules on ECP2011 over b_p and b_h, for each alpha",
-        3,
+}
+
+/// The number of rules over the grid, one map for each alpha.
+fn draw(ctx: &mut Context, source: &Source, found: &GridOutcome) -> Result<()> {
+    let title = format!(
+        "Number of rules on {} over b_p and b_h, for each alpha",
+        source.dataset
     );
+    let mut figure = Figure::new(title, 3);
     let values = |index: usize| {
         let mut values: Vec<f64> = found.evaluated.iter().map(|e| e.0[index]).collect();
         values.sort_by(f64::total_cmp);
@@ -156,5 +151,5 @@ fn report(ctx: &mut Context, found: &GridOutcome, inference: &Inference) -> Resu
                 .range(found.cost, highest.max(found.cost + 1.0)),
         );
     }
-    ctx.figure("compression", &figure)
+    ctx.figure(&source.figure("compression"), &figure)
 }

@@ -3,33 +3,55 @@
 use std::path::Path;
 
 use super::gold::{Annotations, Architecture};
-use super::made;
-use crate::experiments::{Budget, Context};
+use super::{outline, shipped};
+use crate::experiments::{Budget, Context, layouts};
 use crate::io::{ReadOptions, read_label_grid};
-use crate::shape::LabelGrid;
+use crate::shape::{Facade, LabelGrid};
 use crate::{Error, Result};
 
-/// Seed of the made facades.
-const MADE_SEED: u64 = 1;
+/// Sizes at which each shipped house stands: as shipped, and others.
+const SIZES: u64 = 5;
 
 /// Facades of one style with their architecture, and facades of another style.
 pub struct Source {
-    /// `shipped` or `ecp2011`.
+    /// `shipped_houses` or `ecp2011`.
     pub dataset: &'static str,
     /// Facades of the style that is studied.
     pub grids: Vec<LabelGrid>,
     /// Their architecture, in the same order.
     pub architecture: Vec<Architecture>,
-    /// `shipped_plain` or `graz50`.
+    /// `shipped_blocks` or `graz50`.
     pub other_dataset: &'static str,
     /// Facades of another style; empty when the user has none.
     pub other: Vec<LabelGrid>,
 }
 
-/// The made facades, and ECP2011 with Graz2012 when the user has them; fewer of each at the smoke
+impl Source {
+    /// The sets of facades that there are, by name.
+    pub fn sets(&self) -> impl Iterator<Item = (&'static str, &[LabelGrid])> {
+        let sets = [
+            (self.dataset, self.grids.as_slice()),
+            (self.other_dataset, self.other.as_slice()),
+        ];
+        sets.into_iter().filter(|(_, grids)| !grids.is_empty())
+    }
+
+    /// Whether it is the set that the paper reports on.
+    pub fn is_paper(&self) -> bool {
+        self.dataset == "ecp2011"
+    }
+
+    /// Name of this set's picture of an artefact: the paper's set has the plain name.
+    pub fn figure(&self, artefact: &str) -> String {
+        let suffix = if self.is_paper() { "" } else { "_shipped" };
+        format!("{artefact}{suffix}")
+    }
+}
+
+/// The shipped layouts, and ECP2011 with Graz2012 when the user has them; fewer of each at the smoke
 /// budget.
 pub fn sources(ctx: &mut Context) -> Result<Vec<Source>> {
-    let mut sources = vec![made(ctx.budget())];
+    let mut sources = vec![shipped_source(&shipped_layouts(ctx)?)?];
     if let Some(mut source) = ecp(ctx)? {
         if ctx.budget() == Budget::Smoke {
             source.grids.truncate(24);
@@ -41,16 +63,40 @@ pub fn sources(ctx: &mut Context) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-fn made(budget: Budget) -> Source {
-    let (count, others) = budget.choose((16, 6), (60, 30), (60, 30));
-    let (grids, architecture) = (0..count).map(|i| made::boulevard(MADE_SEED, i)).unzip();
-    Source {
-        dataset: "shipped",
-        grids,
-        architecture,
-        other_dataset: "shipped_plain",
-        other: (0..others).map(|i| made::plain(MADE_SEED, i)).collect(),
+/// The shipped layouts as they are; a few small ones at the smoke budget.
+pub fn shipped_layouts(ctx: &mut Context) -> Result<Vec<Facade>> {
+    let mut layouts = layouts::read_all(&layouts::folder(ctx)?)?;
+    if ctx.budget() == Budget::Smoke {
+        let (mut houses, mut blocks): (Vec<_>, Vec<_>) =
+            layouts.into_iter().partition(shipped::is_house);
+        houses.truncate(4);
+        blocks.retain(|facade| facade.regions.len() < 550);
+        blocks.truncate(4);
+        houses.append(&mut blocks);
+        layouts = houses;
     }
+    Ok(layouts)
+}
+
+/// Houses at several sizes, first all as shipped, and blocks.
+///
+/// # Errors
+/// [`Error::Method`] for a layout that is no tiling.
+pub fn shipped_source(layouts: &[Facade]) -> Result<Source> {
+    let picture = |facade| shipped::picture(facade).map_err(Error::method);
+    let (houses, blocks): (Vec<_>, Vec<_>) = layouts.iter().partition(|f| shipped::is_house(f));
+    let houses: Vec<LabelGrid> = houses.into_iter().map(picture).collect::<Result<_>>()?;
+    let mut grids = houses.clone();
+    for copy in 2..=SIZES {
+        grids.extend(houses.iter().map(|grid| shipped::resized(grid, copy)));
+    }
+    Ok(Source {
+        dataset: "shipped_houses",
+        architecture: grids.iter().map(outline::architecture).collect(),
+        grids,
+        other_dataset: "shipped_blocks",
+        other: blocks.into_iter().map(picture).collect::<Result<_>>()?,
+    })
 }
 
 fn ecp(ctx: &mut Context) -> Result<Option<Source>> {
@@ -84,16 +130,7 @@ fn ecp(ctx: &mut Context) -> Result<Option<Source>> {
 /// # Errors
 /// [`Error::Io`] and the readers' errors.
 pub fn label_images(folder: &Path) -> Result<Vec<LabelGrid>> {
-    let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
-    let mut paths = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
-        if path.extension().is_some_and(|ending| ending == "png") {
-            paths.push(path);
-        }
-    }
-    paths.sort();
-    paths
+    layouts::files(folder, ".png")?
         .iter()
         .map(|path| read_label_grid(path, &ReadOptions::default()))
         .collect()

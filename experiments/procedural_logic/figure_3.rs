@@ -1,12 +1,12 @@
 //! Fig. 3: distance matrices of both styles in the order of the dendrogram, and their separation.
 
 use super::data::{Source, sources};
-use super::row;
+use super::{data_table, row};
 use crate::cluster::{Dendrogram, Linkage, agglomerate, purity};
 use crate::experiments::Context;
 use crate::experiments::picture::tiles;
 use crate::methods::procedural_logic::{Measure, Model, Parameters};
-use crate::report::{self, Align, Figure, HeatMap, Merge, Table};
+use crate::report::{self, Figure, HeatMap, Merge, Table};
 use crate::shape::{Facade, LabelGrid};
 use crate::{Error, Result};
 
@@ -15,10 +15,8 @@ const THUMBNAILS: usize = 12;
 
 /// Clusters both styles together and draws tree, matrix and some layouts in the order of the tree.
 pub fn run(ctx: &mut Context) -> Result<()> {
-    let mut table = Table::new("Purity of the two top clusters against the data set")
-        .column("data", Align::Left)
-        .column("linkage", Align::Left)
-        .numbers(["facades", "purity"]);
+    let title = "Purity of the two top clusters against the data set";
+    let mut table = data_table(title, &["linkage"], &["facades", "purity"]);
     for source in sources(ctx)? {
         if source.other.is_empty() {
             ctx.note(format!(
@@ -69,7 +67,7 @@ fn separate(ctx: &mut Context, source: &Source, table: &mut Table) -> Result<()>
         if linkage != Linkage::Average {
             continue;
         }
-        if source.dataset == "ecp2011" {
+        if source.is_paper() {
             let text = format!("{:.1} % in the two top clusters", 100.0 * value);
             ctx.compare("separation of Haussmannian and Gruenderzeit", "clear", text);
         }
@@ -110,11 +108,6 @@ fn draw(
         right: merge.clusters.1,
         height: merge.height,
     });
-    let suffix = if source.dataset == "ecp2011" {
-        ""
-    } else {
-        "_shipped"
-    };
     let title = format!("{} and {}", source.dataset, source.other_dataset);
     let figure = Figure::new(
         format!("Distances of {title} in the order of the dendrogram"),
@@ -130,12 +123,12 @@ fn draw(
         matrix,
         "log10(1 + chi-square)",
     ));
-    ctx.figure(&format!("figure_3{suffix}"), &figure)?;
+    ctx.figure(&source.figure("figure_3"), &figure)?;
     let mut figure =
         Figure::new("Layouts, evenly spaced along the dendrogram", 6).cell(230.0, 260.0);
     for k in 0..THUMBNAILS.min(order.len()) {
         let facade = order[k * order.len() / THUMBNAILS.min(order.len())];
         figure = figure.panel(tiles(names[facade].clone(), &layouts[facade]).without_borders());
     }
-    ctx.figure(&format!("figure_3{suffix}_layouts"), &figure)
+    ctx.figure(&format!("{}_layouts", source.figure("figure_3")), &figure)
 }

@@ -47,7 +47,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             table.row(line("size-blind ceiling", doors, &curve));
         }
         ctx.table(&table);
-        if source.dataset == "ecp2011" {
+        if source.is_paper() {
             compare(ctx, &curves);
         }
         draw(ctx, &source, &curves)?;
@@ -68,7 +68,8 @@ const NOTE: &str = "Each facade queries all others (it is not ranked itself); fo
     (at an end of the ground floor or between other elements) is the gold standard of the figure; *third* and *column* \
     also ask where along the facade the door stands, which is a size, and Sec. 5.4 excludes sizes: the rows *size-blind \
     ceiling* show what any distance on structures alone can reach then (it ranks by the true number of changes, and \
-    facades of the same starting rule first).";
+    facades of the same starting rule first). *shipped_houses* holds every structure at five sizes: to find those \
+    at once shows that a distance is blind to sizes, not more.";
 
 /// The curve of a distance matrix under one reading of the gold standard.
 pub fn retrieve(
@@ -145,16 +146,11 @@ fn draw(
             .collect();
         chart = chart.series(Series::marked(measure.name(), points));
     }
-    let suffix = if source.dataset == "ecp2011" {
-        ""
-    } else {
-        "_shipped"
-    };
     let figure = Figure::single(
         "Cumulative match characteristics of facade retrieval",
         chart,
     );
-    ctx.figure(&format!("figure_4{suffix}"), &figure)
+    ctx.figure(&source.figure("figure_4"), &figure)
 }
 
 /// Every query that is not found at rank 1 for sure, and what stands in its way.

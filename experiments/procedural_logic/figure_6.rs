@@ -1,14 +1,14 @@
 //! Fig. 6: virtual facades, and whether they keep to their examples.
 
 use super::data::sources;
-use super::row;
 use super::words::Structure;
+use super::{data_table, row};
 use crate::experiments::Context;
 use crate::experiments::picture::tiles;
 use crate::methods::procedural_logic::{
     Instance, Known, Model, Parameters, Style, starting_rules, vector,
 };
-use crate::report::{Align, Figure, Table};
+use crate::report::Figure;
 use crate::rng::stream;
 use crate::{Error, Result};
 use nalgebra::{DMatrix, DVector};
@@ -24,20 +24,19 @@ const FEWEST: usize = 5;
 pub fn run(ctx: &mut Context) -> Result<()> {
     let count = ctx.budget().choose(100, 1000, 1000);
     ctx.setting("facades", count);
-    let mut table = Table::new(format!(
-        "{count} virtual facades per starting rule and sigma"
-    ))
-    .column("data", Align::Left)
-    .column("starting rule", Align::Left)
-    .numbers([
-        "examples",
-        "sigma",
-        "invalid",
-        "pairs",
-        "rms z",
-        "within 1.96",
-        "rms z, exact",
-    ]);
+    let mut table = data_table(
+        format!("{count} virtual facades per starting rule and sigma"),
+        &["starting rule"],
+        &[
+            "examples",
+            "sigma",
+            "invalid",
+            "pairs",
+            "rms z",
+            "within 1.96",
+            "rms z, exact",
+        ],
+    );
     for source in sources(ctx)? {
         let model = Model::fit(&source.grids, Parameters::COMPRESSION).map_err(Error::method)?;
         let mut figure = Figure::new("Virtual facades: starting rules by sigma", SIGMAS.len() + 1)
@@ -113,12 +112,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 }
             }
         }
-        let suffix = if source.dataset == "ecp2011" {
-            ""
-        } else {
-            "_shipped"
-        };
-        ctx.figure(&format!("figure_6{suffix}"), &figure)?;
+        ctx.figure(&source.figure("figure_6"), &figure)?;
     }
     ctx.table(&table);
     ctx.note(

@@ -89,7 +89,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             ]);
         }
         ctx.table(&table);
-        if source.dataset == "ecp2011" {
+        if source.is_paper() {
             let first = starts
                 .iter()
                 .find_map(|&(start, _)| Structure::new(rules, alphabet, start));

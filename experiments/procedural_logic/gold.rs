@@ -11,6 +11,8 @@
 //!   nearest to its bottom edge;
 //! - *doors* from the labels: connected columns of pixels with a door. Where a door stands is told
 //!   in one of three ways, [`Doors`].
+//!
+//! The shipped layouts come without annotation: [`super::outline`] counts their floors and columns.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -136,7 +138,7 @@ fn label(grid: &LabelGrid, name: &str) -> Option<u16> {
 }
 
 /// Maximal runs `[from, to)` of indices that hold.
-fn runs(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+pub(super) fn runs(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for index in (0..count).filter(|&index| holds(index)) {
         match runs.last_mut() {

@@ -3,12 +3,11 @@
 use super::data::sources;
 use super::figure_4::retrieve;
 use super::gold::Doors;
-use super::row;
+use super::{data_table, row};
 use crate::Error;
 use crate::Result;
 use crate::experiments::{Budget, Context};
 use crate::methods::procedural_logic::{Extent, Facing, Measure, Model, Parameters};
-use crate::report::{Align, Table};
 
 /// Tries each reading of `W` in Eq. 3 with each reading of Eq. 6.
 pub fn run(ctx: &mut Context) -> Result<()> {
@@ -20,11 +19,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             &[0.125, 0.25, 0.5, 1.0],
         ),
     };
-    let mut table = Table::new("Rules over the paper's ranges, and powerset retrieval, by reading")
-        .column("data", Align::Left)
-        .column("W in Eq. 3", Align::Left)
-        .column("facing, Eq. 6", Align::Left)
-        .numbers(["fewest rules", "most rules", "rank 1", "rank 2"]);
+    let mut table = data_table(
+        "Rules over the paper's ranges, and powerset retrieval, by reading",
+        &["W in Eq. 3", "facing, Eq. 6"],
+        &["fewest rules", "most rules", "rank 1", "rank 2"],
+    );
     for source in sources(ctx)? {
         for (extent, w) in [
             (Extent::Line, "facade, long lines cheap"),

@@ -3,11 +3,10 @@
 use super::data::{Source, sources};
 use super::figure_4::retrieve;
 use super::gold::Doors;
-use super::row;
+use super::{data_table, row};
 use crate::experiments::{Budget, Context};
 use crate::methods::procedural_logic::{Measure, Model, Parameters, search_axes};
 use crate::optim::grid::minimize;
-use crate::report::{Align, Table};
 use crate::{Error, Result};
 
 /// Searches the grid for the best curve of each measure.
@@ -19,11 +18,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("alpha", axes[0].clone());
     ctx.setting("b_p", axes[1].clone());
     ctx.setting("b_h", axes[2].clone());
-    let mut table = Table::new("Retrieval at the paper's parameters and at the best found")
-        .column("data", Align::Left)
-        .column("measure", Align::Left)
-        .column("alpha, b_p, b_h", Align::Left)
-        .numbers(["rank 1", "rank 2", "rank 20", "mean of ranks 1 to 20"]);
+    let mut table = data_table(
+        "Retrieval at the paper's parameters and at the best found",
+        &["measure", "alpha, b_p, b_h"],
+        &["rank 1", "rank 2", "rank 20", "mean of ranks 1 to 20"],
+    );
     for source in sources(ctx)? {
         for measure in [Measure::Powerset, Measure::CommonRules] {
             let cost = |point: &[f64]| rates(&source, measure, point).map(|rates| -score(&rates));
@@ -64,7 +63,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                         rates[rank - 1],
                     ));
                 }
-                if source.dataset == "ecp2011" && measure == Measure::Powerset && name == "ours" {
+                if source.is_paper() && measure == Measure::Powerset && name == "ours" {
                     let ours = format!("{}, {}, {}", point[0], point[1], point[2]);
                     ctx.compare(
                         "alpha, b_p, b_h best for retrieval (first of equals)",

@@ -17,6 +17,8 @@ mod label_grid;
 mod rect;
 pub mod scene;
 mod splittable;
+#[cfg(test)]
+mod tests;
 mod tiling;
 
 pub use building::{

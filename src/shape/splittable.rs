@@ -106,18 +106,7 @@ fn pinwheel(facade: &Facade, indices: &[u32]) -> LayoutError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Rect, Region};
-
-    fn facade(size: f64, rects: &[(f64, f64, f64, f64)]) -> Facade {
-        let regions = rects
-            .iter()
-            .map(|&(x, y, w, h)| Region {
-                label: "a".into(),
-                rect: Rect::new(x, y, w, h),
-            })
-            .collect();
-        Facade::new("f", "px", size, size, regions).unwrap()
-    }
+    use crate::shape::tests::facade;
 
     #[test]
     fn a_pinwheel_is_named_wherever_it_hides() {

@@ -183,19 +183,8 @@ impl Facade {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Region;
+    use crate::shape::tests::facade;
     use proptest::prelude::*;
-
-    fn facade(size: f64, rects: &[(f64, f64, f64, f64)]) -> Facade {
-        let regions = rects
-            .iter()
-            .map(|&(x, y, w, h)| Region {
-                label: "a".into(),
-                rect: Rect::new(x, y, w, h),
-            })
-            .collect();
-        Facade::new("f", "px", size, size, regions).unwrap()
-    }
 
     /// Oracle: paints every unit cell.
     fn covered_once(facade: &Facade) -> bool {

@@ -1,0 +1,52 @@
+//! The layouts that ship with the project, which several papers' experiments run on.
+
+use std::path::{Path, PathBuf};
+
+use super::Context;
+use crate::io::facade_json;
+use crate::shape::Facade;
+use crate::{Error, Result};
+
+/// Name of the facade of Wu et al. 2014, Fig. 9: facade (i) of their Table 1.
+pub const FIGURE_9: &str = "wu2014_fig9";
+
+/// The folder of the shipped layouts, with its digest recorded.
+pub fn folder(ctx: &mut Context) -> Result<PathBuf> {
+    ctx.shipped("facade_grammar")
+}
+
+/// Facade (i) first, then the 34 made layouts by name, from a folder like
+/// `datasets/facade_grammar`.
+///
+/// # Errors
+/// [`Error::Io`] and the reader's errors.
+pub fn read_all(folder: &Path) -> Result<Vec<Facade>> {
+    let mut paths = vec![folder.join(format!("{FIGURE_9}.facade.json"))];
+    paths.extend(made(folder)?);
+    paths.iter().map(|path| facade_json::read(path)).collect()
+}
+
+/// The files of the made layouts, by name.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn made(folder: &Path) -> Result<Vec<PathBuf>> {
+    files(&folder.join("layouts"), ".facade.json")
+}
+
+/// Files of a folder whose names have this ending, by name.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
+    let fail = |e| Error::io(folder, "read", e);
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(fail)? {
+        let path = entry.map_err(fail)?.path();
+        if path.to_string_lossy().ends_with(ending) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
