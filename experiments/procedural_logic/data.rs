@@ -86,14 +86,22 @@ pub fn shipped_source(layouts: &[Facade]) -> Result<Source> {
     let picture = |facade| shipped::picture(facade).map_err(Error::method);
     let (houses, blocks): (Vec<_>, Vec<_>) = layouts.iter().partition(|f| shipped::is_house(f));
     let houses: Vec<LabelGrid> = houses.into_iter().map(picture).collect::<Result<_>>()?;
+    let mut architecture: Vec<Architecture> = houses.iter().map(outline::architecture).collect();
     let mut grids = houses.clone();
     for copy in 2..=SIZES {
-        grids.extend(houses.iter().map(|grid| shipped::resized(grid, copy)));
+        for (index, house) in houses.iter().enumerate() {
+            let grid = shipped::resized(house, copy);
+            // Only where along the facade a door stands depends on sizes.
+            let doors = outline::architecture(&grid).doors;
+            let original = architecture[index].clone();
+            architecture.push(Architecture { doors, ..original });
+            grids.push(grid);
+        }
     }
     Ok(Source {
         dataset: "shipped_houses",
-        architecture: grids.iter().map(outline::architecture).collect(),
         grids,
+        architecture,
         other_dataset: "shipped_blocks",
         other: blocks.into_iter().map(picture).collect::<Result<_>>()?,
     })
