@@ -1,36 +1,32 @@
-//! E and M steps on blocks of rows.
+//! E and M steps.
 
-use ndarray::linalg::general_mat_mul;
-use ndarray::{ArrayView2, ArrayViewMut2};
 use rand::Rng;
 
 use super::super::chunks;
 use super::super::em::{Em, Fit};
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
+use super::super::linalg::log_sum_exp;
+use super::block::{BLOCK, Work};
 use super::{Covariance, Fitted, Mixture, Points, Settings};
 
 /// Rows of one parallel piece of work.
 const CHUNK: usize = 8192;
-/// Rows of one matrix product.
-const BLOCK: usize = 256;
-/// Responsibilities below this are left out of the M step.
-const NEGLIGIBLE: f64 = 1e-14;
 
 /// Points relative to their mean, and what to fit to them.
 pub(crate) struct Steps<'a> {
-    points: &'a Points<'a>,
+    pub points: &'a Points<'a>,
     settings: &'a Settings,
-    k: usize,
-    centre: Vec<f64>,
+    pub k: usize,
+    pub centre: Vec<f64>,
 }
 
 /// Expected sufficient statistics.
 pub(crate) struct Moments {
     /// Per component, lower triangle of `Σ r u uᵀ`, u = (1, x - centre), (d + 1)² values; with
     /// diagonal covariances `Σ r`, `Σ r x`, `Σ r x²`, 2d + 1 values.
-    sums: Vec<Vec<f64>>,
-    log_likelihood: f64,
+    pub sums: Vec<Vec<f64>>,
+    pub log_likelihood: f64,
 }
 
 impl<'a> Steps<'a> {
@@ -145,107 +141,6 @@ impl<'a> Steps<'a> {
             log_likelihood: 0.0,
         }
     }
-
-    /// Both steps' sums over the rows `from..to`.
-    fn block(
-        &self,
-        model: &Mixture,
-        from: usize,
-        to: usize,
-        work: &mut Work,
-        moments: &mut Moments,
-    ) {
-        let d = model.d;
-        let n = to - from;
-        for (x, i) in work.x.chunks_mut(d).zip(from..to) {
-            for ((x, v), c) in x.iter_mut().zip(self.points.row(i)).zip(&self.centre) {
-                *x = v - c;
-            }
-        }
-        let x = &work.x[..n * d];
-        for k in 0..self.k {
-            let w = model.whitening_of(k);
-            let mean = model.mean(k);
-            let quad = &mut work.quad[..n];
-            if model.kind == Covariance::Diagonal {
-                for (q, x) in quad.iter_mut().zip(x.chunks_exact(d)) {
-                    *q = (0..d)
-                        .map(|i| (w[i * d + i] * (x[i] - mean[i])).powi(2))
-                        .sum();
-                }
-            } else {
-                if k == 0 || model.kind == Covariance::Full {
-                    product(x, n, w, d, &mut work.z[..n * d]);
-                }
-                for (i, m) in work.shift.iter_mut().enumerate() {
-                    *m = (0..=i).map(|j| w[i * d + j] * mean[j]).sum();
-                }
-                for (q, z) in quad.iter_mut().zip(work.z.chunks_exact(d)) {
-                    *q = z
-                        .iter()
-                        .zip(&work.shift)
-                        .map(|(z, m)| (z - m) * (z - m))
-                        .sum();
-                }
-            }
-            let norm = model.log_norms[k];
-            for (l, q) in work.logs.iter_mut().skip(k).step_by(self.k).zip(quad) {
-                *l = norm - 0.5 * *q;
-            }
-        }
-        for (i, logs) in work.logs.chunks_mut(self.k).take(n).enumerate() {
-            let max = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let mut sum = 0.0;
-            for l in logs.iter_mut() {
-                let shifted = *l - max;
-                *l = if shifted < -40.0 { 0.0 } else { shifted.exp() };
-                sum += *l;
-            }
-            let weight = self.points.weight(from + i);
-            moments.log_likelihood += weight * (max + sum.ln());
-            let scale = weight / sum;
-            logs.iter_mut().for_each(|l| *l *= scale);
-        }
-        for k in 0..self.k {
-            let sums = &mut moments.sums[k];
-            let mut m = 0;
-            for (i, x) in x.chunks_exact(d).enumerate() {
-                let r = work.logs[i * self.k + k];
-                if r <= NEGLIGIBLE {
-                    continue;
-                }
-                if model.kind == Covariance::Diagonal {
-                    sums[0] += r;
-                    let (first, second) = sums[1..].split_at_mut(d);
-                    for ((a, b), x) in first.iter_mut().zip(second).zip(x) {
-                        *a += r * x;
-                        *b += r * x * x;
-                    }
-                } else {
-                    let root = r.sqrt();
-                    let u = &mut work.u[m * (d + 1)..(m + 1) * (d + 1)];
-                    u[0] = root;
-                    for (u, x) in u[1..].iter_mut().zip(x) {
-                        *u = root * x;
-                    }
-                    m += 1;
-                }
-            }
-            if model.kind != Covariance::Diagonal && m > 0 {
-                gram(&work.u[..m * (d + 1)], m, d + 1, sums);
-            }
-        }
-    }
-}
-
-/// Buffers of one thread's blocks.
-struct Work {
-    x: Vec<f64>,
-    z: Vec<f64>,
-    u: Vec<f64>,
-    quad: Vec<f64>,
-    logs: Vec<f64>,
-    shift: Vec<f64>,
 }
 
 impl Em for Steps<'_> {
@@ -259,14 +154,7 @@ impl Em for Steps<'_> {
             CHUNK,
             |range| {
                 let mut moments = self.empty();
-                let mut work = Work {
-                    x: vec![0.0; BLOCK * d],
-                    z: vec![0.0; BLOCK * d],
-                    u: vec![0.0; BLOCK * (d + 1)],
-                    quad: vec![0.0; BLOCK],
-                    logs: vec![0.0; BLOCK * self.k],
-                    shift: vec![0.0; d],
-                };
+                let mut work = Work::new(d, self.k);
                 for from in range.clone().step_by(BLOCK) {
                     let to = (from + BLOCK).min(range.end);
                     self.block(model, from, to, &mut work, &mut moments);
@@ -295,7 +183,7 @@ impl Em for Steps<'_> {
                     .zip(&self.centre)
                     .map(|(v, c)| v - c)
                     .collect();
-                !super::log_sum_exp(&model.log_joint(&x)).is_finite()
+                !log_sum_exp(&model.log_joint(&x)).is_finite()
             });
             return Err(ModelError::Contradiction {
                 row: row.unwrap_or(0),
@@ -396,26 +284,5 @@ fn add_row(sums: &mut [f64], u: &[f64], weight: f64, kind: Covariance) {
                 }
             }
         }
-    }
-}
-
-/// z (n x d) = x (n x d) wᵀ.
-fn product(x: &[f64], n: usize, w: &[f64], d: usize, z: &mut [f64]) {
-    if let (Ok(x), Ok(w), Ok(mut z)) = (
-        ArrayView2::from_shape((n, d), x),
-        ArrayView2::from_shape((d, d), w),
-        ArrayViewMut2::from_shape((n, d), z),
-    ) {
-        general_mat_mul(1.0, &x, &w.t(), 0.0, &mut z);
-    }
-}
-
-/// sums (q x q) += uᵀ u, u n x q.
-fn gram(u: &[f64], n: usize, q: usize, sums: &mut [f64]) {
-    if let (Ok(u), Ok(mut sums)) = (
-        ArrayView2::from_shape((n, q), u),
-        ArrayViewMut2::from_shape((q, q), sums),
-    ) {
-        general_mat_mul(1.0, &u.t(), &u, 1.0, &mut sums);
     }
 }

@@ -1,22 +1,16 @@
-//! MAP parameters of a network by EM, from data with missing values and hidden variables.
-//!
-//! Each row is a question: its posterior over every family (a variable with its parents) gives
-//! expected counts, and over every linked set of real vectors expected scatter matrices. Real
-//! columns are standardised inside, so that one prior serves all.
+//! MAP parameters of a network, from data with missing values and hidden variables: from a table
+//! to standardised evidence, so that one prior serves all, and back to the columns' own units.
 //! Weights of a softmax are not learned: they stay as stated.
 
 use rand::{Rng, RngExt};
 
-use super::super::chunks;
-use super::super::conjugate::{Linear, LinearPrior, dirichlet_log_density, dirichlet_mode};
-use super::super::em::{Em, Fit, Stopping, restarts};
+use super::super::conjugate::Linear;
+use super::super::em::{Fit, Stopping, restarts};
 use super::super::error::ModelError;
 use super::super::hierarchy::Priors;
-use super::super::hierarchy::component::add_scatter;
 use super::super::table::{Cell, Table};
 use super::evidence::Known;
-use super::factor::{Mode, advance};
-use super::query::distribution;
+use super::expect::Problem;
 use super::{Cpd, Network};
 
 /// Settings of [`Network::learn`].
@@ -51,21 +45,8 @@ pub struct Trained {
     pub trace: Vec<f64>,
 }
 
-/// Expected counts per table, expected scatter per configuration of a real vector.
-struct Stats {
-    counts: Vec<Vec<f64>>,
-    scatter: Vec<Vec<Vec<f64>>>,
-    log_likelihood: f64,
-}
-
 /// (mean, deviation) of every coordinate.
 type Scales = Vec<(f64, f64)>;
-
-struct Problem<'a> {
-    rows: &'a [Known],
-    priors: &'a Priors,
-    start: &'a Network,
-}
 
 impl Network {
     /// Learns tables and linear Gaussians from `data`, whose columns carry the variables' names
@@ -255,193 +236,5 @@ fn kind(column: &str, got: &'static str, expected: &'static str) -> ModelError {
         column: column.to_owned(),
         got,
         expected,
-    }
-}
-
-impl Problem<'_> {
-    fn empty(&self) -> Stats {
-        let nodes = &self.start.nodes;
-        Stats {
-            counts: nodes
-                .iter()
-                .map(|n| match &n.cpd {
-                    Cpd::Table(t) => vec![0.0; t.len()],
-                    _ => Vec::new(),
-                })
-                .collect(),
-            scatter: nodes
-                .iter()
-                .map(|n| match &n.cpd {
-                    Cpd::Linear(s) => s.iter().map(|l| vec![0.0; (l.p + l.d).pow(2)]).collect(),
-                    _ => Vec::new(),
-                })
-                .collect(),
-            log_likelihood: 0.0,
-        }
-    }
-
-    fn row(&self, network: &Network, i: usize, stats: &mut Stats) -> Result<(), ModelError> {
-        let at_row = |e| match e {
-            ModelError::Contradiction { variable, .. } => {
-                ModelError::Contradiction { row: i, variable }
-            }
-            e => e,
-        };
-        let question = network.question(self.rows[i].clone())?;
-        let tree = network.tree(&question, Mode::Sum).map_err(at_row)?;
-        let beliefs = tree.beliefs();
-        let sizes = &network.sizes;
-        let spread = |vars: &[usize]| -> Vec<f64> {
-            if vars.is_empty() {
-                return vec![1.0];
-            }
-            let found = beliefs
-                .iter()
-                .find(|b| vars.iter().all(|v| b.vars.contains(v)));
-            found.map_or_else(Vec::new, |b| distribution(&b.onto(vars, sizes, Mode::Sum)))
-        };
-        let fixed: Vec<usize> = question
-            .known
-            .discrete
-            .iter()
-            .map(|v| v.unwrap_or(0))
-            .collect();
-        for (n, counts) in stats
-            .counts
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, c)| !c.is_empty())
-        {
-            let family = network.nodes[n].discrete.iter().copied().chain([n]);
-            let vars: Vec<usize> = family
-                .filter(|&v| question.known.discrete[v].is_none())
-                .collect();
-            let mut assignment = fixed.clone();
-            for w in spread(&vars) {
-                let index = network.configuration(n, &assignment) * sizes[n] + assignment[n];
-                counts[index] += w;
-                advance(&vars, sizes, &mut assignment);
-            }
-        }
-        for linked in &question.linked {
-            let mut assignment = fixed.clone();
-            for (particle, w) in linked.particles.iter().zip(spread(&linked.vars)) {
-                for &n in &linked.nodes {
-                    let state = network.configuration(n, &assignment);
-                    let (columns, scatter) = (network.columns(n), &mut stats.scatter[n][state]);
-                    add_scatter(
-                        particle,
-                        &linked.missing,
-                        &columns,
-                        &question.known.real,
-                        w,
-                        scatter,
-                    );
-                }
-                advance(&linked.vars, sizes, &mut assignment);
-            }
-        }
-        stats.log_likelihood += tree.total;
-        Ok(())
-    }
-}
-
-impl Em for Problem<'_> {
-    type Model = Network;
-    type Stats = Stats;
-
-    fn expect(&self, network: &Network) -> Result<(Stats, f64), ModelError> {
-        let stats = chunks::fold(
-            self.rows.len(),
-            256,
-            |range| {
-                let mut stats = self.empty();
-                for i in range {
-                    self.row(network, i, &mut stats)?;
-                }
-                Ok(stats)
-            },
-            |total: &mut Stats, part| {
-                let counts = total.counts.iter_mut().flatten();
-                counts
-                    .zip(part.counts.iter().flatten())
-                    .for_each(|(a, b)| *a += b);
-                let scatter = total.scatter.iter_mut().flatten().flatten();
-                scatter
-                    .zip(part.scatter.iter().flatten().flatten())
-                    .for_each(|(a, b)| *a += b);
-                total.log_likelihood += part.log_likelihood;
-            },
-        )?;
-        let log_likelihood = stats.log_likelihood;
-        Ok((stats, log_likelihood))
-    }
-
-    fn maximize(&self, stats: &Stats) -> Result<Network, ModelError> {
-        let mut network = self.start.clone();
-        for (n, node) in network.nodes.iter_mut().enumerate() {
-            match &mut node.cpd {
-                Cpd::Table(table) => {
-                    let counts = stats.counts[n].chunks(self.start.sizes[n]);
-                    *table = counts
-                        .flat_map(|c| dirichlet_mode(c, self.priors.dirichlet))
-                        .collect();
-                }
-                Cpd::Linear(states) => {
-                    let prior: &LinearPrior = &self.priors.linear;
-                    for (state, scatter) in states.iter_mut().zip(&stats.scatter[n]) {
-                        *state = prior.mode(scatter, state.p, state.d).ok_or_else(|| {
-                            ModelError::Singular {
-                                variable: node.name.clone(),
-                            }
-                        })?;
-                    }
-                }
-                Cpd::Softmax(_) => {}
-            }
-        }
-        Ok(network)
-    }
-
-    fn log_prior(&self, network: &Network) -> f64 {
-        let nodes = network.nodes.iter().zip(&network.sizes);
-        nodes
-            .map(|(node, &k)| match &node.cpd {
-                Cpd::Table(table) => table
-                    .chunks(k)
-                    .map(|row| dirichlet_log_density(row, self.priors.dirichlet))
-                    .sum::<f64>(),
-                Cpd::Linear(states) => states
-                    .iter()
-                    .map(|l| self.priors.linear.log_density(l))
-                    .sum(),
-                Cpd::Softmax(_) => 0.0,
-            })
-            .sum()
-    }
-
-    fn movement(&self, before: &Network, after: &Network) -> f64 {
-        let far = |a: &[f64], b: &[f64]| {
-            a.iter()
-                .zip(b)
-                .map(|(x, y)| (x - y).abs())
-                .fold(0.0, f64::max)
-        };
-        before
-            .nodes
-            .iter()
-            .zip(&after.nodes)
-            .map(|(a, b)| match (&a.cpd, &b.cpd) {
-                (Cpd::Table(a), Cpd::Table(b)) => far(a, b),
-                (Cpd::Linear(a), Cpd::Linear(b)) => a
-                    .iter()
-                    .zip(b)
-                    .map(|(a, b)| {
-                        far(&a.coefficients, &b.coefficients).max(far(&a.covariance, &b.covariance))
-                    })
-                    .fold(0.0, f64::max),
-                _ => 0.0,
-            })
-            .fold(0.0, f64::max)
     }
 }

@@ -32,6 +32,7 @@
 
 mod bif;
 mod evidence;
+mod expect;
 mod factor;
 mod learn;
 mod query;
