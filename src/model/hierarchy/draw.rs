@@ -1,0 +1,274 @@
+//! Rows drawn from a learned model: forward, given some of their values, and the most probable.
+
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use super::super::conjugate::Linear;
+use super::super::error::ModelError;
+use super::super::linalg::cholesky;
+use super::super::table::{MISSING, Table};
+use super::fit::Problem;
+use super::infer::{Scratch, joint};
+use super::params::Priors;
+use super::query::Hierarchy;
+use super::schema::Rows;
+use super::structure::configuration;
+
+/// Rows drawn from a model.
+#[derive(Clone, Debug)]
+pub struct Draws {
+    /// Complete rows: real columns first, then categorical ones, in the order of the groups.
+    pub table: Table,
+    /// Value of S behind each row.
+    pub styles: Vec<usize>,
+    /// Log density of each complete row, nats, in the columns' own units.
+    pub log_density: Vec<f64>,
+}
+
+impl Hierarchy {
+    /// Draws `count` rows by forward sampling.
+    ///
+    /// # Errors
+    /// [`ModelError::Empty`] for no rows.
+    pub fn sample<R: Rng>(&self, count: usize, rng: &mut R) -> Result<Draws, ModelError> {
+        self.draw(&Table::new(), count, None, rng)
+    }
+
+    /// Draws `count` rows of style `style`.
+    ///
+    /// # Errors
+    /// [`ModelError::Parameter`] when there is no such style; [`ModelError::Empty`] for no rows.
+    pub fn sample_style<R: Rng>(
+        &self,
+        style: usize,
+        count: usize,
+        rng: &mut R,
+    ) -> Result<Draws, ModelError> {
+        if style >= self.styles() {
+            return Err(ModelError::parameter(
+                "style",
+                format!("there are {}", self.styles()),
+            ));
+        }
+        self.draw(&Table::new(), count, Some(style), rng)
+    }
+
+    /// Completes every row of `given` `count` times: missing values and absent columns are drawn
+    /// from their joint posterior given the row's own values. Rows come in the order of `given`,
+    /// the draws of one row together.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::log_likelihood`]; [`ModelError::Empty`] for no rows.
+    pub fn complete<R: Rng>(
+        &self,
+        given: &Table,
+        count: usize,
+        rng: &mut R,
+    ) -> Result<Draws, ModelError> {
+        if given.rows() == 0 {
+            return Err(ModelError::Empty { what: "rows" });
+        }
+        self.draw(given, count, None, rng)
+    }
+
+    /// The `count` most probable of `pool` completions of the single-row table `given` (without
+    /// columns: of forward samples), most probable first, leaving out any that comes closer than
+    /// `apart` standard deviations (root mean square over real columns) to a better one or to a
+    /// row of `seen` with the same categories.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::complete`].
+    pub fn most_probable<R: Rng>(
+        &self,
+        given: &Table,
+        count: usize,
+        pool: usize,
+        apart: f64,
+        seen: Option<&Table>,
+        rng: &mut R,
+    ) -> Result<Draws, ModelError> {
+        let draws = self.draw(given, pool, None, rng)?;
+        let rows = self.schema.encode(&draws.table)?;
+        let known = seen.map(|t| self.schema.encode(t)).transpose()?;
+        let mut order: Vec<usize> = (0..rows.rows).collect();
+        order.sort_by(|&a, &b| draws.log_density[b].total_cmp(&draws.log_density[a]));
+        let close = |a: &Rows, i: usize, b: &Rows, j: usize| {
+            a.code(i) == b.code(j) && distance(a.real(i), b.real(j)) < apart
+        };
+        let mut kept: Vec<usize> = Vec::new();
+        for i in order {
+            if kept.len() == count {
+                break;
+            }
+            let near_known = known
+                .as_ref()
+                .is_some_and(|k| (0..k.rows).any(|j| close(&rows, i, k, j)));
+            if !near_known && !kept.iter().any(|&j| close(&rows, i, &rows, j)) {
+                kept.push(i);
+            }
+        }
+        Ok(Draws {
+            table: draws.table.select(&kept),
+            styles: kept.iter().map(|&i| draws.styles[i]).collect(),
+            log_density: kept.iter().map(|&i| draws.log_density[i]).collect(),
+        })
+    }
+
+    fn draw<R: Rng>(
+        &self,
+        given: &Table,
+        count: usize,
+        style: Option<usize>,
+        rng: &mut R,
+    ) -> Result<Draws, ModelError> {
+        let mut rows = self.schema.encode(given)?;
+        if given.columns().is_empty() {
+            // Nothing observed: one empty row.
+            rows.rows = 1;
+            rows.reals = vec![f64::NAN; rows.d];
+            rows.codes = vec![MISSING; rows.c];
+        }
+        if count == 0 || rows.rows == 0 {
+            return Err(ModelError::Empty { what: "rows" });
+        }
+        let mut drawn = Rows {
+            rows: rows.rows * count,
+            reals: Vec::with_capacity(rows.rows * count * rows.d),
+            codes: Vec::with_capacity(rows.rows * count * rows.c),
+            ..rows
+        };
+        let mut styles = Vec::with_capacity(drawn.rows);
+        let priors = Priors::default();
+        let problem = Problem {
+            schema: &self.schema,
+            rows: &rows,
+            priors: &priors,
+            shape: self.shape.clone(),
+        };
+        let mut scratch = Scratch::new(&self.shape);
+        for i in 0..rows.rows {
+            let mut ways: Vec<(Vec<u32>, f64)> = Vec::new();
+            problem.visit(&self.params, i, &mut scratch, |_, codes, weight| {
+                ways.push((codes.to_vec(), weight));
+            })?;
+            for _ in 0..count {
+                let weights: Vec<f64> = ways.iter().map(|w| w.1).collect();
+                let codes = &ways[choose(&weights, rng)].0;
+                scratch.infer(&self.shape, &self.params, rows.real(i), codes);
+                let (real, codes, s) =
+                    self.complete_row(rows.real(i), codes, style, &mut scratch, rng);
+                drawn.reals.extend(real);
+                drawn.codes.extend(codes);
+                styles.push(s);
+            }
+        }
+        let mut log_density = Vec::with_capacity(drawn.rows);
+        for i in 0..drawn.rows {
+            scratch.infer(&self.shape, &self.params, drawn.real(i), drawn.code(i));
+            log_density.push(scratch.log_likelihood - self.log_scale(drawn.real(i)));
+        }
+        Ok(Draws {
+            table: self.schema.decode(&drawn)?,
+            styles,
+            log_density,
+        })
+    }
+
+    /// Draws S, then states and missing values of every group, parents before children.
+    fn complete_row<R: Rng>(
+        &self,
+        real: &[f64],
+        codes: &[u32],
+        style: Option<usize>,
+        scratch: &mut Scratch,
+        rng: &mut R,
+    ) -> (Vec<f64>, Vec<u32>, usize) {
+        let shape = &self.shape;
+        let styles = self.styles();
+        let s = style.unwrap_or_else(|| choose(&scratch.style, rng));
+        let mut real = real.to_vec();
+        let mut codes = codes.to_vec();
+        // Only leaves are still missing, or (nothing observed) everything was enumerated.
+        for c in 0..codes.len() {
+            if codes[c] == MISSING {
+                let k = configuration(&shape.structure.code_parents[c], &shape.sizes, &codes);
+                let size = shape.sizes[c];
+                let p: Vec<f64> = (0..size)
+                    .map(|v| self.params.codes[c][(k * size + v) * styles + s])
+                    .collect();
+                codes[c] = choose(&p, rng) as u32;
+            }
+        }
+        let mut only = vec![0.0; styles];
+        only[s] = 1.0;
+        for component in &scratch.components {
+            let joint = joint(component, shape, &self.params, &only);
+            let weights: Vec<f64> = joint.iter().map(|j| j[s]).collect();
+            let particle = &component.particles[choose(&weights, rng)];
+            let drawn = gaussian(&particle.mean, &particle.cov, rng);
+            for (&c, v) in component.missing.iter().zip(drawn) {
+                real[c] = v;
+            }
+        }
+        for &g in &shape.order {
+            if scratch.pattern.barren.contains(&g) {
+                let state = choose(&self.forward(g, &only, &codes), rng);
+                let linear = &self.params.linear[g][state];
+                draw_linear(linear, &shape.columns[g], &mut real, rng);
+            }
+        }
+        (real, codes, s)
+    }
+}
+
+/// Root mean square difference of standardised rows.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().max(1) as f64;
+    let sum: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
+    (sum / n).sqrt()
+}
+
+/// An index drawn in proportion to `weights`; the last of positive weight where rounding runs out.
+fn choose<R: Rng>(weights: &[f64], rng: &mut R) -> usize {
+    let total: f64 = weights.iter().sum();
+    let mut at = rng.random::<f64>() * total;
+    let mut last = 0;
+    for (i, w) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+        last = i;
+        at -= w;
+        if at < 0.0 {
+            break;
+        }
+    }
+    last
+}
+
+/// Fills the own columns of a group from its linear Gaussian.
+fn draw_linear<R: Rng>(linear: &Linear, columns: &[usize], real: &mut [f64], rng: &mut R) {
+    let mut u = vec![1.0];
+    u.extend(columns.iter().map(|&c| real[c]));
+    let mut mean = vec![0.0; linear.d];
+    linear.mean(&u, &mut mean);
+    let drawn = gaussian(&mean, &linear.covariance, rng);
+    for (&c, v) in columns[linear.p - 1..].iter().zip(drawn) {
+        real[c] = v;
+    }
+}
+
+/// A draw from N(mean, cov); directions in which `cov` is singular stay at the mean.
+pub(crate) fn gaussian<R: Rng>(mean: &[f64], cov: &[f64], rng: &mut R) -> Vec<f64> {
+    let n = mean.len();
+    let mut l = cov.to_vec();
+    let mut raise = 1e-14;
+    while !cholesky(&mut l, n) {
+        l.copy_from_slice(cov);
+        for i in 0..n {
+            l[i * n + i] += raise * (1.0 + cov[i * n + i].abs());
+        }
+        raise *= 100.0;
+    }
+    let z: Vec<f64> = (0..n).map(|_| rng.sample(StandardNormal)).collect();
+    (0..n)
+        .map(|i| mean[i] + (0..=i).map(|j| l[i * n + j] * z[j]).sum::<f64>())
+        .collect()
+}
