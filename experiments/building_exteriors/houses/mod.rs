@@ -38,6 +38,19 @@ pub const DEPENDENCIES: [(&str, &str); 9] = [
     ("garage", "porch"),
 ];
 
+/// Groups whose kinds the style draws; the kind of `far` follows from the others.
+pub const KINDS: [&str; 9] = [
+    "bbox",
+    "bcr",
+    "bdry",
+    "arf",
+    "garage",
+    "porch",
+    "wwr",
+    "symmetry",
+    "alignment",
+];
+
 /// Seed of the shipped database.
 pub const SHIPPED_SEED: u64 = 2016;
 /// Houses in the shipped database, as many as the paper has.
@@ -50,6 +63,8 @@ pub struct House {
     pub building: Building,
     /// Its style, below [`STYLES`].
     pub style: usize,
+    /// The kinds of its nine attributes that have kinds, in the order of [`KINDS`].
+    pub kinds: [usize; KINDS.len()],
 }
 
 /// House number `index` of the database with this seed.
@@ -62,7 +77,12 @@ pub fn house(seed: u64, index: u64) -> House {
         // kinds never do (two cars, one floor, all walls symmetric), and are drawn anew in the end.
         let built = (0..ATTEMPTS).find_map(|_| attempt(&kinds, index, &mut rng));
         if let Some(building) = built {
-            return House { building, style };
+            let kinds = kinds.numbers();
+            return House {
+                building,
+                style,
+                kinds,
+            };
         }
     }
 }

@@ -70,8 +70,8 @@ pub(super) fn build(n: &Numbers, kinds: &Kinds) -> Option<Plan> {
     if !(0.15..notch_depth - 0.3).contains(&bump_depth) {
         return None;
     }
-    // The bump is a fifth as wide as the notch.
-    let notch = (full.area() - area) / (notch_depth - bump_depth / 5.0);
+    // The bump is half as wide as the notch.
+    let notch = (full.area() - area) / (notch_depth - bump_depth / 2.0);
     if !(0.3..wing_end - 0.25).contains(&notch) {
         return None;
     }

@@ -33,6 +33,23 @@ pub(super) struct Kinds {
     pub special: Vec<Special>,
 }
 
+impl Kinds {
+    /// The kinds in the order of [`super::KINDS`].
+    pub fn numbers(&self) -> [usize; super::KINDS.len()] {
+        [
+            self.bbox,
+            self.bcr,
+            self.bdry,
+            self.arf,
+            self.garage,
+            self.porch,
+            self.wwr,
+            self.symmetry,
+            self.alignment,
+        ]
+    }
+}
+
 /// Probabilities of the kinds, in the order of the fields of [`Kinds`]. A roof or window style of
 /// probability 1 keeps the lists from being empty.
 pub(super) struct Style {

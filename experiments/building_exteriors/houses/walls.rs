@@ -187,6 +187,14 @@ fn choose_styles(strips: &mut [Strip], styles: &[ElementStyle], rng: &mut impl R
     Some(())
 }
 
+/// Distance of edges and centres that are not in line (m).
+const APART: f64 = 0.07;
+/// Most steps towards the middle, and how much closer one step brings.
+const CLOSER: usize = 12;
+const CLOSER_BY: f64 = 0.95;
+/// Most rounds of moving windows and sizing them anew.
+const ROUNDS: usize = 4;
+
 /// An element whose size is still open.
 struct Slot {
     piece: usize,
@@ -228,24 +236,15 @@ fn glaze(strips: &[&Strip], aligned: bool, ratio: f64, floor: f64) -> Option<Vec
         }
     }
     let walls: f64 = pieces.iter().map(FacadePiece::area).sum();
-    let covered = |scale: f64| {
-        let areas = slots.iter().map(|s| s.size(scale)).map(|(w, h)| w * h);
-        areas.sum::<f64>() / walls
-    };
-    let (mut low, mut high) = (0.2, 4.0);
-    if !(covered(low)..covered(high)).contains(&ratio) {
-        return None;
-    }
-    for _ in 0..50 {
-        let middle = (low + high) / 2.0;
-        if covered(middle) < ratio {
-            low = middle;
-        } else {
-            high = middle;
+    let mut scale = scale_for(ratio, &slots, walls)?;
+    for _ in 0..ROUNDS {
+        if aligned || !set_apart(&mut slots, &pieces, scale) {
+            break;
         }
+        scale = scale_for(ratio, &slots, walls)?;
     }
     for slot in &slots {
-        let (width, height) = slot.size(low);
+        let (width, height) = slot.size(scale);
         let below = if slot.style == ElementStyle::Door {
             0.0
         } else {
@@ -262,6 +261,65 @@ fn glaze(strips: &[&Strip], aligned: bool, ratio: f64, floor: f64) -> Option<Vec
     Some(pieces)
 }
 
+/// The scale of the windows at which they cover `ratio` of the walls; `None` where none does.
+fn scale_for(ratio: f64, slots: &[Slot], walls: f64) -> Option<f64> {
+    let covered = |scale: f64| {
+        let areas = slots.iter().map(|s| s.size(scale)).map(|(w, h)| w * h);
+        areas.sum::<f64>() / walls
+    };
+    let (mut low, mut high) = (0.2, 4.0);
+    if !(covered(low)..covered(high)).contains(&ratio) {
+        return None;
+    }
+    for _ in 0..50 {
+        let middle = (low + high) / 2.0;
+        if covered(middle) < ratio {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(low)
+}
+
+/// Moves the windows of upper floors together, about the middle of their piece, where all of them
+/// happen to stand in line with those of a piece below; whether it moved any. They get narrower as
+/// they get closer, so that the scale has to be found anew.
+fn set_apart(slots: &mut [Slot], pieces: &[FacadePiece], scale: f64) -> bool {
+    let marks = |slots: &[Slot], p: usize| -> Vec<[f64; 3]> {
+        let own = slots.iter().filter(|s| s.piece == p);
+        let marks = own.map(|s| {
+            let half = s.size(scale).0 / 2.0;
+            [s.centre - half, s.centre, s.centre + half]
+        });
+        marks.collect()
+    };
+    let mut moved = false;
+    for upper in 1..pieces.len() {
+        for lower in (0..upper).filter(|&p| pieces[p].start == pieces[upper].start) {
+            let middle = pieces[upper].width / 2.0;
+            for _ in 0..CLOSER {
+                if !in_line(marks(slots, lower), marks(slots, upper)) {
+                    break;
+                }
+                moved = true;
+                for slot in slots.iter_mut().filter(|s| s.piece == upper) {
+                    slot.centre = middle + CLOSER_BY * (slot.centre - middle);
+                    slot.widest *= CLOSER_BY;
+                }
+            }
+        }
+    }
+    moved
+}
+
+/// Whether each mark (left edge, centre, right edge) of the fewer windows meets one of the others.
+fn in_line(a: Vec<[f64; 3]>, b: Vec<[f64; 3]>) -> bool {
+    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
+    let meet = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).any(|(a, b)| (a - b).abs() < APART);
+    !few.is_empty() && few.iter().all(|a| many.iter().any(|b| meet(a, b)))
+}
+
 impl Slot {
     fn size(&self, scale: f64) -> (f64, f64) {
         if self.style == ElementStyle::Door {
@@ -275,7 +333,7 @@ impl Slot {
 }
 
 /// Centres and greatest widths of the windows of a strip on floor `k`. On an aligned side all
-/// floors have the same centres; else each floor has one window more than the one below.
+/// floors have the same centres; else upper floors have one window more than the ground floor.
 fn centres(strip: &Strip, k: usize, aligned: bool) -> Vec<(f64, f64)> {
     let width = strip.width();
     if width < NARROWEST {
@@ -286,10 +344,10 @@ fn centres(strip: &Strip, k: usize, aligned: bool) -> Vec<(f64, f64)> {
     } else {
         ((width / SPACING).round() as usize).clamp(1, 4)
     };
-    let count = if aligned { usual } else { usual + k };
+    let count = if aligned { usual } else { usual + k.min(1) };
     let spacing = width / count as f64;
-    // One window over two of three hits the middle one; very narrow windows look like loopholes.
-    if spacing < 0.8 || (!aligned && usual == 1 && k > 1) {
+    // Very narrow windows look like loopholes.
+    if spacing < 0.8 {
         return Vec::new();
     }
     let (shift, widest) = if strip.symmetric {
