@@ -3,8 +3,11 @@
 //! With the hidden variables' posteriors held (O* of Eq. 2), the score of a structure is a sum
 //! over groups, and an edge changes the term of its child only: the closed-form evidence of the
 //! child's regression, summed over its states. All candidates are therefore read off one scatter
-//! matrix over all real columns per state. The structure so proposed is fitted by EM and kept only
-//! if its Cheeseman-Stutz score is higher.
+//! matrix over all real columns per state. Edges are added, taken out and turned round (Koller and
+//! Friedman 2009, Sec. 18.4.3). The structure so proposed is fitted by EM and kept only if its
+//! Cheeseman-Stutz score is higher.
+
+use std::collections::HashMap;
 
 use super::super::error::ModelError;
 use super::fit::{Problem, Scored};
@@ -14,17 +17,89 @@ use super::structure::{Selector, Structure};
 /// Per group, per state, lower triangle of `Σ w v vᵀ`, v = (1, all real columns).
 pub(crate) type Wide = Vec<Vec<Vec<f64>>>;
 
-/// The structure with lateral edges found greedily from nothing, all else as in `scored`.
+/// The structure with lateral edges of highest evidence that greedy moves reach: from no edges and
+/// from those of `scored`, an edge is added, taken out or turned round, whatever gains most, until
+/// nothing gains. All else is as in `scored`.
 pub(crate) fn propose(
     problem: &Problem,
     scored: &Scored,
     wide: &Wide,
     max_parents: usize,
 ) -> Structure {
-    let schema = problem.schema;
-    let groups = schema.groups.len();
-    let q = problem.rows.d + 1;
-    let evidence = |g: usize, parents: &[usize]| -> f64 {
+    let mut families = Families {
+        problem,
+        wide,
+        evidence: HashMap::new(),
+    };
+    let given = &scored.shape.structure;
+    let nothing = Structure {
+        parents: vec![Vec::new(); given.parents.len()],
+        ..given.clone()
+    };
+    let (fresh, evidence) = families.climb(nothing, max_parents);
+    let (kept, evidence_kept) = families.climb(given.clone(), max_parents);
+    if evidence_kept >= evidence - LEAST_GAIN {
+        kept
+    } else {
+        fresh
+    }
+}
+
+/// Gains below this are rounding.
+const LEAST_GAIN: f64 = 1e-6;
+
+/// A change of one lateral edge, from parent to child.
+#[derive(Clone, Copy, Debug)]
+enum Move {
+    Add(usize, usize),
+    Remove(usize, usize),
+    Reverse(usize, usize),
+}
+
+/// Evidence of the regression of a group on its parents, summed over its states; kept once known.
+struct Families<'a> {
+    problem: &'a Problem<'a>,
+    wide: &'a Wide,
+    evidence: HashMap<(usize, Vec<usize>), f64>,
+}
+
+impl Families<'_> {
+    /// Greedy moves until none gains; the structure and the evidence of all its families.
+    fn climb(&mut self, mut structure: Structure, max_parents: usize) -> (Structure, f64) {
+        loop {
+            let best = moves(&structure, max_parents)
+                .into_iter()
+                .map(|m| (self.gain(&structure, m), m))
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            match best {
+                Some((gain, best)) if gain > LEAST_GAIN => apply(&mut structure, best),
+                _ => break,
+            }
+        }
+        let total = (0..structure.parents.len())
+            .map(|g| self.of(g, &structure.parents[g]))
+            .sum();
+        (structure, total)
+    }
+
+    fn gain(&mut self, structure: &Structure, change: Move) -> f64 {
+        let mut gain =
+            |g: usize, parents: &[usize]| self.of(g, parents) - self.of(g, &structure.parents[g]);
+        let parents = |g: usize| &structure.parents[g];
+        match change {
+            Move::Add(p, g) => gain(g, &with(parents(g), p)),
+            Move::Remove(p, g) => gain(g, &without(parents(g), p)),
+            Move::Reverse(p, g) => gain(g, &without(parents(g), p)) + gain(p, &with(parents(p), g)),
+        }
+    }
+
+    fn of(&mut self, g: usize, parents: &[usize]) -> f64 {
+        let key = (g, parents.to_vec());
+        if let Some(&known) = self.evidence.get(&key) {
+            return known;
+        }
+        let schema = self.problem.schema;
+        let q = self.problem.rows.d + 1;
         let mut index = vec![0];
         for &p in parents {
             index.extend(schema.columns(p).map(|c| c + 1));
@@ -33,55 +108,67 @@ pub(crate) fn propose(
         index.extend(schema.columns(g).map(|c| c + 1));
         let n = index.len();
         let mut sub = vec![0.0; n * n];
-        wide[g]
-            .iter()
-            .map(|m| {
-                for (a, &i) in index.iter().enumerate() {
-                    for (b, &j) in index[..=a].iter().enumerate() {
-                        sub[a * n + b] = m[i.max(j) * q + i.min(j)];
-                    }
+        let prior = &self.problem.priors.linear;
+        let states = self.wide[g].iter().map(|m| {
+            for (a, &i) in index.iter().enumerate() {
+                for (b, &j) in index[..=a].iter().enumerate() {
+                    sub[a * n + b] = m[i.max(j) * q + i.min(j)];
                 }
-                problem
-                    .priors
-                    .linear
-                    .evidence(&sub, p, n - p)
-                    .unwrap_or(f64::NEG_INFINITY)
-            })
-            .sum()
-    };
-    let mut structure = scored.shape.structure.clone();
-    structure.parents = vec![Vec::new(); groups];
-    let with = |parents: &[usize], p: usize| {
-        let mut list = parents.to_vec();
-        list.push(p);
-        list.sort_unstable();
-        list
-    };
-    let mut now: Vec<f64> = (0..groups).map(|g| evidence(g, &[])).collect();
-    let gains_of = |g: usize, parents: &[usize], now: f64| -> Vec<f64> {
-        (0..groups)
-            .map(|p| {
-                if p == g || parents.contains(&p) || parents.len() >= max_parents {
-                    f64::NEG_INFINITY
-                } else {
-                    evidence(g, &with(parents, p)) - now
-                }
-            })
-            .collect()
-    };
-    let mut gains: Vec<Vec<f64>> = (0..groups).map(|g| gains_of(g, &[], now[g])).collect();
-    loop {
-        let best = (0..groups)
-            .flat_map(|g| (0..groups).map(move |p| (g, p)))
-            .filter(|&(g, p)| gains[g][p] > 0.0 && !structure.reaches(g, p))
-            .max_by(|a, b| gains[a.0][a.1].total_cmp(&gains[b.0][b.1]));
-        let Some((g, p)) = best else {
-            return structure;
-        };
-        structure.parents[g] = with(&structure.parents[g], p);
-        now[g] += gains[g][p];
-        gains[g] = gains_of(g, &structure.parents[g], now[g]);
+            }
+            prior.evidence(&sub, p, n - p).unwrap_or(f64::NEG_INFINITY)
+        });
+        let evidence = states.sum();
+        self.evidence.insert(key, evidence);
+        evidence
     }
+}
+
+/// All changes of one edge that leave the graph acyclic and within the most parents.
+fn moves(structure: &Structure, max_parents: usize) -> Vec<Move> {
+    let groups = structure.parents.len();
+    let full = |g: usize| structure.parents[g].len() >= max_parents;
+    let mut all = Vec::new();
+    for g in 0..groups {
+        for p in (0..groups).filter(|&p| p != g) {
+            if structure.parents[g].contains(&p) {
+                all.push(Move::Remove(p, g));
+                let mut rest = structure.clone();
+                rest.parents[g].retain(|&other| other != p);
+                if !full(p) && !rest.reaches(p, g) {
+                    all.push(Move::Reverse(p, g));
+                }
+            } else if !full(g) && !structure.reaches(g, p) {
+                all.push(Move::Add(p, g));
+            }
+        }
+    }
+    all
+}
+
+fn apply(structure: &mut Structure, change: Move) {
+    match change {
+        Move::Add(p, g) => structure.parents[g] = with(&structure.parents[g], p),
+        Move::Remove(p, g) => structure.parents[g] = without(&structure.parents[g], p),
+        Move::Reverse(p, g) => {
+            structure.parents[g] = without(&structure.parents[g], p);
+            structure.parents[p] = with(&structure.parents[p], g);
+        }
+    }
+}
+
+fn with(parents: &[usize], p: usize) -> Vec<usize> {
+    let mut list = parents.to_vec();
+    list.push(p);
+    list.sort_unstable();
+    list
+}
+
+fn without(parents: &[usize], p: usize) -> Vec<usize> {
+    parents
+        .iter()
+        .copied()
+        .filter(|&other| other != p)
+        .collect()
 }
 
 /// Rows with missing values enter with their posterior means.

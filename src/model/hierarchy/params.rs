@@ -21,7 +21,7 @@ impl Default for Priors {
         Self {
             dirichlet: 1.2,
             linear: LinearPrior {
-                intercept: 0.1,
+                intercept: 0.01,
                 slope: 1.0,
                 scatter: 0.1,
                 freedom: 3.0,

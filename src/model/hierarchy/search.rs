@@ -38,7 +38,7 @@ impl<'a> Search<'a> {
         let mut trace = Vec::new();
         for (scored, steps) in found? {
             trace.extend(steps);
-            best = better(best, scored);
+            best = Some(better(best, scored));
         }
         // Whatever |S| found the best second level, every other |S| may have it as well.
         if let Some(leader) = best.clone().filter(|_| self.layered()) {
@@ -48,18 +48,19 @@ impl<'a> Search<'a> {
                 .collect();
             for scored in found? {
                 trace.push(self.step(&scored));
-                best = better(best, scored);
+                best = Some(better(best, scored));
             }
         }
         let mut best = best.ok_or(ModelError::Empty { what: "styles" })?;
         if self.layered() {
             best = self.with_edges(self.grow(best, &mut trace)?)?;
+            best = self.polish(best, &styles, seed, &mut trace)?;
         }
         let problem = self.problem(best.shape.structure.clone())?;
         Ok((problem.fit(best.params, &self.settings.stopping)?, trace))
     }
 
-    fn problem(&self, structure: Structure) -> Result<Problem<'a>, ModelError> {
+    pub(super) fn problem(&self, structure: Structure) -> Result<Problem<'a>, ModelError> {
         let priors: &'a Priors = &self.settings.priors;
         Problem::new(self.schema, self.rows, priors, structure)
     }
@@ -97,7 +98,11 @@ impl<'a> Search<'a> {
     }
 
     /// The best of several short runs of EM, run on.
-    fn restart<R: Rng>(&self, structure: Structure, rng: &mut R) -> Result<Scored, ModelError> {
+    pub(super) fn restart<R: Rng>(
+        &self,
+        structure: Structure,
+        rng: &mut R,
+    ) -> Result<Scored, ModelError> {
         let problem = self.problem(structure)?;
         let short = Stopping {
             max_rounds: 10,
@@ -105,21 +110,21 @@ impl<'a> Search<'a> {
         };
         let mut best: Option<Scored> = None;
         for _ in 0..self.settings.restarts.max(1) {
-            best = better(best, problem.fit(problem.start(rng)?, &short)?);
+            best = Some(better(best, problem.fit(problem.start(rng)?, &short)?));
         }
         let best = best.ok_or(ModelError::Empty { what: "starts" })?;
         problem.fit(best.params, &self.settings.search)
     }
 
     /// Raises the cardinality of each hidden variable in turn while the score rises.
-    fn grow(&self, mut best: Scored, trace: &mut Vec<Step>) -> Result<Scored, ModelError> {
+    pub(super) fn grow(
+        &self,
+        mut best: Scored,
+        trace: &mut Vec<Step>,
+    ) -> Result<Scored, ModelError> {
         for g in 0..self.schema.groups.len() {
             while best.shape.states(g) < self.settings.most_states {
-                let problem = self.problem(best.shape.structure.clone())?;
-                let start = super::split::start(&problem, &best, g)?;
-                let mut structure = best.shape.structure.clone();
-                structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
-                let grown = self.problem(structure)?.fit(start, &self.settings.search)?;
+                let grown = self.raised(&best, g)?;
                 if grown.score <= best.score {
                     break;
                 }
@@ -131,7 +136,7 @@ impl<'a> Search<'a> {
     }
 
     /// Searches lateral edges around a fit; the better of the fits with the old and the new ones.
-    fn with_edges(&self, mut best: Scored) -> Result<Scored, ModelError> {
+    pub(super) fn with_edges(&self, mut best: Scored) -> Result<Scored, ModelError> {
         if self.settings.variant == Variant::NoLateral {
             return Ok(best);
         }
@@ -155,13 +160,13 @@ impl<'a> Search<'a> {
     }
 
     /// Whether the model has a second level of hidden variables.
-    fn layered(&self) -> bool {
+    pub(super) fn layered(&self) -> bool {
         matches!(self.settings.variant, Variant::Full | Variant::NoLateral)
     }
 
     /// New starts for S alone, with `styles` values, above the second level of `given`: rows are
     /// clustered by the posteriors of their hidden variables. The best of several.
-    fn restyle<R: Rng>(
+    pub(super) fn restyle<R: Rng>(
         &self,
         given: &Scored,
         styles: usize,
@@ -213,12 +218,12 @@ impl<'a> Search<'a> {
                 linear: given.params.linear.clone(),
                 ..start
             };
-            best = better(best, problem.fit(start, &self.settings.search)?);
+            best = Some(better(best, problem.fit(start, &self.settings.search)?));
         }
         best.ok_or(ModelError::Empty { what: "starts" })
     }
 
-    fn step(&self, scored: &Scored) -> Step {
+    pub(super) fn step(&self, scored: &Scored) -> Step {
         let structure = &scored.shape.structure;
         Step {
             styles: structure.styles,
@@ -232,9 +237,9 @@ impl<'a> Search<'a> {
 }
 
 /// The first of highest score.
-fn better(best: Option<Scored>, other: Scored) -> Option<Scored> {
+pub(super) fn better(best: Option<Scored>, other: Scored) -> Scored {
     match best {
-        Some(best) if best.score >= other.score => Some(best),
-        _ => Some(other),
+        Some(best) if best.score >= other.score => best,
+        _ => other,
     }
 }

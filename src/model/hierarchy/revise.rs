@@ -1,0 +1,201 @@
+//! Local search around a configuration: what the upward search of the paper cannot take back.
+//!
+//! While hidden variables have few values, a lateral edge may stand for a value that is still
+//! missing (which of two kinds a neighbour is says which of two kinds this one is), and the
+//! evidence for that value is gone once the edge is there. So, by the same score: an edge is taken
+//! out and its child given new values in its place; two values of a hidden variable are made one;
+//! and a second start raises all cardinalities before it looks for edges.
+
+use rand::Rng;
+use rayon::prelude::*;
+
+use super::super::error::ModelError;
+use super::edges::wide;
+use super::fit::{Problem, Scored};
+use super::params::Params;
+use super::search::{Search, better};
+use super::structure::{Selector, Structure};
+use super::{Step, Variant};
+use crate::rng::stream;
+
+impl Search<'_> {
+    /// Settles `best` and, where edges are allowed, a start that finds kinds before edges; then
+    /// tries every |S| above the second level of the better one, and settles that.
+    pub(super) fn polish(
+        &self,
+        best: Scored,
+        styles: &[usize],
+        seed: u64,
+        trace: &mut Vec<Step>,
+    ) -> Result<Scored, ModelError> {
+        let s = best.shape.structure.styles;
+        let (settled, other) = rayon::join(
+            || self.settle(best),
+            || match self.settings.variant {
+                Variant::Full => self
+                    .kinds_first(s, &mut stream(seed, "kinds first", s as u64))
+                    .map(Some),
+                _ => Ok(None),
+            },
+        );
+        let mut best = settled?;
+        if let Some(other) = other?.filter(|other| other.score > best.score) {
+            best = other;
+        }
+        trace.push(self.step(&best));
+        let found: Result<Vec<Scored>, ModelError> = styles
+            .par_iter()
+            .map(|&s| self.restyle(&best, s, &mut stream(seed, "restyle settled", s as u64)))
+            .collect();
+        let before = best.score;
+        for scored in found? {
+            trace.push(self.step(&scored));
+            best = better(Some(best), scored);
+        }
+        if best.score > before {
+            best = self.settle(best)?;
+            trace.push(self.step(&best));
+        }
+        Ok(best)
+    }
+
+    /// Cardinalities raised without edges, then edges, then everything.
+    fn kinds_first<R: Rng>(&self, styles: usize, rng: &mut R) -> Result<Scored, ModelError> {
+        let (groups, codes) = (self.schema.groups.len(), self.schema.codes.len());
+        let first = Structure::new(styles, &Selector::Hidden(2), groups, codes);
+        let mut best = self.restart(first, rng)?;
+        for g in 0..groups {
+            best = self.raise(best, g)?;
+        }
+        let fresh = self.restyle(&best, styles, rng)?;
+        if fresh.score > best.score {
+            best = fresh;
+            for g in 0..groups {
+                best = self.raise(best, g)?;
+            }
+        }
+        self.settle(self.with_edges(best)?)
+    }
+
+    /// Takes back and raises in turn until the score rises by no more than EM leaves open.
+    fn settle(&self, mut best: Scored) -> Result<Scored, ModelError> {
+        loop {
+            let before = best.score;
+            best = self.revise(best)?;
+            best = self.with_edges(self.grow(best, &mut Vec::new())?)?;
+            if best.score <= before + self.settings.search.gain {
+                return Ok(best);
+            }
+        }
+    }
+
+    /// Takes out edges and joins values while the score rises.
+    fn revise(&self, mut best: Scored) -> Result<Scored, ModelError> {
+        loop {
+            let before = best.score;
+            for g in 0..best.shape.groups() {
+                for p in best.shape.structure.parents[g].clone() {
+                    best = self.without(best, p, g)?;
+                }
+            }
+            for g in 0..best.shape.groups() {
+                best = self.join(best, g)?;
+            }
+            if best.score <= before + self.settings.search.gain {
+                return Ok(best);
+            }
+        }
+    }
+
+    /// The better of `best` and a fit without the edge from `p` to `g`, values of `g` grown anew.
+    fn without(&self, best: Scored, p: usize, g: usize) -> Result<Scored, ModelError> {
+        let problem = self.problem(best.shape.structure.clone())?;
+        let wide = wide(&problem, &best)?;
+        let mut structure = best.shape.structure.clone();
+        structure.parents[g].retain(|&parent| parent != p);
+        let problem = self.problem(structure)?;
+        let fit = problem.fit(problem.reparent(&best, &wide)?, &self.settings.search)?;
+        let grown = self.raise(fit, g)?;
+        Ok(if grown.score > best.score {
+            grown
+        } else {
+            best
+        })
+    }
+
+    /// Raises the cardinality of the hidden variable of `g` while the score rises.
+    fn raise(&self, mut best: Scored, g: usize) -> Result<Scored, ModelError> {
+        while best.shape.states(g) < self.settings.most_states {
+            match self.raised(&best, g)? {
+                grown if grown.score > best.score => best = grown,
+                _ => break,
+            }
+        }
+        Ok(best)
+    }
+
+    /// A fit with one value more for the hidden variable of `g`.
+    pub(super) fn raised(&self, best: &Scored, g: usize) -> Result<Scored, ModelError> {
+        let problem = self.problem(best.shape.structure.clone())?;
+        let start = super::split::start(&problem, best, g)?;
+        let mut structure = best.shape.structure.clone();
+        structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
+        self.problem(structure)?.fit(start, &self.settings.search)
+    }
+
+    /// Joins values of the hidden variable of `g` while the score rises.
+    fn join(&self, mut best: Scored, g: usize) -> Result<Scored, ModelError> {
+        while best.shape.hidden(g) && best.shape.states(g) > 2 {
+            let mut structure = best.shape.structure.clone();
+            structure.selectors[g] = Selector::Hidden(best.shape.states(g) - 1);
+            let problem = self.problem(structure)?;
+            let Some(start) = joined(&problem, &best, g)? else {
+                break;
+            };
+            match problem.fit(start, &self.settings.search)? {
+                fit if fit.score > best.score => best = fit,
+                _ => break,
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// Parameters for `problem`, which has one value of `g` less than `scored`: the two values whose
+/// regressions lose least evidence as one are joined.
+fn joined(problem: &Problem, scored: &Scored, g: usize) -> Result<Option<Params>, ModelError> {
+    let shape = &scored.shape;
+    let prior = &problem.priors.linear;
+    let scatter = &scored.stats.scatter[g];
+    let sum = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a + b).collect() };
+    let evidence = |m: &[f64]| prior.evidence(m, shape.p[g], shape.d[g]);
+    let mut best: Option<(f64, usize, usize)> = None;
+    for a in 0..scatter.len() {
+        for b in 0..a {
+            let both = evidence(&sum(&scatter[a], &scatter[b]));
+            let (Some(both), Some(ea), Some(eb)) =
+                (both, evidence(&scatter[a]), evidence(&scatter[b]))
+            else {
+                continue;
+            };
+            let gain = both - ea - eb;
+            if best.is_none_or(|(most, ..)| gain > most) {
+                best = Some((gain, a, b));
+            }
+        }
+    }
+    let Some((_, a, b)) = best else {
+        return Ok(None);
+    };
+    let mut stats = scored.stats.clone();
+    let moved = stats.scatter[g].remove(a);
+    stats.scatter[g][b] = sum(&stats.scatter[g][b], &moved);
+    let styles = shape.structure.styles;
+    let counts: Vec<f64> = stats.tables[g]
+        .drain(a * styles..(a + 1) * styles)
+        .collect();
+    for (n, c) in stats.tables[g][b * styles..].iter_mut().zip(counts) {
+        *n += c;
+    }
+    problem.shape.maximize(&stats, problem.priors).map(Some)
+}
