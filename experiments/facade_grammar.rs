@@ -12,6 +12,7 @@ mod figure_13;
 mod figure_14;
 mod figure_9;
 mod likeness;
+mod optimality;
 mod published;
 mod ratios;
 mod regularization;
@@ -112,6 +113,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "regularization",
         title: "regularization of annotations by quadratic programming (Sec. 3.3)",
         run: regularization::run,
+    },
+    Artefact {
+        name: "optimality",
+        title: "lower bounds and proofs of optimality for small facades",
+        run: optimality::run,
     },
     Artefact {
         name: "speed",

@@ -185,11 +185,40 @@ fn says_what_is_wrong() {
         ),
         (
             &["logic", "synthesize", "m.json", "--sigma", "-1", "-o", "v"],
-            "sigma",
+            "--sigma",
         ),
+        (
+            &[
+                "logic",
+                "synthesize",
+                "m.json",
+                "--sigma",
+                "1e308",
+                "-o",
+                "v",
+            ],
+            "--sigma",
+        ),
+        (
+            &["logic", "compare", "houses", "--query", "nobody", "-o", "x"],
+            "nobody",
+        ),
+        (
+            &["logic", "parse", "houses", "houses", "-o", "v"],
+            "two facades are called",
+        ),
+        (&["logic", "fit", "houses", "-o", "no/x"], "no/x"),
+        (&["logic", "parse", "houses", "-o", "m.json"], "m.json"),
+        (
+            &["logic", "cluster", "houses", "-o", "no/x.svg"],
+            "no/x.svg",
+        ),
+        (&["logic", "synthesize", "m.json", "-o", "m.json"], "m.json"),
     ] {
         let said = complaint(at, words, 1);
         assert!(said.contains(word), "{said}");
+        let left = ["x", "v/virtual_1.facade.json", "v/terrace_a.grammar.json"];
+        assert!(left.iter().all(|name| !at.join(name).exists()), "{words:?}");
     }
     complaint(
         at,

@@ -6,6 +6,9 @@ use std::path::Path;
 use super::read_bytes;
 use crate::{Error, Result};
 
+/// Most bytes that a compressed table may unpack to.
+const MOST_BYTES: u64 = 1 << 28;
+
 /// A CSV file: its header and its rows, all of the header's length.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextTable {
@@ -21,13 +24,26 @@ pub struct TextTable {
 /// Names the file and the line of a row that is malformed or has too few or too many cells; a file
 /// without rows is an error too.
 pub fn read(path: &Path) -> Result<TextTable> {
-    let bytes = read_bytes(path)?;
+    parse(&read_bytes(path)?, path)
+}
+
+/// Parses the bytes of a table; `path` only names the file in errors.
+///
+/// # Errors
+/// As [`read`]; [`Error::Content`] for a compressed table of more than 256 MB.
+pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
+    let mut unpacked = Vec::new();
     let text = if bytes.starts_with(&[0x1f, 0x8b]) {
-        let mut text = Vec::new();
-        let mut gz = flate2::read::GzDecoder::new(bytes.as_slice());
-        gz.read_to_end(&mut text)
+        let mut gz = flate2::read::GzDecoder::new(bytes).take(MOST_BYTES + 1);
+        gz.read_to_end(&mut unpacked)
             .map_err(|e| Error::content(path, e))?;
-        text
+        if unpacked.len() as u64 > MOST_BYTES {
+            return Err(Error::content(
+                path,
+                "the table unpacks to more than 256 MB",
+            ));
+        }
+        unpacked.as_slice()
     } else {
         bytes
     };
@@ -35,7 +51,7 @@ pub fn read(path: &Path) -> Result<TextTable> {
         let line = e.position().map_or(1, csv::Position::line);
         Error::input(path, format!("line {line}"), e)
     };
-    let mut reader = csv::Reader::from_reader(text.as_slice());
+    let mut reader = csv::Reader::from_reader(text);
     let header = reader.headers().map_err(at)?;
     let header = header.iter().map(str::to_owned).collect();
     let mut rows = Vec::new();

@@ -44,25 +44,23 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let model = model(args.model.as_deref(), &args.facades, &args.energy)?;
     let profiles = model.profiles().map_err(Error::method)?;
+    if let Some(wanted) = &args.query
+        && model.facades.iter().all(|known| &known.name != wanted)
+    {
+        let message = format!("there is no facade called {wanted}");
+        return Err(Error::option("--query", message));
+    }
     let distances = procedural_logic::Measure::from(args.measure).matrix(&profiles);
     if let Some(path) = &args.output {
         write_atomic(path, csv(&model, &distances).as_bytes())?;
     }
-    let mut found = false;
     for query in 0..model.facades.len() {
         let name = &model.facades[query].name;
         if args.query.as_ref().is_none_or(|wanted| wanted == name) {
-            found = true;
             rank(args, &model, &distances, query)?;
         }
     }
-    match &args.query {
-        Some(name) if !found => Err(Error::option(
-            "--query",
-            format!("there is no facade called {name}"),
-        )),
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 /// Prints the nearest facades of one.

@@ -1,5 +1,6 @@
 //! `edifice logic parse`.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use edifice::grammar::Grammar;
@@ -42,6 +43,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let [grid] = grids.as_slice() {
         return write(&parse(&mut model, grid)?, &args.output);
     }
+    let mut names = HashSet::new();
+    if let Some(twice) = grids.iter().find(|grid| !names.insert(&grid.name)) {
+        return Err(Error::content(&args.output, SameName(twice.name.clone())));
+    }
     let folder = &args.output;
     std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
     for grid in &grids {
@@ -53,6 +58,11 @@ pub fn run(args: &Args) -> Result<()> {
     }
     Ok(())
 }
+
+/// Two facades whose grammars would go to one file.
+#[derive(Debug, thiserror::Error)]
+#[error("two facades are called {0}; each grammar is a file of that name")]
+struct SameName(String);
 
 fn parse(model: &mut Model, grid: &LabelGrid) -> Result<Grammar> {
     let tree = NaryTree::from_binary(&model.parse(grid).map_err(Error::method)?);

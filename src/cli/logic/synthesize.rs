@@ -51,12 +51,14 @@ pub fn run(args: &Args) -> Result<()> {
         let message = format!("the model has {} starting rules", starts.len());
         return Err(Error::option("--start", message));
     };
-    let style = Style::learn(&model, start).map_err(Error::method)?;
+    let style = Style::learn(&model, start).map_err(|error| Error::content(&args.model, error))?;
     let folder = &args.output;
     std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
     for index in 1..=args.count {
         let mut rng = stream(args.seed, "virtual facade", index);
-        let instance = style.sample(args.sigma, &mut rng).map_err(Error::method)?;
+        let instance = style
+            .sample(args.sigma, &mut rng)
+            .map_err(|error| Error::option("--sigma", error.to_string()))?;
         let facade = Known {
             name: format!("virtual_{index}"),
             unit: style.unit.clone(),

@@ -16,6 +16,9 @@ use super::rules::{Call, Instance};
 /// A component whose variance is below this share of the largest one is numerical noise.
 const NEGLIGIBLE: f64 = 1e-12;
 
+/// Largest multiple of the deviations: beyond any use, and far from what numbers can hold.
+const MOST_SIGMA: f64 = 1e6;
+
 /// Draws per facade before the last one is pulled towards the mean.
 const DRAWS: usize = 1000;
 
@@ -53,8 +56,8 @@ pub enum StyleError {
         /// Its own number.
         found: usize,
     },
-    /// `sigma` is negative or not finite.
-    #[error("sigma is {value}, expected a number from 0")]
+    /// `sigma` is out of range.
+    #[error("sigma is {value}, expected a number from 0 to {MOST_SIGMA}")]
     Sigma {
         /// The value found.
         value: f64,
@@ -107,7 +110,7 @@ impl Style {
     /// # Errors
     /// [`StyleError::Sigma`].
     pub fn sample<R: Rng>(&self, sigma: f64, rng: &mut R) -> Result<Instance, StyleError> {
-        if !(sigma.is_finite() && sigma >= 0.0) {
+        if !(0.0..=MOST_SIGMA).contains(&sigma) {
             return Err(StyleError::Sigma { value: sigma });
         }
         let smallest = 1e-6 * self.mean.min();

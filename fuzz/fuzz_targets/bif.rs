@@ -1,0 +1,12 @@
+//! Bayesian networks: no panic, and what is read is written and read back.
+#![no_main]
+
+use edifice::model::network::Network;
+
+libfuzzer_sys::fuzz_target!(|text: &str| {
+    if let Ok(network) = Network::from_bif(text)
+        && let Ok(written) = network.to_bif()
+    {
+        Network::from_bif(&written).expect("written by us");
+    }
+});
