@@ -8,6 +8,8 @@ mod figure_12;
 mod figure_14;
 pub mod houses;
 mod learning;
+mod reasons;
+mod speed;
 
 use super::{Artefact, Context, Experiment};
 use crate::model::hierarchy::{Constant, Settings};
@@ -54,6 +56,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "learning",
         title: "seconds of the whole structure search",
         run: learning::run,
+    },
+    Artefact {
+        name: "speed",
+        title: "seconds and memory of one run of EM by houses",
+        run: speed::run,
     },
 ];
 

@@ -1,5 +1,6 @@
 //! Fig. 12: held-out negative log-likelihood.
 
+use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::experiments::Context;
 use crate::methods::building_exteriors::compare::{Contender, held_out, split};
@@ -8,7 +9,7 @@ use crate::report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Ta
 use crate::{Error, Result};
 
 /// Mean and standard error of the mean; no error for a single value.
-fn mean_and_error(values: &[f64]) -> (f64, f64) {
+pub(super) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
@@ -71,6 +72,12 @@ pub fn left(ctx: &mut Context) -> Result<()> {
     for (set, (name, _)) in sets.iter().enumerate() {
         figure = figure.panel(bars(name, |c| of(set, c)));
         verdict(ctx, name, |c| of(set, c));
+        let means = Means {
+            of: Contender::ALL.map(|c| mean_and_error(&of(set, c)).0),
+        };
+        if let Some(rival) = means.rival(&behind(|c| of(set, c))) {
+            reasons::explain(ctx, name, &sets[set].1, rival, &settings, splits)?;
+        }
     }
     ctx.figure("figure_12_left", &figure)?;
     ctx.compare(
@@ -106,15 +113,12 @@ fn verdict(ctx: &mut Context, name: &str, of: impl Fn(Contender) -> Vec<f64>) {
         "its standard error",
     ]);
     let ours = of(Contender::Ours);
-    let mut behind = Vec::new();
+    let behind: Vec<&str> = behind(&of).into_iter().map(Contender::name).collect();
     for contender in Contender::ALL {
         let losses = of(contender);
         let (mean, error) = mean_and_error(&losses);
         let paired: Vec<f64> = losses.iter().zip(&ours).map(|(a, b)| a - b).collect();
         let (gap, gap_error) = mean_and_error(&paired);
-        if contender != Contender::Ours && gap <= 2.0 * gap_error {
-            behind.push(contender.name());
-        }
         table.row([
             contender.name().to_owned(),
             format!("{mean:.2}"),
@@ -132,6 +136,18 @@ fn verdict(ctx: &mut Context, name: &str, of: impl Fn(Contender) -> Vec<f64>) {
             behind.join(", ")
         )
     });
+}
+
+/// The models that ours is not below by more than two standard errors of the paired difference.
+fn behind(of: impl Fn(Contender) -> Vec<f64>) -> Vec<Contender> {
+    let ours = of(Contender::Ours);
+    let level = Contender::ALL.into_iter().filter(|&contender| {
+        let losses = of(contender);
+        let paired: Vec<f64> = losses.iter().zip(&ours).map(|(a, b)| a - b).collect();
+        let (gap, error) = mean_and_error(&paired);
+        contender != Contender::Ours && gap <= 2.0 * error
+    });
+    level.collect()
 }
 
 /// Fig. 12 right: the effect of the number of training houses, same splits.

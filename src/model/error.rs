@@ -142,6 +142,23 @@ impl ModelError {
         }
     }
 
+    /// The same with `row` for the row: for a row that was looked at on its own.
+    pub fn in_row(self, row: usize) -> Self {
+        match self {
+            Self::NotFinite { column, value, .. } => Self::NotFinite { column, row, value },
+            Self::Missing { column, .. } => Self::Missing { column, row },
+            Self::UnseenCategory {
+                column, category, ..
+            } => Self::UnseenCategory {
+                column,
+                row,
+                category,
+            },
+            Self::Contradiction { variable, .. } => Self::Contradiction { row, variable },
+            other => other,
+        }
+    }
+
     /// Text that does not hold a model.
     pub fn corrupt(place: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Corrupt {

@@ -115,6 +115,7 @@ fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<S
     } else {
         model.complete(given, draw.count, &mut rng)
     };
-    let draws = draws.map_err(Error::method)?;
+    // Each row was asked about on its own; the message names its place in the input.
+    let draws = draws.map_err(|e| Error::method(e.in_row(row as usize)))?;
     Ok(csv_lines(&draws.table))
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use edifice::Error;
 use edifice::methods::building_exteriors::model_file::ModelFile;
 use edifice::model::hierarchy::{Constant, Settings, Variant, learn};
+use edifice::model::{Cell, Table};
 
 use super::data::Input;
 use crate::cli::print;
@@ -79,6 +80,29 @@ impl Search {
     }
 }
 
+/// What was learned all the same, but says little: constant columns, fewer houses than parameters.
+fn warnings(table: &Table, parameters: usize) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for column in table.columns() {
+        let cells = (0..table.rows()).map(|row| column.cell(row));
+        let mut seen = cells.filter(|cell| *cell != Cell::Missing);
+        let first = seen.next();
+        if seen.all(|cell| Some(cell) == first) {
+            let name = column.name();
+            warnings.push(format!(
+                "column `{name}` is constant: it is kept with unit scale"
+            ));
+        }
+    }
+    let houses = table.rows();
+    if houses < parameters {
+        warnings.push(format!(
+            "{houses} houses for {parameters} free parameters: where houses do not tell, the prior decides"
+        ));
+    }
+    warnings
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> edifice::Result<()> {
     let data = args.input.read()?;
@@ -88,6 +112,9 @@ pub fn run(args: &Args) -> edifice::Result<()> {
         .map_err(|e| Error::content(&args.input.input, e))?;
     let seconds = start.elapsed().as_secs_f64();
     let model = learned.model;
+    for warning in warnings(&data.table, model.free_parameters()) {
+        print::message(&format!("warning: {warning}"));
+    }
     let (styles, edges) = (model.styles(), model.lateral_edges().len());
     let cardinalities = model.cardinalities();
     let groups = data.groups;

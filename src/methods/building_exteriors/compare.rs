@@ -82,6 +82,52 @@ pub fn held_out(
     Ok(logs.into_iter().map(|log| -log).collect())
 }
 
+/// How a learned model fares on unseen houses.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub struct Judged {
+    /// Mean negative log-likelihood of a house, nats.
+    pub loss: f64,
+    /// Per attribute, mean of `-log p(attribute | all others)`, nats.
+    pub attributes: Vec<(String, f64)>,
+    /// Lateral edges of the model.
+    pub edges: usize,
+}
+
+/// As [`held_out`], and where the likelihood is lost; `None` for the mixture, which has no exact
+/// marginals of discrete attributes.
+///
+/// # Errors
+/// As [`held_out`].
+pub fn judge(
+    contender: Contender,
+    train: &Dataset,
+    test: &Dataset,
+    settings: &Settings,
+    seed: u64,
+) -> Result<Option<Judged>, ModelError> {
+    let Some(variant) = contender.variant() else {
+        return Ok(None);
+    };
+    let settings = Settings {
+        variant,
+        ..settings.clone()
+    };
+    let model = learn(&train.table, &train.groups, &settings, seed)?.model;
+    let mean = |logs: Vec<f64>| logs.iter().sum::<f64>() / logs.len().max(1) as f64;
+    let all = mean(model.log_likelihood(&test.table)?);
+    let mut attributes = Vec::with_capacity(test.groups.len());
+    for group in &test.groups {
+        let others = test.without(&group.name)?;
+        let rest = mean(model.log_likelihood(&others.table)?);
+        attributes.push((group.name.clone(), rest - all));
+    }
+    Ok(Some(Judged {
+        loss: -all,
+        attributes,
+        edges: model.lateral_edges().len(),
+    }))
+}
+
 /// Row numbers of split `index`: the houses to learn from, then the others.
 ///
 /// `share` of `rows` are learned from; the same seed gives the same splits to every model.

@@ -21,6 +21,21 @@ impl Dataset {
             groups: self.groups.clone(),
         }
     }
+
+    /// All attributes but one.
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`] when a group names a column that the table lacks.
+    pub fn without(&self, attribute: &str) -> Result<Self, ModelError> {
+        let mut groups = self.groups.clone();
+        groups.retain(|g| g.name != attribute);
+        let columns = groups.iter().flat_map(|g| &g.columns);
+        let columns: Vec<&str> = columns.map(String::as_str).collect();
+        Ok(Self {
+            table: self.table.only(&columns)?,
+            groups,
+        })
+    }
 }
 
 /// The 49 attributes of many buildings with the paper's 13 groups.

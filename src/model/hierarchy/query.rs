@@ -57,6 +57,11 @@ impl Hierarchy {
             .collect()
     }
 
+    /// Number of free parameters.
+    pub fn free_parameters(&self) -> usize {
+        self.shape.free_parameters()
+    }
+
     /// Lateral edges as (parent, child): between real groups, then (model 3) from categorical
     /// columns to real groups and to categorical columns.
     pub fn lateral_edges(&self) -> Vec<(String, String)> {

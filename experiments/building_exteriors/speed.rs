@@ -1,0 +1,108 @@
+//! One run of EM at fixed cardinalities on ever more houses: time and memory are linear in houses.
+
+use rand::RngExt;
+
+use super::data;
+use crate::experiments::Context;
+use crate::model::em::Stopping;
+use crate::model::hierarchy::{Priors, fit};
+use crate::report::{Chart, Figure, Row, Scale, Series, Table};
+use crate::rng::stream;
+use crate::{Error, Result};
+
+/// Cardinalities of the hidden variables: those of the generator.
+const KINDS: [usize; 10] = [5, 3, 2, 4, 4, 3, 4, 3, 3, 3];
+/// Rounds of EM: the same for all sizes, so that only houses differ.
+const ROUNDS: usize = 20;
+
+/// Fits houses drawn with replacement from the shipped ones, 1,000 to as many as the budget allows.
+pub fn run(ctx: &mut Context) -> Result<()> {
+    let shipped = data::shipped(ctx)?;
+    let sizes: Vec<usize> = ctx.budget().choose(
+        vec![1_000],
+        vec![10_000, 100_000],
+        vec![10_000, 100_000, 1_000_000],
+    );
+    ctx.setting("sizes", sizes.clone());
+    ctx.setting("rounds", ROUNDS);
+    let stopping = Stopping {
+        movement: 0.0,
+        gain: 0.0,
+        max_rounds: ROUNDS,
+    };
+    let mut table = Table::new("One run of EM, 7 styles, 20 rounds").numbers([
+        "houses",
+        "seconds",
+        "microseconds per house",
+        "peak MB",
+    ]);
+    let mut line = Vec::new();
+    for &houses in &sizes {
+        let mut rng = stream(ctx.seed(), "building_exteriors/speed", houses as u64);
+        let count = shipped.data.table.rows();
+        let drawn: Vec<usize> = (0..houses).map(|_| rng.random_range(0..count)).collect();
+        reset_peak();
+        let data = shipped.data.select(&drawn);
+        let start = std::time::Instant::now();
+        fit(
+            &data.table,
+            &data.groups,
+            7,
+            &KINDS,
+            &Priors::default(),
+            &stopping,
+            ctx.seed(),
+        )
+        .map_err(Error::method)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let peak = peak_megabytes();
+        line.push((houses as f64, seconds));
+        table.row([
+            houses.to_string(),
+            format!("{seconds:.2}"),
+            format!("{:.1}", 1e6 * seconds / houses as f64),
+            peak.map_or("not known".to_owned(), |mb| format!("{mb:.0}")),
+        ]);
+        let mut observe = |metric: &str, value: f64, unit: &str| {
+            ctx.observe(Row {
+                dataset: "shipped".into(),
+                method: "ours".into(),
+                instance: houses.to_string(),
+                seed: Some(ctx.seed()),
+                metric: metric.into(),
+                value,
+                unit: unit.into(),
+                ..Row::default()
+            });
+        };
+        observe("seconds", seconds, "s");
+        if let Some(mb) = peak {
+            observe("peak_memory", mb, "MB");
+        }
+    }
+    ctx.table(&table);
+    ctx.note(
+        "Peak memory is that of the whole process while it drew and fitted these houses (VmHWM of Linux, set back \
+         before each size), data included: a table and one standardised copy.",
+    );
+    let chart = Chart::new("", Scale::new("houses").log(), Scale::new("seconds").log())
+        .series(Series::marked("20 rounds of EM, wall clock", line));
+    ctx.figure(
+        "speed",
+        &Figure::single("seconds of one run of EM by houses", chart),
+    )
+}
+
+/// Sets the peak of resident memory back to what is resident now, where the system can.
+fn reset_peak() {
+    // A system without this file reports the peak of the whole run, which is an upper bound.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// Peak of resident memory in megabytes (10^6 bytes), where the system tells.
+fn peak_megabytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024.0 / 1e6)
+}
