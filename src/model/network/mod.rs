@@ -25,8 +25,7 @@
 //! - A sigmoid or softmax needs its continuous parents observed, unless it says nothing about the
 //!   question (no evidence on or below it): the integral has no closed form.
 //! - The most probable explanations are over the discrete variables, continuous ones integrated.
-//! - Cost is exponential in the width of the elimination order; a table of more than 2²⁶ cells is
-//!   refused.
+//! - Cost is exponential in the width of the elimination order; tables over 2²⁶ cells are refused.
 //!
 //! Sources: Koller and Friedman 2009, Ch. 9, 13 and 14; Dechter 1999; Lauritzen 1992.
 
