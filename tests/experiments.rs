@@ -16,11 +16,12 @@ fn options(out: &Path, threads: usize) -> Options {
     }
 }
 
-/// The rows of a CSV but for measured times.
+/// The rows of a CSV but for measured times and memory.
 fn without_times(path: &Path) -> String {
     let text = std::fs::read_to_string(path).expect("a CSV file");
-    let timed = |line: &&str| !line.contains("seconds") && !line.ends_with(",s");
-    text.lines().filter(timed).collect::<Vec<_>>().join("\n")
+    let measured = ["seconds", "peak_memory"];
+    let same = |line: &&str| !measured.iter().any(|m| line.contains(m)) && !line.ends_with(",s");
+    text.lines().filter(same).collect::<Vec<_>>().join("\n")
 }
 
 fn check(experiment: &'static Experiment, out: &Path) {
