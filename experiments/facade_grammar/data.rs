@@ -7,7 +7,7 @@ use crate::grammar::{Grammar, derive};
 use crate::io::{facade_json, grammar_cga, grammar_json, read_label_grid};
 use crate::methods::facade_grammar::regularize::regularize_grid;
 use crate::methods::facade_grammar::synthetic;
-use crate::shape::{Facade, decompose, splittable};
+use crate::shape::{Facade, LabelGrid, decompose, splittable};
 use crate::{Error, Result, file};
 
 pub use crate::experiments::layouts::{FIGURE_9, files, folder};
@@ -60,12 +60,12 @@ pub fn known(ctx: &mut Context) -> Result<Vec<(Facade, Grammar)>> {
 /// split are left out and counted in a note (Sec. 6.3).
 pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
     let sets = [
-        ("ecp2011", "facades/ecp2011/labels", ".png", 3.0),
-        ("graz50", "facades/graz50/labels", ".png", 3.0),
-        ("cmp", "facades/cmp", ".xml", 8.0),
+        ("ecp2011", "facades/ecp2011/labels", ".png"),
+        ("graz50", "facades/graz50/labels", ".png"),
+        ("cmp", "facades/cmp", ".xml"),
     ];
     let mut instances = Vec::new();
-    for (dataset, place, ending, tolerance) in sets {
+    for (dataset, place, ending) in sets {
         let Some(folder) = ctx.real(place)? else {
             continue;
         };
@@ -75,7 +75,7 @@ pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
         for path in chosen {
             let grid = read_label_grid(path, &Default::default())?;
             let (grid, _) =
-                regularize_grid(&grid, tolerance).map_err(|e| Error::content(path, e))?;
+                regularize_grid(&grid, tolerance(&grid)).map_err(|e| Error::content(path, e))?;
             let mut facade = decompose(&grid)
                 .map_err(|e| Error::content(path, e))?
                 .facade;
@@ -86,7 +86,7 @@ pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
             }
         }
         ctx.note(format!(
-            "{dataset}: regularized, no edge moved by more than {tolerance} px (Sec. 3.3)."
+            "{dataset}: regularized, no edge moved by more than {TOLERANCE} of the longer side (Sec. 3.3)."
         ));
         if !unsplittable.is_empty() {
             ctx.note(format!(
@@ -97,6 +97,17 @@ pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
         }
     }
     Ok(instances)
+}
+
+/// Longest way that regularization may move an edge of a real facade, as a part of its longer side.
+const TOLERANCE: f64 = 0.01;
+
+/// The same in the unit of the grid: whole pixels.
+fn tolerance(grid: &LabelGrid) -> f64 {
+    let side = |cuts: &[f64]| cuts.last().copied().unwrap_or(0.0);
+    (TOLERANCE * side(&grid.xs).max(side(&grid.ys)))
+        .round()
+        .max(1.0)
 }
 
 /// `limit` of `count` places, evenly spread.

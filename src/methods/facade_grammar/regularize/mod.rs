@@ -13,9 +13,9 @@
 //! ```
 //! once along x and once along y, which nothing connects. Which equalities hold is chosen first:
 //! neighbouring cut lines are merged, nearest first, when they lie within the tolerance and no area
-//! would vanish; sizes of one label that lie within the tolerance form a cluster, elements before
-//! walls, which is split into as large parts as can be when no placement can give it one size. Sizes and positions are whole numbers
-//! of a quantum (pixels when the input is in whole pixels): the program gives real sizes, which are
+//! would vanish; sizes of one label that lie within twice the tolerance (it has two ends) form a
+//! cluster, elements before walls, which is split into as large parts as can be when no placement can
+//! give it one size. Sizes and positions are whole numbers of a quantum (pixels when the input is in whole pixels): the program gives real sizes, which are
 //! rounded where that stays feasible; with sizes fixed, what remains are constraints on differences
 //! with whole right-hand sides, for which rounding a solution keeps every one of them. So equal sizes
 //! are equal exactly.

@@ -96,7 +96,7 @@ pub fn choose_sizes(
 }
 
 /// Clusters sorted sizes: the two neighbours that make the tightest cluster are joined, as long as
-/// the cluster lies within the tolerance.
+/// the cluster lies within twice the tolerance: a size has two ends that may move.
 fn agglomerate(sizes: Vec<Size>, tolerance: f64) -> Vec<Vec<Size>> {
     let mut clusters: Vec<Vec<Size>> = sizes.into_iter().map(|s| vec![s]).collect();
     let low = |c: &[Size]| c[0].value;
@@ -106,7 +106,7 @@ fn agglomerate(sizes: Vec<Size>, tolerance: f64) -> Vec<Vec<Size>> {
         let pairs = 0..clusters.len().saturating_sub(1);
         let tightest = pairs.min_by(|a, b| spread(a).total_cmp(&spread(b)));
         match tightest {
-            Some(k) if spread(&k) <= tolerance => {
+            Some(k) if spread(&k) <= 2.0 * tolerance => {
                 let mut next = clusters.remove(k + 1);
                 clusters[k].append(&mut next);
             }
