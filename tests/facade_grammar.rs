@@ -115,6 +115,29 @@ fn extensions_never_cost_more_than_split_and_repeat() {
     assert!(extended < 38.1 + 1e-6, "{extended}");
 }
 
+/// Six different panes in three columns and two rows: one grid of six cells, 6 + 0.1; nested splits
+/// write the two rows and then the six panes, 2 + 6 + 3 * 0.1.
+#[test]
+fn a_grid_of_different_panes_is_one_rule_when_grids_are_allowed() {
+    let panes = (0..6u8).map(|k| Region {
+        label: format!("pane{k}"),
+        rect: Rect::new(f64::from(k % 3), f64::from(k / 3) * 2.0, 1.0, 2.0),
+    });
+    let facade = Facade::new("panes", "m", 3.0, 4.0, panes.collect()).unwrap();
+    for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
+        let with = |ops: &str| Settings {
+            method,
+            iterations: 200,
+            operations: ops.parse().unwrap(),
+            ..Settings::default()
+        };
+        let grid = cost(&facade, &with("split,grid_split"));
+        assert!((grid - 6.1).abs() < 1e-9, "{method}: {grid}");
+        let nested = cost(&facade, &with("split"));
+        assert!((nested - 8.3).abs() < 1e-9, "{method}: {nested}");
+    }
+}
+
 #[test]
 fn a_facade_of_one_region_is_its_own_axiom() {
     let wall = Region {

@@ -8,11 +8,13 @@
 //! split = c_split + d(n),   repeat with period k = c_repeat + d(k),
 //! ```
 //!
-//! where `c_1` is the cost of a written successor. No split needs to be sampled.
+//! where `c_1` is the cost of a written successor. No split needs to be sampled. Grids are found in
+//! [`super::grid`].
 
 use crate::grammar::Costs;
 use crate::shape::Axis;
 
+use super::grid;
 use super::operations::Operations;
 use super::regions::{Strips, TypeId, Types};
 
@@ -24,26 +26,31 @@ pub(crate) enum Arrangement {
     RepeatAba(Axis),
     /// Mirrored halves; `true` when the last successor stands once in the middle.
     Symmetric(Axis, bool),
+    /// Columns and rows at once.
+    Grid,
 }
 
 impl Arrangement {
-    /// Direction of the cuts.
-    pub fn axis(self) -> Axis {
+    /// Direction of the cuts, `None` when they run both ways.
+    pub fn axis(self) -> Option<Axis> {
         match self {
             Arrangement::Split(axis)
             | Arrangement::Repeat(axis)
             | Arrangement::RepeatAba(axis)
-            | Arrangement::Symmetric(axis, _) => axis,
+            | Arrangement::Symmetric(axis, _) => Some(axis),
+            Arrangement::Grid => None,
         }
     }
 }
 
 /// A rule for one region type: `successors[i]` fills the strip from `lines[i]` to `lines[i + 1]`,
-/// indices into the cuts of the type's [`Strips`].
+/// indices into the cuts of the type's [`Strips`]. Of a grid, `lines` bound the columns and `rows` the
+/// rows (empty otherwise), and the successors are its cells, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Choice {
     pub arrangement: Arrangement,
     pub lines: Vec<u16>,
+    pub rows: Vec<u16>,
     pub successors: Vec<TypeId>,
 }
 
@@ -51,11 +58,6 @@ impl Choice {
     /// Eq. 2.
     pub fn cost(&self, costs: &Costs) -> f64 {
         operation_cost(self.arrangement, costs) + costs.successor * self.successors.len() as f64
-    }
-
-    /// Direction of the cuts.
-    pub fn axis(&self) -> Axis {
-        self.arrangement.axis()
     }
 
     /// The rule whose successors lie between consecutive `lines`.
@@ -67,6 +69,7 @@ impl Choice {
         Self {
             arrangement,
             lines,
+            rows: Vec::new(),
             successors,
         }
     }
@@ -79,6 +82,7 @@ pub(crate) fn operation_cost(arrangement: Arrangement, costs: &Costs) -> f64 {
         Arrangement::Repeat(_) => costs.repeat,
         Arrangement::RepeatAba(_) => costs.repeat_aba,
         Arrangement::Symmetric(..) => costs.sym_split,
+        Arrangement::Grid => costs.grid_split,
     }
 }
 
@@ -121,6 +125,13 @@ impl Router {
             if let Some(found) = self.along(&strips, axis, bound, &|t| price(types, t)) {
                 best = Some(found);
             }
+        }
+        if self.operations.grid_split
+            && let Some(cells) = types.cells(id)
+        {
+            let bound = best.as_ref().map_or(f64::INFINITY, |(cost, _)| *cost);
+            let found = grid::cheapest(&cells, &self.costs, bound, &|t| price(types, t));
+            best = found.or(best);
         }
         best
     }
@@ -176,9 +187,9 @@ impl Router {
         }
         let (arrangement, end) = found?;
         let lines = match arrangement {
-            Arrangement::Split(_) | Arrangement::Repeat(_) => trace(&self.previous, end),
             Arrangement::RepeatAba(_) => vec![0, strips.alternation_inner(end), end as u16],
             Arrangement::Symmetric(_, center) => self.trace_mirrored(strips, end, center),
+            _ => trace(&self.previous, end),
         };
         Some((limit + 1e-9, Choice::between(arrangement, lines, strips)))
     }
@@ -260,7 +271,7 @@ impl Router {
 }
 
 /// Follows predecessors back from `end` to 0.
-fn trace(previous: &[u16], end: usize) -> Vec<u16> {
+pub(crate) fn trace(previous: &[u16], end: usize) -> Vec<u16> {
     let mut lines = vec![end as u16];
     let mut at = end;
     while at > 0 {

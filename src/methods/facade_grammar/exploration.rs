@@ -5,16 +5,17 @@
 //! cost_sl(line) = sum_{repeated regions inside R that the line cuts} terminals / terminals of R
 //! ```
 //!
-//! The rules that are drawn from are "a subset of rules that seem reasonable": along each axis,
-//! for every cost that a line has, the split at all lines that cost no more.
+//! The rules that are drawn from are in [`super::reasonable`].
 
 use std::rc::Rc;
 
 use rand::{Rng, RngExt};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::choice::{Arrangement, Choice};
+use super::grid;
 use super::operations::Operations;
+use super::reasonable::{self, Candidate};
 use super::regions::{Region, Strips, TypeId, Types, ends};
 use super::symmetry::Repeated;
 use crate::grammar::Costs;
@@ -43,13 +44,6 @@ pub(crate) struct Exploration {
     menus: Vec<Option<Rc<Menu>>>,
 }
 
-/// A rule that seems reasonable: its lines are indices into the cuts, ends included.
-#[derive(Debug)]
-struct Candidate {
-    arrangement: Arrangement,
-    lines: Vec<u16>,
-}
-
 /// A rule and its `H`.
 pub(crate) type Weighed = (f64, Rc<Choice>);
 
@@ -57,6 +51,7 @@ pub(crate) type Weighed = (f64, Rc<Choice>);
 #[derive(Debug)]
 struct Menu {
     candidates: Vec<Candidate>,
+    grids: Vec<Weighed>,
     line_costs: [Vec<f64>; 2],
     /// The candidates as rules, when nothing is protected.
     open: Rc<[Weighed]>,
@@ -158,13 +153,19 @@ impl Exploration {
             return Rc::clone(&menu.open);
         }
         let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
+        let open = |grid: &Choice| {
+            let crossed =
+                |lines: &[u16], blocked: &[u16]| lines.iter().any(|l| blocked.contains(l));
+            !crossed(&grid.lines, &blocked[0]) && !crossed(&grid.rows, &blocked[1])
+        };
         menu.candidates
             .iter()
             .filter_map(|c| {
-                let slot = c.arrangement.axis() as usize;
+                let slot = c.axis as usize;
                 let lines = c.without(&blocked[slot])?;
                 Some(self.weigh(c.arrangement, lines, &strips[slot], &menu.line_costs[slot]))
             })
+            .chain(menu.grids.iter().filter(|(_, grid)| open(grid)).cloned())
             .collect()
     }
 
@@ -183,6 +184,32 @@ impl Exploration {
             self.lambdas.rule * choice.cost(&self.costs) + self.lambdas.lines * cut,
             Rc::new(choice),
         )
+    }
+
+    /// For every cost that a line has, the grid of all lines that cost no more.
+    fn grids(&self, types: &mut Types, id: TypeId, line_costs: &[Vec<f64>; 2]) -> Vec<Weighed> {
+        if !self.operations.grid_split {
+            return Vec::new();
+        }
+        let Some(cells) = types.cells(id) else {
+            return Vec::new();
+        };
+        let cut = |axis: usize, lines: &[u16]| -> f64 {
+            let inner = &lines[1..lines.len() - 1];
+            inner
+                .iter()
+                .map(|l| line_costs[axis][usize::from(*l)])
+                .sum()
+        };
+        reasonable::grids(line_costs, cells.intervals())
+            .into_iter()
+            .map(|(columns, rows)| {
+                let cut = cut(0, &columns) + cut(1, &rows);
+                let choice = grid::between(&cells, columns, rows);
+                let h = self.lambdas.rule * choice.cost(&self.costs) + self.lambdas.lines * cut;
+                (h, Rc::new(choice))
+            })
+            .collect()
     }
 
     /// Cuts of the region that cross a protected occurrence inside it.
@@ -216,19 +243,24 @@ impl Exploration {
         let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
         let line_costs =
             Axis::BOTH.map(|axis| self.line_costs(region, terminals, axis, &strips[axis as usize]));
-        let mut candidates = Vec::new();
-        for axis in Axis::BOTH {
-            self.reasonable(
-                axis,
-                &strips[axis as usize],
-                &line_costs[axis as usize],
-                &mut candidates,
-            );
-        }
+        let candidates: Vec<Candidate> = Axis::BOTH
+            .into_iter()
+            .flat_map(|axis| {
+                let slot = axis as usize;
+                reasonable::along(
+                    axis,
+                    &strips[slot],
+                    &line_costs[slot],
+                    self.operations,
+                    &self.repeated_types,
+                )
+            })
+            .collect();
+        let grids = self.grids(types, id, &line_costs);
         let open = candidates
             .iter()
             .map(|c| {
-                let slot = c.arrangement.axis() as usize;
+                let slot = c.axis as usize;
                 self.weigh(
                     c.arrangement,
                     c.lines.clone(),
@@ -236,9 +268,11 @@ impl Exploration {
                     &line_costs[slot],
                 )
             })
+            .chain(grids.iter().cloned())
             .collect();
         let menu = Rc::new(Menu {
             candidates,
+            grids,
             line_costs,
             open,
         });
@@ -269,169 +303,10 @@ impl Exploration {
         }
         costs
     }
-
-    /// For every cost that occurs, all lines that cost no more: whole, and within each period.
-    fn reasonable(
-        &self,
-        axis: Axis,
-        strips: &Strips,
-        line_costs: &[f64],
-        candidates: &mut Vec<Candidate>,
-    ) {
-        let n = strips.intervals() as u16;
-        if n < 2 {
-            return;
-        }
-        let mut add = |arrangement, lines| candidates.push(Candidate { arrangement, lines });
-        for lines in nested_sets(line_costs, n)
-            .into_iter()
-            .filter(|lines| lines.len() > 2)
-        {
-            add(Arrangement::Split(axis), lines);
-        }
-        for lines in isolating_sets(
-            strips,
-            |id| self.repeated_types.contains(&id),
-            self.operations.repeat,
-        ) {
-            add(Arrangement::Split(axis), lines);
-        }
-        if self.operations.repeat {
-            for period in &strips.periods {
-                add(Arrangement::Repeat(axis), vec![0, period.intervals]);
-                for lines in nested_sets(line_costs, period.intervals)
-                    .into_iter()
-                    .filter(|lines| lines.len() > 2)
-                {
-                    add(Arrangement::Repeat(axis), lines);
-                }
-            }
-        }
-        if self.operations.repeat_aba {
-            for &(a, b) in &strips.alternations {
-                add(Arrangement::RepeatAba(axis), vec![0, a, b]);
-            }
-        }
-        if self.operations.sym_split {
-            for lines in nested_sets(line_costs, n) {
-                let (arrangement, half) = mirrored_half(axis, strips, &lines);
-                if half.len() > 2 || (half.len() == 2 && half[1] < n) {
-                    add(arrangement, half);
-                }
-            }
-        }
-    }
 }
 
 /// Draws of protected regions per walk, at most.
 const PROTECTION_DRAWS: usize = 60;
-
-impl Candidate {
-    /// The candidate's lines without the blocked ones, `None` when it cannot do without them.
-    fn without(&self, blocked: &[u16]) -> Option<Vec<u16>> {
-        let open = |l: &u16| blocked.binary_search(l).is_err();
-        let last = self.lines[self.lines.len() - 1];
-        let kept: Vec<u16> = self.lines.iter().copied().filter(open).collect();
-        let enough = match self.arrangement {
-            Arrangement::Split(_) => kept.len() > 2,
-            Arrangement::Repeat(_) => kept.contains(&last),
-            Arrangement::RepeatAba(_) | Arrangement::Symmetric(..) => {
-                kept.len() == self.lines.len()
-            }
-        };
-        enough.then_some(kept)
-    }
-}
-
-/// The sets of lines below `end` that cost at most `c`, for every cost `c` of one of them; ends
-/// included.
-fn nested_sets(line_costs: &[f64], end: u16) -> Vec<Vec<u16>> {
-    let mut levels: Vec<f64> = line_costs[1..usize::from(end)].to_vec();
-    levels.sort_by(f64::total_cmp);
-    levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    levels
-        .into_iter()
-        .map(|level| {
-            let cheap = (1..end).filter(|l| line_costs[usize::from(*l)] <= level + 1e-9);
-            std::iter::once(0).chain(cheap).chain([end]).collect()
-        })
-        .collect()
-}
-
-/// For every repeated region that stands in the region as a whole strip: all lines that cut none of
-/// its occurrences; with `runs`, moreover none of the lines between occurrences that touch, so that
-/// a repeat can take the run.
-fn isolating_sets(strips: &Strips, repeated: impl Fn(TypeId) -> bool, runs: bool) -> Vec<Vec<u16>> {
-    let n = strips.intervals() as u16;
-    let mut occurrences: Vec<Vec<(u16, u16)>> = Vec::new();
-    let mut index: FxHashMap<TypeId, usize> = FxHashMap::default();
-    for b in 1..=n {
-        for (a, &id) in (0..b)
-            .zip(strips.ending_at(b.into()))
-            .filter(|(_, id)| repeated(**id))
-        {
-            let group = *index.entry(id).or_insert_with(|| {
-                occurrences.push(Vec::new());
-                occurrences.len() - 1
-            });
-            if occurrences[group].last().is_none_or(|(_, end)| *end <= a) {
-                occurrences[group].push((a, b));
-            }
-        }
-    }
-    let mut sets: Vec<Vec<u16>> = Vec::new();
-    for group in &occurrences {
-        let keeping = |kept: &[(u16, u16)]| -> Vec<u16> {
-            (0..=n)
-                .filter(|l| !kept.iter().any(|(a, b)| a < l && l < b))
-                .collect()
-        };
-        sets.push(keeping(group));
-        let joined = join(group);
-        if runs && joined.len() < group.len() {
-            sets.push(keeping(&joined));
-        }
-    }
-    sets.retain(|lines| lines.len() > 2);
-    sets.sort();
-    sets.dedup();
-    sets
-}
-
-/// Intervals with those that touch made one.
-fn join(intervals: &[(u16, u16)]) -> Vec<(u16, u16)> {
-    let mut joined: Vec<(u16, u16)> = Vec::new();
-    for &(a, b) in intervals {
-        match joined.last_mut() {
-            Some(last) if last.1 == a => last.1 = b,
-            _ => joined.push((a, b)),
-        }
-    }
-    joined
-}
-
-/// The left half of a set of lines that mirrors itself as far as the region does; the middle part
-/// is what lies between the innermost mirrored lines.
-fn mirrored_half(axis: Axis, strips: &Strips, lines: &[u16]) -> (Arrangement, Vec<u16>) {
-    let mut half = vec![0];
-    let mut inner = strips.intervals() as u16;
-    for &(left, right) in strips.mirrors.iter().skip(1) {
-        if !lines.contains(&left) || !lines.contains(&right) {
-            continue;
-        }
-        let before = half[half.len() - 1];
-        if strips.strip(before.into(), left.into()) != strips.strip(right.into(), inner.into()) {
-            break;
-        }
-        half.push(left);
-        inner = right;
-    }
-    let middle = half[half.len() - 1];
-    if middle < inner {
-        half.push(inner);
-    }
-    (Arrangement::Symmetric(axis, middle < inner), half)
-}
 
 fn contains(outer: Region, inner: Region) -> bool {
     outer.sheet == inner.sheet

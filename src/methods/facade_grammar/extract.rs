@@ -5,8 +5,8 @@ use rustc_hash::FxHashMap;
 use super::choice::{Arrangement, Choice};
 use super::regions::{TypeId, Types};
 use super::walk::AddRule;
-use crate::grammar::{Grammar, Operation, Rule, Start, Successor};
-use crate::shape::Facade;
+use crate::grammar::{Grammar, Operation, Rule, Size, Start, Successor};
+use crate::shape::{Axis, Facade};
 
 /// Writes the rules that the facades need as a grammar, top down, with symbols that no label uses.
 pub(crate) fn grammar(types: &mut Types, facades: &[Facade], rules: &[AddRule]) -> Grammar {
@@ -52,39 +52,68 @@ fn operation(
     names: &mut Names,
     order: &mut Vec<TypeId>,
 ) -> Operation {
-    let axis = choice.axis();
-    let strips = types.strips(id, axis);
-    let region = types.region(id);
-    let sheet = &types.sheets[usize::from(region.sheet)];
-    let coordinates = match axis {
-        crate::shape::Axis::X => &sheet.xs,
-        crate::shape::Axis::Y => &sheet.ys,
+    let mut strips = |axis| -> Vec<Successor> {
+        let sizes = sizes(types, id, axis, &choice.lines);
+        let successors = choice.successors.iter().zip(sizes);
+        successors
+            .map(|(&s, size)| Successor::new(names.of(types, s, order), size))
+            .collect()
     };
-    let at = |line: u16| coordinates[usize::from(strips.cuts[usize::from(line)])];
-    let sizes: Vec<f64> = choice
-        .lines
-        .windows(2)
-        .map(|w| at(w[1]) - at(w[0]))
-        .collect();
-    let mut successors: Vec<Successor> = choice
-        .successors
-        .iter()
-        .zip(sizes)
-        .map(|(&s, size)| Successor::new(names.of(types, s, order), size))
-        .collect();
     match choice.arrangement {
-        Arrangement::Split(axis) => Operation::Split { axis, successors },
-        Arrangement::Repeat(axis) => Operation::Repeat { axis, successors },
+        Arrangement::Split(axis) => Operation::Split {
+            axis,
+            successors: strips(axis),
+        },
+        Arrangement::Repeat(axis) => Operation::Repeat {
+            axis,
+            successors: strips(axis),
+        },
         Arrangement::Symmetric(axis, center) => Operation::SymSplit {
             axis,
-            successors,
+            successors: strips(axis),
             center,
         },
         Arrangement::RepeatAba(axis) => {
+            let mut successors = strips(axis);
             let b = successors.remove(1);
             let a = successors.remove(0);
             Operation::RepeatAba { axis, a, b }
         }
+        Arrangement::Grid => grid(types, id, choice, names, order),
+    }
+}
+
+/// Sizes between the lines of a rule.
+fn sizes(types: &mut Types, id: TypeId, axis: Axis, lines: &[u16]) -> Vec<f64> {
+    let strips = types.strips(id, axis);
+    let sheet = &types.sheets[usize::from(types.region(id).sheet)];
+    let coordinates = match axis {
+        Axis::X => &sheet.xs,
+        Axis::Y => &sheet.ys,
+    };
+    let at = |line: u16| coordinates[usize::from(strips.cuts[usize::from(line)])];
+    lines.windows(2).map(|w| at(w[1]) - at(w[0])).collect()
+}
+
+fn grid(
+    types: &mut Types,
+    id: TypeId,
+    choice: &Choice,
+    names: &mut Names,
+    order: &mut Vec<TypeId>,
+) -> Operation {
+    let absolute = |sizes: Vec<f64>| sizes.into_iter().map(Size::Absolute).collect();
+    let columns = absolute(sizes(types, id, Axis::X, &choice.lines));
+    let rows = absolute(sizes(types, id, Axis::Y, &choice.rows));
+    let cells = choice
+        .successors
+        .chunks(choice.lines.len() - 1)
+        .map(|row| row.iter().map(|&s| names.of(types, s, order)).collect())
+        .collect();
+    Operation::GridSplit {
+        columns,
+        rows,
+        cells,
     }
 }
 

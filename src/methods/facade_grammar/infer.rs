@@ -344,7 +344,13 @@ impl<'a> Search<'a> {
         let (by_memory, _, known) = adp.run_observed(self.process(), observer.clone())?;
         let start = self.cheapest([by_routes.actions, by_memory.actions]);
         let values = known.at_most(routes.into_values());
-        let members = Members::new(Rc::clone(&self.types), router(), values, &start);
+        let members = Members::new(
+            Rc::clone(&self.types),
+            router(),
+            Rc::clone(&self.exploration),
+            values,
+            &start,
+        );
         let rounds = iterations.saturating_sub(routed + remembered);
         let annealing = Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?;
         Ok(annealing.run(members, observer)?.0)
@@ -381,7 +387,7 @@ impl<'a> Search<'a> {
 /// One in this many iterations of `best` is a walk that exploits by shortest paths.
 const ROUTED_SHARE: u64 = 10;
 /// One in this many is a walk that exploits as `paper` does; the others are rounds of annealing.
-const REMEMBERED_SHARE: u64 = 2;
+const REMEMBERED_SHARE: u64 = 5;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 24;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.

@@ -38,6 +38,8 @@
 //!   probability proportional to `f(a, o)`, kept when they nest in or are disjoint from those kept
 //!   before. Protection is on unless switched off; without it `paper` averages more than 43.1.
 //! - *Bottom to top, left to right* orders types by the first region found with them.
+//! - *gridsplit* (Sec. 4.7, named only): one successor per cell, columns times rows. The search looks
+//!   for grids in regions whose full lines make at most 4,000 rectangles.
 //! - *Symmetry detection* is exhaustive up to a number of occurrences that grows with the number of
 //!   terminals, most important first; the text gives no bound.
 
@@ -46,9 +48,11 @@ mod bound;
 mod choice;
 mod exploration;
 mod extract;
+mod grid;
 mod infer;
 mod members;
 mod operations;
+mod reasonable;
 mod regions;
 pub mod regularize;
 pub mod scene;

@@ -14,6 +14,8 @@ pub struct Operations {
     pub repeat_aba: bool,
     /// Mirrored splits.
     pub sym_split: bool,
+    /// Splits along both axes at once.
+    pub grid_split: bool,
 }
 
 impl Default for Operations {
@@ -23,6 +25,7 @@ impl Default for Operations {
             repeat: true,
             repeat_aba: false,
             sym_split: false,
+            grid_split: false,
         }
     }
 }
@@ -46,13 +49,13 @@ impl Operations {
         }
     }
 
-    /// Split, repeat, and the extensions of Sec. 4.7 that the search uses. A grid split is derived and
-    /// read, but not searched for.
+    /// Split, repeat, and the extensions of Sec. 4.7.
     pub fn all() -> Self {
         Self {
             repeat: true,
             repeat_aba: true,
             sym_split: true,
+            grid_split: true,
         }
     }
 }
@@ -69,6 +72,7 @@ impl FromStr for Operations {
                 "repeat" => operations.repeat = true,
                 "repeat_aba" => operations.repeat_aba = true,
                 "sym_split" => operations.sym_split = true,
+                "grid_split" => operations.grid_split = true,
                 _ => {
                     return Err(UnknownOperation {
                         name: name.to_owned(),
@@ -87,6 +91,7 @@ impl fmt::Display for Operations {
             (self.repeat, "repeat"),
             (self.repeat_aba, "repeat_aba"),
             (self.sym_split, "sym_split"),
+            (self.grid_split, "grid_split"),
         ];
         for (_, name) in named.iter().filter(|(on, _)| *on) {
             write!(f, ",{name}")?;

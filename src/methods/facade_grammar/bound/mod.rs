@@ -151,6 +151,7 @@ fn labels_once(costs: &Costs, operations: Operations, labels: u32) -> f64 {
         (operations.repeat, costs.repeat),
         (operations.repeat_aba, costs.repeat_aba),
         (operations.sym_split, costs.sym_split),
+        (operations.grid_split, costs.grid_split),
     ] {
         if allowed {
             operation = operation.min(cost);

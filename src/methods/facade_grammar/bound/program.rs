@@ -41,8 +41,12 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// The closure of the facade under strips; `None` when it has more than `limit` types.
+    /// The closure of the facade under strips; `None` when it has more than `limit` types, or when
+    /// grids are allowed, which are no paths.
     pub fn new(types: &mut Types, operations: Operations, limit: usize) -> Option<Self> {
+        if operations.grid_split {
+            return None;
+        }
         let mut order: Vec<TypeId> = vec![types.roots[0]];
         let mut place: FxHashMap<TypeId, u32> = FxHashMap::default();
         place.insert(order[0], 0);

@@ -4,8 +4,10 @@
 //! label, offset and size (translational symmetry, Wu et al. 2014, Sec. 4.3). A terminal region's
 //! type is its label, whatever its size.
 
+mod cells;
 mod sheet;
 mod types;
 
+pub(crate) use cells::Cells;
 pub(crate) use sheet::{Region, Sheet};
 pub(crate) use types::{Strips, TypeId, Types, ends};

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
-use super::{Region, Sheet};
+use super::{Cells, Region, Sheet};
 use crate::shape::{Axis, Facade};
 
 /// Index of a region type. Types below [`Types::label_count`] are the terminal labels.
@@ -82,6 +82,8 @@ pub(crate) struct Types {
     ids: FxHashMap<Key, TypeId>,
     types: Vec<Type>,
     strips: Vec<[Option<Rc<Strips>>; 2]>,
+    /// Of types that were asked for them; `None` where there are too many.
+    cells: FxHashMap<TypeId, Option<Rc<Cells>>>,
     /// Type of each facade as a whole.
     pub roots: Vec<TypeId>,
 }
@@ -120,6 +122,7 @@ impl Types {
                 labels.len()
             ],
             strips: vec![[None, None]; labels.len()],
+            cells: FxHashMap::default(),
             roots: Vec::new(),
             sheets,
             labels,
@@ -188,6 +191,15 @@ impl Types {
         let strips = Rc::new(self.cut(self.region(id), axis));
         self.strips[id as usize][slot] = Some(Rc::clone(&strips));
         strips
+    }
+
+    /// The rectangles between the full lines of a non-terminal type; `None` when there are too many.
+    pub fn cells(&mut self, id: TypeId) -> Option<Rc<Cells>> {
+        if !self.cells.contains_key(&id) {
+            let cells = Cells::new(self, id).map(Rc::new);
+            self.cells.insert(id, cells);
+        }
+        self.cells[&id].clone()
     }
 
     fn cut(&mut self, region: Region, axis: Axis) -> Strips {

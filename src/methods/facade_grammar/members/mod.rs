@@ -1,20 +1,22 @@
 //! Second stage of `best`: annealing over the set of non-terminal types.
 //!
 //! A grammar is determined by its set `N` of non-terminal region types: given `N`, the best rule of
-//! each type is a shortest path over strips that are terminals or members of `N`, independent of
-//! all others, and the cost is the sum over the members. A move adds a type, removes one, or
-//! exchanges one for another with a shifted border; only the rules that the move touches are found
-//! anew. A type that no rule uses any more leaves the set; a member left without a rule gets one
-//! that calls in further members, priced with what approximate dynamic programming learnt.
+//! each type is a shortest path over strips that are terminals or members of `N` (or a grid of such
+//! cells), independent of all others, and the cost is the sum over the members. A move adds a type,
+//! removes one, exchanges one for another with a shifted border, or adds all successors of a rule that
+//! the splitting heuristic draws; only the rules that the move touches are found anew. A type that no
+//! rule uses any more leaves the set; a member left without a rule gets one that calls in further
+//! members, priced with what approximate dynamic programming learnt.
 
+mod moves;
+
+use std::cell::RefCell;
 use std::rc::Rc;
 
-use rand::{Rng, RngExt};
-
-use super::choice::{Choice, Router};
-use super::regions::{TypeId, Types};
-use super::walk::{AddRule, SharedTypes};
-use crate::optim::annealing::Landscape;
+use crate::methods::facade_grammar::choice::{Choice, Router};
+use crate::methods::facade_grammar::exploration::Exploration;
+use crate::methods::facade_grammar::regions::{TypeId, Types};
+use crate::methods::facade_grammar::walk::{AddRule, SharedTypes};
 use crate::shape::Axis;
 
 /// A member's rule and its cost.
@@ -24,6 +26,7 @@ type Ruled = (f64, Rc<Choice>);
 pub(crate) struct Members {
     types: SharedTypes,
     router: Router,
+    exploration: Rc<RefCell<Exploration>>,
     /// What a type that is no member is thought to cost.
     values: Vec<f64>,
     rules: Vec<Option<Ruled>>,
@@ -33,7 +36,7 @@ pub(crate) struct Members {
     uses: Vec<u32>,
     members: Vec<TypeId>,
     position: Vec<u32>,
-    /// Types of all strips of a type, sorted.
+    /// Types of all strips of a type, and of its cells where grids are allowed, sorted.
     strips: Vec<Option<Rc<[TypeId]>>>,
     total: f64,
     log: Vec<(TypeId, Option<Ruled>)>,
@@ -42,15 +45,20 @@ pub(crate) struct Members {
     growth: usize,
 }
 
-/// A move calls in at most this many types.
-const GROWTH: usize = 24;
-
 impl Members {
     /// Starts from the rules of a grammar; `values` prices types by what was learnt of them.
-    pub fn new(types: SharedTypes, router: Router, values: Vec<f64>, start: &[AddRule]) -> Self {
+    pub fn new(
+        types: SharedTypes,
+        router: Router,
+        exploration: Rc<RefCell<Exploration>>,
+        values: Vec<f64>,
+        start: &[AddRule],
+    ) -> Self {
+        exploration.borrow_mut().unprotect();
         let mut members = Self {
             types,
             router,
+            exploration,
             values,
             rules: Vec::new(),
             prices: Vec::new(),
@@ -154,7 +162,7 @@ impl Members {
         self.log.push((id, old));
     }
 
-    /// Types of all strips of a type, sorted.
+    /// Types of all strips of a type, and of its cells where grids are allowed, sorted.
     fn strip_types(&mut self, id: TypeId) -> Rc<[TypeId]> {
         if let Some(list) = &self.strips[id as usize] {
             return Rc::clone(list);
@@ -164,6 +172,11 @@ impl Members {
             let mut types = self.types.borrow_mut();
             for axis in Axis::BOTH {
                 list.extend(types.strips(id, axis).all());
+            }
+            if self.router.operations.grid_split
+                && let Some(cells) = types.cells(id)
+            {
+                list.extend(cells.all());
             }
         }
         self.extend();
@@ -309,103 +322,11 @@ impl Members {
         }
     }
 
-    /// A random member; none when the facades are single terminals.
-    fn any<R: Rng>(&self, rng: &mut R) -> Option<TypeId> {
-        let count = self.members.len();
-        (count > 0).then(|| self.members[rng.random_range(0..count)])
-    }
-
-    /// A random strip of a random member that is neither terminal nor member.
-    fn outsider<R: Rng>(&mut self, rng: &mut R) -> Option<TypeId> {
-        let member = self.any(rng)?;
-        let strips = self.strip_types(member);
-        let id = *strips.get(rng.random_range(0..strips.len().max(1)))?;
-        (self.prices[id as usize] > 0.0 && id != member).then_some(id)
-    }
-
-    /// A strip like one that a rule of the set names, with a border shifted by one line.
-    fn shifted<R: Rng>(&mut self, rng: &mut R) -> Option<(TypeId, TypeId)> {
-        let user = self.any(rng)?;
-        let choice = Rc::clone(&self.rules[user as usize].as_ref()?.1);
-        let strips = self.types.borrow_mut().strips(user, choice.axis());
-        self.extend();
-        let at = rng.random_range(0..choice.successors.len());
-        let old = choice.successors[at];
-        let (a, b) = (
-            usize::from(choice.lines[at]),
-            usize::from(choice.lines[at + 1]),
-        );
-        let (a, b) = match rng.random_range(0..4) {
-            0 => (a.checked_sub(1)?, b),
-            1 => (a + 1, b),
-            2 => (a, b + 1),
-            _ => (a, b.checked_sub(1)?),
-        };
-        if a >= b || b > strips.intervals() || (a == 0 && b == strips.intervals()) {
-            return None;
-        }
-        let new = strips.strip(a, b);
-        (self.prices[new as usize] > 0.0).then_some((old, new))
-    }
-
-    fn change<R: Rng>(&mut self, rng: &mut R) -> Option<bool> {
-        match rng.random_range(0..8) {
-            0..4 => {
-                let id = self.outsider(rng)?;
-                Some(self.insert(id))
-            }
-            4..6 => {
-                let id = self.any(rng)?;
-                (!self.is_root(id)).then(|| self.erase(id))
-            }
-            _ => {
-                let (old, new) = self.shifted(rng)?;
-                let member = self.rules[old as usize].is_some() && !self.is_root(old);
-                Some((!member || self.erase(old)) && self.insert(new))
-            }
-        }
-    }
-
     fn undo(&mut self) {
         while let Some((id, old)) = self.log.pop() {
             self.set_rule(id, old);
             self.log.pop();
         }
         self.orphans.clear();
-    }
-}
-
-impl Landscape for Members {
-    type Solution = Vec<AddRule>;
-
-    fn cost(&self) -> f64 {
-        self.total
-    }
-
-    fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64> {
-        self.growth = GROWTH;
-        match self.change(rng) {
-            Some(true) => {
-                self.drop_orphans();
-                Some(self.total)
-            }
-            Some(false) => {
-                self.undo();
-                None
-            }
-            None => None,
-        }
-    }
-
-    fn accept(&mut self) {
-        self.log.clear();
-    }
-
-    fn reject(&mut self) {
-        self.undo();
-    }
-
-    fn solution(&self) -> Vec<AddRule> {
-        self.rules()
     }
 }
