@@ -6,20 +6,24 @@ use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
 use crate::experiments::Context;
 use crate::grammar::{Costs, derive_at, size_independent};
-use crate::methods::facade_grammar::Operations;
-use crate::methods::facade_grammar::regularize::regularize_facade;
+use crate::methods::facade_grammar::regularize::align_resized;
+use crate::methods::facade_grammar::{Operations, kinds};
 use crate::report::{Align, Figure, Row, Table};
-use crate::shape::Facade;
+use crate::shape::{Facade, is_background};
 use crate::{Error, Result};
 
-/// Facade to resize, and how far alignment may move an edge, in its unit (centimetres).
+/// Facade to resize.
 const FACADE: &str = "boulevard_1";
-const TOLERANCE: f64 = 4.0;
+/// How far an edge may move to make equal terminals equal, in the facade's unit (centimetres).
+const REACH: f64 = 100.0;
+/// How far edges may lie apart to become one line.
+const TOLERANCE: f64 = 8.0;
 
 /// Resizes to other widths and heights, with and without alignment.
 pub fn run(ctx: &mut Context) -> Result<()> {
     let (few, _) = super::iterations(ctx.budget());
     ctx.setting("facade", FACADE);
+    ctx.setting("reach", REACH);
     ctx.setting("tolerance", TOLERANCE);
     ctx.setting("iterations", few);
     let path = data::folder(ctx)?.join(format!("layouts/{FACADE}.facade.json"));
@@ -35,12 +39,16 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let mut figure = Figure::new("resized facades, before and after alignment", 5)
         .cell(270.0, 340.0)
         .panel(picture::tiles("Input", &facade));
-    let mut table = Table::new("Cut lines and sizes of windows before and after alignment")
+    let mut table = Table::new("Cut lines and sizes of elements before and after alignment")
         .column("size", Align::Left)
         .numbers([
             "lines",
             "aligned",
-            "pane sizes",
+            "sizes of elements in the input",
+            "derived",
+            "aligned",
+            "sizes of panes in the input",
+            "derived",
             "aligned",
             "largest move (cm)",
         ]);
@@ -51,10 +59,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         );
         // The grammar is deterministic: nothing is drawn from this stream.
         let mut stream = crate::rng::Stream::seed_from_u64(ctx.seed());
-        let resized = derive_at(&free, 0, width, height, &mut stream)
-            .map_err(Error::method)?
-            .facade;
-        let (aligned, moved) = regularize_facade(&resized, TOLERANCE).map_err(Error::method)?;
+        let derived = derive_at(&free, 0, width, height, &mut stream).map_err(Error::method)?;
+        let kinds = kinds(&free, &derived).map_err(Error::method)?;
+        let resized = derived.facade;
+        let (aligned, moved) =
+            align_resized(&resized, &kinds, REACH, TOLERANCE).map_err(Error::method)?;
         let name = format!("{wide} x {high}");
         figure = figure
             .panel(picture::tiles(&name, &resized).caption("derived"))
@@ -62,15 +71,23 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let numbers = [
             lines(&resized) as f64,
             lines(&aligned) as f64,
-            sizes(&resized) as f64,
-            sizes(&aligned) as f64,
+            sizes(&facade, is_element) as f64,
+            sizes(&resized, is_element) as f64,
+            sizes(&aligned, is_element) as f64,
+            sizes(&facade, is_pane) as f64,
+            sizes(&resized, is_pane) as f64,
+            sizes(&aligned, is_pane) as f64,
             moved.largest_move,
         ];
         let metrics = [
             "lines",
             "lines_aligned",
+            "sizes_input",
             "sizes",
             "sizes_aligned",
+            "pane_sizes_input",
+            "pane_sizes",
+            "pane_sizes_aligned",
             "largest_move",
         ];
         for (metric, value) in metrics.into_iter().zip(numbers) {
@@ -91,9 +108,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.table(&table);
     ctx.note(
         "The paper shows one resized facade and prints no numbers. Sizes become relative but for thin parts, repeats fill the space \
-         (Sec. 5); then the quadratic program of the regularization moves edges by at most the tolerance. It aligns edges across \
-         floors (fewer lines), but unlike the paper's program it does not keep equal terminals equal where both cannot be had: \
-         the number of pane sizes shows by how much.",
+         (Sec. 5); then a quadratic program with linear constraints gives all terminals that are equal in the input one size, and \
+         merges edges within the tolerance into one line as far as the sizes allow. *Sizes* count pairs of a label with a width and a \
+         height, of everything but wall and roof: no more than in the input when all equal terminals are equal.",
     );
     Ok(())
 }
@@ -114,11 +131,22 @@ fn lines(facade: &Facade) -> usize {
     of(|r| [r.x, r.right()]) + of(|r| [r.y, r.top()])
 }
 
-/// Distinct sizes of glass.
-fn sizes(facade: &Facade) -> usize {
-    let panes = facade.regions.iter().filter(|r| r.label == "glass");
-    panes
-        .map(|r| [r.rect.width, r.rect.height].map(|v| (v * 1e3).round() as i64))
+/// Distinct sizes of the regions of some labels, label by label.
+fn sizes(facade: &Facade, counts: fn(&str) -> bool) -> usize {
+    let regions = facade.regions.iter().filter(|r| counts(&r.label));
+    regions
+        .map(|r| {
+            let size = [r.rect.width, r.rect.height].map(|v| (v * 1e3).round() as i64);
+            (&r.label, size)
+        })
         .collect::<std::collections::BTreeSet<_>>()
         .len()
+}
+
+fn is_pane(label: &str) -> bool {
+    label == "glass"
+}
+
+fn is_element(label: &str) -> bool {
+    !is_background(label)
 }

@@ -29,6 +29,9 @@ pub struct Derivation {
     pub facade: Facade,
     /// The non-terminal regions, depth first, each before what is inside it.
     pub non_terminals: Vec<NonTerminal>,
+    /// Where the grammar writes each terminal region: the rule and the place in its right-hand side;
+    /// `None` for a facade that is one terminal.
+    pub origins: Vec<Option<(usize, usize)>>,
 }
 
 /// Derives one start of a deterministic grammar at its own size.
@@ -102,15 +105,17 @@ pub(super) fn walk(
 ) -> Result<Derivation, GrammarError> {
     let tolerance = TOLERANCE * width.max(height);
     let mut regions = Vec::new();
+    let mut origins = Vec::new();
     let mut non_terminals = Vec::new();
     let mut parts = Vec::new();
     let domain = Rect::new(0.0, 0.0, width, height);
-    let mut stack = vec![(table.starts[start_index], domain, 0)];
-    while let Some((symbol, rect, depth)) = stack.pop() {
+    let mut stack = vec![(table.starts[start_index], domain, 0, None)];
+    while let Some((symbol, rect, depth, origin)) = stack.pop() {
         let rules = &table.rules_of[symbol];
         if rules.is_empty() {
             let label = table.names[symbol].to_owned();
             regions.push(Region { label, rect });
+            origins.push(origin);
             continue;
         }
         let rule = choose(symbol, rules);
@@ -128,7 +133,7 @@ pub(super) fn walk(
             parts
                 .iter()
                 .rev()
-                .map(|&(i, part)| (successors[i], part, depth + 1)),
+                .map(|&(i, part)| (successors[i], part, depth + 1, Some((rule, i)))),
         );
     }
     let start = &grammar.starts[start_index];
@@ -141,5 +146,6 @@ pub(super) fn walk(
             regions,
         },
         non_terminals,
+        origins,
     })
 }

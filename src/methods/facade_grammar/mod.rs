@@ -50,6 +50,7 @@ mod exploration;
 mod extract;
 mod grid;
 mod infer;
+mod kinds;
 mod members;
 mod operations;
 mod reasonable;
@@ -62,4 +63,5 @@ mod walk;
 
 pub use bound::{Bound, BoundLimits, lower_bound};
 pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer, infer_observed};
+pub use kinds::kinds;
 pub use operations::{Operations, UnknownOperation};

@@ -4,7 +4,25 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::RegularizeError;
 use super::axis::{self, Run, Strips};
+use super::resized;
 use crate::shape::{Facade, IndexedLayout, LabelGrid, Span, components, is_background};
+
+/// Why edges may move, and how far, in the unit of the layout.
+#[derive(Debug, Clone, Copy)]
+pub enum Freedom {
+    /// Annotations are off by so much: lines merge, then sizes become equal.
+    Noise {
+        /// Longest move.
+        tolerance: f64,
+    },
+    /// The layout was resized: sizes become equal, then lines merge as far as sizes allow.
+    Resized {
+        /// Longest move that makes sizes equal.
+        reach: f64,
+        /// Longest further move that aligns edges.
+        tolerance: f64,
+    },
+}
 
 /// Areas on an irregular grid: connected areas of equal label, or regions of a tiling.
 pub struct Areas<'a> {
@@ -55,14 +73,22 @@ impl<'a> Areas<'a> {
         }
     }
 
+    /// The same areas with `kinds` for labels: areas of one kind, and of no other, become equal.
+    pub fn with_kinds(self, kinds: &[u16]) -> Self {
+        Self {
+            labels: kinds.to_vec(),
+            ..self
+        }
+    }
+
     /// New positions of the cut lines along x and y; equal ones have become one line.
-    pub fn solve(&self, tolerance: f64) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
+    pub fn solve(&self, freedom: Freedom) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
         let grid = self.grid;
         let (columns, rows) = (grid.columns(), grid.rows());
         let turned = (0..columns).flat_map(|i| (0..rows).map(move |j| j * columns + i));
         let turned: Vec<u32> = turned.map(|cell| self.of_cell[cell]).collect();
-        let xs = self.solve_axis(&grid.xs, &grid.ys, &self.of_cell, tolerance)?;
-        let ys = self.solve_axis(&grid.ys, &grid.xs, &turned, tolerance)?;
+        let xs = self.solve_axis(&grid.xs, &grid.ys, &self.of_cell, freedom)?;
+        let ys = self.solve_axis(&grid.ys, &grid.xs, &turned, freedom)?;
         Ok((xs, ys))
     }
 
@@ -72,7 +98,7 @@ impl<'a> Areas<'a> {
         cuts: &[f64],
         across: &[f64],
         cells: &[u32],
-        tolerance: f64,
+        freedom: Freedom,
     ) -> Result<Vec<f64>, RegularizeError> {
         let strips = Strips {
             cells,
@@ -104,7 +130,12 @@ impl<'a> Areas<'a> {
                 weight,
             })
             .collect();
-        axis::solve(cuts, &weights, &runs, strips, tolerance)
+        match freedom {
+            Freedom::Noise { tolerance } => axis::solve(cuts, &weights, &runs, strips, tolerance),
+            Freedom::Resized { reach, tolerance } => {
+                resized::solve(cuts, &weights, &runs, reach, tolerance)
+            }
+        }
     }
 }
 

@@ -29,6 +29,7 @@
 mod areas;
 mod axis;
 mod differences;
+mod resized;
 mod sizes;
 mod square;
 
@@ -37,7 +38,7 @@ use std::collections::BTreeMap;
 use crate::optim::qp::QpError;
 use crate::shape::{Facade, GridError, LabelGrid, LayoutError, Rect, Region};
 
-use areas::Areas;
+use areas::{Areas, Freedom};
 
 /// Why a layout cannot be regularized.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,6 +49,14 @@ pub enum RegularizeError {
     /// The label grid is not valid.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// Not every region has a kind.
+    #[error("{found} kinds are given for {expected} regions")]
+    Kinds {
+        /// Number of kinds.
+        found: usize,
+        /// Number of regions.
+        expected: usize,
+    },
     /// The layout is not a tiling.
     #[error(transparent)]
     Layout(#[from] LayoutError),
@@ -83,7 +92,7 @@ pub fn regularize_grid(
     grid.check()?;
     let (squared, nicks) = square::square(grid, tolerance);
     let areas = Areas::of_grid(&squared);
-    let (xs, ys) = areas.solve(tolerance)?;
+    let (xs, ys) = areas.solve(Freedom::Noise { tolerance })?;
     let result = moved_grid(&squared, &xs, &ys).merged();
     let before = areas::sizes(&grid.merged());
     let report = Report {
@@ -104,10 +113,46 @@ pub fn regularize_facade(
     tolerance: f64,
 ) -> Result<(Facade, Report), RegularizeError> {
     check_tolerance(tolerance)?;
+    move_lines(facade, |areas| areas.solve(Freedom::Noise { tolerance }))
+}
+
+/// Aligns a resized layout (Wu et al. 2014, Sec. 5, "advanced grammar derivation", Fig. 12): elements
+/// of one kind get one size, then edges within `tolerance` of each other become one line, as far as
+/// the sizes allow. `kinds[i]` is the kind of region `i`; regions of the background keep no size.
+///
+/// Sizes come first; for them edges move by up to `reach`. Equal sizes are equal up to the
+/// precision of the solver. Where no placement gives every kind its one size, as many kinds as
+/// possible get it.
+///
+/// # Errors
+/// [`RegularizeError`] for a layout that is not a tiling, a `reach` or `tolerance` that is not a
+/// positive number, or a number of kinds that is not that of the regions.
+pub fn align_resized(
+    facade: &Facade,
+    kinds: &[u16],
+    reach: f64,
+    tolerance: f64,
+) -> Result<(Facade, Report), RegularizeError> {
+    check_tolerance(reach)?;
+    check_tolerance(tolerance)?;
+    if kinds.len() != facade.regions.len() {
+        return Err(RegularizeError::Kinds {
+            found: kinds.len(),
+            expected: facade.regions.len(),
+        });
+    }
+    let freedom = Freedom::Resized { reach, tolerance };
+    move_lines(facade, |areas| areas.with_kinds(kinds).solve(freedom))
+}
+
+/// A tiling with its cut lines where `solve` puts them.
+fn move_lines(
+    facade: &Facade,
+    solve: impl FnOnce(Areas) -> Result<(Vec<f64>, Vec<f64>), RegularizeError>,
+) -> Result<(Facade, Report), RegularizeError> {
     let grid = LabelGrid::from_facade(facade, None)?;
     let layout = facade.indexed()?;
-    let areas = Areas::of_facade(facade, &layout, &grid);
-    let (xs, ys) = areas.solve(tolerance)?;
+    let (xs, ys) = solve(Areas::of_facade(facade, &layout, &grid))?;
     let regions = facade.regions.iter().zip(&layout.spans).map(|(region, s)| {
         let (x, y) = (xs[s.left], ys[s.bottom]);
         Region {
@@ -124,7 +169,7 @@ pub fn regularize_facade(
         height,
         regions,
     )?;
-    let after = moved_grid(&grid, &xs, &ys);
+    let after = LabelGrid::from_facade(&result, None)?;
     let report = Report {
         largest_move: largest(&grid, &xs, &ys),
         squared: 0,

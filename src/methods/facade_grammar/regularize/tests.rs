@@ -118,3 +118,83 @@ proptest! {
         prop_assert!(report.largest_move <= tolerance + 1e-9);
     }
 }
+
+/// A row of windows of one kind, of another, and of walls, by width.
+fn row(y: f64, parts: &[(&str, f64)]) -> Vec<Region> {
+    let mut x = 0.0;
+    let part = parts.iter().map(|&(label, width)| {
+        x += width;
+        Region {
+            label: label.into(),
+            rect: Rect::new(x - width, y, width, 10.0),
+        }
+    });
+    part.collect()
+}
+
+/// Sizes of the regions of one kind.
+fn widths(facade: &Facade, kinds: &[u16], kind: u16) -> Vec<f64> {
+    let of = facade.regions.iter().zip(kinds).filter(|r| *r.1 == kind);
+    of.map(|(region, _)| region.rect.width).collect()
+}
+
+#[test]
+fn terminals_of_one_kind_become_equal_however_far() {
+    // Two floors whose windows were of one size and were stretched differently; a door of its own.
+    let lower = row(
+        0.0,
+        &[
+            ("wall", 10.0),
+            ("window", 20.0),
+            ("wall", 30.0),
+            ("door", 30.0),
+            ("wall", 10.0),
+        ],
+    );
+    let upper = row(
+        10.0,
+        &[
+            ("wall", 8.0),
+            ("window", 36.0),
+            ("wall", 14.0),
+            ("window", 36.0),
+            ("wall", 6.0),
+        ],
+    );
+    let regions: Vec<Region> = lower.into_iter().chain(upper).collect();
+    let kinds = [0, 1, 0, 2, 0, 0, 1, 0, 1, 0];
+    let facade = Facade::new("f", "cm", 100.0, 20.0, regions).unwrap();
+    let (aligned, report) = align_resized(&facade, &kinds, 30.0, 8.0).unwrap();
+    aligned.check_tiling().unwrap();
+    let windows = widths(&aligned, &kinds, 1);
+    assert_eq!(windows.len(), 3);
+    assert!(
+        windows.iter().all(|w| (w - windows[0]).abs() < 1e-4),
+        "{windows:?}"
+    );
+    assert_eq!((aligned.width, aligned.height), (100.0, 20.0));
+    // The left sides of the first windows become one line.
+    assert_eq!(aligned.regions[1].rect.x, aligned.regions[6].rect.x);
+    assert!(
+        report.largest_move > 8.0 && report.lines.1 < report.lines.0,
+        "{report:?}"
+    );
+}
+
+#[test]
+fn kinds_that_cannot_be_equal_stay_a_tiling() {
+    // No wall that could give way: one window fills a floor, four fill another.
+    let lower = row(0.0, &[("window", 40.0)]);
+    let upper = row(10.0, &[("window", 10.0); 4]);
+    let regions: Vec<Region> = lower.into_iter().chain(upper).collect();
+    let facade = Facade::new("f", "cm", 40.0, 20.0, regions).unwrap();
+    let (aligned, _) = align_resized(&facade, &[0; 5], 40.0, 1.0).unwrap();
+    aligned.check_tiling().unwrap();
+    assert_eq!(widths(&aligned, &[0; 5], 0), [40.0, 10.0, 10.0, 10.0, 10.0]);
+    let few = align_resized(&facade, &[0; 4], 40.0, 1.0);
+    let expected = RegularizeError::Kinds {
+        found: 4,
+        expected: 5,
+    };
+    assert_eq!(few.unwrap_err(), expected);
+}
