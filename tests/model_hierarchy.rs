@@ -109,7 +109,7 @@ fn real(table: &Table, column: &str, row: usize) -> f64 {
 
 #[test]
 fn finds_styles_and_the_lateral_edge() {
-    let (learned, table, styles) = learned(200);
+    let (learned, table, styles) = learned(400);
     assert!(learned.model.styles().abs_diff(4) <= 1);
     assert!(rand_index(&styles_of(&learned.model, &table), &styles) > 0.9);
     let edge = |a: &str, b: &str| (a.to_owned(), b.to_owned());

@@ -97,7 +97,13 @@ pub fn left(ctx: &mut Context) -> Result<()> {
 fn bars(name: &str, of: impl Fn(Contender) -> Vec<f64>) -> Bars {
     let scores = Contender::ALL.map(|c| mean_and_error(&of(c)));
     let categories = Contender::ALL.map(|c| c.name().to_owned()).to_vec();
-    Bars::new(name, "", Scale::new("nats per house"), categories).group_with_errors(BarGroup {
+    Bars::new(
+        name,
+        "",
+        Scale::new("nats per house").from_zero(),
+        categories,
+    )
+    .group_with_errors(BarGroup {
         name: "mean over splits, standard error".into(),
         values: scores.iter().map(|s| Some(s.0)).collect(),
         errors: scores.iter().map(|s| s.1).collect(),

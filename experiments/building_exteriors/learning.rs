@@ -3,7 +3,7 @@
 use super::{data, settings};
 use crate::experiments::Context;
 use crate::model::hierarchy::{Settings, learn};
-use crate::report::{Chart, Figure, Row, Scale, Series};
+use crate::report::{Chart, Corner, Figure, Row, Scale, Series};
 use crate::{Error, Result};
 
 /// Learns from the first 50, 100, 150 and 200 shipped houses, S from 2 to 25 as in the paper.
@@ -47,6 +47,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         Scale::new("houses").from_zero(),
         Scale::new("seconds").from_zero(),
     )
+    .legend(Corner::Above)
     .series(Series::marked("whole search, wall clock", line));
     ctx.figure(
         "learning",

@@ -6,7 +6,7 @@ use super::data;
 use crate::experiments::Context;
 use crate::model::em::Stopping;
 use crate::model::hierarchy::{Priors, fit};
-use crate::report::{Chart, Figure, Row, Scale, Series, Table};
+use crate::report::{Chart, Corner, Figure, Row, Scale, Series, Table};
 use crate::rng::stream;
 use crate::{Error, Result};
 
@@ -15,7 +15,7 @@ const KINDS: [usize; 10] = [5, 3, 2, 4, 4, 3, 4, 3, 3, 3];
 /// Rounds of EM: the same for all sizes, so that only houses differ.
 const ROUNDS: usize = 20;
 
-/// Fits houses drawn with replacement from the shipped ones, 1,000 to as many as the budget allows.
+/// Fits houses drawn with replacement from the shipped ones, up to as many as the budget allows.
 pub fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let sizes: Vec<usize> = ctx.budget().choose(
@@ -86,6 +86,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
          before each size), data included: a table and one standardised copy.",
     );
     let chart = Chart::new("", Scale::new("houses").log(), Scale::new("seconds").log())
+        .legend(Corner::Above)
         .series(Series::marked("20 rounds of EM, wall clock", line));
     ctx.figure(
         "speed",
