@@ -31,7 +31,7 @@ impl Scale {
         self
     }
 
-    /// Starts at zero.
+    /// Starts at zero, or ends there when all values are negative.
     pub fn from_zero(mut self) -> Self {
         self.zero = true;
         self
@@ -62,14 +62,16 @@ impl Scale {
             (low, high) = (low.log10(), high.log10());
         }
         if self.zero && !self.log {
-            low = low.min(0.0);
+            (low, high) = (low.min(0.0), high.max(0.0));
         }
         let pad = match high - low {
             d if d > 0.0 => 0.05 * d,
             _ if self.log => 0.3,
             _ => 0.5 * high.abs().max(1.0),
         };
-        high += pad;
+        if !(self.zero && high == 0.0 && low < 0.0) {
+            high += pad;
+        }
         if !(self.zero && low == 0.0) {
             low -= pad;
         }
