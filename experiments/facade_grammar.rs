@@ -81,7 +81,7 @@ const ARTEFACTS: &[Artefact] = &[
     },
     Artefact {
         name: "figure_11",
-        title: "the example with repeatABA, symsplit and gridsplit",
+        title: "the example with repeatABA and symsplit",
         run: figure_9::figure_11,
     },
     Artefact {
