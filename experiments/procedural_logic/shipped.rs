@@ -3,7 +3,7 @@
 //! The 34 made layouts and facade (i) fall into two groups by family (the first word of the file
 //! name): *houses* (cottage, shophouse, terrace, townhouse; facade (i) is of their size) and *blocks*
 //! (boulevard, hotel, office, palace, tenement, warehouse). They are painted in the classes of the
-//! real sets ([`class`]), and each house also stands at other sizes ([`resized`]), since a structure
+//! real sets (`class`), and each house also stands at other sizes ([`resized`]), since a structure
 //! that occurs once can neither be retrieved nor vary.
 
 use rand::{Rng, RngExt};
