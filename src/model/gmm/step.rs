@@ -11,7 +11,7 @@ use super::block::{BLOCK, Work};
 use super::{Covariance, Fitted, Mixture, Points, Settings};
 
 /// Rows of one parallel piece of work.
-const CHUNK: usize = 8192;
+const CHUNK: usize = 2048;
 
 /// Points relative to their mean, and what to fit to them.
 pub(crate) struct Steps<'a> {
