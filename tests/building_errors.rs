@@ -65,6 +65,21 @@ fn learn_from(rows: &str) -> (i32, String) {
     learn(folder.path(), "t.csv")
 }
 
+/// Completes these rows with the learned model.
+fn complete(folder: &Path, rows: &str) -> (i32, String) {
+    std::fs::write(folder.join("t.csv"), format!("w,h,roof\n{rows}")).unwrap();
+    let args = [
+        "complete",
+        "m.houses.json",
+        "t.csv",
+        "--schema",
+        "s.schema.json",
+        "-n",
+        "1",
+    ];
+    run(folder, &args)
+}
+
 fn refused((code, messages): (i32, String), parts: &[&str]) {
     assert_eq!(code, 1, "{messages}");
     for part in parts {
@@ -103,36 +118,17 @@ fn a_value_that_is_not_finite_is_refused() {
 #[test]
 fn an_unseen_category_is_refused() {
     let folder = learned();
-    let table = "w,h,roof\n9,5,flat\n9,5,dome\n";
-    std::fs::write(folder.path().join("t.csv"), table).unwrap();
-    let args = [
-        "complete",
-        "m.houses.json",
-        "t.csv",
-        "--schema",
-        "s.schema.json",
-        "-n",
-        "1",
-    ];
-    refused(run(folder.path(), &args), &["`roof`", "row 1", "`dome`"]);
+    refused(
+        complete(folder.path(), "9,5,flat\n9,5,dome\n"),
+        &["`roof`", "row 1", "`dome`"],
+    );
 }
 
 #[test]
 fn evidence_of_probability_zero_is_refused() {
     let folder = learned();
-    let table = "w,h,roof\n9,5,flat\n9,1e200,flat\n";
-    std::fs::write(folder.path().join("t.csv"), table).unwrap();
-    let args = [
-        "complete",
-        "m.houses.json",
-        "t.csv",
-        "--schema",
-        "s.schema.json",
-        "-n",
-        "1",
-    ];
     refused(
-        run(folder.path(), &args),
+        complete(folder.path(), "9,5,flat\n9,1e200,flat\n"),
         &["row 1", "probability zero", "`h`"],
     );
     let args = ["sample", "m.houses.json", "--given", "w=1e200"];

@@ -107,17 +107,26 @@ fn real(table: &Table, column: &str, row: usize) -> f64 {
     }
 }
 
+/// At 200 rows three and four styles can score within a nat or two of each other, so one draw in
+/// five may lump two styles; at 400 none does.
 #[test]
 fn finds_styles_and_the_lateral_edge() {
-    let (learned, table, styles) = learned(400);
-    assert!(learned.model.styles().abs_diff(4) <= 1);
-    assert!(rand_index(&styles_of(&learned.model, &table), &styles) > 0.9);
-    let edge = |a: &str, b: &str| (a.to_owned(), b.to_owned());
-    let edges = learned.model.lateral_edges();
-    assert!(
-        edges.contains(&edge("size", "area")) || edges.contains(&edge("area", "size")),
-        "{edges:?}"
-    );
+    for (n, least_found) in [(200, 4), (400, 5)] {
+        let found = (1..=5).filter(|&draw| {
+            let (table, styles) = made(n, 4, draw);
+            let model = learn(&table, &groups(), &settings(), 7).unwrap().model;
+            assert!(model.styles().abs_diff(4) <= 1);
+            let edges = model.lateral_edges();
+            let area = |a: &str, b: &str| [a, b] == ["size", "area"] || [a, b] == ["area", "size"];
+            assert!(
+                edges.iter().any(|(a, b)| area(a, b)),
+                "{n} rows, draw {draw}: {edges:?}"
+            );
+            rand_index(&styles_of(&model, &table), &styles) > 0.9
+        });
+        let found = found.count();
+        assert!(found >= least_found, "{n} rows: {found} of 5 draws");
+    }
 }
 
 #[test]

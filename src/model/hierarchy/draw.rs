@@ -7,7 +7,6 @@ use super::super::conjugate::Linear;
 use super::super::error::ModelError;
 use super::super::linalg::cholesky;
 use super::super::table::{MISSING, Table};
-use super::fit::Problem;
 use super::infer::{Scratch, joint};
 use super::params::Priors;
 use super::query::Hierarchy;
@@ -139,12 +138,7 @@ impl Hierarchy {
         };
         let mut styles = Vec::with_capacity(drawn.rows);
         let priors = Priors::default();
-        let problem = Problem {
-            schema: &self.schema,
-            rows: &rows,
-            priors: &priors,
-            shape: self.shape.clone(),
-        };
+        let problem = self.problem(&rows, &priors);
         let mut scratch = Scratch::new(&self.shape);
         for i in 0..rows.rows {
             let mut ways: Vec<(Vec<u32>, f64)> = Vec::new();

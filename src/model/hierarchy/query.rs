@@ -125,14 +125,17 @@ impl Hierarchy {
         f: impl FnOnce(&Problem, &Rows) -> Result<T, ModelError>,
     ) -> Result<T, ModelError> {
         let rows = self.schema.encode(data)?;
-        let priors = Priors::default();
-        let problem = Problem {
+        f(&self.problem(&rows, &Priors::default()), &rows)
+    }
+
+    /// These rows under this model; the priors are not asked.
+    pub(super) fn problem<'a>(&'a self, rows: &'a Rows, priors: &'a Priors) -> Problem<'a> {
+        Problem {
             schema: &self.schema,
-            rows: &rows,
-            priors: &priors,
+            rows,
+            priors,
             shape: self.shape.clone(),
-        };
-        f(&problem, &rows)
+        }
     }
 
     /// `log p(row)` of every row, nats, in the columns' own units; missing values and columns that

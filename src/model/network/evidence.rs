@@ -47,6 +47,13 @@ pub(crate) struct Known {
     pub real: Vec<f64>,
 }
 
+impl Known {
+    /// Known categories, and the first category of every other node: an assignment to start from.
+    pub fn assignment(&self) -> Vec<usize> {
+        self.discrete.iter().map(|v| v.unwrap_or(0)).collect()
+    }
+}
+
 /// Continuous variables that unknown values link, given the discrete parents of all of them.
 #[derive(Debug)]
 pub(crate) struct Linked {
@@ -229,7 +236,7 @@ impl Network {
         vars.sort_unstable();
         vars.dedup();
         let count: usize = vars.iter().map(|&v| self.sizes[v]).product();
-        let mut assignment: Vec<usize> = known.discrete.iter().map(|v| v.unwrap_or(0)).collect();
+        let mut assignment = known.assignment();
         let mut particles = Vec::with_capacity(count);
         let mut missing = Vec::new();
         for _ in 0..count {

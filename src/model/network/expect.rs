@@ -70,12 +70,7 @@ impl Problem<'_> {
                 .find(|b| vars.iter().all(|v| b.vars.contains(v)));
             found.map_or_else(Vec::new, |b| distribution(&b.onto(vars, sizes, Mode::Sum)))
         };
-        let fixed: Vec<usize> = question
-            .known
-            .discrete
-            .iter()
-            .map(|v| v.unwrap_or(0))
-            .collect();
+        let fixed = question.known.assignment();
         for (n, counts) in stats
             .counts
             .iter_mut()

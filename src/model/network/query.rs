@@ -210,12 +210,7 @@ impl Network {
     ) -> Result<Vec<Explanation>, ModelError> {
         let question = self.question(self.known(evidence)?)?;
         let tree = self.tree(&question, Mode::Max)?;
-        let start: Vec<usize> = question
-            .known
-            .discrete
-            .iter()
-            .map(|v| v.unwrap_or(0))
-            .collect();
+        let start = question.known.assignment();
         let found = tree.best(count, &start);
         Ok(found
             .into_iter()
@@ -233,12 +228,7 @@ impl Network {
     pub fn explain(&self, evidence: &Evidence) -> Result<Explanation, ModelError> {
         let question = self.question(self.known(evidence)?)?;
         let tree = self.tree(&question, Mode::Max)?;
-        let mut assignment: Vec<usize> = question
-            .known
-            .discrete
-            .iter()
-            .map(|v| v.unwrap_or(0))
-            .collect();
+        let mut assignment = question.known.assignment();
         tree.decode(&mut assignment, None::<&mut SmallRng>);
         Ok(Explanation {
             values: self.named(&assignment),
@@ -312,12 +302,7 @@ impl Network {
         tree: &Tree,
         rng: &mut R,
     ) -> (Vec<usize>, Vec<f64>) {
-        let mut assignment: Vec<usize> = question
-            .known
-            .discrete
-            .iter()
-            .map(|v| v.unwrap_or(0))
-            .collect();
+        let mut assignment = question.known.assignment();
         let mut real = question.known.real.clone();
         tree.decode(&mut assignment, Some(rng));
         for linked in &question.linked {
