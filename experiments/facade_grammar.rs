@@ -16,6 +16,7 @@ mod optimality;
 mod published;
 mod ratios;
 mod regularization;
+mod room;
 mod runs;
 mod speed;
 mod table_1;

@@ -1,8 +1,8 @@
 //! Fig. 14: cost and time against iterations.
 
+use cpu_time::ThreadTime;
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
@@ -137,7 +137,7 @@ fn trace(
         ..Settings::default()
     };
     let points = Rc::new(RefCell::new(Vec::new()));
-    let last = Rc::new(RefCell::new((Instant::now(), 0u64, f64::INFINITY)));
+    let last = Rc::new(RefCell::new((ThreadTime::now(), 0u64, f64::INFINITY)));
     let (seen, clock) = (Rc::clone(&points), Rc::clone(&last));
     let observer = move |step: crate::optim::Step| {
         let mut clock = clock.borrow_mut();
@@ -149,7 +149,7 @@ fn trace(
                 best: clock.2,
                 pace: clock.0.elapsed().as_secs_f64() / every as f64,
             });
-            clock.0 = Instant::now();
+            clock.0 = ThreadTime::now();
         }
     };
     infer_observed(std::slice::from_ref(facade), &settings, observer).map_err(Error::method)?;

@@ -1,6 +1,6 @@
 //! How far from optimal: lower bounds and proofs for small facades.
 
-use std::time::Instant;
+use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +36,7 @@ struct Answer {
     nodes: u64,
     types: usize,
     weak: bool,
-    /// Seconds of branch and bound.
+    /// Processor seconds of branch and bound.
     seconds: f64,
 }
 
@@ -157,7 +157,7 @@ fn bound(
         operations: question.operations,
         ..Settings::default()
     };
-    let start = Instant::now();
+    let start = ThreadTime::now();
     let bound = lower_bound(&instance.facade, &settings, limits).map_err(Error::method)?;
     Ok(Answer {
         terminals: found.terminals,

@@ -6,7 +6,7 @@ use super::runs::Solver;
 use super::{BEST, PAPER};
 use crate::experiments::Context;
 use crate::methods::facade_grammar::Method;
-use crate::report::Row;
+use crate::report::{Align, Row, Table};
 
 /// Sets the ratio of average costs of each method to both configurations of ADP beside the ratio
 /// of the paper's printed averages. `(name, random)`; random methods have `many` iterations.
@@ -45,5 +45,35 @@ pub fn compare(
             let what = format!("cost of {name} over ADP, {dataset}");
             ctx.compare(what, theirs.clone(), parts.join(", "));
         }
+    }
+}
+
+/// How often the best configuration is lowest, on each data set.
+pub fn wins(ctx: &mut Context, found: &Comparison, many: u64) {
+    let name = Solver::Infer(BEST, many).name();
+    let Some(best) = found.column(&name) else {
+        return;
+    };
+    for dataset in found.datasets() {
+        let title = format!("{dataset}: facades on which {name} costs less, the same, more than");
+        let mut table = Table::new(title).column("method", Align::Left).numbers([
+            "less",
+            "same",
+            "more",
+            "average lower by %",
+        ]);
+        for s in (0..found.solvers.len()).filter(|&s| s != best) {
+            let [less, same, more] = found.wins(dataset, best, s);
+            let saving =
+                100.0 * (1.0 - found.average_mean(dataset, best) / found.average_mean(dataset, s));
+            table.row([
+                found.solvers[s].name(),
+                less.to_string(),
+                same.to_string(),
+                more.to_string(),
+                format!("{saving:.1}"),
+            ]);
+        }
+        ctx.table(&table);
     }
 }

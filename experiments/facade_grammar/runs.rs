@@ -1,6 +1,6 @@
 //! One run of one method on one facade, measured and checked.
 
-use std::time::Instant;
+use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -72,14 +72,14 @@ pub struct Answer {
     pub rules: usize,
     /// Terminal regions.
     pub terminals: usize,
-    /// Seconds of inference on one thread.
+    /// Processor seconds of inference, which runs on one thread.
     pub seconds: f64,
 }
 
 /// Runs a method on a facade, or on several for one joint grammar; the grammar derives back to
 /// them, or this fails.
 pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer)> {
-    let start = Instant::now();
+    let start = ThreadTime::now();
     let grammar = match (question.solver, facades) {
         (Solver::ProceduralLogic, [facade]) => {
             baseline_grammar(facade, &Parameters::COMPRESSION).map_err(Error::method)?

@@ -4,7 +4,7 @@ use super::compare::{self, Comparison, Plan};
 use super::data::FIGURE_9;
 use super::published::Published;
 use super::runs::Solver;
-use super::{BEST, PAPER, ratios};
+use super::{BEST, PAPER, ratios, room};
 use crate::Result;
 use crate::experiments::Context;
 use crate::methods::facade_grammar::{Method, Operations};
@@ -41,17 +41,13 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         many,
         &[("importance", true), ("greedy", false)],
     );
-    let best = Solver::Infer(BEST, many).name();
-    if let Some(best) = found.column(&best) {
-        for dataset in found.datasets() {
-            wins(ctx, &found, dataset, best);
-        }
-    }
+    ratios::wins(ctx, &found, many);
+    room::table(ctx, &found, many)?;
     ctx.figure("table_1", &picture(&found))?;
     ctx.note(
         "Facades: that of Fig. 9 is facade (i) of the paper; its other facades are not public, so averages over facades are \
          of other facades than the paper's and only ratios compare. `adp_paper` follows the text, `adp_best` is this \
-         project's own second stage. Seconds are of one thread on the machine that `run.json` names; the paper's are of a 3.07 GHz Xeon X5675.",
+         project's own second stage. Seconds are processor time of one thread on the machine that `run.json` names; the paper's are of a 3.07 GHz Xeon X5675.",
     );
     Ok(())
 }
@@ -94,29 +90,6 @@ fn facade_i(ctx: &mut Context, found: &Comparison, printed: &Published, many: u6
             ours,
         );
     }
-}
-
-/// How often the best configuration is lowest.
-fn wins(ctx: &mut Context, found: &Comparison, dataset: &str, best: usize) {
-    let mut table = Table::new(format!(
-        "{dataset}: facades on which {} costs less, the same, more than",
-        found.solvers[best].name()
-    ))
-    .column("method", Align::Left)
-    .numbers(["less", "same", "more", "mean saving %"]);
-    for s in (0..found.solvers.len()).filter(|&s| s != best) {
-        let [less, same, more] = found.wins(dataset, best, s);
-        let saving =
-            100.0 * (1.0 - found.average_mean(dataset, best) / found.average_mean(dataset, s));
-        table.row([
-            found.solvers[s].name(),
-            less.to_string(),
-            same.to_string(),
-            more.to_string(),
-            format!("{saving:.1}"),
-        ]);
-    }
-    ctx.table(&table);
 }
 
 /// The paper's table, for the eye.

@@ -51,6 +51,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         ("symmetry", false),
     ];
     ratios::compare(ctx, &found, &printed, many, &methods);
+    ratios::wins(ctx, &found, many);
     ctx.note(
         "The columns U1 to U7 of the paper are grammars that people made; they need people, and are in `published.csv` only. \
          Every grammar here was derived back to its facade and costed by the same evaluator.",
