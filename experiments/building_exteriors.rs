@@ -1,6 +1,7 @@
 //! Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings*: how houses
 //! look, on a database with a known truth and on two sets of real houses.
 
+mod averages;
 mod data;
 mod figure_10;
 mod figure_11;

@@ -49,7 +49,7 @@ pub fn left(ctx: &mut Context) -> Result<()> {
     // Growth: few cardinalities of S around the truth, since time is linear in houses.
     let sizes = match ctx.budget() {
         Budget::Smoke => vec![50],
-        Budget::Default => vec![100, 200, 500, 1000],
+        Budget::Default => vec![100, 200, 500],
         Budget::Paper => vec![100, 200, 500, 1000, 2000, 5000],
     };
     ctx.setting("sizes", sizes.clone());

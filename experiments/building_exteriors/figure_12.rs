@@ -1,5 +1,6 @@
 //! Fig. 12: held-out negative log-likelihood.
 
+use super::averages::mean_and_error;
 use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::experiments::Context;
@@ -7,19 +8,6 @@ use crate::methods::building_exteriors::compare::{Contender, held_out, split};
 use crate::methods::building_exteriors::data::Dataset;
 use crate::report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
 use crate::{Error, Result};
-
-/// Mean and standard error of the mean; no error for a single value.
-pub(super) fn mean_and_error(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-    let error = if n > 1.0 {
-        (squares / (n - 1.0) / n).sqrt()
-    } else {
-        0.0
-    };
-    (mean, error)
-}
 
 /// Fig. 12 left: five models over five splits of 80/20, on all three sets.
 pub fn left(ctx: &mut Context) -> Result<()> {
