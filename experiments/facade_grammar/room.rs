@@ -83,7 +83,7 @@ pub fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
         "saved %",
         "possible %, at most",
         "proven optimal",
-        "proven to leave less than 5 %",
+        &format!("proven to leave less than {ASKED} %"),
         "weak bounds",
     ]);
     let rooms = real.iter().zip(&bounds).map(|(&i, bound)| {

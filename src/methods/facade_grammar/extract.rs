@@ -13,9 +13,8 @@ pub(crate) fn grammar(types: &mut Types, facades: &[Facade], rules: &[AddRule]) 
     let by_type: FxHashMap<TypeId, &Choice> = rules.iter().map(|r| (r.id, &*r.choice)).collect();
     let mut names = Names::new(types, facades.len());
     let mut starts = Vec::new();
-    let mut order: Vec<TypeId> = Vec::new();
     for (facade, root) in facades.iter().zip(types.roots.clone()) {
-        let symbol = names.of(types, root, &mut order);
+        let symbol = names.of(types, root);
         starts.push(Start {
             name: facade.name.clone(),
             symbol,
@@ -25,12 +24,11 @@ pub(crate) fn grammar(types: &mut Types, facades: &[Facade], rules: &[AddRule]) 
     }
     let mut written = Vec::new();
     let mut next = 0;
-    while next < order.len() {
-        let id = order[next];
+    while let Some(&id) = names.order.get(next) {
         next += 1;
         if let Some(choice) = by_type.get(&id) {
-            let symbol = names.of(types, id, &mut order);
-            let operation = operation(types, id, choice, &mut names, &mut order);
+            let symbol = names.of(types, id);
+            let operation = operation(types, id, choice, &mut names);
             written.push(Rule {
                 symbol,
                 weight: None,
@@ -45,18 +43,12 @@ pub(crate) fn grammar(types: &mut Types, facades: &[Facade], rules: &[AddRule]) 
     }
 }
 
-fn operation(
-    types: &mut Types,
-    id: TypeId,
-    choice: &Choice,
-    names: &mut Names,
-    order: &mut Vec<TypeId>,
-) -> Operation {
+fn operation(types: &mut Types, id: TypeId, choice: &Choice, names: &mut Names) -> Operation {
     let mut strips = |axis| -> Vec<Successor> {
         let sizes = sizes(types, id, axis, &choice.lines);
         let successors = choice.successors.iter().zip(sizes);
         successors
-            .map(|(&s, size)| Successor::new(names.of(types, s, order), size))
+            .map(|(&s, size)| Successor::new(names.of(types, s), size))
             .collect()
     };
     match choice.arrangement {
@@ -79,7 +71,19 @@ fn operation(
             let a = successors.remove(0);
             Operation::RepeatAba { axis, a, b }
         }
-        Arrangement::Grid => grid(types, id, choice, names, order),
+        Arrangement::Grid => {
+            let absolute = |sizes: Vec<f64>| sizes.into_iter().map(Size::Absolute).collect();
+            let cells = choice
+                .successors
+                .chunks(choice.lines.len() - 1)
+                .map(|row| row.iter().map(|&s| names.of(types, s)).collect())
+                .collect();
+            Operation::GridSplit {
+                columns: absolute(sizes(types, id, Axis::X, &choice.lines)),
+                rows: absolute(sizes(types, id, Axis::Y, &choice.rows)),
+                cells,
+            }
+        }
     }
 }
 
@@ -95,33 +99,13 @@ fn sizes(types: &mut Types, id: TypeId, axis: Axis, lines: &[u16]) -> Vec<f64> {
     lines.windows(2).map(|w| at(w[1]) - at(w[0])).collect()
 }
 
-fn grid(
-    types: &mut Types,
-    id: TypeId,
-    choice: &Choice,
-    names: &mut Names,
-    order: &mut Vec<TypeId>,
-) -> Operation {
-    let absolute = |sizes: Vec<f64>| sizes.into_iter().map(Size::Absolute).collect();
-    let columns = absolute(sizes(types, id, Axis::X, &choice.lines));
-    let rows = absolute(sizes(types, id, Axis::Y, &choice.rows));
-    let cells = choice
-        .successors
-        .chunks(choice.lines.len() - 1)
-        .map(|row| row.iter().map(|&s| names.of(types, s, order)).collect())
-        .collect();
-    Operation::GridSplit {
-        columns,
-        rows,
-        cells,
-    }
-}
-
 /// Symbols of types: the label of a terminal, `Facade` for a root, `NT1`, `NT2`, ... for the rest.
 struct Names {
     prefix: String,
     axiom: String,
     by_type: FxHashMap<TypeId, String>,
+    /// Types that have a symbol of their own, in the order in which they were named.
+    order: Vec<TypeId>,
     several: bool,
 }
 
@@ -139,11 +123,12 @@ impl Names {
             prefix: pick("NT"),
             axiom: pick("Facade"),
             by_type: FxHashMap::default(),
+            order: Vec::new(),
             several: facades > 1,
         }
     }
 
-    fn of(&mut self, types: &Types, id: TypeId, order: &mut Vec<TypeId>) -> String {
+    fn of(&mut self, types: &Types, id: TypeId) -> String {
         if types.is_terminal(id) {
             return types.labels[id as usize].clone();
         }
@@ -159,7 +144,7 @@ impl Names {
             (false, true) => format!("{}{}", self.prefix, count + 1),
         };
         self.by_type.insert(id, name.clone());
-        order.push(id);
+        self.order.push(id);
         name
     }
 }
