@@ -33,6 +33,9 @@ pub struct Areas<'a> {
     labels: Vec<u16>,
     /// Whether an area is a rectangular element, to be served first.
     is_element: Vec<bool>,
+    /// Whether a stretch of its area may vanish at a cell: background, and what odd elements have
+    /// beside their [bodies](body).
+    yields: Vec<bool>,
 }
 
 impl<'a> Areas<'a> {
@@ -42,14 +45,31 @@ impl<'a> Areas<'a> {
         let areas = components(grid, whole(grid), &mut of_cell);
         let behind: Vec<bool> = grid.labels.iter().map(|l| is_background(l)).collect();
         let front = |label: u16| !behind[usize::from(label)];
+        let mut yields: Vec<bool> = of_cell
+            .iter()
+            .map(|&area| {
+                let area = &areas[area as usize];
+                !(front(area.label) && area.is_rectangle())
+            })
+            .collect();
+        for (number, area) in areas.iter().enumerate() {
+            if front(area.label) && !area.is_rectangle() {
+                let body = body(grid, &of_cell, number as u32, area.bounds);
+                for j in body.bottom..body.top {
+                    let row = j * grid.columns();
+                    yields[row + body.left..row + body.right].fill(false);
+                }
+            }
+        }
         Self {
             grid,
-            of_cell,
+            yields,
             labels: areas.iter().map(|a| a.label).collect(),
             is_element: areas
                 .iter()
                 .map(|a| a.is_rectangle() && front(a.label))
                 .collect(),
+            of_cell,
         }
     }
 
@@ -67,6 +87,7 @@ impl<'a> Areas<'a> {
         let front = facade.regions.iter().map(|r| !is_background(&r.label));
         Self {
             grid,
+            yields: vec![false; of_cell.len()],
             of_cell,
             labels,
             is_element: front.collect(),
@@ -86,24 +107,33 @@ impl<'a> Areas<'a> {
         let grid = self.grid;
         let (columns, rows) = (grid.columns(), grid.rows());
         let turned = (0..columns).flat_map(|i| (0..rows).map(move |j| j * columns + i));
-        let turned: Vec<u32> = turned.map(|cell| self.of_cell[cell]).collect();
-        let xs = self.solve_axis(&grid.xs, &grid.ys, &self.of_cell, freedom)?;
-        let ys = self.solve_axis(&grid.ys, &grid.xs, &turned, freedom)?;
+        let (cells, yields): (Vec<u32>, Vec<bool>) = turned
+            .map(|cell| (self.of_cell[cell], self.yields[cell]))
+            .unzip();
+        let along_x = self.strips(&self.of_cell, &self.yields, columns);
+        let along_y = self.strips(&cells, &yields, rows);
+        let xs = self.solve_axis(&grid.xs, &grid.ys, along_x, freedom)?;
+        let ys = self.solve_axis(&grid.ys, &grid.xs, along_y, freedom)?;
         Ok((xs, ys))
     }
 
-    /// Along one axis: `cells` are strips across which `cuts` run, `across` bounds the strips.
+    fn strips<'b>(&'b self, cells: &'b [u32], yields: &'b [bool], length: usize) -> Strips<'b> {
+        Strips {
+            cells,
+            yields,
+            length,
+            labels: &self.labels,
+        }
+    }
+
+    /// Along one axis: `cuts` run across `strips`, `across` bounds the strips.
     fn solve_axis(
         &self,
         cuts: &[f64],
         across: &[f64],
-        cells: &[u32],
+        strips: Strips,
         freedom: Freedom,
     ) -> Result<Vec<f64>, RegularizeError> {
-        let strips = Strips {
-            cells,
-            length: cuts.len() - 1,
-        };
         let mut runs: BTreeMap<(bool, u16, usize, usize), f64> = BTreeMap::new();
         let mut weights = vec![0.0; cuts.len()];
         for (strip, row) in strips.rows().enumerate() {
@@ -137,6 +167,37 @@ impl<'a> Areas<'a> {
             }
         }
     }
+}
+
+/// The part of an odd element that never vanishes: of the rectangles that reach from end to end of one
+/// of its rows and as far up and down as the element does there, the largest.
+fn body(grid: &LabelGrid, of_cell: &[u32], area: u32, bounds: Span) -> Span {
+    let columns = grid.columns();
+    let owns = |i: usize, j: usize| of_cell[j * columns + i] == area;
+    let mut largest = (0.0, bounds);
+    for j in bounds.bottom..bounds.top {
+        let mut left = bounds.left;
+        for right in bounds.left..=bounds.right {
+            if right < bounds.right && owns(right, j) {
+                continue;
+            }
+            let full = |j: &usize| (left..right).all(|i| owns(i, *j));
+            let bottom = j - (bounds.bottom..j).rev().take_while(full).count();
+            let top = j + (j..bounds.top).take_while(full).count();
+            let size = (grid.xs[right] - grid.xs[left]) * (grid.ys[top] - grid.ys[bottom]);
+            if size > largest.0 {
+                let span = Span {
+                    left,
+                    right,
+                    bottom,
+                    top,
+                };
+                largest = (size, span);
+            }
+            left = right + 1;
+        }
+    }
+    largest.1
 }
 
 fn whole(grid: &LabelGrid) -> Span {

@@ -28,8 +28,12 @@ pub struct Run {
 pub struct Strips<'a> {
     /// Area of each cell.
     pub cells: &'a [u32],
+    /// Whether each cell may vanish although its area does not continue beside it.
+    pub yields: &'a [bool],
     /// Cells in a strip.
     pub length: usize,
+    /// Label number of each area.
+    pub labels: &'a [u16],
 }
 
 impl<'a> Strips<'a> {
@@ -38,17 +42,28 @@ impl<'a> Strips<'a> {
         self.cells.chunks_exact(self.length)
     }
 
-    /// Whether the cells between lines `first` and `last` can vanish without any area vanishing or
-    /// two areas meeting that did not: in each strip they continue what lies before, then what lies
-    /// behind.
-    fn can_vanish(self, first: usize, last: usize) -> bool {
-        let inside = first > 0 && last < self.length;
-        inside
-            && self.rows().all(|row| {
-                let (before, behind) = (row[first - 1], row[last]);
-                let rest = row[first..last].iter().skip_while(|&&c| c == before);
-                rest.clone().all(|&c| c == behind)
-            })
+    /// Whether the cells between lines `first` and `last` can vanish: in each strip they continue what
+    /// lies before, then what lies behind; a `narrow` stretch between the two may vanish when all of it
+    /// yields and no two areas of one label come to touch.
+    fn can_vanish(self, first: usize, last: usize, narrow: impl Fn(usize, usize) -> bool) -> bool {
+        let yields = self.yields.chunks_exact(self.length);
+        self.rows().zip(yields).all(|(row, yields)| {
+            let before = first.checked_sub(1).map(|k| row[k]);
+            let behind = row.get(last).copied();
+            let from = (first..last)
+                .find(|&k| Some(row[k]) != before)
+                .unwrap_or(last);
+            let to = (from..last)
+                .rev()
+                .find(|&k| Some(row[k]) != behind)
+                .map_or(from, |k| k + 1);
+            let label = |area: u32| self.labels[area as usize];
+            let touch = |(a, b): (u32, u32)| a != b && label(a) == label(b);
+            from == to
+                || narrow(from, to)
+                    && yields[from..to].iter().all(|&y| y)
+                    && !before.zip(behind).is_some_and(touch)
+        })
     }
 }
 
@@ -92,10 +107,13 @@ pub fn solve(
         true => rounded,
         false => system.values().to_vec(),
     };
-    let position = |k: usize| whole[groups.of_line[k]] as f64 * quantum;
-    let mut moved: Vec<f64> = (0..cuts.len()).map(position).collect();
     // The total size is kept to the bit.
-    moved[cuts.len() - 1] = cuts[cuts.len() - 1];
+    let end = groups.of_line[cuts.len() - 1];
+    let position = |&group: &usize| match group == end {
+        true => cuts[cuts.len() - 1],
+        false => whole[group] as f64 * quantum,
+    };
+    let moved = groups.of_line.iter().map(position).collect();
     Ok(moved)
 }
 
@@ -149,7 +167,8 @@ impl Groups {
             let reach = tolerance / quantum + 1e-9;
             let (mut lower, mut upper) = (at(end - 1) - reach, at(first) + reach);
             if first == 0 || end == cuts.len() {
-                (lower, upper) = (at(first).round(), at(first).round());
+                let fixed = if first == 0 { at(0) } else { at(end - 1) };
+                (lower, upper) = (fixed.round(), fixed.round());
             }
             groups.center.push(center);
             groups.weight.push(weight.max(1e-3));
@@ -223,7 +242,7 @@ impl Groups {
     }
 }
 
-/// Merges neighbouring lines, nearest first, that lie within the tolerance of each other.
+/// Merges neighbouring lines, nearest first, that can meet without moving further than the tolerance.
 fn merge_lines(
     cuts: &[f64],
     weights: &[f64],
@@ -239,13 +258,17 @@ fn merge_lines(
     loop {
         let spread = |g: usize| cuts[last_of(&firsts, g)] - cuts[firsts[g - 1]];
         let candidates = (1..firsts.len()).filter(|&g| !fixed[firsts[g]]);
-        let near = candidates.filter(|&g| spread(g) <= tolerance);
+        // The ends of the layout stay where they are; elsewhere both lines may move.
+        let at_an_end = |g: usize| firsts[g - 1] == 0 || last_of(&firsts, g) + 1 == cuts.len();
+        let reach = |g: usize| tolerance * if at_an_end(g) { 1.0 } else { 2.0 };
+        let near = candidates.filter(|&g| spread(g) <= reach(g));
         let Some(g) = near.min_by(|&a, &b| spread(a).total_cmp(&spread(b))) else {
             return build(&firsts);
         };
         let line = firsts.remove(g);
         let (first, last) = (firsts[g - 1], last_of(&firsts, g - 1));
-        if !strips.can_vanish(first, last) || build(&firsts).system().is_none() {
+        let narrow = |from: usize, to: usize| cuts[to] - cuts[from] <= tolerance;
+        if !strips.can_vanish(first, last, narrow) || build(&firsts).system().is_none() {
             firsts.insert(g, line);
             fixed[line] = true;
         }

@@ -7,18 +7,21 @@
 //! minimise    sum_k w_k (v_k - x_k)^2             x_k: cut coordinates, w_k: length of edge on them
 //! subject to  |v_k - x_k| <= tolerance            no edge moves further
 //!             v_0 = 0, v_n = W                    the total size is kept
-//!             v_(k+1) - v_k >= gap_k > 0          order, hence topology, is kept
+//!             v_(k+1) - v_k >= gap_k > 0          lines that do not merge keep their order
 //!             v_i = v_j                           nearly aligned edges, one line each
 //!             v_r - v_l = s_c                     nearly equal sizes of one label, one size each
 //! ```
 //! once along x and once along y, which nothing connects. Which equalities hold is chosen first:
-//! neighbouring cut lines are merged, nearest first, when they lie within the tolerance and no area
-//! would vanish; sizes of one label that lie within twice the tolerance (it has two ends) form a
+//! neighbouring cut lines are merged, nearest first, when no edge moves further than the tolerance and
+//! nothing is lost between them but slivers no wider than the tolerance: of wall, and of elements that
+//! are no rectangles, beside the largest part of them that is one. So where a sill lies three pixels
+//! below one window and touches another, it comes to touch both; elements of one label never come to
+//! touch. Then sizes of one label that lie within twice the tolerance (a size has two ends) form a
 //! cluster, elements before walls, which is split into as large parts as can be when no placement can
-//! give it one size. Sizes and positions are whole numbers of a quantum (pixels when the input is in whole pixels): the program gives real sizes, which are
-//! rounded where that stays feasible; with sizes fixed, what remains are constraints on differences
-//! with whole right-hand sides, for which rounding a solution keeps every one of them. So equal sizes
-//! are equal exactly.
+//! give it one size. Sizes and positions are whole numbers of a quantum (pixels when the input is in
+//! whole pixels): the program gives real sizes, which are rounded where that stays feasible; with sizes
+//! fixed, what remains are constraints on differences with whole right-hand sides, for which rounding a
+//! solution keeps every one of them. So equal sizes are equal exactly.
 //!
 //! # Deviations and readings
 //! - The paper only says that quadratic programming is used. The choice of equalities is ours.
@@ -104,7 +107,8 @@ pub fn regularize_grid(
     Ok((result, report))
 }
 
-/// Regularizes a tiling: every region keeps its place in the list and its neighbours.
+/// Regularizes a tiling: every region keeps its place in the list and its neighbours, walls included, so
+/// that slivers of wall stay.
 ///
 /// # Errors
 /// [`RegularizeError`] for a layout that is not a tiling or a tolerance that is not a positive number.

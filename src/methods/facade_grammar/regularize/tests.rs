@@ -55,6 +55,72 @@ fn thin_walls_between_windows_stay() {
     assert_eq!(windows.iter().filter(|r| r.label == "window").count(), 3);
 }
 
+/// Painted over a wall in their order: label, x, y, width, height.
+fn painted(parts: &[(&str, f64, f64, f64, f64)]) -> LabelGrid {
+    let region = |&(label, x, y, width, height): &(&str, f64, f64, f64, f64)| Region {
+        label: label.into(),
+        rect: Rect::new(x, y, width, height),
+    };
+    let regions = parts.iter().map(region).collect();
+    let facade = Facade::new("p", "px", 100.0, 60.0, regions).unwrap();
+    LabelGrid::from_facade(&facade, Some("wall")).unwrap()
+}
+
+/// Distinct terminals of the tiling, and how many there are.
+fn terminals(grid: &LabelGrid) -> (usize, usize) {
+    let regions = decompose(grid).unwrap().facade.regions;
+    let key = |r: &Region| (r.label.clone(), r.rect.width as i64, r.rect.height as i64);
+    let kinds: std::collections::BTreeSet<_> = regions.iter().map(key).collect();
+    (kinds.len(), regions.len())
+}
+
+#[test]
+fn slivers_of_wall_between_elements_vanish() {
+    // Under three windows a sill: one touches its window, one lies two pixels below, one is overlapped
+    // by a pixel, and its window starts a pixel further left.
+    let grid = painted(&[
+        ("window", 10.0, 20.0, 20.0, 30.0),
+        ("window", 40.0, 22.0, 20.0, 28.0),
+        ("window", 69.0, 19.0, 21.0, 31.0),
+        ("sill", 10.0, 16.0, 20.0, 4.0),
+        ("sill", 40.0, 16.0, 20.0, 4.0),
+        ("sill", 70.0, 16.0, 20.0, 4.0),
+    ]);
+    let (result, report) = regularize_grid(&grid, 2.0).unwrap();
+    assert!(report.largest_move <= 2.0);
+    assert_eq!((report.sizes["window"].1, report.sizes["sill"].1), (1, 1));
+    // Walls below, above and between, windows and sills: three strips, the middle one of columns.
+    assert_eq!(terminals(&result).1, 2 + 4 + 3 * 2);
+    // Without room to move, all is kept.
+    let (kept, _) = regularize_grid(&grid, 0.5).unwrap();
+    assert!(terminals(&kept).1 > terminals(&result).1);
+}
+
+#[test]
+fn a_sliver_wider_than_the_tolerance_stays() {
+    let grid = painted(&[
+        ("window", 10.0, 20.0, 20.0, 30.0),
+        ("sill", 10.0, 13.0, 20.0, 4.0),
+    ]);
+    let (result, _) = regularize_grid(&grid, 2.0).unwrap();
+    assert_eq!(terminals(&result).1, terminals(&grid).1);
+    let (result, _) = regularize_grid(&grid, 3.0).unwrap();
+    // Window and sill stand between two walls of their common height.
+    assert_eq!(terminals(&result).1, 2 + 2 + 2);
+}
+
+#[test]
+fn slivers_at_the_border_vanish_and_the_size_stays() {
+    let grid = painted(&[("cornice", 2.0, 40.0, 98.0, 18.0)]);
+    let (result, report) = regularize_grid(&grid, 2.0).unwrap();
+    assert_eq!(report.sizes["cornice"].1, 1);
+    assert_eq!(terminals(&result).1, 2);
+    assert_eq!(
+        (result.xs[result.columns()], result.ys[result.rows()]),
+        (100.0, 60.0)
+    );
+}
+
 #[test]
 fn missing_corners_are_filled() {
     let mut grid = wall(30, 20, &[(5, 5, 8, 8), (18, 5, 8, 8)]);
@@ -93,6 +159,12 @@ fn bad_tolerances_are_refused() {
     }
 }
 
+/// Number of connected areas of windows.
+fn windows_of(grid: &LabelGrid) -> usize {
+    let elements = crate::shape::elements_of_grid(grid).unwrap();
+    elements.regions.len()
+}
+
 proptest! {
     /// Rectangles anywhere: nothing vanishes, nothing moves too far, tilings stay splittable.
     #[test]
@@ -109,6 +181,9 @@ proptest! {
         prop_assert!(result.xs.iter().chain(&result.ys).all(|v| v.fract() == 0.0));
         let tiling = decompose(&result).unwrap().facade;
         prop_assert_eq!(splittable(&tiling), Ok(()));
+        // Elements neither vanish nor touch others of their label.
+        let (squared, _) = square::square(&grid, tolerance);
+        prop_assert!(windows_of(&result) >= windows_of(&squared));
 
         let facade = decompose(&grid).unwrap().facade;
         let (moved, report) = regularize_facade(&facade, tolerance).unwrap();
