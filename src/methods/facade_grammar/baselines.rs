@@ -50,14 +50,7 @@ fn top_down(
 
 /// Always the best rule by the splitting heuristic.
 pub(crate) fn greedy(types: &mut Types, exploration: &mut Exploration) -> Vec<AddRule> {
-    exploration.unprotect();
-    top_down(types, |types, id| {
-        let rules = exploration.rules(types, id);
-        rules
-            .iter()
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, choice)| Rc::clone(choice))
-    })
+    top_down(types, |types, id| exploration.best(types, id))
 }
 
 /// All full lines, floors first.

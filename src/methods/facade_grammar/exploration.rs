@@ -12,7 +12,7 @@ use std::rc::Rc;
 use rand::{Rng, RngExt};
 use rustc_hash::FxHashSet;
 
-use super::choice::{Arrangement, Choice};
+use super::choice::{Arrangement, Choice, operation_cost};
 use super::grid;
 use super::operations::Operations;
 use super::reasonable::{self, Candidate};
@@ -38,14 +38,27 @@ pub(crate) struct Exploration {
     occurrences: Vec<Vec<Vec<(Region, f64)>>>,
     repeated: Vec<Repeated>,
     repeated_types: FxHashSet<TypeId>,
-    protect: bool,
-    /// Occurrences that no line may cross during this walk (Sec. 4.7).
+    /// Scores of the repeated regions, summed up to each; empty when nothing is to be protected.
+    scores: Vec<f64>,
+    /// Whether the occurrences of a repeated region are disjoint from each other, once it was asked.
+    apart: Vec<Option<bool>>,
+    /// The repeated regions that this walk protects (Sec. 4.7).
+    kept: Vec<usize>,
+    /// Their occurrences, which no line may cross.
     protected: Vec<Region>,
     menus: Vec<Option<Rc<Menu>>>,
+    /// Of the type last asked for: which cuts along each axis cross a protected region.
+    blocked: [Vec<bool>; 2],
+    /// Whether there are any.
+    crossed: [bool; 2],
+    /// Of the type last asked for: the rules that are left, as `H` and place in the menu.
+    left: Vec<(f64, usize)>,
+    /// Their weights, summed up to each.
+    weights: Vec<f64>,
 }
 
 /// A rule and its `H`.
-pub(crate) type Weighed = (f64, Rc<Choice>);
+type Weighed = (f64, Rc<Choice>);
 
 /// The candidates for one type, and the cost of every line.
 #[derive(Debug)]
@@ -53,8 +66,10 @@ struct Menu {
     candidates: Vec<Candidate>,
     grids: Vec<Weighed>,
     line_costs: [Vec<f64>; 2],
-    /// The candidates as rules, when nothing is protected.
-    open: Rc<[Weighed]>,
+    /// The candidates and grids as rules, when nothing is protected.
+    open: Vec<Weighed>,
+    /// Their `exp(-H)`, summed up to each.
+    open_weights: Vec<f64>,
 }
 
 impl Exploration {
@@ -80,16 +95,27 @@ impl Exploration {
         for row in occurrences.iter_mut().flatten() {
             row.sort_by_key(|(r, _)| (r.x0, r.x1, r.y1));
         }
+        let mut total = 0.0;
+        let sums = repeated.iter().filter(|_| protect).map(|r| {
+            total += r.score();
+            total
+        });
         Self {
             costs,
             operations,
             lambdas,
             occurrences,
             repeated_types: repeated.iter().map(|r| r.id).collect(),
+            scores: sums.collect(),
+            apart: vec![None; repeated.len()],
             repeated,
-            protect,
+            kept: Vec::new(),
             protected: Vec::new(),
             menus: Vec::new(),
+            blocked: Default::default(),
+            crossed: [false; 2],
+            left: Vec::new(),
+            weights: Vec::new(),
         }
     }
 
@@ -97,80 +123,129 @@ impl Exploration {
     /// proportional to `f(a, o)`, each kept when none of its occurrences overlaps one kept before
     /// without one containing the other (Sec. 4.7).
     pub fn protect_anew<R: Rng>(&mut self, rng: &mut R) {
-        self.protected.clear();
-        if !self.protect || self.repeated.is_empty() {
+        self.unprotect();
+        let Some(total) = self.scores.last() else {
             return;
-        }
-        let total: f64 = self.repeated.iter().map(Repeated::score).sum();
+        };
         for _ in 0..rng.random_range(0..=PROTECTION_DRAWS) {
-            let mut rest = rng.random::<f64>() * total;
-            let drawn = self.repeated.iter().find(|r| {
-                rest -= r.score();
-                rest < 0.0
-            });
-            let Some(group) = drawn else { continue };
-            let apart = group.occurrences.iter().enumerate().all(|(i, a)| {
-                !group.occurrences[i + 1..]
-                    .iter()
-                    .chain(&self.protected)
-                    .any(|b| overlap(*a, *b))
-            });
-            if apart {
-                self.protected.extend(&group.occurrences);
+            let at = rng.random::<f64>() * total;
+            let drawn = self.scores.partition_point(|sum| *sum <= at);
+            let Some(group) = self.repeated.get(drawn) else {
+                continue;
+            };
+            let occurrences = &group.occurrences;
+            let apart = *self.apart[drawn].get_or_insert_with(|| disjoint(occurrences));
+            if !apart || self.kept.contains(&drawn) {
+                continue;
+            }
+            let crosses = |a: &Region| self.protected.iter().any(|b| overlap(*a, *b));
+            if !occurrences.iter().any(crosses) {
+                self.kept.push(drawn);
+                self.protected.extend(occurrences);
             }
         }
     }
 
     /// Protects nothing.
     pub fn unprotect(&mut self) {
+        self.kept.clear();
         self.protected.clear();
     }
 
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
     pub fn sample<R: Rng>(&mut self, types: &mut Types, id: TypeId, rng: &mut R) -> Rc<Choice> {
-        let mut rules = self.rules(types, id);
-        if rules.is_empty() {
-            // Every rule crosses a protected region: protection gives way.
-            self.protected.clear();
-            rules = self.rules(types, id);
+        let menu = self.menu(types, id);
+        if self.block_lines(types, id) {
+            self.weigh_what_is_left(&menu);
+            if self.left.is_empty() {
+                // Every rule crosses a protected region: protection gives way.
+                self.unprotect();
+            } else {
+                weigh(self.left.iter().map(|(h, _)| *h), &mut self.weights);
+                let place = self.left[draw(&self.weights, rng)].1;
+                return self.rule(types, id, &menu, place);
+            }
         }
-        let least = rules.iter().map(|(h, _)| *h).fold(f64::INFINITY, f64::min);
-        let total: f64 = rules.iter().map(|(h, _)| (least - h).exp()).sum();
-        let mut rest = rng.random::<f64>() * total;
-        let drawn = rules.iter().position(|(h, _)| {
-            rest -= (least - h).exp();
-            rest < 0.0
-        });
-        Rc::clone(&rules[drawn.unwrap_or(rules.len() - 1)].1)
+        Rc::clone(&menu.open[draw(&menu.open_weights, rng)].1)
     }
 
-    /// The reasonable rules for a type that cross no protected region.
-    pub fn rules(&mut self, types: &mut Types, id: TypeId) -> Rc<[Weighed]> {
+    /// The rule of least `H` for a type when nothing is protected; of several, the first.
+    pub fn best(&mut self, types: &mut Types, id: TypeId) -> Option<Rc<Choice>> {
         let menu = self.menu(types, id);
-        let region = types.region(id);
-        let blocked = Axis::BOTH.map(|axis| self.blocked(types, id, region, axis));
-        if blocked.iter().all(Vec::is_empty) {
-            return Rc::clone(&menu.open);
+        let best = menu.open.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, choice)| Rc::clone(choice))
+    }
+
+    /// Marks the cuts of a type that cross a protected region other than itself; whether there are any.
+    fn block_lines(&mut self, types: &mut Types, id: TypeId) -> bool {
+        if self.protected.is_empty() {
+            return false;
         }
+        let region = types.region(id);
         let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
-        let open = |grid: &Choice| {
-            let crossed =
-                |lines: &[u16], blocked: &[u16]| lines.iter().any(|l| blocked.contains(l));
-            !crossed(&grid.lines, &blocked[0]) && !crossed(&grid.rows, &blocked[1])
-        };
-        menu.candidates
+        for (blocked, strips) in self.blocked.iter_mut().zip(&strips) {
+            blocked.clear();
+            blocked.resize(strips.cuts.len(), false);
+        }
+        self.crossed = [false; 2];
+        for &inside in self
+            .protected
             .iter()
-            .filter_map(|c| {
-                let slot = c.axis as usize;
-                let lines = c.without(&blocked[slot])?;
-                Some(self.weigh(c.arrangement, lines, &strips[slot], &menu.line_costs[slot]))
-            })
-            .chain(menu.grids.iter().filter(|(_, grid)| open(grid)).cloned())
-            .collect()
+            .filter(|p| contains(region, **p) && **p != region)
+        {
+            for axis in Axis::BOTH {
+                let (cuts, (from, to)) = (&strips[axis as usize].cuts, ends(inside, axis));
+                let crossing =
+                    cuts.partition_point(|&c| c <= from)..cuts.partition_point(|&c| c < to);
+                self.crossed[axis as usize] |= !crossing.is_empty();
+                self.blocked[axis as usize][crossing].fill(true);
+            }
+        }
+        self.crossed[0] || self.crossed[1]
+    }
+
+    /// `H` of every rule of the menu that can do without the blocked lines.
+    fn weigh_what_is_left(&mut self, menu: &Menu) {
+        self.left.clear();
+        for (place, candidate) in menu.candidates.iter().enumerate() {
+            let slot = candidate.axis as usize;
+            if !self.crossed[slot] {
+                self.left.push((menu.open[place].0, place));
+                continue;
+            }
+            let blocked = &self.blocked[slot];
+            if let Some((successors, cut)) = candidate.without(blocked, &menu.line_costs[slot]) {
+                let cost = operation_cost(candidate.arrangement, &self.costs)
+                    + self.costs.successor * successors as f64;
+                let h = self.lambdas.rule * cost + self.lambdas.lines * cut;
+                self.left.push((h, place));
+            }
+        }
+        let crossed =
+            |lines: &[u16], axis: usize| lines.iter().any(|l| self.blocked[axis][usize::from(*l)]);
+        for (number, (h, grid)) in menu.grids.iter().enumerate() {
+            if !crossed(&grid.lines, 0) && !crossed(&grid.rows, 1) {
+                self.left.push((*h, menu.candidates.len() + number));
+            }
+        }
+    }
+
+    /// The rule at a place in the menu, without the blocked lines.
+    fn rule(&self, types: &mut Types, id: TypeId, menu: &Menu, place: usize) -> Rc<Choice> {
+        match menu.candidates.get(place) {
+            Some(candidate) if self.crossed[candidate.axis as usize] => {
+                let blocked = &self.blocked[candidate.axis as usize];
+                let lines = candidate.lines.iter().copied();
+                let lines = lines.filter(|l| !blocked[usize::from(*l)]).collect();
+                let strips = types.strips(id, candidate.axis);
+                Rc::new(Choice::between(candidate.arrangement, lines, &strips))
+            }
+            _ => Rc::clone(&menu.open[place].1),
+        }
     }
 
     /// The rule with its `H`, Eq. 5.
-    fn weigh(
+    fn weighed(
         &self,
         arrangement: Arrangement,
         lines: Vec<u16>,
@@ -212,24 +287,6 @@ impl Exploration {
             .collect()
     }
 
-    /// Cuts of the region that cross a protected occurrence inside it.
-    fn blocked(&self, types: &mut Types, id: TypeId, region: Region, axis: Axis) -> Vec<u16> {
-        if self.protected.is_empty() {
-            return Vec::new();
-        }
-        let inside: Vec<(u16, u16)> = self
-            .protected
-            .iter()
-            .filter(|p| contains(region, **p))
-            .map(|p| ends(*p, axis))
-            .collect();
-        let strips = types.strips(id, axis);
-        let crossed = |cut: u16| inside.iter().any(|(from, to)| *from < cut && cut < *to);
-        (0..strips.cuts.len() as u16)
-            .filter(|i| crossed(strips.cuts[usize::from(*i)]))
-            .collect()
-    }
-
     fn menu(&mut self, types: &mut Types, id: TypeId) -> Rc<Menu> {
         let index = id as usize;
         if self.menus.len() <= index {
@@ -257,11 +314,11 @@ impl Exploration {
             })
             .collect();
         let grids = self.grids(types, id, &line_costs);
-        let open = candidates
+        let open: Vec<Weighed> = candidates
             .iter()
             .map(|c| {
                 let slot = c.axis as usize;
-                self.weigh(
+                self.weighed(
                     c.arrangement,
                     c.lines.clone(),
                     &strips[slot],
@@ -270,11 +327,14 @@ impl Exploration {
             })
             .chain(grids.iter().cloned())
             .collect();
+        let mut open_weights = Vec::new();
+        weigh(open.iter().map(|(h, _)| *h), &mut open_weights);
         let menu = Rc::new(Menu {
             candidates,
             grids,
             line_costs,
             open,
+            open_weights,
         });
         self.menus[index] = Some(Rc::clone(&menu));
         menu
@@ -305,8 +365,25 @@ impl Exploration {
     }
 }
 
+/// `exp(-H)`, up to a factor, summed up to each.
+fn weigh(all: impl Iterator<Item = f64> + Clone, sums: &mut Vec<f64>) {
+    let least = all.clone().fold(f64::INFINITY, f64::min);
+    let mut sum = 0.0;
+    sums.clear();
+    sums.extend(all.map(|h| {
+        sum += (least - h).exp();
+        sum
+    }));
+}
+
+/// Draws a place with probability proportional to its weight; there is at least one.
+fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
+    let at = rng.random::<f64>() * sums[sums.len() - 1];
+    sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
+}
+
 /// Draws of protected regions per walk, at most.
-const PROTECTION_DRAWS: usize = 60;
+const PROTECTION_DRAWS: usize = 30;
 
 fn contains(outer: Region, inner: Region) -> bool {
     outer.sheet == inner.sheet
@@ -314,6 +391,13 @@ fn contains(outer: Region, inner: Region) -> bool {
         && inner.x1 <= outer.x1
         && outer.y0 <= inner.y0
         && inner.y1 <= outer.y1
+}
+
+/// Whether no two regions overlap.
+fn disjoint(regions: &[Region]) -> bool {
+    let later = |i: usize| &regions[i + 1..];
+    let mut places = regions.iter().enumerate();
+    places.all(|(i, a)| !later(i).iter().any(|b| overlap(*a, *b)))
 }
 
 /// Whether two regions share a cell and neither contains the other.

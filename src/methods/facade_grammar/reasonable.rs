@@ -97,19 +97,28 @@ fn lines_up_to(level: f64, line_costs: &[f64], end: u16) -> Vec<u16> {
 }
 
 impl Candidate {
-    /// The candidate's lines without the blocked ones, `None` when it cannot do without them.
-    pub fn without(&self, blocked: &[u16]) -> Option<Vec<u16>> {
-        let open = |l: &u16| blocked.binary_search(l).is_err();
-        let last = self.lines[self.lines.len() - 1];
-        let kept: Vec<u16> = self.lines.iter().copied().filter(open).collect();
+    /// Its number of successors without the blocked lines, and the cost of the lines between them;
+    /// `None` when it cannot do without the blocked lines.
+    pub fn without(&self, blocked: &[bool], line_costs: &[f64]) -> Option<(usize, f64)> {
+        let last = usize::from(self.lines[self.lines.len() - 1]);
+        let (mut kept, mut cut) = (0, 0.0);
+        for line in self.lines[1..self.lines.len() - 1]
+            .iter()
+            .map(|l| usize::from(*l))
+        {
+            if !blocked[line] {
+                kept += 1;
+                cut += line_costs[line];
+            }
+        }
         let enough = match self.arrangement {
-            Arrangement::Split(_) => kept.len() > 2,
-            Arrangement::Repeat(_) => kept.contains(&last),
+            Arrangement::Split(_) => kept > 0,
+            Arrangement::Repeat(_) => !blocked[last],
             Arrangement::RepeatAba(_) | Arrangement::Symmetric(..) | Arrangement::Grid => {
-                kept.len() == self.lines.len()
+                kept + 2 == self.lines.len() && !blocked[last]
             }
         };
-        enough.then_some(kept)
+        enough.then_some((kept + 1, cut))
     }
 }
 

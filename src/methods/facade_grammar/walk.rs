@@ -32,7 +32,7 @@ pub(crate) struct Derivation {
     /// Types that have a rule or wait for one, in the order of their discovery.
     pub known: Vec<TypeId>,
     known_set: FxHashSet<TypeId>,
-    /// Types that wait: place of the region (bottom to top, left to right), type.
+    /// Types that wait, the next one last: place of the region (bottom to top, left to right), type.
     waiting: Vec<((u16, u16, u16), TypeId)>,
 }
 
@@ -51,7 +51,9 @@ impl Derivation {
         if !types.is_terminal(id) && self.known_set.insert(id) {
             self.known.push(id);
             let r = types.region(id);
-            self.waiting.push(((r.sheet, r.y0, r.x0), id));
+            let entry = ((r.sheet, r.y0, r.x0), id);
+            let at = self.waiting.partition_point(|w| *w > entry);
+            self.waiting.insert(at, entry);
         }
     }
 }
@@ -77,7 +79,6 @@ impl Process for Inference {
         for &root in &types.roots {
             state.discover(&types, root);
         }
-        state.waiting.sort_unstable_by(|a, b| b.cmp(a));
         state
     }
 
@@ -92,12 +93,8 @@ impl Process for Inference {
     fn apply(&self, state: &mut Derivation, action: &AddRule) {
         state.waiting.pop();
         let types = self.types.borrow();
-        let before = state.waiting.len();
         for &successor in &action.choice.successors {
             state.discover(&types, successor);
-        }
-        if state.waiting.len() > before {
-            state.waiting.sort_unstable_by(|a, b| b.cmp(a));
         }
     }
 }
@@ -161,25 +158,57 @@ fn closure_costs(walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
 /// Rules remembered per type.
 const REMEMBERED_RULES: usize = 64;
 
-/// What is known of a type: the best `V(R)`, and the best rules tried, each with the value it
-/// reached.
+/// What is known of a type: the best `V(R)`, and the best rules tried.
 #[derive(Debug)]
 struct Known {
     value: f64,
-    rules: Vec<(f64, Rc<Choice>)>,
+    rules: Vec<Tried>,
+}
+
+/// A rule that was tried.
+#[derive(Debug)]
+struct Tried {
+    choice: Rc<Choice>,
+    /// The least value of its type that a walk with it reached.
+    value: f64,
+    /// Eq. 2.
+    cost: f64,
+    /// Its successors that are no terminals, each once.
+    needs: Box<[TypeId]>,
 }
 
 impl Known {
-    fn remember(&mut self, value: f64, choice: &Rc<Choice>) {
+    fn remember(&mut self, value: f64, cost: f64, choice: &Rc<Choice>, terminals: u32) {
         self.value = self.value.min(value);
-        if let Some(known) = self.rules.iter_mut().find(|(_, c)| c == choice) {
-            known.0 = known.0.min(value);
-        } else if self.rules.len() < REMEMBERED_RULES {
-            self.rules.push((value, Rc::clone(choice)));
-        } else if let Some(worst) = self.rules.iter_mut().max_by(|a, b| a.0.total_cmp(&b.0))
-            && value < worst.0
+        let same = |c: &Rc<Choice>| Rc::ptr_eq(c, choice) || c == choice;
+        if let Some(tried) = self.rules.iter_mut().find(|tried| same(&tried.choice)) {
+            tried.value = tried.value.min(value);
+            return;
+        }
+        let tried = || {
+            let successors = choice.successors.iter().copied();
+            let mut needs: Vec<TypeId> = Vec::new();
+            for id in successors.filter(|id| *id >= terminals) {
+                if !needs.contains(&id) {
+                    needs.push(id);
+                }
+            }
+            Tried {
+                choice: Rc::clone(choice),
+                value,
+                cost,
+                needs: needs.into(),
+            }
+        };
+        if self.rules.len() < REMEMBERED_RULES {
+            self.rules.push(tried());
+        } else if let Some(worst) = self
+            .rules
+            .iter_mut()
+            .max_by(|a, b| a.value.total_cmp(&b.value))
+            && value < worst.value
         {
-            *worst = (value, Rc::clone(choice));
+            *worst = tried();
         }
     }
 }
@@ -188,65 +217,58 @@ impl Known {
 /// subregions had rules then. Actions are the rules tried before.
 #[derive(Debug, Default)]
 pub(crate) struct BestKnown {
-    known: FxHashMap<TypeId, Known>,
+    /// By type; `None` where nothing is known.
+    known: Vec<Option<Known>>,
 }
 
 impl BestKnown {
     /// `values`, indexed by type, lowered to what is known here.
     pub fn at_most(&self, mut values: Vec<f64>) -> Vec<f64> {
-        for (id, known) in &self.known {
-            if let Some(value) = values.get_mut(*id as usize) {
-                *value = value.min(known.value);
-            }
+        for (value, known) in values.iter_mut().zip(&self.known) {
+            *value = value.min(known.as_ref().map_or(f64::INFINITY, |k| k.value));
         }
         values
     }
 
+    fn value(&self, id: TypeId) -> f64 {
+        let known = self.known.get(id as usize).and_then(Option::as_ref);
+        known.map_or(f64::INFINITY, |k| k.value)
+    }
+
     /// `C(S, a) + V(S')` of Eq. 4: the rule, and the value of what it is the first to need.
-    fn price(
-        &self,
-        process: &Inference,
-        types: &Types,
-        state: &Derivation,
-        choice: &Choice,
-    ) -> f64 {
-        let mut sum = choice.cost(&process.costs);
-        for (i, s) in choice.successors.iter().enumerate() {
-            if !types.is_terminal(*s) && !state.knows(*s) && !choice.successors[..i].contains(s) {
-                sum += self.known.get(s).map_or(f64::INFINITY, |k| k.value);
-            }
-        }
-        sum
+    fn price(&self, state: &Derivation, tried: &Tried) -> f64 {
+        let missing = tried.needs.iter().filter(|id| !state.knows(**id));
+        missing.fold(tried.cost, |sum, id| sum + self.value(*id))
     }
 }
 
 impl Approximation<Inference> for BestKnown {
-    fn best(&mut self, process: &Inference, state: &Derivation) -> Option<AddRule> {
+    fn best(&mut self, _: &Inference, state: &Derivation) -> Option<AddRule> {
         let id = state.next();
-        let types = process.types.borrow();
-        let (_, choice) = self
-            .known
-            .get(&id)?
+        let known = self.known.get(id as usize)?.as_ref()?;
+        let priced = known
             .rules
             .iter()
-            .map(|(_, choice)| (self.price(process, &types, state, choice), choice))
-            .min_by(|a, b| a.0.total_cmp(&b.0))?;
+            .map(|tried| (self.price(state, tried), tried));
+        let (_, tried) = priced.min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(AddRule {
             id,
-            choice: Rc::clone(choice),
+            choice: Rc::clone(&tried.choice),
         })
     }
 
-    fn learn(&mut self, _: &Inference, walk: &[AddRule], costs: &[f64]) {
-        for (action, value) in walk.iter().zip(closure_costs(walk, costs)) {
+    fn learn(&mut self, process: &Inference, walk: &[AddRule], costs: &[f64]) {
+        let types = process.types.borrow();
+        self.known.resize_with(types.len(), || None);
+        let values = closure_costs(walk, costs);
+        for ((action, &cost), value) in walk.iter().zip(costs).zip(values) {
             let unknown = || Known {
                 value: f64::INFINITY,
                 rules: Vec::new(),
             };
-            self.known
-                .entry(action.id)
-                .or_insert_with(unknown)
-                .remember(value, &action.choice);
+            self.known[action.id as usize]
+                .get_or_insert_with(unknown)
+                .remember(value, cost, &action.choice, types.label_count());
         }
     }
 }
