@@ -89,8 +89,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ends(ctx, &units, &traces, few);
     ctx.note(
         "The paper measures every 500 iterations on one facade of Fig. 5. Its time per iteration falls because exploitation is \
-         faster than exploration. `adp_best` walks for a tenth of its iterations and anneals over the set of non-terminals for the rest, \
-         so that its cost first follows ADP and then drops again. Bands run from the lowest to the highest seed.",
+         faster than exploration. `adp_best` makes the walks of `adp_paper`, then its second stage, beyond the last \
+         iteration: half of it walks by shortest paths, half rounds of annealing, where its cost drops. Bands run from the lowest to the highest seed.",
     );
     Ok(())
 }

@@ -62,7 +62,7 @@ pub struct Args {
 /// Names of the contract.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// Approximate dynamic programming, then annealing over the set of non-terminal types
+    /// The walks of adp-paper, then annealing over the set of non-terminal types
     Adp,
     /// Approximate dynamic programming as Wu et al. 2014 describe it
     AdpPaper,
@@ -139,7 +139,7 @@ fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<(Grammar, u64
         protect: !args.no_protection,
         ..Settings::default()
     };
-    let bar = progress_bar(args.iterations);
+    let bar = progress_bar(settings.steps());
     let ticker = bar.clone();
     let outcome = infer_observed(facades, &settings, move |step| {
         if step.iteration % 64 == 0 {

@@ -1,25 +1,16 @@
 //! Inference: from facades to one grammar.
 
-use std::cell::RefCell;
 use std::fmt;
-use std::rc::Rc;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::baselines;
-use super::choice::Router;
-use super::exploration::{Exploration, Lambdas};
-use super::extract;
-use super::members::Members;
 use super::operations::Operations;
-use super::regions::Types;
-use super::symmetry;
-use super::walk::{AddRule, BestKnown, Explore, Inference, SharedTypes, ShortestRoutes};
+use super::search::{Search, second_stage_steps};
 use crate::grammar::{Costs, Grammar};
 use crate::optim::Step;
-use crate::optim::adp::{Adp, AdpError, Epsilon};
-use crate::optim::annealing::{Annealing, AnnealingError, Cooling};
+use crate::optim::adp::{AdpError, Epsilon};
+use crate::optim::annealing::AnnealingError;
 use crate::shape::{Facade, LayoutError, splittable};
 
 /// How to search.
@@ -45,7 +36,8 @@ pub enum Method {
 pub struct Settings {
     /// How to search.
     pub method: Method,
-    /// Walks, of the methods that repeat them.
+    /// Walks, of the methods that repeat them. [`Method::AdpBest`] makes the walks of
+    /// [`Method::AdpPaper`], then a second stage that grows with their number.
     pub iterations: u64,
     /// Seed of all randomness.
     pub seed: u64,
@@ -59,6 +51,17 @@ pub struct Settings {
     pub lambda_rule: f64,
     /// `lambda_2` of Eq. 5.
     pub lambda_lines: f64,
+}
+
+impl Settings {
+    /// Steps that an observer is told of: the iterations, and of `best` its second stage.
+    pub fn steps(&self) -> u64 {
+        match self.method {
+            Method::AdpBest => self.iterations + second_stage_steps(self.iterations),
+            Method::AdpPaper | Method::Importance => self.iterations,
+            Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
+        }
+    }
 }
 
 impl Default for Settings {
@@ -174,7 +177,7 @@ pub fn infer(facades: &[Facade], settings: &Settings) -> Result<Outcome, InferEr
     infer_observed(facades, settings, |_| {})
 }
 
-/// As [`infer`], telling `observer` of every iteration.
+/// As [`infer`], telling `observer` of every step; there are [`Settings::steps`].
 ///
 /// # Errors
 /// [`InferError`].
@@ -185,32 +188,20 @@ pub fn infer_observed(
 ) -> Result<Outcome, InferError> {
     check(facades)?;
     let search = Search::new(facades, settings);
-    let (iterations, rules) = match settings.method {
-        Method::AdpBest => (settings.iterations, search.best(observer)?),
-        Method::AdpPaper => (
-            settings.iterations,
-            search.paper(Epsilon::default(), observer)?,
-        ),
-        Method::Importance => (
-            settings.iterations,
-            search.paper(Epsilon::ALWAYS_EXPLORE, observer)?,
-        ),
-        Method::Greedy => (
-            1,
-            baselines::greedy(
-                &mut search.types.borrow_mut(),
-                &mut search.exploration.borrow_mut(),
-            ),
-        ),
-        Method::Bayesian => (1, baselines::all_lines(&mut search.types.borrow_mut())),
-        Method::Symmetry => (
-            1,
-            baselines::symmetry_maximization(&mut search.types.borrow_mut()),
-        ),
+    let rules = match settings.method {
+        Method::AdpBest => search.best(observer)?,
+        Method::AdpPaper => search.walks(Epsilon::default(), observer)?.0,
+        Method::Importance => search.walks(Epsilon::ALWAYS_EXPLORE, observer)?.0,
+        Method::Greedy => search.greedy(),
+        Method::Bayesian => search.all_lines(),
+        Method::Symmetry => search.symmetry_maximization(),
     };
-    let grammar = extract::grammar(&mut search.types.borrow_mut(), facades, &rules);
+    let iterations = match settings.method {
+        Method::AdpBest | Method::AdpPaper | Method::Importance => settings.iterations,
+        Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
+    };
     Ok(Outcome {
-        grammar,
+        grammar: search.grammar(facades, &rules),
         iterations,
     })
 }
@@ -250,148 +241,3 @@ fn check(facades: &[Facade]) -> Result<(), InferError> {
     }
     Ok(())
 }
-
-/// What every method starts from.
-struct Search<'a> {
-    settings: &'a Settings,
-    types: SharedTypes,
-    exploration: Rc<RefCell<Exploration>>,
-}
-
-impl<'a> Search<'a> {
-    fn new(facades: &[Facade], settings: &'a Settings) -> Self {
-        let mut types = Types::new(facades);
-        let repeated = symmetry::detect(&mut types);
-        let lambdas = Lambdas {
-            rule: settings.lambda_rule,
-            lines: settings.lambda_lines,
-        };
-        let exploration = Exploration::new(
-            &types,
-            repeated,
-            settings.costs,
-            settings.operations,
-            lambdas,
-            settings.protect,
-        );
-        Self {
-            settings,
-            types: Rc::new(RefCell::new(types)),
-            exploration: Rc::new(RefCell::new(exploration)),
-        }
-    }
-
-    fn process(&self) -> Inference {
-        Inference {
-            types: Rc::clone(&self.types),
-            costs: self.settings.costs,
-        }
-    }
-
-    fn explore(&self) -> Explore {
-        Explore {
-            types: Rc::clone(&self.types),
-            exploration: Rc::clone(&self.exploration),
-        }
-    }
-
-    /// The text's algorithm (Sec. 4.2); importance sampling when it always explores.
-    fn paper(
-        &self,
-        epsilon: Epsilon,
-        observer: impl FnMut(Step) + 'static,
-    ) -> Result<Vec<AddRule>, InferError> {
-        let values = BestKnown::default();
-        let adp = Adp::new(
-            self.explore(),
-            values,
-            epsilon,
-            self.settings.iterations,
-            self.settings.seed,
-        );
-        Ok(adp.run_observed(self.process(), observer)?.0.actions)
-    }
-
-    /// Dynamic programming, by shortest paths and by the paper's approximation, then annealing over
-    /// the set of types from the cheapest grammar found.
-    fn best(
-        &self,
-        observer: impl FnMut(Step) + Clone + 'static,
-    ) -> Result<Vec<AddRule>, InferError> {
-        let Settings {
-            iterations, seed, ..
-        } = *self.settings;
-        let router = || Router::new(self.settings.costs, self.settings.operations);
-        let (routed, remembered) = (
-            (iterations / ROUTED_SHARE).max(1),
-            (iterations / REMEMBERED_SHARE).max(1),
-        );
-        let adp = Adp::new(
-            self.explore(),
-            ShortestRoutes::new(router()),
-            Epsilon::default(),
-            routed,
-            seed,
-        );
-        let (by_routes, _, routes) = adp.run_observed(self.process(), observer.clone())?;
-        let adp = Adp::new(
-            self.explore(),
-            BestKnown::default(),
-            Epsilon::default(),
-            remembered,
-            seed,
-        );
-        let (by_memory, _, known) = adp.run_observed(self.process(), observer.clone())?;
-        let start = self.cheapest([by_routes.actions, by_memory.actions]);
-        let values = known.at_most(routes.into_values());
-        let members = Members::new(
-            Rc::clone(&self.types),
-            router(),
-            Rc::clone(&self.exploration),
-            values,
-            &start,
-        );
-        let rounds = iterations.saturating_sub(routed + remembered);
-        let annealing = Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?;
-        Ok(annealing.run(members, observer)?.0)
-    }
-
-    /// The cheapest of the walks and of what the deterministic methods find.
-    fn cheapest(&self, walks: [Vec<AddRule>; 2]) -> Vec<AddRule> {
-        let types = &mut self.types.borrow_mut();
-        let cost = |rules: &[AddRule]| {
-            rules
-                .iter()
-                .map(|r| r.choice.cost(&self.settings.costs))
-                .sum::<f64>()
-        };
-        let lines = baselines::all_lines(types);
-        let greedy = baselines::greedy(types, &mut self.exploration.borrow_mut());
-        walks.into_iter().fold(
-            if cost(&greedy) < cost(&lines) {
-                greedy
-            } else {
-                lines
-            },
-            |best, walk| {
-                if cost(&walk) < cost(&best) {
-                    walk
-                } else {
-                    best
-                }
-            },
-        )
-    }
-}
-
-/// One in this many iterations of `best` is a walk that exploits by shortest paths.
-const ROUTED_SHARE: u64 = 10;
-/// One in this many is a walk that exploits as `paper` does; the others are rounds of annealing.
-const REMEMBERED_SHARE: u64 = 5;
-/// Moves of a round of annealing.
-const MOVES_PER_ROUND: u32 = 24;
-/// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.
-const COOLING: Cooling = Cooling {
-    start: 1.0,
-    end: 0.05,
-};

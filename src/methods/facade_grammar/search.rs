@@ -1,0 +1,186 @@
+//! The methods of inference, as far as they share what they start from.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::baselines;
+use super::choice::Router;
+use super::exploration::{Exploration, Lambdas};
+use super::extract;
+use super::infer::{InferError, Settings};
+use super::members::Members;
+use super::regions::Types;
+use super::symmetry;
+use super::walk::{AddRule, BestKnown, Explore, Inference, SharedTypes, ShortestRoutes};
+use crate::grammar::Grammar;
+use crate::optim::Step;
+use crate::optim::adp::{Adp, Epsilon};
+use crate::optim::annealing::{Annealing, Cooling};
+use crate::shape::Facade;
+
+/// What every method starts from, and the methods.
+pub(super) struct Search<'a> {
+    settings: &'a Settings,
+    types: SharedTypes,
+    exploration: Rc<RefCell<Exploration>>,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(facades: &[Facade], settings: &'a Settings) -> Self {
+        let mut types = Types::new(facades);
+        let repeated = symmetry::detect(&mut types);
+        let lambdas = Lambdas {
+            rule: settings.lambda_rule,
+            lines: settings.lambda_lines,
+        };
+        let exploration = Exploration::new(
+            &types,
+            repeated,
+            settings.costs,
+            settings.operations,
+            lambdas,
+            settings.protect,
+        );
+        Self {
+            settings,
+            types: Rc::new(RefCell::new(types)),
+            exploration: Rc::new(RefCell::new(exploration)),
+        }
+    }
+
+    fn process(&self) -> Inference {
+        Inference {
+            types: Rc::clone(&self.types),
+            costs: self.settings.costs,
+        }
+    }
+
+    fn explore(&self) -> Explore {
+        Explore {
+            types: Rc::clone(&self.types),
+            exploration: Rc::clone(&self.exploration),
+        }
+    }
+
+    /// The text's algorithm (Sec. 4.2), and what it learnt; importance sampling when it always explores.
+    pub fn walks(
+        &self,
+        epsilon: Epsilon,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<(Vec<AddRule>, BestKnown), InferError> {
+        let values = BestKnown::default();
+        let adp = Adp::new(
+            self.explore(),
+            values,
+            epsilon,
+            self.settings.iterations,
+            self.settings.seed,
+        );
+        let (walk, _, known) = adp.run_observed(self.process(), observer)?;
+        Ok((walk.actions, known))
+    }
+
+    /// All the walks of `paper`, some that exploit by shortest paths, then annealing over the set of
+    /// types from the cheapest grammar found: never dearer than `paper` with the same seed.
+    pub fn best(
+        &self,
+        observer: impl FnMut(Step) + Clone + 'static,
+    ) -> Result<Vec<AddRule>, InferError> {
+        let Settings {
+            iterations, seed, ..
+        } = *self.settings;
+        let router = || Router::new(self.settings.costs, self.settings.operations);
+        let (by_memory, known) = self.walks(Epsilon::default(), observer.clone())?;
+        let share = share(iterations);
+        let adp = Adp::new(
+            self.explore(),
+            ShortestRoutes::new(router()),
+            Epsilon::default(),
+            share,
+            seed,
+        );
+        let (by_routes, _, routes) =
+            adp.run_observed(self.process(), later(iterations, observer.clone()))?;
+        let start = self.cheapest([by_memory, by_routes.actions]);
+        let values = known.at_most(routes.into_values());
+        let members = Members::new(
+            Rc::clone(&self.types),
+            router(),
+            Rc::clone(&self.exploration),
+            values,
+            &start,
+        );
+        let annealing = Annealing::new(COOLING, share, MOVES_PER_ROUND, seed)?;
+        Ok(annealing
+            .run(members, later(iterations + share, observer))?
+            .0)
+    }
+
+    /// Always the best rule by the splitting heuristic.
+    pub fn greedy(&self) -> Vec<AddRule> {
+        let exploration = &mut self.exploration.borrow_mut();
+        baselines::greedy(&mut self.types.borrow_mut(), exploration)
+    }
+
+    /// Initial step of Martinovic and Van Gool 2013.
+    pub fn all_lines(&self) -> Vec<AddRule> {
+        baselines::all_lines(&mut self.types.borrow_mut())
+    }
+
+    /// Splitting heuristic of Zhang et al. 2013.
+    pub fn symmetry_maximization(&self) -> Vec<AddRule> {
+        baselines::symmetry_maximization(&mut self.types.borrow_mut())
+    }
+
+    /// The grammar of some rules.
+    pub fn grammar(&self, facades: &[Facade], rules: &[AddRule]) -> Grammar {
+        extract::grammar(&mut self.types.borrow_mut(), facades, rules)
+    }
+
+    /// The cheapest of the walks and of what the deterministic methods find; of several, the first.
+    fn cheapest(&self, walks: [Vec<AddRule>; 2]) -> Vec<AddRule> {
+        let cost = |rules: &[AddRule]| -> f64 {
+            let costs = &self.settings.costs;
+            rules.iter().map(|r| r.choice.cost(costs)).sum()
+        };
+        let cheaper = |best: Vec<AddRule>, other: Vec<AddRule>| {
+            if cost(&other) < cost(&best) {
+                other
+            } else {
+                best
+            }
+        };
+        let deterministic = cheaper(self.all_lines(), self.greedy());
+        walks.into_iter().fold(deterministic, cheaper)
+    }
+}
+
+/// Walks by shortest paths, and rounds of annealing, in the second stage of `best`.
+fn share(iterations: u64) -> u64 {
+    (iterations / SECOND_STAGE_SHARE).max(1)
+}
+
+/// Walks and rounds of the second stage of `best` after so many iterations.
+pub(super) fn second_stage_steps(iterations: u64) -> u64 {
+    2 * share(iterations)
+}
+
+/// An observer of a stage before which so many steps were made.
+fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(Step) + 'static {
+    move |step| {
+        observer(Step {
+            iteration: before + step.iteration,
+            ..step
+        })
+    }
+}
+
+/// The second stage of `best` has one walk and one round of annealing for so many iterations.
+const SECOND_STAGE_SHARE: u64 = 10;
+/// Moves of a round of annealing.
+const MOVES_PER_ROUND: u32 = 100;
+/// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.
+const COOLING: Cooling = Cooling {
+    start: 1.0,
+    end: 0.05,
+};
