@@ -15,6 +15,7 @@ use rustc_hash::FxHashSet;
 use super::choice::{Arrangement, Choice, operation_cost};
 use super::grid;
 use super::operations::Operations;
+use super::protection::{Protection, contains};
 use super::reasonable::{self, Candidate};
 use super::regions::{Region, Strips, TypeId, Types, ends};
 use super::symmetry::Repeated;
@@ -36,16 +37,8 @@ pub(crate) struct Exploration {
     lambdas: Lambdas,
     /// Occurrences of repeated regions: per sheet and bottom row, sorted by left edge.
     occurrences: Vec<Vec<Vec<(Region, f64)>>>,
-    repeated: Vec<Repeated>,
     repeated_types: FxHashSet<TypeId>,
-    /// Scores of the repeated regions, summed up to each; empty when nothing is to be protected.
-    scores: Vec<f64>,
-    /// Whether the occurrences of a repeated region are disjoint from each other, once it was asked.
-    apart: Vec<Option<bool>>,
-    /// The repeated regions that this walk protects (Sec. 4.7).
-    kept: Vec<usize>,
-    /// Their occurrences, which no line may cross.
-    protected: Vec<Region>,
+    protection: Protection,
     menus: Vec<Option<Rc<Menu>>>,
     /// Of the type last asked for: which cuts along each axis cross a protected region.
     blocked: [Vec<bool>; 2],
@@ -64,9 +57,8 @@ type Weighed = (f64, Rc<Choice>);
 #[derive(Debug)]
 struct Menu {
     candidates: Vec<Candidate>,
-    grids: Vec<Weighed>,
     line_costs: [Vec<f64>; 2],
-    /// The candidates and grids as rules, when nothing is protected.
+    /// The candidates as rules when nothing is protected, then grids.
     open: Vec<Weighed>,
     /// Their `exp(-H)`, summed up to each.
     open_weights: Vec<f64>,
@@ -95,22 +87,13 @@ impl Exploration {
         for row in occurrences.iter_mut().flatten() {
             row.sort_by_key(|(r, _)| (r.x0, r.x1, r.y1));
         }
-        let mut total = 0.0;
-        let sums = repeated.iter().filter(|_| protect).map(|r| {
-            total += r.score();
-            total
-        });
         Self {
             costs,
             operations,
             lambdas,
             occurrences,
             repeated_types: repeated.iter().map(|r| r.id).collect(),
-            scores: sums.collect(),
-            apart: vec![None; repeated.len()],
-            repeated,
-            kept: Vec::new(),
-            protected: Vec::new(),
+            protection: Protection::new(repeated, protect),
             menus: Vec::new(),
             blocked: Default::default(),
             crossed: [false; 2],
@@ -119,37 +102,14 @@ impl Exploration {
         }
     }
 
-    /// Draws the regions that this walk protects: repeated regions in random order with probability
-    /// proportional to `f(a, o)`, each kept when none of its occurrences overlaps one kept before
-    /// without one containing the other (Sec. 4.7).
+    /// Draws the regions that this walk protects (Sec. 4.7).
     pub fn protect_anew<R: Rng>(&mut self, rng: &mut R) {
-        self.unprotect();
-        let Some(total) = self.scores.last() else {
-            return;
-        };
-        for _ in 0..rng.random_range(0..=PROTECTION_DRAWS) {
-            let at = rng.random::<f64>() * total;
-            let drawn = self.scores.partition_point(|sum| *sum <= at);
-            let Some(group) = self.repeated.get(drawn) else {
-                continue;
-            };
-            let occurrences = &group.occurrences;
-            let apart = *self.apart[drawn].get_or_insert_with(|| disjoint(occurrences));
-            if !apart || self.kept.contains(&drawn) {
-                continue;
-            }
-            let crosses = |a: &Region| self.protected.iter().any(|b| overlap(*a, *b));
-            if !occurrences.iter().any(crosses) {
-                self.kept.push(drawn);
-                self.protected.extend(occurrences);
-            }
-        }
+        self.protection.draw(rng);
     }
 
     /// Protects nothing.
     pub fn unprotect(&mut self) {
-        self.kept.clear();
-        self.protected.clear();
+        self.protection.lift();
     }
 
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
@@ -178,7 +138,7 @@ impl Exploration {
 
     /// Marks the cuts of a type that cross a protected region other than itself; whether there are any.
     fn block_lines(&mut self, types: &mut Types, id: TypeId) -> bool {
-        if self.protected.is_empty() {
+        if self.protection.is_lifted() {
             return false;
         }
         let region = types.region(id);
@@ -188,11 +148,7 @@ impl Exploration {
             blocked.resize(strips.cuts.len(), false);
         }
         self.crossed = [false; 2];
-        for &inside in self
-            .protected
-            .iter()
-            .filter(|p| contains(region, **p) && **p != region)
-        {
+        for inside in self.protection.inside(region) {
             for axis in Axis::BOTH {
                 let (cuts, (from, to)) = (&strips[axis as usize].cuts, ends(inside, axis));
                 let crossing =
@@ -223,9 +179,10 @@ impl Exploration {
         }
         let crossed =
             |lines: &[u16], axis: usize| lines.iter().any(|l| self.blocked[axis][usize::from(*l)]);
-        for (number, (h, grid)) in menu.grids.iter().enumerate() {
+        let grids = menu.open.iter().enumerate().skip(menu.candidates.len());
+        for (place, (h, grid)) in grids {
             if !crossed(&grid.lines, 0) && !crossed(&grid.rows, 1) {
-                self.left.push((*h, menu.candidates.len() + number));
+                self.left.push((*h, place));
             }
         }
     }
@@ -325,13 +282,12 @@ impl Exploration {
                     &line_costs[slot],
                 )
             })
-            .chain(grids.iter().cloned())
+            .chain(grids)
             .collect();
         let mut open_weights = Vec::new();
         weigh(open.iter().map(|(h, _)| *h), &mut open_weights);
         let menu = Rc::new(Menu {
             candidates,
-            grids,
             line_costs,
             open,
             open_weights,
@@ -380,28 +336,4 @@ fn weigh(all: impl Iterator<Item = f64> + Clone, sums: &mut Vec<f64>) {
 fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
     let at = rng.random::<f64>() * sums[sums.len() - 1];
     sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
-}
-
-/// Draws of protected regions per walk, at most.
-const PROTECTION_DRAWS: usize = 30;
-
-fn contains(outer: Region, inner: Region) -> bool {
-    outer.sheet == inner.sheet
-        && outer.x0 <= inner.x0
-        && inner.x1 <= outer.x1
-        && outer.y0 <= inner.y0
-        && inner.y1 <= outer.y1
-}
-
-/// Whether no two regions overlap.
-fn disjoint(regions: &[Region]) -> bool {
-    let later = |i: usize| &regions[i + 1..];
-    let mut places = regions.iter().enumerate();
-    places.all(|(i, a)| !later(i).iter().any(|b| overlap(*a, *b)))
-}
-
-/// Whether two regions share a cell and neither contains the other.
-fn overlap(a: Region, b: Region) -> bool {
-    let shared = a.sheet == b.sheet && a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
-    shared && !contains(a, b) && !contains(b, a)
 }

@@ -61,6 +61,7 @@ mod infer;
 mod kinds;
 mod members;
 mod operations;
+mod protection;
 mod reasonable;
 mod regions;
 pub mod regularize;
