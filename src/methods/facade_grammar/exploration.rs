@@ -9,15 +9,16 @@
 
 use std::rc::Rc;
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 use rustc_hash::FxHashSet;
 
 use super::choice::{Arrangement, Choice, operation_cost};
 use super::grid;
 use super::operations::Operations;
 use super::protection::{Protection, contains};
-use super::reasonable::{self, Candidate};
+use super::reasonable::{self, Candidate, OpenLines};
 use super::regions::{Region, Strips, TypeId, Types, ends};
+use super::remainder::{Blocked, Remainder, Remainders, draw, weigh};
 use super::symmetry::Repeated;
 use crate::grammar::Costs;
 use crate::shape::Axis;
@@ -40,14 +41,10 @@ pub(crate) struct Exploration {
     repeated_types: FxHashSet<TypeId>,
     protection: Protection,
     menus: Vec<Option<Rc<Menu>>>,
-    /// Of the type last asked for: which cuts along each axis cross a protected region.
-    blocked: [Vec<bool>; 2],
-    /// Whether there are any.
-    crossed: [bool; 2],
-    /// Of the type last asked for: the rules that are left, as `H` and place in the menu.
-    left: Vec<(f64, usize)>,
-    /// Their weights, summed up to each.
-    weights: Vec<f64>,
+    /// Of the type last asked for: which lines cross a protected region.
+    blocked: Blocked,
+    /// What is left of menus, by type and blocked lines; walks meet the same again and again.
+    remainders: Remainders,
 }
 
 /// A rule and its `H`.
@@ -95,10 +92,8 @@ impl Exploration {
             repeated_types: repeated.iter().map(|r| r.id).collect(),
             protection: Protection::new(repeated, protect),
             menus: Vec::new(),
-            blocked: Default::default(),
-            crossed: [false; 2],
-            left: Vec::new(),
-            weights: Vec::new(),
+            blocked: Blocked::default(),
+            remainders: Remainders::default(),
         }
     }
 
@@ -115,15 +110,19 @@ impl Exploration {
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
     pub fn sample<R: Rng>(&mut self, types: &mut Types, id: TypeId, rng: &mut R) -> Rc<Choice> {
         let menu = self.menu(types, id);
-        if self.block_lines(types, id) {
-            self.weigh_what_is_left(&menu);
-            if self.left.is_empty() {
+        if self.blocked.mark(&self.protection, types, id) {
+            let remainder = self.remainder(id, &menu);
+            if remainder.is_empty() {
                 // Every rule crosses a protected region: protection gives way.
                 self.unprotect();
             } else {
-                weigh(self.left.iter().map(|(h, _)| *h), &mut self.weights);
-                let place = self.left[draw(&self.weights, rng)].1;
-                return self.rule(types, id, &menu, place);
+                let place = remainder.draw(rng);
+                if let Some(known) = remainder.rule(place) {
+                    return known;
+                }
+                let rule = self.rule(types, id, &menu, place);
+                self.remainders.keep_rule(&remainder, place, &rule);
+                return rule;
             }
         }
         Rc::clone(&menu.open[draw(&menu.open_weights, rng)].1)
@@ -136,62 +135,43 @@ impl Exploration {
         best.map(|(_, choice)| Rc::clone(choice))
     }
 
-    /// Marks the cuts of a type that cross a protected region other than itself; whether there are any.
-    fn block_lines(&mut self, types: &mut Types, id: TypeId) -> bool {
-        if self.protection.is_lifted() {
-            return false;
+    /// The rules of the menu that can do without the blocked lines.
+    fn remainder(&mut self, id: TypeId, menu: &Menu) -> Rc<Remainder> {
+        if let Some(known) = self.remainders.get(id, &self.blocked) {
+            return known;
         }
-        let region = types.region(id);
-        let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
-        for (blocked, strips) in self.blocked.iter_mut().zip(&strips) {
-            blocked.clear();
-            blocked.resize(strips.cuts.len(), false);
-        }
-        self.crossed = [false; 2];
-        for inside in self.protection.inside(region) {
-            for axis in Axis::BOTH {
-                let (cuts, (from, to)) = (&strips[axis as usize].cuts, ends(inside, axis));
-                let crossing =
-                    cuts.partition_point(|&c| c <= from)..cuts.partition_point(|&c| c < to);
-                self.crossed[axis as usize] |= !crossing.is_empty();
-                self.blocked[axis as usize][crossing].fill(true);
+        let open = Axis::BOTH
+            .map(|axis| OpenLines::new(self.blocked.along(axis), &menu.line_costs[axis as usize]));
+        let candidates = menu.candidates.iter().enumerate();
+        let left = candidates.filter_map(|(place, candidate)| {
+            if !self.blocked.any(candidate.axis) {
+                return Some((menu.open[place].0, place));
             }
-        }
-        self.crossed[0] || self.crossed[1]
-    }
-
-    /// `H` of every rule of the menu that can do without the blocked lines.
-    fn weigh_what_is_left(&mut self, menu: &Menu) {
-        self.left.clear();
-        for (place, candidate) in menu.candidates.iter().enumerate() {
-            let slot = candidate.axis as usize;
-            if !self.crossed[slot] {
-                self.left.push((menu.open[place].0, place));
-                continue;
-            }
-            let blocked = &self.blocked[slot];
-            if let Some((successors, cut)) = candidate.without(blocked, &menu.line_costs[slot]) {
-                let cost = operation_cost(candidate.arrangement, &self.costs)
-                    + self.costs.successor * successors as f64;
-                let h = self.lambdas.rule * cost + self.lambdas.lines * cut;
-                self.left.push((h, place));
-            }
-        }
-        let crossed =
-            |lines: &[u16], axis: usize| lines.iter().any(|l| self.blocked[axis][usize::from(*l)]);
+            let (successors, cut) = candidate.without(&open[candidate.axis as usize])?;
+            let cost = operation_cost(candidate.arrangement, &self.costs)
+                + self.costs.successor * successors as f64;
+            let h = self.lambdas.rule * cost + self.lambdas.lines * cut;
+            Some((h, place))
+        });
+        let crossed = |lines: &[u16], axis: Axis| {
+            let blocked = self.blocked.along(axis);
+            lines.iter().any(|l| blocked[usize::from(*l)])
+        };
         let grids = menu.open.iter().enumerate().skip(menu.candidates.len());
-        for (place, (h, grid)) in grids {
-            if !crossed(&grid.lines, 0) && !crossed(&grid.rows, 1) {
-                self.left.push((*h, place));
-            }
-        }
+        let grids = grids.filter(|(_, (_, grid))| {
+            !crossed(&grid.lines, Axis::X) && !crossed(&grid.rows, Axis::Y)
+        });
+        let left = left.chain(grids.map(|(place, (h, _))| (*h, place)));
+        let remainder = Rc::new(Remainder::new(left, menu.open.len()));
+        self.remainders.keep(id, &self.blocked, &remainder);
+        remainder
     }
 
     /// The rule at a place in the menu, without the blocked lines.
     fn rule(&self, types: &mut Types, id: TypeId, menu: &Menu, place: usize) -> Rc<Choice> {
         match menu.candidates.get(place) {
-            Some(candidate) if self.crossed[candidate.axis as usize] => {
-                let blocked = &self.blocked[candidate.axis as usize];
+            Some(candidate) if self.blocked.any(candidate.axis) => {
+                let blocked = self.blocked.along(candidate.axis);
                 let lines = candidate.lines.iter().copied();
                 let lines = lines.filter(|l| !blocked[usize::from(*l)]).collect();
                 let strips = types.strips(id, candidate.axis);
@@ -284,8 +264,8 @@ impl Exploration {
             })
             .chain(grids)
             .collect();
-        let mut open_weights = Vec::new();
-        weigh(open.iter().map(|(h, _)| *h), &mut open_weights);
+        let mut open_weights: Vec<f64> = open.iter().map(|(h, _)| *h).collect();
+        weigh(&mut open_weights);
         let menu = Rc::new(Menu {
             candidates,
             line_costs,
@@ -319,21 +299,4 @@ impl Exploration {
         }
         costs
     }
-}
-
-/// `exp(-H)`, up to a factor, summed up to each.
-fn weigh(all: impl Iterator<Item = f64> + Clone, sums: &mut Vec<f64>) {
-    let least = all.clone().fold(f64::INFINITY, f64::min);
-    let mut sum = 0.0;
-    sums.clear();
-    sums.extend(all.map(|h| {
-        sum += (least - h).exp();
-        sum
-    }));
-}
-
-/// Draws a place with probability proportional to its weight; there is at least one.
-fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
-    let at = rng.random::<f64>() * sums[sums.len() - 1];
-    sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
 }

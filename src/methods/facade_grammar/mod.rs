@@ -65,6 +65,7 @@ mod protection;
 mod reasonable;
 mod regions;
 pub mod regularize;
+mod remainder;
 pub mod scene;
 mod search;
 mod symmetry;

@@ -13,7 +13,10 @@ pub(crate) struct Candidate {
     pub axis: Axis,
     pub arrangement: Arrangement,
     pub lines: Vec<u16>,
+    /// Its inner lines as runs of neighbours, from the first up to but without the second.
+    runs: Vec<(u16, u16)>,
 }
+
 /// For every cost that occurs, all lines that cost no more: whole, and within each period.
 pub(crate) fn along(
     axis: Axis,
@@ -27,10 +30,14 @@ pub(crate) fn along(
     if n < 2 {
         return candidates;
     }
-    let mut add = |arrangement, lines| {
+    let mut add = |arrangement, lines: Vec<u16>| {
+        let inner = &lines[1..lines.len() - 1];
+        let neighbours = inner.chunk_by(|a, b| a + 1 == *b);
+        let runs = neighbours.map(|run| (run[0], run[0] + run.len() as u16));
         candidates.push(Candidate {
             axis,
             arrangement,
+            runs: runs.collect(),
             lines,
         })
     };
@@ -99,26 +106,50 @@ fn lines_up_to(level: f64, line_costs: &[f64], end: u16) -> Vec<u16> {
 impl Candidate {
     /// Its number of successors without the blocked lines, and the cost of the lines between them;
     /// `None` when it cannot do without the blocked lines.
-    pub fn without(&self, blocked: &[bool], line_costs: &[f64]) -> Option<(usize, f64)> {
-        let last = usize::from(self.lines[self.lines.len() - 1]);
+    pub fn without(&self, open: &OpenLines) -> Option<(usize, f64)> {
         let (mut kept, mut cut) = (0, 0.0);
-        for line in self.lines[1..self.lines.len() - 1]
-            .iter()
-            .map(|l| usize::from(*l))
-        {
-            if !blocked[line] {
-                kept += 1;
-                cut += line_costs[line];
-            }
+        for &(from, to) in &self.runs {
+            let (before, upto) = (open.before[usize::from(from)], open.before[usize::from(to)]);
+            kept += upto.0 - before.0;
+            cut += upto.1 - before.1;
         }
+        let end_is_open = || open.contains(self.lines[self.lines.len() - 1]);
         let enough = match self.arrangement {
             Arrangement::Split(_) => kept > 0,
-            Arrangement::Repeat(_) => !blocked[last],
+            Arrangement::Repeat(_) => end_is_open(),
             Arrangement::RepeatAba(_) | Arrangement::Symmetric(..) | Arrangement::Grid => {
-                kept + 2 == self.lines.len() && !blocked[last]
+                kept + 2 == self.lines.len() && end_is_open()
             }
         };
         enough.then_some((kept + 1, cut))
+    }
+}
+
+/// The lines of a type that no protected region blocks.
+#[derive(Debug)]
+pub(crate) struct OpenLines {
+    /// How many open lines come before each cut, and what they cost together.
+    before: Vec<(usize, f64)>,
+}
+
+impl OpenLines {
+    /// The lines along one axis.
+    pub fn new(blocked: &[bool], line_costs: &[f64]) -> Self {
+        let mut before = vec![(0, 0.0)];
+        let (mut count, mut cost) = (0, 0.0);
+        for (blocked, line_cost) in blocked.iter().zip(line_costs) {
+            if !blocked {
+                count += 1;
+                cost += line_cost;
+            }
+            before.push((count, cost));
+        }
+        Self { before }
+    }
+
+    fn contains(&self, line: u16) -> bool {
+        let line = usize::from(line);
+        self.before[line + 1].0 > self.before[line].0
     }
 }
 

@@ -1,0 +1,169 @@
+//! What protection (Sec. 4.7) leaves of the rules that exploration draws from.
+//!
+//! A walk splits a type with some of its lines blocked. The rules that are left and their weights depend
+//! on nothing else, and walks meet the same blocked lines again and again: they are weighed once.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use rand::{Rng, RngExt};
+use rustc_hash::FxHashMap;
+
+use super::choice::Choice;
+use super::protection::Protection;
+use super::regions::{TypeId, Types, ends};
+use crate::shape::Axis;
+
+/// The lines of one type that cross protected regions other than itself.
+#[derive(Debug, Default)]
+pub(crate) struct Blocked {
+    /// By axis and cut.
+    lines: [Vec<bool>; 2],
+    any: [bool; 2],
+}
+
+impl Blocked {
+    /// Marks the lines of a type; whether any is blocked.
+    pub fn mark(&mut self, protection: &Protection, types: &mut Types, id: TypeId) -> bool {
+        self.any = [false; 2];
+        if protection.is_lifted() {
+            return false;
+        }
+        let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
+        for (blocked, strips) in self.lines.iter_mut().zip(&strips) {
+            blocked.clear();
+            blocked.resize(strips.cuts.len(), false);
+        }
+        for inside in protection.inside(types.region(id)) {
+            for axis in Axis::BOTH {
+                let (cuts, (from, to)) = (&strips[axis as usize].cuts, ends(inside, axis));
+                let crossing =
+                    cuts.partition_point(|&c| c <= from)..cuts.partition_point(|&c| c < to);
+                self.any[axis as usize] |= !crossing.is_empty();
+                self.lines[axis as usize][crossing].fill(true);
+            }
+        }
+        self.any[0] || self.any[1]
+    }
+
+    /// Whether any line along an axis is blocked.
+    pub fn any(&self, axis: Axis) -> bool {
+        self.any[axis as usize]
+    }
+
+    /// Which cuts along an axis are blocked.
+    pub fn along(&self, axis: Axis) -> &[bool] {
+        &self.lines[axis as usize]
+    }
+
+    /// The type and its blocked lines, one bit each.
+    fn key(&self, id: TypeId, key: &mut Vec<u64>) {
+        key.clear();
+        key.push(u64::from(id));
+        for word in self.lines.iter().flat_map(|lines| lines.chunks(64)) {
+            let bits = word.iter().rev().map(|&b| u64::from(b));
+            key.push(bits.fold(0, |word, bit| word << 1 | bit));
+        }
+    }
+}
+
+/// The rules of a menu that are left.
+#[derive(Debug)]
+pub(crate) struct Remainder {
+    /// Their places in the menu.
+    places: Vec<u32>,
+    /// Their `exp(-H)`, up to a factor, summed up to each.
+    weights: Vec<f64>,
+    /// Those that were drawn, by place.
+    rules: RefCell<FxHashMap<usize, Rc<Choice>>>,
+}
+
+impl Remainder {
+    /// The rules with these `H` and places, at most `most`.
+    pub fn new(left: impl Iterator<Item = (f64, usize)>, most: usize) -> Self {
+        let (mut weights, mut places) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        for (h, place) in left {
+            weights.push(h);
+            places.push(place as u32);
+        }
+        weigh(&mut weights);
+        weights.shrink_to_fit();
+        places.shrink_to_fit();
+        Self {
+            places,
+            weights,
+            rules: RefCell::default(),
+        }
+    }
+
+    /// Whether no rule is left.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Draws a place in the menu; there is one.
+    pub fn draw<R: Rng>(&self, rng: &mut R) -> usize {
+        self.places[draw(&self.weights, rng)] as usize
+    }
+
+    /// The rule at a place, if it was drawn before.
+    pub fn rule(&self, place: usize) -> Option<Rc<Choice>> {
+        self.rules.borrow().get(&place).cloned()
+    }
+}
+
+/// Numbers that all remainders may hold together, eight bytes each.
+const HELD: usize = 4_000_000;
+/// Of these, what a remainder takes beside its rules' weights, and what a rule takes, about.
+const PER_REMAINDER: usize = 24;
+const PER_RULE: usize = 24;
+
+/// The remainders met so far, until they are too many.
+#[derive(Debug, Default)]
+pub(crate) struct Remainders {
+    known: FxHashMap<Box<[u64]>, Rc<Remainder>>,
+    held: usize,
+    key: Vec<u64>,
+}
+
+impl Remainders {
+    /// What is left of a type's menu, if it is known.
+    pub fn get(&mut self, id: TypeId, blocked: &Blocked) -> Option<Rc<Remainder>> {
+        blocked.key(id, &mut self.key);
+        self.known.get(self.key.as_slice()).cloned()
+    }
+
+    /// Keeps what is left of a type's menu; when too many are held, all others go.
+    pub fn keep(&mut self, id: TypeId, blocked: &Blocked, remainder: &Rc<Remainder>) {
+        blocked.key(id, &mut self.key);
+        if self.held > HELD {
+            self.known.clear();
+            self.held = 0;
+        }
+        self.held += PER_REMAINDER + self.key.len() + 2 * remainder.places.len();
+        self.known
+            .insert(self.key.as_slice().into(), Rc::clone(remainder));
+    }
+
+    /// Keeps a rule that was drawn from a remainder.
+    pub fn keep_rule(&mut self, remainder: &Remainder, place: usize, rule: &Rc<Choice>) {
+        self.held += PER_RULE;
+        remainder.rules.borrow_mut().insert(place, Rc::clone(rule));
+    }
+}
+
+/// Makes of each `H` the sum of `exp(-H)`, up to a factor, of all up to it.
+pub(crate) fn weigh(all: &mut [f64]) {
+    let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut sum = 0.0;
+    for h in all {
+        sum += (least - *h).exp();
+        *h = sum;
+    }
+}
+
+/// Draws a place with probability proportional to its weight; there is at least one.
+pub(crate) fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
+    let at = rng.random::<f64>() * sums[sums.len() - 1];
+    sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
+}
