@@ -9,7 +9,7 @@ use super::operations::Operations;
 use super::search::{Search, second_stage_steps};
 use crate::grammar::{Costs, Grammar};
 use crate::optim::Step;
-use crate::optim::adp::{AdpError, Epsilon};
+use crate::optim::adp::AdpError;
 use crate::optim::annealing::AnnealingError;
 use crate::shape::{Facade, LayoutError, splittable};
 
@@ -190,8 +190,8 @@ pub fn infer_observed(
     let search = Search::new(facades, settings);
     let rules = match settings.method {
         Method::AdpBest => search.best(observer)?,
-        Method::AdpPaper => search.walks(Epsilon::default(), observer)?.0,
-        Method::Importance => search.walks(Epsilon::ALWAYS_EXPLORE, observer)?.0,
+        Method::AdpPaper => search.paper(observer)?.0,
+        Method::Importance => search.importance(observer)?,
         Method::Greedy => search.greedy(),
         Method::Bayesian => search.all_lines(),
         Method::Symmetry => search.symmetry_maximization(),

@@ -54,6 +54,7 @@
 mod baselines;
 mod bound;
 mod choice;
+mod closure;
 mod exploration;
 mod extract;
 mod grid;

@@ -11,10 +11,12 @@ use super::infer::{InferError, Settings};
 use super::members::Members;
 use super::regions::Types;
 use super::symmetry;
-use super::walk::{AddRule, BestKnown, Explore, Inference, SharedTypes, ShortestRoutes};
+use super::walk::{
+    AddRule, BestKnown, Explore, Inference, NothingKnown, SharedTypes, ShortestRoutes,
+};
 use crate::grammar::Grammar;
 use crate::optim::Step;
-use crate::optim::adp::{Adp, Epsilon};
+use crate::optim::adp::{Adp, Approximation, Epsilon};
 use crate::optim::annealing::{Annealing, Cooling};
 use crate::shape::Facade;
 
@@ -62,22 +64,47 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The text's algorithm (Sec. 4.2), and what it learnt; importance sampling when it always explores.
-    pub fn walks(
+    /// The text's algorithm (Sec. 4.2), and what it learnt.
+    pub fn paper(
         &self,
-        epsilon: Epsilon,
         observer: impl FnMut(Step) + 'static,
     ) -> Result<(Vec<AddRule>, BestKnown), InferError> {
-        let values = BestKnown::default();
+        self.walks(
+            BestKnown::default(),
+            Epsilon::default(),
+            self.settings.iterations,
+            observer,
+        )
+    }
+
+    /// Importance sampling: walks that always explore.
+    pub fn importance(
+        &self,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<Vec<AddRule>, InferError> {
+        let iterations = self.settings.iterations;
+        let always = Epsilon::ALWAYS_EXPLORE;
+        let (rules, _) = self.walks(NothingKnown, always, iterations, observer)?;
+        Ok(rules)
+    }
+
+    /// The cheapest of many walks, and what they taught.
+    fn walks<V: Approximation<Inference>>(
+        &self,
+        values: V,
+        epsilon: Epsilon,
+        iterations: u64,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<(Vec<AddRule>, V), InferError> {
         let adp = Adp::new(
             self.explore(),
             values,
             epsilon,
-            self.settings.iterations,
+            iterations,
             self.settings.seed,
         );
-        let (walk, _, known) = adp.run_observed(self.process(), observer)?;
-        Ok((walk.actions, known))
+        let (walk, _, values) = adp.run_observed(self.process(), observer)?;
+        Ok((walk.actions, values))
     }
 
     /// All the walks of `paper`, some that exploit by shortest paths, then annealing over the set of
@@ -90,18 +117,15 @@ impl<'a> Search<'a> {
             iterations, seed, ..
         } = *self.settings;
         let router = || Router::new(self.settings.costs, self.settings.operations);
-        let (by_memory, known) = self.walks(Epsilon::default(), observer.clone())?;
+        let (by_memory, known) = self.paper(observer.clone())?;
         let share = share(iterations);
-        let adp = Adp::new(
-            self.explore(),
+        let (by_routes, routes) = self.walks(
             ShortestRoutes::new(router()),
             Epsilon::default(),
             share,
-            seed,
-        );
-        let (by_routes, _, routes) =
-            adp.run_observed(self.process(), later(iterations, observer.clone()))?;
-        let start = self.cheapest([by_memory, by_routes.actions]);
+            later(iterations, observer.clone()),
+        )?;
+        let start = self.cheapest([by_memory, by_routes]);
         let values = known.at_most(routes.into_values());
         let members = Members::new(
             Rc::clone(&self.types),

@@ -8,9 +8,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use rand::Rng;
-use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::choice::{Choice, Router};
+use super::closure::Closures;
 use super::exploration::Exploration;
 use super::regions::{TypeId, Types};
 use crate::grammar::Costs;
@@ -31,7 +31,8 @@ pub(crate) struct AddRule {
 pub(crate) struct Derivation {
     /// Types that have a rule or wait for one, in the order of their discovery.
     pub known: Vec<TypeId>,
-    known_set: FxHashSet<TypeId>,
+    /// Whether each type is among them, 64 types a word: small, for it is made anew for each walk.
+    is_known: Vec<u64>,
     /// Types that wait, the next one last: place of the region (bottom to top, left to right), type.
     waiting: Vec<((u16, u16, u16), TypeId)>,
 }
@@ -39,7 +40,8 @@ pub(crate) struct Derivation {
 impl Derivation {
     /// Whether the type has a rule or waits for one.
     pub fn knows(&self, id: TypeId) -> bool {
-        self.known_set.contains(&id)
+        let word = self.is_known.get(id as usize / 64);
+        word.is_some_and(|word| word >> (id % 64) & 1 == 1)
     }
 
     /// The type to split next. The process is not final.
@@ -48,7 +50,9 @@ impl Derivation {
     }
 
     fn discover(&mut self, types: &Types, id: TypeId) {
-        if !types.is_terminal(id) && self.known_set.insert(id) {
+        if !types.is_terminal(id) && !self.knows(id) {
+            self.is_known.resize(types.len().div_ceil(64), 0);
+            self.is_known[id as usize / 64] |= 1 << (id % 64);
             self.known.push(id);
             let r = types.region(id);
             let entry = ((r.sheet, r.y0, r.x0), id);
@@ -72,7 +76,7 @@ impl Process for Inference {
     fn initial(&self) -> Derivation {
         let mut state = Derivation {
             known: Vec::new(),
-            known_set: FxHashSet::default(),
+            is_known: Vec::new(),
             waiting: Vec::new(),
         };
         let types = self.types.borrow();
@@ -120,50 +124,8 @@ impl Heuristic<Inference> for Explore {
     }
 }
 
-/// The cost of the rules that each type of a walk needs, itself included: what the walk says of
-/// `V(R)` (Sec. 4.5). Rules that are shared inside a region count once.
-fn closure_costs(walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
-    let place: FxHashMap<TypeId, usize> = walk.iter().enumerate().map(|(i, a)| (a.id, i)).collect();
-    let children: Vec<Vec<usize>> = walk
-        .iter()
-        .map(|a| {
-            a.choice
-                .successors
-                .iter()
-                .filter_map(|s| place.get(s).copied())
-                .collect()
-        })
-        .collect();
-    let mut seen = vec![usize::MAX; walk.len()];
-    let mut stack = Vec::new();
-    (0..walk.len())
-        .map(|start| {
-            let mut sum = 0.0;
-            stack.push(start);
-            seen[start] = start;
-            while let Some(at) = stack.pop() {
-                sum += costs[at];
-                for &child in &children[at] {
-                    if seen[child] != start {
-                        seen[child] = start;
-                        stack.push(child);
-                    }
-                }
-            }
-            sum
-        })
-        .collect()
-}
-
 /// Rules remembered per type.
 const REMEMBERED_RULES: usize = 64;
-
-/// What is known of a type: the best `V(R)`, and the best rules tried.
-#[derive(Debug)]
-struct Known {
-    value: f64,
-    rules: Vec<Tried>,
-}
 
 /// A rule that was tried.
 #[derive(Debug)]
@@ -177,39 +139,39 @@ struct Tried {
     needs: Box<[TypeId]>,
 }
 
-impl Known {
-    fn remember(&mut self, value: f64, cost: f64, choice: &Rc<Choice>, terminals: u32) {
-        self.value = self.value.min(value);
-        let same = |c: &Rc<Choice>| Rc::ptr_eq(c, choice) || c == choice;
-        if let Some(tried) = self.rules.iter_mut().find(|tried| same(&tried.choice)) {
-            tried.value = tried.value.min(value);
-            return;
-        }
-        let tried = || {
-            let successors = choice.successors.iter().copied();
-            let mut needs: Vec<TypeId> = Vec::new();
-            for id in successors.filter(|id| *id >= terminals) {
-                if !needs.contains(&id) {
-                    needs.push(id);
-                }
+/// Remembers that a walk with a rule reached a value.
+fn remember(rules: &mut Vec<Tried>, value: f64, cost: f64, choice: &Rc<Choice>, terminals: u32) {
+    // Nearly always the very rule is known, and comparing contents is slow.
+    let same = rules
+        .iter()
+        .position(|tried| Rc::ptr_eq(&tried.choice, choice));
+    let equal = || rules.iter().position(|tried| tried.choice == *choice);
+    if let Some(place) = same.or_else(equal) {
+        let tried = &mut rules[place];
+        tried.value = tried.value.min(value);
+        return;
+    }
+    let tried = || {
+        let successors = choice.successors.iter().copied();
+        let mut needs: Vec<TypeId> = Vec::new();
+        for id in successors.filter(|id| *id >= terminals) {
+            if !needs.contains(&id) {
+                needs.push(id);
             }
-            Tried {
-                choice: Rc::clone(choice),
-                value,
-                cost,
-                needs: needs.into(),
-            }
-        };
-        if self.rules.len() < REMEMBERED_RULES {
-            self.rules.push(tried());
-        } else if let Some(worst) = self
-            .rules
-            .iter_mut()
-            .max_by(|a, b| a.value.total_cmp(&b.value))
-            && value < worst.value
-        {
-            *worst = tried();
         }
+        Tried {
+            choice: Rc::clone(choice),
+            value,
+            cost,
+            needs: needs.into(),
+        }
+    };
+    if rules.len() < REMEMBERED_RULES {
+        rules.push(tried());
+    } else if let Some(worst) = rules.iter_mut().max_by(|a, b| a.value.total_cmp(&b.value))
+        && value < worst.value
+    {
+        *worst = tried();
     }
 }
 
@@ -217,39 +179,34 @@ impl Known {
 /// subregions had rules then. Actions are the rules tried before.
 #[derive(Debug, Default)]
 pub(crate) struct BestKnown {
-    /// By type; `None` where nothing is known.
-    known: Vec<Option<Known>>,
+    /// Best known `V(R)` by type, infinite where nothing is known.
+    values: Vec<f64>,
+    /// The best rules tried, by type.
+    rules: Vec<Vec<Tried>>,
+    closures: Closures,
 }
 
 impl BestKnown {
     /// `values`, indexed by type, lowered to what is known here.
     pub fn at_most(&self, mut values: Vec<f64>) -> Vec<f64> {
-        for (value, known) in values.iter_mut().zip(&self.known) {
-            *value = value.min(known.as_ref().map_or(f64::INFINITY, |k| k.value));
+        for (value, known) in values.iter_mut().zip(&self.values) {
+            *value = value.min(*known);
         }
         values
-    }
-
-    fn value(&self, id: TypeId) -> f64 {
-        let known = self.known.get(id as usize).and_then(Option::as_ref);
-        known.map_or(f64::INFINITY, |k| k.value)
     }
 
     /// `C(S, a) + V(S')` of Eq. 4: the rule, and the value of what it is the first to need.
     fn price(&self, state: &Derivation, tried: &Tried) -> f64 {
         let missing = tried.needs.iter().filter(|id| !state.knows(**id));
-        missing.fold(tried.cost, |sum, id| sum + self.value(*id))
+        missing.fold(tried.cost, |sum, id| sum + self.values[*id as usize])
     }
 }
 
 impl Approximation<Inference> for BestKnown {
     fn best(&mut self, _: &Inference, state: &Derivation) -> Option<AddRule> {
         let id = state.next();
-        let known = self.known.get(id as usize)?.as_ref()?;
-        let priced = known
-            .rules
-            .iter()
-            .map(|tried| (self.price(state, tried), tried));
+        let rules = self.rules.get(id as usize)?;
+        let priced = rules.iter().map(|tried| (self.price(state, tried), tried));
         let (_, tried) = priced.min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(AddRule {
             id,
@@ -259,18 +216,27 @@ impl Approximation<Inference> for BestKnown {
 
     fn learn(&mut self, process: &Inference, walk: &[AddRule], costs: &[f64]) {
         let types = process.types.borrow();
-        self.known.resize_with(types.len(), || None);
-        let values = closure_costs(walk, costs);
+        self.values.resize(types.len(), f64::INFINITY);
+        self.rules.resize_with(types.len(), Vec::new);
+        let values = self.closures.costs(walk, costs);
         for ((action, &cost), value) in walk.iter().zip(costs).zip(values) {
-            let unknown = || Known {
-                value: f64::INFINITY,
-                rules: Vec::new(),
-            };
-            self.known[action.id as usize]
-                .get_or_insert_with(unknown)
-                .remember(value, cost, &action.choice, types.label_count());
+            let slot = action.id as usize;
+            self.values[slot] = self.values[slot].min(value);
+            let rules = &mut self.rules[slot];
+            remember(rules, value, cost, &action.choice, types.label_count());
         }
     }
+}
+
+/// Importance sampling learns nothing.
+pub(crate) struct NothingKnown;
+
+impl Approximation<Inference> for NothingKnown {
+    fn best(&mut self, _: &Inference, _: &Derivation) -> Option<AddRule> {
+        None
+    }
+
+    fn learn(&mut self, _: &Inference, _: &[AddRule], _: &[f64]) {}
 }
 
 /// The approximation of the `best` configuration: over all rules, by shortest paths, with the
@@ -284,6 +250,7 @@ pub(crate) struct ShortestRoutes {
     prices: Vec<f64>,
     settled: usize,
     zeroed: Vec<TypeId>,
+    closures: Closures,
 }
 
 impl ShortestRoutes {
@@ -294,6 +261,7 @@ impl ShortestRoutes {
             prices: Vec::new(),
             settled: 0,
             zeroed: Vec::new(),
+            closures: Closures::default(),
         }
     }
 
@@ -352,7 +320,7 @@ impl Approximation<Inference> for ShortestRoutes {
 
     fn learn(&mut self, process: &Inference, walk: &[AddRule], costs: &[f64]) {
         self.extend(&process.types.borrow());
-        for (action, value) in walk.iter().zip(closure_costs(walk, costs)) {
+        for (action, value) in walk.iter().zip(self.closures.costs(walk, costs)) {
             let known = &mut self.values[action.id as usize];
             *known = known.min(value);
         }

@@ -1,0 +1,68 @@
+//! What a walk says of `V(R)` (Sec. 4.5).
+
+use super::regions::TypeId;
+use super::walk::AddRule;
+
+/// Sums the rules that each type of a walk needs; keeps its tables between calls.
+#[derive(Debug, Default)]
+pub(crate) struct Closures {
+    /// Step of the walk that gave each type its rule; `NONE` for others.
+    step: Vec<u32>,
+    /// Steps for the successors of each step's rule, and where those of the next step begin.
+    needed: Vec<u32>,
+    ends: Vec<usize>,
+    /// Last step whose sum counts each step.
+    counted: Vec<u32>,
+    waiting: Vec<u32>,
+}
+
+/// No step.
+const NONE: u32 = u32::MAX;
+
+impl Closures {
+    /// For each step of the walk, the cost of its rule and of all rules below, shared ones once.
+    pub fn costs(&mut self, walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
+        let types = walk.iter().map(|a| a.id as usize + 1).max().unwrap_or(0);
+        if self.step.len() < types {
+            self.step.resize(types, NONE);
+        }
+        for (step, action) in walk.iter().enumerate() {
+            self.step[action.id as usize] = step as u32;
+        }
+        self.needed.clear();
+        self.ends.clear();
+        for action in walk {
+            let successors = action.choice.successors.iter();
+            let steps = successors.filter_map(|&s: &TypeId| self.step.get(s as usize));
+            self.needed.extend(steps.filter(|step| **step != NONE));
+            self.ends.push(self.needed.len());
+        }
+        for action in walk {
+            self.step[action.id as usize] = NONE;
+        }
+        self.counted.clear();
+        self.counted.resize(walk.len(), NONE);
+        (0..walk.len() as u32)
+            .map(|step| self.sum_below(step, costs))
+            .collect()
+    }
+
+    fn sum_below(&mut self, start: u32, costs: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.waiting.push(start);
+        self.counted[start as usize] = start;
+        while let Some(step) = self.waiting.pop() {
+            let step = step as usize;
+            sum += costs[step];
+            let first = step.checked_sub(1).map_or(0, |before| self.ends[before]);
+            for &needed in &self.needed[first..self.ends[step]] {
+                let counted = &mut self.counted[needed as usize];
+                if *counted != start {
+                    *counted = start;
+                    self.waiting.push(needed);
+                }
+            }
+        }
+        sum
+    }
+}
