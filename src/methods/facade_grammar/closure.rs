@@ -66,3 +66,37 @@ impl Closures {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::rc::Rc;
+
+    use super::super::choice::{Arrangement, Choice};
+    use super::*;
+    use crate::shape::Axis;
+
+    fn step(id: TypeId, successors: &[TypeId]) -> AddRule {
+        let choice = Choice {
+            arrangement: Arrangement::Split(Axis::X),
+            lines: Vec::new(),
+            rows: Vec::new(),
+            successors: successors.to_vec(),
+        };
+        AddRule {
+            id,
+            choice: Rc::new(choice),
+        }
+    }
+
+    #[test]
+    fn shared_rules_count_once() {
+        // 9 needs 7 and twice 5; 7 needs 5; 1 is a terminal.
+        let walk = [step(9, &[7, 5, 1, 5]), step(7, &[5, 1]), step(5, &[1, 1])];
+        let mut closures = Closures::default();
+        assert_eq!(closures.costs(&walk, &[4.0, 2.0, 1.0]), [7.0, 3.0, 1.0]);
+        // Nothing stays of one walk for the next, which gives 7 no rule.
+        let walk = [step(9, &[7, 5]), step(5, &[1])];
+        assert_eq!(closures.costs(&walk, &[2.0, 1.0]), [3.0, 1.0]);
+        assert_eq!(closures.costs(&[], &[]), [0.0; 0]);
+    }
+}

@@ -26,21 +26,14 @@ pub(crate) fn along(
     repeated: &FxHashSet<TypeId>,
 ) -> Vec<Candidate> {
     let n = strips.intervals() as u16;
-    let mut candidates = Vec::new();
-    if n < 2 {
-        return candidates;
-    }
-    let mut add = |arrangement, lines: Vec<u16>| {
-        let inner = &lines[1..lines.len() - 1];
-        let neighbours = inner.chunk_by(|a, b| a + 1 == *b);
-        let runs = neighbours.map(|run| (run[0], run[0] + run.len() as u16));
-        candidates.push(Candidate {
-            axis,
-            arrangement,
-            runs: runs.collect(),
-            lines,
-        })
+    let mut candidates = Candidates {
+        axis,
+        all: Vec::new(),
     };
+    if n < 2 {
+        return candidates.all;
+    }
+    let mut add = |arrangement, lines| candidates.add(arrangement, lines);
     for lines in nested_sets(line_costs, n)
         .into_iter()
         .filter(|lines| lines.len() > 2)
@@ -74,7 +67,27 @@ pub(crate) fn along(
             }
         }
     }
-    candidates
+    candidates.all
+}
+
+/// Rules along one axis.
+struct Candidates {
+    axis: Axis,
+    all: Vec<Candidate>,
+}
+
+impl Candidates {
+    fn add(&mut self, arrangement: Arrangement, lines: Vec<u16>) {
+        let inner = &lines[1..lines.len() - 1];
+        let neighbours = inner.chunk_by(|a, b| a + 1 == *b);
+        let runs = neighbours.map(|run| (run[0], run[0] + run.len() as u16));
+        self.all.push(Candidate {
+            axis: self.axis,
+            arrangement,
+            runs: runs.collect(),
+            lines,
+        });
+    }
 }
 
 /// For every cost that a line along either axis has, the columns and rows of the grid of all lines that
@@ -238,4 +251,56 @@ fn mirrored_half(axis: Axis, strips: &Strips, lines: &[u16]) -> (Arrangement, Ve
         half.push(inner);
     }
     (Arrangement::Symmetric(axis, middle < inner), half)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Oracle: go through the lines one by one.
+        #[test]
+        fn blocked_lines_leave_what_counting_leaves(
+            lines in prop::collection::vec((any::<bool>(), any::<bool>(), 0u8..9), 2..20),
+            repeat in any::<bool>(),
+        ) {
+            let end = lines.len() as u16;
+            // Neither end of a region is ever blocked.
+            let blocked: Vec<bool> = (0..=end)
+                .map(|l| 0 < l && l < end && lines[usize::from(l)].1)
+                .collect();
+            let costs: Vec<f64> = (0..=lines.len())
+                .map(|l| lines.get(l).map_or(0.0, |line| f64::from(line.2)))
+                .collect();
+            let inner: Vec<u16> = (1..end).filter(|l| lines[usize::from(*l)].0).collect();
+            let mut candidates = Candidates { axis: Axis::X, all: Vec::new() };
+            let arrangement = match repeat {
+                true => Arrangement::Repeat(Axis::X),
+                false => Arrangement::Split(Axis::X),
+            };
+            let all = std::iter::once(0).chain(inner.iter().copied()).chain([end]);
+            candidates.add(arrangement, all.collect());
+            let left: Vec<u16> = inner.into_iter().filter(|l| !blocked[usize::from(*l)]).collect();
+            let cut: f64 = left.iter().map(|l| costs[usize::from(*l)]).sum();
+            let expected = (repeat || !left.is_empty()).then_some((left.len() + 1, cut));
+            let open = OpenLines::new(&blocked, &costs);
+            prop_assert_eq!(candidates.all[0].without(&open), expected);
+        }
+    }
+
+    #[test]
+    fn a_repeat_whose_period_ends_on_a_blocked_line_is_gone() {
+        let mut candidates = Candidates {
+            axis: Axis::X,
+            all: Vec::new(),
+        };
+        candidates.add(Arrangement::Repeat(Axis::X), vec![0, 1, 2]);
+        let costs = [0.0, 0.0, 0.0, 0.0, 0.0];
+        let without =
+            |blocked: [bool; 5]| candidates.all[0].without(&OpenLines::new(&blocked, &costs));
+        assert_eq!(without([false, true, false, false, false]), Some((1, 0.0)));
+        assert_eq!(without([false, false, true, false, false]), None);
+    }
 }

@@ -167,3 +167,48 @@ pub(crate) fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
     let at = rng.random::<f64>() * sums[sums.len() - 1];
     sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn blocked(lines: [Vec<bool>; 2]) -> Blocked {
+        let any = [lines[0].contains(&true), lines[1].contains(&true)];
+        Blocked { lines, any }
+    }
+
+    #[test]
+    fn remainders_are_told_apart_by_type_and_lines() {
+        let mut remainders = Remainders::default();
+        let here = blocked([vec![false, true, false], vec![false; 70]]);
+        let kept = Rc::new(Remainder::new([(1.0, 4), (2.0, 6)].into_iter(), 3));
+        remainders.keep(8, &here, &kept);
+        assert!(Rc::ptr_eq(&remainders.get(8, &here).unwrap(), &kept));
+        assert!(remainders.get(9, &here).is_none());
+        let mut last = vec![false; 70];
+        last[69] = true;
+        let other = blocked([vec![false, true, false], last]);
+        assert!(remainders.get(8, &other).is_none());
+    }
+
+    #[test]
+    fn too_many_remainders_give_way() {
+        let mut remainders = Remainders::default();
+        let here = blocked([vec![false, true, false], vec![false; 3]]);
+        let many = (0..=HELD).map(|place| (1.0, place));
+        let large = Rc::new(Remainder::new(many, HELD + 1));
+        remainders.keep(1, &here, &large);
+        assert!(remainders.get(1, &here).is_some());
+        remainders.keep(2, &here, &large);
+        assert!(remainders.get(1, &here).is_none() && remainders.get(2, &here).is_some());
+    }
+
+    #[test]
+    fn weights_add_up_and_lesser_h_is_likelier() {
+        let left = [(3.0, 10), (3.0 + 2f64.ln(), 11)].into_iter();
+        let remainder = Remainder::new(left, 2);
+        assert!((remainder.weights[0] - 1.0).abs() < 1e-12);
+        assert!((remainder.weights[1] - 1.5).abs() < 1e-12);
+        assert_eq!(remainder.places, [10, 11]);
+    }
+}
