@@ -18,7 +18,7 @@ use super::operations::Operations;
 use super::protection::{Protection, contains};
 use super::reasonable::{self, Candidate, OpenLines};
 use super::regions::{Region, Strips, TypeId, Types, ends};
-use super::remainder::{Blocked, Remainder, Remainders, draw, weigh};
+use super::remainder::{Blocked, Remainder, Remainders};
 use super::symmetry::Repeated;
 use crate::grammar::Costs;
 use crate::shape::Axis;
@@ -47,18 +47,16 @@ pub(crate) struct Exploration {
     remainders: Remainders,
 }
 
-/// A rule and its `H`.
-type Weighed = (f64, Rc<Choice>);
-
-/// The candidates for one type, and the cost of every line.
+/// The rules for one type, and the cost of every line. Rules are numbered: candidates, then grids.
 #[derive(Debug)]
 struct Menu {
     candidates: Vec<Candidate>,
+    grids: Vec<Rc<Choice>>,
+    /// `H` of each rule when nothing is protected, Eq. 5.
+    h: Vec<f64>,
     line_costs: [Vec<f64>; 2],
-    /// The candidates as rules when nothing is protected, then grids.
-    open: Vec<Weighed>,
-    /// Their `exp(-H)`, summed up to each.
-    open_weights: Vec<f64>,
+    /// What is left when nothing is protected: all.
+    open: Rc<Remainder>,
 }
 
 impl Exploration {
@@ -105,34 +103,38 @@ impl Exploration {
     /// Protects nothing.
     pub fn unprotect(&mut self) {
         self.protection.lift();
+        self.blocked.lift();
     }
 
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
     pub fn sample<R: Rng>(&mut self, types: &mut Types, id: TypeId, rng: &mut R) -> Rc<Choice> {
         let menu = self.menu(types, id);
+        let mut left = Rc::clone(&menu.open);
         if self.blocked.mark(&self.protection, types, id) {
             let remainder = self.remainder(id, &menu);
             if remainder.is_empty() {
                 // Every rule crosses a protected region: protection gives way.
                 self.unprotect();
             } else {
-                let place = remainder.draw(rng);
-                if let Some(known) = remainder.rule(place) {
-                    return known;
-                }
-                let rule = self.rule(types, id, &menu, place);
-                self.remainders.keep_rule(&remainder, place, &rule);
-                return rule;
+                left = remainder;
             }
         }
-        Rc::clone(&menu.open[draw(&menu.open_weights, rng)].1)
+        let place = left.draw(rng);
+        if let Some(known) = left.rule(place) {
+            return known;
+        }
+        let rule = self.rule(types, id, &menu, place);
+        self.remainders.keep_rule(&left, place, &rule);
+        rule
     }
 
     /// The rule of least `H` for a type when nothing is protected; of several, the first.
     pub fn best(&mut self, types: &mut Types, id: TypeId) -> Option<Rc<Choice>> {
+        self.unprotect();
         let menu = self.menu(types, id);
-        let best = menu.open.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        best.map(|(_, choice)| Rc::clone(choice))
+        let places = menu.h.iter().enumerate();
+        let (best, _) = places.min_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(self.rule(types, id, &menu, best))
     }
 
     /// The rules of the menu that can do without the blocked lines.
@@ -145,82 +147,57 @@ impl Exploration {
         let candidates = menu.candidates.iter().enumerate();
         let left = candidates.filter_map(|(place, candidate)| {
             if !self.blocked.any(candidate.axis) {
-                return Some((menu.open[place].0, place));
+                return Some((menu.h[place], place));
             }
             let (successors, cut) = candidate.without(&open[candidate.axis as usize])?;
-            let cost = operation_cost(candidate.arrangement, &self.costs)
-                + self.costs.successor * successors as f64;
-            let h = self.lambdas.rule * cost + self.lambdas.lines * cut;
+            let h = self.h(candidate.arrangement, successors, cut);
             Some((h, place))
         });
         let crossed = |lines: &[u16], axis: Axis| {
             let blocked = self.blocked.along(axis);
             lines.iter().any(|l| blocked[usize::from(*l)])
         };
-        let grids = menu.open.iter().enumerate().skip(menu.candidates.len());
-        let grids = grids.filter(|(_, (_, grid))| {
-            !crossed(&grid.lines, Axis::X) && !crossed(&grid.rows, Axis::Y)
-        });
-        let left = left.chain(grids.map(|(place, (h, _))| (*h, place)));
-        let remainder = Rc::new(Remainder::new(left, menu.open.len()));
+        let grids = (menu.candidates.len()..).zip(&menu.grids);
+        let grids = grids
+            .filter(|(_, grid)| !crossed(&grid.lines, Axis::X) && !crossed(&grid.rows, Axis::Y));
+        let left = left.chain(grids.map(|(place, _)| (menu.h[place], place)));
+        let remainder = Rc::new(Remainder::new(left, menu.h.len()));
         self.remainders.keep(id, &self.blocked, &remainder);
         remainder
     }
 
     /// The rule at a place in the menu, without the blocked lines.
     fn rule(&self, types: &mut Types, id: TypeId, menu: &Menu, place: usize) -> Rc<Choice> {
-        match menu.candidates.get(place) {
-            Some(candidate) if self.blocked.any(candidate.axis) => {
-                let blocked = self.blocked.along(candidate.axis);
-                let lines = candidate.lines.iter().copied();
-                let lines = lines.filter(|l| !blocked[usize::from(*l)]).collect();
-                let strips = types.strips(id, candidate.axis);
-                Rc::new(Choice::between(candidate.arrangement, lines, &strips))
-            }
-            _ => Rc::clone(&menu.open[place].1),
+        let Some(candidate) = menu.candidates.get(place) else {
+            return Rc::clone(&menu.grids[place - menu.candidates.len()]);
+        };
+        let mut lines = candidate.lines.clone();
+        if self.blocked.any(candidate.axis) {
+            let blocked = self.blocked.along(candidate.axis);
+            lines.retain(|l| !blocked[usize::from(*l)]);
         }
+        let strips = types.strips(id, candidate.axis);
+        Rc::new(Choice::between(candidate.arrangement, lines, &strips))
     }
 
-    /// The rule with its `H`, Eq. 5.
-    fn weighed(
-        &self,
-        arrangement: Arrangement,
-        lines: Vec<u16>,
-        strips: &Strips,
-        line_costs: &[f64],
-    ) -> Weighed {
-        let inner = &lines[1..lines.len() - 1];
-        let cut: f64 = inner.iter().map(|l| line_costs[usize::from(*l)]).sum();
-        let choice = Choice::between(arrangement, lines, strips);
-        (
-            self.lambdas.rule * choice.cost(&self.costs) + self.lambdas.lines * cut,
-            Rc::new(choice),
-        )
+    /// Eq. 5 for a rule whose lines cost `cut` together.
+    fn h(&self, arrangement: Arrangement, successors: usize, cut: f64) -> f64 {
+        let cost =
+            operation_cost(arrangement, &self.costs) + self.costs.successor * successors as f64;
+        self.lambdas.rule * cost + self.lambdas.lines * cut
     }
 
     /// For every cost that a line has, the grid of all lines that cost no more.
-    fn grids(&self, types: &mut Types, id: TypeId, line_costs: &[Vec<f64>; 2]) -> Vec<Weighed> {
+    fn grids(&self, types: &mut Types, id: TypeId, line_costs: &[Vec<f64>; 2]) -> Vec<Rc<Choice>> {
         if !self.operations.grid_split {
             return Vec::new();
         }
         let Some(cells) = types.cells(id) else {
             return Vec::new();
         };
-        let cut = |axis: usize, lines: &[u16]| -> f64 {
-            let inner = &lines[1..lines.len() - 1];
-            inner
-                .iter()
-                .map(|l| line_costs[axis][usize::from(*l)])
-                .sum()
-        };
         reasonable::grids(line_costs, cells.intervals())
             .into_iter()
-            .map(|(columns, rows)| {
-                let cut = cut(0, &columns) + cut(1, &rows);
-                let choice = grid::between(&cells, columns, rows);
-                let h = self.lambdas.rule * choice.cost(&self.costs) + self.lambdas.lines * cut;
-                (h, Rc::new(choice))
-            })
+            .map(|(columns, rows)| Rc::new(grid::between(&cells, columns, rows)))
             .collect()
     }
 
@@ -251,26 +228,26 @@ impl Exploration {
             })
             .collect();
         let grids = self.grids(types, id, &line_costs);
-        let open: Vec<Weighed> = candidates
-            .iter()
-            .map(|c| {
-                let slot = c.axis as usize;
-                self.weighed(
-                    c.arrangement,
-                    c.lines.clone(),
-                    &strips[slot],
-                    &line_costs[slot],
-                )
-            })
-            .chain(grids)
-            .collect();
-        let mut open_weights: Vec<f64> = open.iter().map(|(h, _)| *h).collect();
-        weigh(&mut open_weights);
+        let cut = |lines: &[u16], line_costs: &[f64]| -> f64 {
+            let inner = &lines[1..lines.len() - 1];
+            inner.iter().map(|l| line_costs[usize::from(*l)]).sum()
+        };
+        let candidate_h = candidates.iter().map(|c| {
+            let cut = cut(&c.lines, &line_costs[c.axis as usize]);
+            self.h(c.arrangement, c.lines.len() - 1, cut)
+        });
+        let grid_h = grids.iter().map(|grid| {
+            let cut = cut(&grid.lines, &line_costs[0]) + cut(&grid.rows, &line_costs[1]);
+            self.h(grid.arrangement, grid.successors.len(), cut)
+        });
+        let h: Vec<f64> = candidate_h.chain(grid_h).collect();
+        let all = h.iter().copied().zip(0..);
         let menu = Rc::new(Menu {
+            open: Rc::new(Remainder::new(all, h.len())),
             candidates,
+            grids,
+            h,
             line_costs,
-            open,
-            open_weights,
         });
         self.menus[index] = Some(Rc::clone(&menu));
         menu

@@ -25,7 +25,7 @@ pub(crate) struct Blocked {
 impl Blocked {
     /// Marks the lines of a type; whether any is blocked.
     pub fn mark(&mut self, protection: &Protection, types: &mut Types, id: TypeId) -> bool {
-        self.any = [false; 2];
+        self.lift();
         if protection.is_lifted() {
             return false;
         }
@@ -44,6 +44,11 @@ impl Blocked {
             }
         }
         self.any[0] || self.any[1]
+    }
+
+    /// Blocks nothing.
+    pub fn lift(&mut self) {
+        self.any = [false; 2];
     }
 
     /// Whether any line along an axis is blocked.
@@ -153,7 +158,7 @@ impl Remainders {
 }
 
 /// Makes of each `H` the sum of `exp(-H)`, up to a factor, of all up to it.
-pub(crate) fn weigh(all: &mut [f64]) {
+fn weigh(all: &mut [f64]) {
     let least = all.iter().copied().fold(f64::INFINITY, f64::min);
     let mut sum = 0.0;
     for h in all {
@@ -163,7 +168,7 @@ pub(crate) fn weigh(all: &mut [f64]) {
 }
 
 /// Draws a place with probability proportional to its weight; there is at least one.
-pub(crate) fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
+fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
     let at = rng.random::<f64>() * sums[sums.len() - 1];
     sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
 }
