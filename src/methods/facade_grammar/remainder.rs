@@ -117,16 +117,22 @@ impl Remainder {
     }
 }
 
-/// Numbers that all remainders may hold together, eight bytes each.
+/// Numbers that a generation of remainders may hold, eight bytes each.
 const HELD: usize = 4_000_000;
 /// Of these, what a remainder takes beside its rules' weights, and what a rule takes, about.
 const PER_REMAINDER: usize = 24;
 const PER_RULE: usize = 24;
 
-/// The remainders met so far, until they are too many.
+/// By type and blocked lines.
+type Generation = FxHashMap<Box<[u64]>, Rc<Remainder>>;
+
+/// The remainders met lately: when a generation is full, a new one begins, which takes over what is
+/// asked for again, and the one before goes.
 #[derive(Debug, Default)]
 pub(crate) struct Remainders {
-    known: FxHashMap<Box<[u64]>, Rc<Remainder>>,
+    young: Generation,
+    old: Generation,
+    /// Numbers that the young generation holds.
     held: usize,
     key: Vec<u64>,
 }
@@ -135,25 +141,34 @@ impl Remainders {
     /// What is left of a type's menu, if it is known.
     pub fn get(&mut self, id: TypeId, blocked: &Blocked) -> Option<Rc<Remainder>> {
         blocked.key(id, &mut self.key);
-        self.known.get(self.key.as_slice()).cloned()
+        if let Some(known) = self.young.get(self.key.as_slice()) {
+            return Some(Rc::clone(known));
+        }
+        let (key, known) = self.old.remove_entry(self.key.as_slice())?;
+        self.insert(key, Rc::clone(&known));
+        Some(known)
     }
 
-    /// Keeps what is left of a type's menu; when too many are held, all others go.
+    /// Keeps what is left of a type's menu.
     pub fn keep(&mut self, id: TypeId, blocked: &Blocked, remainder: &Rc<Remainder>) {
         blocked.key(id, &mut self.key);
-        if self.held > HELD {
-            self.known.clear();
-            self.held = 0;
-        }
-        self.held += PER_REMAINDER + self.key.len() + 2 * remainder.places.len();
-        self.known
-            .insert(self.key.as_slice().into(), Rc::clone(remainder));
+        self.insert(self.key.as_slice().into(), Rc::clone(remainder));
     }
 
     /// Keeps a rule that was drawn from a remainder.
     pub fn keep_rule(&mut self, remainder: &Remainder, place: usize, rule: &Rc<Choice>) {
         self.held += PER_RULE;
         remainder.rules.borrow_mut().insert(place, Rc::clone(rule));
+    }
+
+    fn insert(&mut self, key: Box<[u64]>, remainder: Rc<Remainder>) {
+        if self.held > HELD {
+            self.old = std::mem::take(&mut self.young);
+            self.held = 0;
+        }
+        let rules = PER_RULE * remainder.rules.borrow().len();
+        self.held += PER_REMAINDER + key.len() + 2 * remainder.places.len() + rules;
+        self.young.insert(key, remainder);
     }
 }
 
@@ -197,15 +212,18 @@ mod tests {
     }
 
     #[test]
-    fn too_many_remainders_give_way() {
+    fn remainders_not_asked_for_give_way() {
         let mut remainders = Remainders::default();
         let here = blocked([vec![false, true, false], vec![false; 3]]);
         let many = (0..=HELD).map(|place| (1.0, place));
         let large = Rc::new(Remainder::new(many, HELD + 1));
-        remainders.keep(1, &here, &large);
-        assert!(remainders.get(1, &here).is_some());
-        remainders.keep(2, &here, &large);
-        assert!(remainders.get(1, &here).is_none() && remainders.get(2, &here).is_some());
+        for id in 1..4 {
+            // Each fills a generation; the first is asked for whenever one is full.
+            remainders.keep(id, &here, &large);
+            assert!(remainders.get(1, &here).is_some());
+        }
+        assert!(remainders.get(2, &here).is_none());
+        assert!(remainders.get(3, &here).is_some());
     }
 
     #[test]
