@@ -155,7 +155,7 @@ impl Remainders {
         self.insert(self.key.as_slice().into(), Rc::clone(remainder));
     }
 
-    /// Keeps a rule that was drawn from a remainder.
+    /// Keeps a rule that was drawn from a remainder. Rules of open menus count too, though they never go.
     pub fn keep_rule(&mut self, remainder: &Remainder, place: usize, rule: &Rc<Choice>) {
         self.held += PER_RULE;
         remainder.rules.borrow_mut().insert(place, Rc::clone(rule));
