@@ -15,6 +15,7 @@ mod likeness;
 mod optimality;
 mod published;
 mod ratios;
+mod readings;
 mod regularization;
 mod room;
 mod runs;
@@ -114,6 +115,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "regularization",
         title: "regularization of annotations by quadratic programming (Sec. 3.3)",
         run: regularization::run,
+    },
+    Artefact {
+        name: "readings",
+        title: "what the text leaves open, and what it does to the costs",
+        run: readings::run,
     },
     Artefact {
         name: "optimality",

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use edifice::grammar::{Costs, derive, evaluate};
 use edifice::io::{ReadOptions, read_facade};
 use edifice::methods::facade_grammar::{
-    InferError, Method, Operations, Settings, infer, infer_observed,
+    InferError, Method, Operations, Readings, Settings, infer, infer_observed,
 };
 use edifice::rng::stream;
 use edifice::shape::{Facade, Rect, Region};
@@ -77,6 +77,49 @@ fn paper_does_as_well_as_printed_on_facade_i() {
         mean <= 43.1 && least <= 40.3 + 1e-6,
         "mean {mean}, best {least}: {costs:?}"
     );
+}
+
+/// Without memory nothing is exploited, and every rule is drawn from the heuristic.
+#[test]
+fn without_memory_the_text_is_importance_sampling() {
+    let run = |method, seed, remembered_rules| {
+        let readings = Readings {
+            remembered_rules,
+            ..Readings::default()
+        };
+        let settings = Settings {
+            method,
+            seed,
+            iterations: 300,
+            readings,
+            ..Settings::default()
+        };
+        infer(&[facade_i()], &settings).unwrap().grammar
+    };
+    for seed in 0..3 {
+        let importance = run(Method::Importance, seed, 64);
+        assert_eq!(run(Method::AdpPaper, seed, 0), importance);
+        assert_ne!(run(Method::AdpPaper, seed, 1), importance);
+    }
+}
+
+#[test]
+fn protection_makes_grammars_cheaper() {
+    let sum = |protected_draws| -> f64 {
+        let readings = Readings {
+            protected_draws,
+            ..Readings::default()
+        };
+        let settings = |seed| Settings {
+            method: Method::Importance,
+            seed,
+            iterations: 300,
+            readings,
+            ..Settings::default()
+        };
+        (0..5).map(|seed| cost(&facade_i(), &settings(seed))).sum()
+    };
+    assert!(sum(8) < sum(0), "{} {}", sum(8), sum(0));
 }
 
 #[test]

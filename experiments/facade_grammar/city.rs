@@ -5,9 +5,8 @@ use std::time::Instant;
 use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
 use crate::experiments::Context;
-use crate::grammar::{Costs, Grammar, Sampler, combine};
+use crate::grammar::{Grammar, Sampler, combine};
 use crate::io::gltf;
-use crate::methods::facade_grammar::Operations;
 use crate::methods::facade_grammar::scene::{Settings, city};
 use crate::report::{Figure, Row};
 use crate::rng::stream;
@@ -54,12 +53,7 @@ fn build(
                 .map(|name| {
                     let path = folder.join(format!("{name}.facade.json"));
                     let facade = crate::io::facade_json::read(&path)?;
-                    let question = Question {
-                        solver: Solver::Infer(BEST, few),
-                        seed: ctx.seed(),
-                        costs: Costs::default(),
-                        operations: Operations::default(),
-                    };
+                    let question = Question::new(Solver::Infer(BEST, few), ctx.seed());
                     solve(std::slice::from_ref(&facade), &question).map(|(grammar, _)| grammar)
                 })
                 .collect();

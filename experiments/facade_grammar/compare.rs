@@ -4,7 +4,6 @@ use super::data::{self, Instance};
 use super::runs::{Answer, Question, Solver, least, mean, solve};
 use crate::Result;
 use crate::experiments::{Budget, Context};
-use crate::grammar::Costs;
 use crate::methods::facade_grammar::Operations;
 use crate::report::{Align, Row, Table};
 
@@ -67,10 +66,8 @@ pub fn run(ctx: &mut Context, plan: Plan) -> Result<Comparison> {
         },
         |&(i, s, seed)| {
             let question = Question {
-                solver: plan.solvers[s],
-                seed,
-                costs: Costs::default(),
                 operations: plan.operations,
+                ..Question::new(plan.solvers[s], seed)
             };
             solve(std::slice::from_ref(&instances[i].facade), &question).map(|(_, answer)| answer)
         },

@@ -5,9 +5,9 @@ use rand::SeedableRng;
 use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
 use crate::experiments::Context;
-use crate::grammar::{Costs, derive_at, size_independent};
+use crate::grammar::{derive_at, size_independent};
+use crate::methods::facade_grammar::kinds;
 use crate::methods::facade_grammar::regularize::align_resized;
-use crate::methods::facade_grammar::{Operations, kinds};
 use crate::report::{Align, Figure, Row, Table};
 use crate::shape::{Facade, is_background};
 use crate::{Error, Result};
@@ -28,12 +28,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("iterations", few);
     let path = data::folder(ctx)?.join(format!("layouts/{FACADE}.facade.json"));
     let facade = crate::io::facade_json::read(&path)?;
-    let question = Question {
-        solver: Solver::Infer(BEST, few),
-        seed: ctx.seed(),
-        costs: Costs::default(),
-        operations: Operations::default(),
-    };
+    let question = Question::new(Solver::Infer(BEST, few), ctx.seed());
     let (grammar, _) = solve(std::slice::from_ref(&facade), &question)?;
     let free = size_independent(&grammar);
     let mut figure = Figure::new("resized facades, before and after alignment", 5)

@@ -5,8 +5,6 @@ use super::runs::{Answer, Question, Solver, solve};
 use super::{BEST, PAPER, data, picture};
 use crate::Result;
 use crate::experiments::Context;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::Operations;
 use crate::report::{Align, Figure, Row, Table};
 use crate::shape::Facade;
 
@@ -42,12 +40,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         &units,
         |(solver, g, seed)| format!("{}/{}/{seed}", solver.name(), names[*g]),
         |&(solver, g, seed)| {
-            let question = Question {
-                solver,
-                seed,
-                costs: Costs::default(),
-                operations: Operations::default(),
-            };
+            let question = Question::new(solver, seed);
             solve(groups[g], &question).map(|(_, answer)| answer)
         },
     )?;

@@ -108,10 +108,8 @@ fn example(
         |(solver, seed)| format!("{label}/{}/{seed}", solver.name()),
         |&(solver, seed)| {
             let question = Question {
-                solver,
-                seed,
-                costs: Costs::default(),
                 operations,
+                ..Question::new(solver, seed)
             };
             let (grammar, answer) = solve(std::slice::from_ref(facade), &question)?;
             Ok((crate::io::grammar_json::to_string(&grammar), answer))

@@ -8,7 +8,6 @@ use super::data::{self, FIGURE_9, Instance};
 use super::runs::{Question, Solver, solve};
 use super::{BEST, iterations};
 use crate::experiments::{Budget, Context};
-use crate::grammar::Costs;
 use crate::methods::facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
 use crate::report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 use crate::{Error, Result};
@@ -142,13 +141,11 @@ fn bound(
     limits: &BoundLimits,
 ) -> Result<Answer> {
     let question = Question {
-        solver: Solver::Infer(BEST, iterations),
-        seed,
-        costs: Costs::default(),
         operations: match operations {
             0 => Operations::split_only(),
             _ => Operations::default(),
         },
+        ..Question::new(Solver::Infer(BEST, iterations), seed)
     };
     let (_, found) = solve(std::slice::from_ref(&instance.facade), &question)?;
     let settings = Settings {

@@ -5,7 +5,7 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use crate::grammar::{Costs, Grammar, evaluate};
-use crate::methods::facade_grammar::{Method, Operations, Settings, infer};
+use crate::methods::facade_grammar::{Method, Operations, Readings, Settings, infer};
 use crate::methods::procedural_logic::{Parameters, baseline_grammar};
 use crate::shape::Facade;
 use crate::{Error, Result};
@@ -61,6 +61,21 @@ pub struct Question {
     pub costs: Costs,
     /// Operations allowed.
     pub operations: Operations,
+    /// What the text leaves open.
+    pub readings: Readings,
+}
+
+impl Question {
+    /// A question with the paper's costs and basic operations, and this project's readings.
+    pub fn new(solver: Solver, seed: u64) -> Self {
+        Self {
+            solver,
+            seed,
+            costs: Costs::default(),
+            operations: Operations::default(),
+            readings: Readings::default(),
+        }
+    }
 }
 
 /// What a run found, as the independent evaluator says.
@@ -94,6 +109,7 @@ pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer
                 seed: question.seed,
                 costs: question.costs,
                 operations: question.operations,
+                readings: question.readings,
                 ..Settings::default()
             };
             infer(facades, &settings).map_err(Error::method)?.grammar

@@ -17,10 +17,8 @@ type Case = (String, Question);
 pub fn table_4(ctx: &mut Context) -> Result<()> {
     let (_, many) = super::iterations(ctx.budget());
     let question = |solver, operations| Question {
-        solver,
-        seed: ctx.seed(),
-        costs: Costs::default(),
         operations,
+        ..Question::new(solver, ctx.seed())
     };
     let plain = Operations::default();
     let cases: Vec<Case> = [
@@ -90,10 +88,8 @@ pub fn table_5(ctx: &mut Context) -> Result<()> {
         for (name, costs) in models {
             let solver = Solver::Infer(method, few);
             let question = Question {
-                solver,
-                seed: ctx.seed(),
                 costs,
-                operations: Operations::default(),
+                ..Question::new(solver, ctx.seed())
             };
             cases.push((format!("{} {name}", solver.name()), question));
         }

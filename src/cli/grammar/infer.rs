@@ -130,15 +130,17 @@ fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<(Grammar, u64
         MethodName::Symmetry => Method::Symmetry,
         MethodName::ProceduralLogic => return procedural_logic_grammar(facades),
     };
-    let settings = Settings {
+    let mut settings = Settings {
         method,
         iterations: args.iterations,
         seed: args.seed,
         costs,
         operations: args.ops,
-        protect: !args.no_protection,
         ..Settings::default()
     };
+    if args.no_protection {
+        settings.readings.protected_draws = 0;
+    }
     let bar = progress_bar(settings.steps());
     let ticker = bar.clone();
     let outcome = infer_observed(facades, &settings, move |step| {

@@ -66,7 +66,7 @@ impl Exploration {
         costs: Costs,
         operations: Operations,
         lambdas: Lambdas,
-        protect: bool,
+        protected_draws: usize,
     ) -> Self {
         let mut occurrences: Vec<Vec<Vec<(Region, f64)>>> = types
             .sheets
@@ -88,7 +88,7 @@ impl Exploration {
             lambdas,
             occurrences,
             repeated_types: repeated.iter().map(|r| r.id).collect(),
-            protection: Protection::new(repeated, protect),
+            protection: Protection::new(repeated, protected_draws),
             menus: Vec::new(),
             blocked: Blocked::default(),
             remainders: Remainders::default(),

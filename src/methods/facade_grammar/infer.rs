@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::operations::Operations;
+use super::readings::Readings;
 use super::search::{Search, second_stage_steps};
 use crate::grammar::{Costs, Grammar};
 use crate::optim::Step;
@@ -45,12 +46,12 @@ pub struct Settings {
     pub costs: Costs,
     /// Operations that rules may use.
     pub operations: Operations,
-    /// Whether important regions are protected (Sec. 4.7).
-    pub protect: bool,
     /// `lambda_1` of Eq. 5.
     pub lambda_rule: f64,
     /// `lambda_2` of Eq. 5.
     pub lambda_lines: f64,
+    /// What the text leaves open.
+    pub readings: Readings,
 }
 
 impl Settings {
@@ -72,9 +73,9 @@ impl Default for Settings {
             seed: 0,
             costs: Costs::default(),
             operations: Operations::default(),
-            protect: true,
             lambda_rule: 1.0,
             lambda_lines: 1.0,
+            readings: Readings::default(),
         }
     }
 }

@@ -6,14 +6,13 @@ use rand::{Rng, RngExt};
 use super::regions::Region;
 use super::symmetry::Repeated;
 
-/// Draws of protected regions per walk, at most; see "Deviations and readings" of the parent module.
-const DRAWS: usize = 8;
-
 /// The repeated regions of a layout, and those that the present walk protects.
 #[derive(Debug)]
 pub(crate) struct Protection {
     repeated: Vec<Repeated>,
-    /// Scores of the repeated regions, summed up to each; empty when nothing is ever protected.
+    /// Draws per walk, at most.
+    draws: usize,
+    /// Scores of the repeated regions, summed up to each.
     scores: Vec<f64>,
     /// Whether the occurrences of a repeated region are disjoint from each other, once it was asked.
     apart: Vec<Option<bool>>,
@@ -24,14 +23,15 @@ pub(crate) struct Protection {
 }
 
 impl Protection {
-    /// Protects nothing yet, and never anything unless `wanted`.
-    pub fn new(repeated: Vec<Repeated>, wanted: bool) -> Self {
+    /// Protects nothing yet, and draws at most so many regions for a walk.
+    pub fn new(repeated: Vec<Repeated>, draws: usize) -> Self {
         let mut total = 0.0;
-        let sums = repeated.iter().filter(|_| wanted).map(|r| {
+        let sums = repeated.iter().map(|r| {
             total += r.score();
             total
         });
         Self {
+            draws,
             scores: sums.collect(),
             apart: vec![None; repeated.len()],
             repeated,
@@ -47,7 +47,7 @@ impl Protection {
         let Some(total) = self.scores.last() else {
             return;
         };
-        for _ in 0..rng.random_range(0..=DRAWS) {
+        for _ in 0..rng.random_range(0..=self.draws) {
             let at = rng.random::<f64>() * total;
             let drawn = self.scores.partition_point(|sum| *sum <= at);
             let Some(group) = self.repeated.get(drawn) else {
@@ -140,7 +140,7 @@ mod tests {
             repeated(3, 3, &[(4, 7), (7, 10)]),
             repeated(4, 9, &[(14, 23), (18, 27)]),
         ];
-        let mut protection = Protection::new(groups, true);
+        let mut protection = Protection::new(groups, 8);
         let mut rng = Stream::seed_from_u64(1);
         let (mut nothing, mut both) = (false, false);
         for _ in 0..200 {

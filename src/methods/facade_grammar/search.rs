@@ -9,6 +9,7 @@ use super::exploration::{Exploration, Lambdas};
 use super::extract;
 use super::infer::{InferError, Settings};
 use super::members::Members;
+use super::readings::Readings;
 use super::regions::Types;
 use super::symmetry;
 use super::walk::{
@@ -41,7 +42,7 @@ impl<'a> Search<'a> {
             settings.costs,
             settings.operations,
             lambdas,
-            settings.protect,
+            settings.readings.protected_draws,
         );
         Self {
             settings,
@@ -69,12 +70,17 @@ impl<'a> Search<'a> {
         &self,
         observer: impl FnMut(Step) + 'static,
     ) -> Result<(Vec<AddRule>, BestKnown), InferError> {
-        self.walks(
-            BestKnown::default(),
-            Epsilon::default(),
-            self.settings.iterations,
-            observer,
-        )
+        let Readings {
+            remembered_rules,
+            last_epsilon,
+            ..
+        } = self.settings.readings;
+        let epsilon = Epsilon {
+            end: last_epsilon,
+            ..Epsilon::default()
+        };
+        let known = BestKnown::new(remembered_rules);
+        self.walks(known, epsilon, self.settings.iterations, observer)
     }
 
     /// Importance sampling: walks that always explore.

@@ -124,9 +124,6 @@ impl Heuristic<Inference> for Explore {
     }
 }
 
-/// Rules remembered per type.
-const REMEMBERED_RULES: usize = 64;
-
 /// A rule that was tried.
 #[derive(Debug)]
 struct Tried {
@@ -139,8 +136,15 @@ struct Tried {
     needs: Box<[TypeId]>,
 }
 
-/// Remembers that a walk with a rule reached a value.
-fn remember(rules: &mut Vec<Tried>, value: f64, cost: f64, choice: &Rc<Choice>, terminals: u32) {
+/// Remembers that a walk with a rule reached a value, among at most so many rules.
+fn remember(
+    rules: &mut Vec<Tried>,
+    most: usize,
+    value: f64,
+    cost: f64,
+    choice: &Rc<Choice>,
+    terminals: u32,
+) {
     // Nearly always the very rule is known, and comparing contents is slow.
     let same = rules
         .iter()
@@ -166,7 +170,7 @@ fn remember(rules: &mut Vec<Tried>, value: f64, cost: f64, choice: &Rc<Choice>, 
             needs: needs.into(),
         }
     };
-    if rules.len() < REMEMBERED_RULES {
+    if rules.len() < most {
         rules.push(tried());
     } else if let Some(worst) = rules.iter_mut().max_by(|a, b| a.value.total_cmp(&b.value))
         && value < worst.value
@@ -177,8 +181,10 @@ fn remember(rules: &mut Vec<Tried>, value: f64, cost: f64, choice: &Rc<Choice>, 
 
 /// The paper's value function approximation: the best known `V(R)` of each region, whatever
 /// subregions had rules then. Actions are the rules tried before.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct BestKnown {
+    /// Rules remembered per type.
+    most: usize,
     /// Best known `V(R)` by type, infinite where nothing is known.
     values: Vec<f64>,
     /// The best rules tried, by type.
@@ -187,6 +193,16 @@ pub(crate) struct BestKnown {
 }
 
 impl BestKnown {
+    /// Knows nothing yet, and will remember at most so many rules of each type.
+    pub fn new(most: usize) -> Self {
+        Self {
+            most,
+            values: Vec::new(),
+            rules: Vec::new(),
+            closures: Closures::default(),
+        }
+    }
+
     /// `values`, indexed by type, lowered to what is known here.
     pub fn at_most(&self, mut values: Vec<f64>) -> Vec<f64> {
         for (value, known) in values.iter_mut().zip(&self.values) {
@@ -223,7 +239,8 @@ impl Approximation<Inference> for BestKnown {
             let slot = action.id as usize;
             self.values[slot] = self.values[slot].min(value);
             let rules = &mut self.rules[slot];
-            remember(rules, value, cost, &action.choice, types.label_count());
+            let terminals = types.label_count();
+            remember(rules, self.most, value, cost, &action.choice, terminals);
         }
     }
 }
