@@ -40,8 +40,9 @@
 //!   kept before ("non-overlapping"). A region's own protection ends when it is the region to be split
 //!   ("until they are separated"); where every rule crosses a protected region, all protection ends for
 //!   that walk. The number of draws is not printed. With 5, 8, 10 and 15 draws the mean of 400 runs on
-//!   facade (i) is 41.9, 41.8, 41.7 and 41.7, and 5, 10, 4 and 4 of them find 40.3; with 8 the mean and
-//!   the least of ten are also nearest to the four numbers printed for 2,000 and 10,000 iterations.
+//!   facade (i) is 41.9, 41.8, 41.7 and 41.7, and 5, 10, 4 and 4 of them find 40.3; the means and the
+//!   least of ten with 2,000 and 10,000 iterations are about as near to the printed ones with 5, 8 and
+//!   10 draws, less near with 15 and more.
 //!   Protection is an extension in the text; it is on unless switched off, for without it the mean is
 //!   44.7.
 //! - These numbers can be set ([`Readings`]); the report's `readings` shows what each does.
