@@ -118,8 +118,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 
 const NOTE: &str = "The text prints neither how many regions are protected nor how epsilon ends, and it stores \"the best action\" of a \
     region while Eq. 4 chooses among actions. *as_run* is what all other artefacts run: up to 8 draws of protected regions, 64 \
-    remembered rules of each region type, epsilon falling from 0.9 to 0.1; every other row changes what its name says. Fewer \
-    remembered rules bring the mean nearer to the printed one and lose the least cost that the paper reports, 40.3; what `adp_best` \
+    remembered rules of each region type, epsilon falling from 0.9 to 0.1; every other row changes what its name says. One \
+    remembered rule brings the mean nearest to the printed one and loses the least cost that the paper reports, 40.3; what `adp_best` \
     saves depends on this choice, which was made for the numbers printed for facade (i), among some settings whose runs on it were \
     seen; a run of *as_run* finds 40.3 about once in forty (10 of 400 seeds).";
 
