@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use edifice::grammar::{Costs, Evaluation, Grammar, evaluate, listing};
 use edifice::io::{self, LabelMap, ReadOptions};
-use edifice::methods::facade_grammar::{Method, Operations, Settings, infer_observed};
+use edifice::methods::facade_grammar::{Method, Operations, Protect, Settings, infer_observed};
 use edifice::methods::procedural_logic;
 use edifice::shape::Facade;
 use edifice::{Error, Result};
@@ -139,7 +139,7 @@ fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<(Grammar, u64
         ..Settings::default()
     };
     if args.no_protection {
-        settings.readings.protected_draws = 0;
+        settings.readings.protection = Protect::Never;
     }
     let bar = progress_bar(settings.steps());
     let ticker = bar.clone();

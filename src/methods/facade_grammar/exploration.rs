@@ -20,6 +20,7 @@ use super::reasonable::{self, Candidate, OpenLines};
 use super::regions::{Region, Strips, TypeId, Types, ends};
 use super::remainder::{Blocked, Remainder, Remainders};
 use super::symmetry::Repeated;
+use super::walk::Priced;
 use crate::grammar::Costs;
 use crate::shape::Axis;
 
@@ -66,7 +67,6 @@ impl Exploration {
         costs: Costs,
         operations: Operations,
         lambdas: Lambdas,
-        protected_draws: usize,
     ) -> Self {
         let mut occurrences: Vec<Vec<Vec<(Region, f64)>>> = types
             .sheets
@@ -88,16 +88,16 @@ impl Exploration {
             lambdas,
             occurrences,
             repeated_types: repeated.iter().map(|r| r.id).collect(),
-            protection: Protection::new(repeated, protected_draws),
+            protection: Protection::new(repeated),
             menus: Vec::new(),
             blocked: Blocked::default(),
             remainders: Remainders::default(),
         }
     }
 
-    /// Draws the regions that this walk protects (Sec. 4.7).
-    pub fn protect_anew<R: Rng>(&mut self, rng: &mut R) {
-        self.protection.draw(rng);
+    /// What the present walk protects (Sec. 4.7).
+    pub fn protection(&mut self) -> &mut Protection {
+        &mut self.protection
     }
 
     /// Protects nothing.
@@ -108,23 +108,57 @@ impl Exploration {
 
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
     pub fn sample<R: Rng>(&mut self, types: &mut Types, id: TypeId, rng: &mut R) -> Rc<Choice> {
+        let (menu, left) = self.left(types, id);
+        let place = left.draw(rng);
+        self.rule_left(types, id, &menu, &left, place)
+    }
+
+    /// All rules for a type that [`Exploration::sample`] may draw.
+    pub fn rules(&mut self, types: &mut Types, id: TypeId) -> Rc<[Priced]> {
+        let (menu, left) = self.left(types, id);
+        if let Some(known) = left.priced() {
+            return known;
+        }
+        let places = left.places().iter();
+        let rules = places.map(|&place| {
+            let choice = self.rule_left(types, id, &menu, &left, place as usize);
+            let cost = choice.cost(&self.costs);
+            Priced::new(choice, cost, types)
+        });
+        let rules: Rc<[Priced]> = rules.collect();
+        self.remainders.keep_priced(&left, &rules);
+        rules
+    }
+
+    /// The rules of a type that cut no protected region. Where every rule cuts one, protection gives
+    /// way for the rest of the walk.
+    fn left(&mut self, types: &mut Types, id: TypeId) -> (Rc<Menu>, Rc<Remainder>) {
         let menu = self.menu(types, id);
-        let mut left = Rc::clone(&menu.open);
         if self.blocked.mark(&self.protection, types, id) {
             let remainder = self.remainder(id, &menu);
-            if remainder.is_empty() {
-                // Every rule crosses a protected region: protection gives way.
-                self.unprotect();
-            } else {
-                left = remainder;
+            if !remainder.is_empty() {
+                return (menu, remainder);
             }
+            self.unprotect();
         }
-        let place = left.draw(rng);
+        let open = Rc::clone(&menu.open);
+        (menu, open)
+    }
+
+    /// The rule at a place of the menu, without the blocked lines, made once for a remainder.
+    fn rule_left(
+        &mut self,
+        types: &mut Types,
+        id: TypeId,
+        menu: &Menu,
+        left: &Remainder,
+        place: usize,
+    ) -> Rc<Choice> {
         if let Some(known) = left.rule(place) {
             return known;
         }
-        let rule = self.rule(types, id, &menu, place);
-        self.remainders.keep_rule(&left, place, &rule);
+        let rule = self.rule(types, id, menu, place);
+        self.remainders.keep_rule(left, place, &rule);
         rule
     }
 

@@ -12,6 +12,7 @@ use rustc_hash::FxHashMap;
 use super::choice::Choice;
 use super::protection::Protection;
 use super::regions::{TypeId, Types, ends};
+use super::walk::Priced;
 use crate::shape::Axis;
 
 /// The lines of one type that cross protected regions other than itself.
@@ -81,6 +82,8 @@ pub(crate) struct Remainder {
     weights: Vec<f64>,
     /// Those that were drawn, by place.
     rules: RefCell<FxHashMap<usize, Rc<Choice>>>,
+    /// All of them, once they were asked for.
+    priced: RefCell<Option<Rc<[Priced]>>>,
 }
 
 impl Remainder {
@@ -98,12 +101,23 @@ impl Remainder {
             places,
             weights,
             rules: RefCell::default(),
+            priced: RefCell::default(),
         }
     }
 
     /// Whether no rule is left.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
+    }
+
+    /// The places of its rules in the menu.
+    pub fn places(&self) -> &[u32] {
+        &self.places
+    }
+
+    /// All its rules, if they were asked for before.
+    pub fn priced(&self) -> Option<Rc<[Priced]>> {
+        self.priced.borrow().clone()
     }
 
     /// Draws a place in the menu; there is one.
@@ -161,12 +175,23 @@ impl Remainders {
         remainder.rules.borrow_mut().insert(place, Rc::clone(rule));
     }
 
+    /// Keeps all rules of a remainder.
+    pub fn keep_priced(&mut self, remainder: &Remainder, rules: &Rc<[Priced]>) {
+        self.held += PER_RULE * rules.len();
+        *remainder.priced.borrow_mut() = Some(Rc::clone(rules));
+    }
+
     fn insert(&mut self, key: Box<[u64]>, remainder: Rc<Remainder>) {
         if self.held > HELD {
             self.old = std::mem::take(&mut self.young);
             self.held = 0;
         }
-        let rules = PER_RULE * remainder.rules.borrow().len();
+        let priced = remainder
+            .priced
+            .borrow()
+            .as_ref()
+            .map_or(0, |all| all.len());
+        let rules = PER_RULE * (remainder.rules.borrow().len() + priced);
         self.held += PER_REMAINDER + key.len() + 2 * remainder.places.len() + rules;
         self.young.insert(key, remainder);
     }

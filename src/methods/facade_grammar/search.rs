@@ -5,11 +5,12 @@ use std::rc::Rc;
 
 use super::baselines;
 use super::choice::Router;
+use super::exploitation::AllRules;
 use super::exploration::{Exploration, Lambdas};
 use super::extract;
 use super::infer::{InferError, Settings};
 use super::members::Members;
-use super::readings::Readings;
+use super::readings::{Exploit, Protect};
 use super::regions::Types;
 use super::symmetry;
 use super::walk::{
@@ -42,7 +43,6 @@ impl<'a> Search<'a> {
             settings.costs,
             settings.operations,
             lambdas,
-            settings.readings.protected_draws,
         );
         Self {
             settings,
@@ -58,29 +58,41 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn explore(&self) -> Explore {
-        Explore {
-            types: Rc::clone(&self.types),
-            exploration: Rc::clone(&self.exploration),
-        }
+    fn explore(&self, protect: Protect) -> Explore {
+        Explore::new(
+            Rc::clone(&self.types),
+            Rc::clone(&self.exploration),
+            protect,
+        )
     }
 
-    /// The text's algorithm (Sec. 4.2), and what it learnt.
+    /// The text's algorithm (Sec. 4.2), and the `V(R)` that it learnt, by type.
     pub fn paper(
         &self,
         observer: impl FnMut(Step) + 'static,
-    ) -> Result<(Vec<AddRule>, BestKnown), InferError> {
-        let Readings {
-            remembered_rules,
-            last_epsilon,
+    ) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
+        let Settings {
+            iterations,
+            readings,
             ..
-        } = self.settings.readings;
+        } = *self.settings;
         let epsilon = Epsilon {
-            end: last_epsilon,
+            end: readings.last_epsilon,
             ..Epsilon::default()
         };
-        let known = BestKnown::new(remembered_rules);
-        self.walks(known, epsilon, self.settings.iterations, observer)
+        let explore = self.explore(readings.protection);
+        Ok(match readings.exploitation {
+            Exploit::AllRules => {
+                let values = AllRules::new(Rc::clone(&self.exploration));
+                let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
+                (rules, known.into_values())
+            }
+            Exploit::Remembered(most) => {
+                let values = BestKnown::new(most);
+                let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
+                (rules, known.into_values())
+            }
+        })
     }
 
     /// Importance sampling: walks that always explore.
@@ -89,26 +101,22 @@ impl<'a> Search<'a> {
         observer: impl FnMut(Step) + 'static,
     ) -> Result<Vec<AddRule>, InferError> {
         let iterations = self.settings.iterations;
+        let explore = self.explore(self.settings.readings.protection.anew());
         let always = Epsilon::ALWAYS_EXPLORE;
-        let (rules, _) = self.walks(NothingKnown, always, iterations, observer)?;
+        let (rules, _) = self.walks(explore, NothingKnown, always, iterations, observer)?;
         Ok(rules)
     }
 
     /// The cheapest of many walks, and what they taught.
     fn walks<V: Approximation<Inference>>(
         &self,
+        explore: Explore,
         values: V,
         epsilon: Epsilon,
         iterations: u64,
         observer: impl FnMut(Step) + 'static,
     ) -> Result<(Vec<AddRule>, V), InferError> {
-        let adp = Adp::new(
-            self.explore(),
-            values,
-            epsilon,
-            iterations,
-            self.settings.seed,
-        );
+        let adp = Adp::new(explore, values, epsilon, iterations, self.settings.seed);
         let (walk, _, values) = adp.run_observed(self.process(), observer)?;
         Ok((walk.actions, values))
     }
@@ -120,19 +128,26 @@ impl<'a> Search<'a> {
         observer: impl FnMut(Step) + Clone + 'static,
     ) -> Result<Vec<AddRule>, InferError> {
         let Settings {
-            iterations, seed, ..
+            iterations,
+            seed,
+            readings,
+            ..
         } = *self.settings;
         let router = || Router::new(self.settings.costs, self.settings.operations);
         let (by_memory, known) = self.paper(observer.clone())?;
         let share = share(iterations);
         let (by_routes, routes) = self.walks(
+            self.explore(readings.protection.anew()),
             ShortestRoutes::new(router()),
             Epsilon::default(),
             share,
             later(iterations, observer.clone()),
         )?;
         let start = self.cheapest([by_memory, by_routes]);
-        let values = known.at_most(routes.into_values());
+        let mut values = routes.into_values();
+        for (value, known) in values.iter_mut().zip(known) {
+            *value = value.min(known);
+        }
         let members = Members::new(
             Rc::clone(&self.types),
             router(),

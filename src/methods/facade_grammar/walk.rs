@@ -12,6 +12,7 @@ use rand::Rng;
 use super::choice::{Choice, Router};
 use super::closure::Closures;
 use super::exploration::Exploration;
+use super::readings::Protect;
 use super::regions::{TypeId, Types};
 use crate::grammar::Costs;
 use crate::optim::adp::{Approximation, Heuristic, Process};
@@ -105,13 +106,39 @@ impl Process for Inference {
 
 /// Draws rules from the splitting heuristic.
 pub(crate) struct Explore {
-    pub types: SharedTypes,
-    pub exploration: Rc<RefCell<Exploration>>,
+    types: SharedTypes,
+    exploration: Rc<RefCell<Exploration>>,
+    protect: Protect,
+    /// Whether the regions of [`Protect::Run`] were drawn.
+    drawn: bool,
+}
+
+impl Explore {
+    pub fn new(
+        types: SharedTypes,
+        exploration: Rc<RefCell<Exploration>>,
+        protect: Protect,
+    ) -> Self {
+        Self {
+            types,
+            exploration,
+            protect,
+            drawn: false,
+        }
+    }
 }
 
 impl Heuristic<Inference> for Explore {
     fn start_walk<R: Rng>(&mut self, _: &Inference, rng: &mut R) {
-        self.exploration.borrow_mut().protect_anew(rng);
+        let mut exploration = self.exploration.borrow_mut();
+        let protection = exploration.protection();
+        match self.protect {
+            Protect::Never => protection.lift(),
+            Protect::Walk { draws } => protection.draw(draws, rng),
+            Protect::Run if self.drawn => protection.restore(),
+            Protect::Run => protection.draw_all(&self.types.borrow().extents(), rng),
+        }
+        self.drawn = true;
     }
 
     fn sample<R: Rng>(&mut self, _: &Inference, state: &Derivation, rng: &mut R) -> AddRule {
@@ -124,16 +151,39 @@ impl Heuristic<Inference> for Explore {
     }
 }
 
+/// A rule, and what Eq. 4 asks of it.
+#[derive(Debug)]
+pub(crate) struct Priced {
+    pub choice: Rc<Choice>,
+    /// Eq. 2.
+    pub cost: f64,
+    /// Its successors that are no terminals, each once.
+    pub needs: Box<[TypeId]>,
+}
+
+impl Priced {
+    pub fn new(choice: Rc<Choice>, cost: f64, types: &Types) -> Self {
+        let successors = choice.successors.iter().copied();
+        let mut needs: Vec<TypeId> = Vec::new();
+        for id in successors.filter(|id| !types.is_terminal(*id)) {
+            if !needs.contains(&id) {
+                needs.push(id);
+            }
+        }
+        Self {
+            choice,
+            cost,
+            needs: needs.into(),
+        }
+    }
+}
+
 /// A rule that was tried.
 #[derive(Debug)]
 struct Tried {
-    choice: Rc<Choice>,
+    rule: Priced,
     /// The least value of its type that a walk with it reached.
     value: f64,
-    /// Eq. 2.
-    cost: f64,
-    /// Its successors that are no terminals, each once.
-    needs: Box<[TypeId]>,
 }
 
 /// Remembers that a walk with a rule reached a value, among at most so many rules.
@@ -143,32 +193,21 @@ fn remember(
     value: f64,
     cost: f64,
     choice: &Rc<Choice>,
-    terminals: u32,
+    types: &Types,
 ) {
     // Nearly always the very rule is known, and comparing contents is slow.
     let same = rules
         .iter()
-        .position(|tried| Rc::ptr_eq(&tried.choice, choice));
-    let equal = || rules.iter().position(|tried| tried.choice == *choice);
+        .position(|tried| Rc::ptr_eq(&tried.rule.choice, choice));
+    let equal = || rules.iter().position(|tried| tried.rule.choice == *choice);
     if let Some(place) = same.or_else(equal) {
         let tried = &mut rules[place];
         tried.value = tried.value.min(value);
         return;
     }
-    let tried = || {
-        let successors = choice.successors.iter().copied();
-        let mut needs: Vec<TypeId> = Vec::new();
-        for id in successors.filter(|id| *id >= terminals) {
-            if !needs.contains(&id) {
-                needs.push(id);
-            }
-        }
-        Tried {
-            choice: Rc::clone(choice),
-            value,
-            cost,
-            needs: needs.into(),
-        }
+    let tried = || Tried {
+        rule: Priced::new(Rc::clone(choice), cost, types),
+        value,
     };
     if rules.len() < most {
         rules.push(tried());
@@ -179,8 +218,8 @@ fn remember(
     }
 }
 
-/// The paper's value function approximation: the best known `V(R)` of each region, whatever
-/// subregions had rules then. Actions are the rules tried before.
+/// The best known `V(R)` of each region, as in [`super::exploitation`], but actions are the rules tried
+/// before.
 #[derive(Debug)]
 pub(crate) struct BestKnown {
     /// Rules remembered per type.
@@ -203,18 +242,15 @@ impl BestKnown {
         }
     }
 
-    /// `values`, indexed by type, lowered to what is known here.
-    pub fn at_most(&self, mut values: Vec<f64>) -> Vec<f64> {
-        for (value, known) in values.iter_mut().zip(&self.values) {
-            *value = value.min(*known);
-        }
-        values
+    /// `V(R)` by type.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
     }
 
     /// `C(S, a) + V(S')` of Eq. 4: the rule, and the value of what it is the first to need.
     fn price(&self, state: &Derivation, tried: &Tried) -> f64 {
-        let missing = tried.needs.iter().filter(|id| !state.knows(**id));
-        missing.fold(tried.cost, |sum, id| sum + self.values[*id as usize])
+        let missing = tried.rule.needs.iter().filter(|id| !state.knows(**id));
+        missing.fold(tried.rule.cost, |sum, id| sum + self.values[*id as usize])
     }
 }
 
@@ -226,7 +262,7 @@ impl Approximation<Inference> for BestKnown {
         let (_, tried) = priced.min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(AddRule {
             id,
-            choice: Rc::clone(&tried.choice),
+            choice: Rc::clone(&tried.rule.choice),
         })
     }
 
@@ -239,8 +275,7 @@ impl Approximation<Inference> for BestKnown {
             let slot = action.id as usize;
             self.values[slot] = self.values[slot].min(value);
             let rules = &mut self.rules[slot];
-            let terminals = types.label_count();
-            remember(rules, self.most, value, cost, &action.choice, terminals);
+            remember(rules, self.most, value, cost, &action.choice, &types);
         }
     }
 }

@@ -135,6 +135,12 @@ impl Types {
         types
     }
 
+    /// Columns and rows of the grid of edges of each sheet.
+    pub fn extents(&self) -> Vec<(usize, usize)> {
+        let extent = |sheet: &Sheet| (sheet.xs.len() - 1, sheet.ys.len() - 1);
+        self.sheets.iter().map(extent).collect()
+    }
+
     /// Number of terminal labels.
     pub fn label_count(&self) -> u32 {
         self.labels.len() as u32
