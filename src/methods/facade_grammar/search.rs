@@ -119,9 +119,9 @@ impl<'a> Search<'a> {
         Ok((walk.actions, values))
     }
 
-    /// All the walks of `paper`, some that protect other regions each time, some that exploit by shortest
-    /// paths, then annealing over the set of
-    /// types from the cheapest grammar found: never dearer than `paper` with the same seed.
+    /// All the walks of `paper`, some that protect other regions each time, some that exploit by
+    /// shortest paths, then annealing over the set of types from the cheapest grammar found: never dearer
+    /// than `paper` with the same seed.
     pub fn best(
         &self,
         observer: impl FnMut(Step) + Clone + 'static,
