@@ -18,9 +18,8 @@ use super::operations::Operations;
 use super::protection::{Protection, contains};
 use super::reasonable::{self, Candidate, OpenLines};
 use super::regions::{Region, Strips, TypeId, Types, ends};
-use super::remainder::{Blocked, Remainder, Remainders};
+use super::remainder::{Blocked, LeftRule, Remainder, Remainders};
 use super::symmetry::Repeated;
-use super::walk::Priced;
 use crate::grammar::Costs;
 use crate::shape::Axis;
 
@@ -48,13 +47,22 @@ pub(crate) struct Exploration {
     remainders: Remainders,
 }
 
+/// What rules are compared by.
+pub(crate) trait Pricing {
+    /// Makes room for types that were met since; all successors are among them.
+    fn meet(&mut self, types: &Types);
+    /// The price of a rule with these cost and successors, no less than its cost; anything above `limit`
+    /// when it is above.
+    fn price(&mut self, cost: f64, limit: f64, successors: impl Iterator<Item = TypeId>) -> f64;
+}
+
 /// The rules for one type, and the cost of every line. Rules are numbered: candidates, then grids.
 #[derive(Debug)]
 struct Menu {
     candidates: Vec<Candidate>,
     grids: Vec<Rc<Choice>>,
-    /// `H` of each rule when nothing is protected, Eq. 5.
-    h: Vec<f64>,
+    /// Each rule when nothing is protected.
+    rules: Vec<LeftRule>,
     line_costs: [Vec<f64>; 2],
     /// What is left when nothing is protected: all.
     open: Rc<Remainder>,
@@ -113,21 +121,78 @@ impl Exploration {
         self.rule_left(types, id, &menu, &left, place)
     }
 
-    /// All rules for a type that [`Exploration::sample`] may draw.
-    pub fn rules(&mut self, types: &mut Types, id: TypeId) -> Rc<[Priced]> {
+    /// Of all rules that [`Exploration::sample`] may draw, the one of least price; of several, the first.
+    /// `None` when all are infinite.
+    pub fn cheapest(
+        &mut self,
+        types: &mut Types,
+        id: TypeId,
+        prices: &mut impl Pricing,
+    ) -> Option<Rc<Choice>> {
         let (menu, left) = self.left(types, id);
-        if let Some(known) = left.priced() {
-            return known;
+        let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
+        prices.meet(types);
+        // What was cheapest last time makes most others not worth the sum.
+        let mut best = (f64::INFINITY, left.cheapest_last());
+        for (place, cost) in left.costs_from(best.1) {
+            if cost <= best.0 {
+                let price = match menu.candidates.get(place) {
+                    Some(candidate) => {
+                        let strips = &strips[candidate.axis as usize];
+                        let successors = self.successors(candidate, strips);
+                        prices.price(cost, best.0, successors)
+                    }
+                    None => {
+                        let grid = &menu.grids[place - menu.candidates.len()];
+                        prices.price(cost, best.0, grid.successors.iter().copied())
+                    }
+                };
+                if price < best.0 || price == best.0 && place < best.1 {
+                    best = (price, place);
+                }
+            }
         }
-        let places = left.places().iter();
-        let rules = places.map(|&place| {
-            let choice = self.rule_left(types, id, &menu, &left, place as usize);
-            let cost = choice.cost(&self.costs);
-            Priced::new(choice, cost, types)
-        });
-        let rules: Rc<[Priced]> = rules.collect();
-        self.remainders.keep_priced(&left, &rules);
-        rules
+        if best.0.is_infinite() {
+            return None;
+        }
+        left.remember_cheapest(best.1);
+        Some(self.rule_left(types, id, &menu, &left, best.1))
+    }
+
+    /// All rules that [`Exploration::sample`] may draw.
+    #[cfg(test)]
+    pub fn all_left(&mut self, types: &mut Types, id: TypeId) -> Vec<Rc<Choice>> {
+        let (menu, left) = self.left(types, id);
+        let places = left.costs_from(0).map(|(place, _)| place);
+        places
+            .map(|place| self.rule_left(types, id, &menu, &left, place))
+            .collect()
+    }
+
+    /// The successors of a rule without the blocked lines.
+    fn successors<'a>(
+        &'a self,
+        rule: &'a Candidate,
+        strips: &'a Strips,
+    ) -> impl Iterator<Item = TypeId> + 'a {
+        let blocked: &[bool] = if self.blocked.any(rule.axis) {
+            self.blocked.along(rule.axis)
+        } else {
+            &[]
+        };
+        let ends = rule.lines[1..].iter().map(|line| usize::from(*line));
+        let open = ends.filter(|line| !blocked.get(*line).is_some_and(|b| *b));
+        open.scan(0, |from, to| {
+            let strip = strips.strip(*from, to);
+            *from = to;
+            Some(strip)
+        })
+    }
+
+    /// Which lines of a type cross a protected region.
+    pub fn blocked(&mut self, types: &mut Types, id: TypeId) -> &Blocked {
+        self.blocked.mark(&self.protection, types, id);
+        &self.blocked
     }
 
     /// The rules of a type that cut no protected region. Where every rule cuts one, protection gives
@@ -166,9 +231,8 @@ impl Exploration {
     pub fn best(&mut self, types: &mut Types, id: TypeId) -> Option<Rc<Choice>> {
         self.unprotect();
         let menu = self.menu(types, id);
-        let places = menu.h.iter().enumerate();
-        let (best, _) = places.min_by(|a, b| a.1.total_cmp(b.1))?;
-        Some(self.rule(types, id, &menu, best))
+        let best = menu.rules.iter().min_by(|a, b| a.h.total_cmp(&b.h))?;
+        Some(self.rule(types, id, &menu, best.place))
     }
 
     /// The rules of the menu that can do without the blocked lines.
@@ -181,21 +245,15 @@ impl Exploration {
         let candidates = menu.candidates.iter().enumerate();
         let left = candidates.filter_map(|(place, candidate)| {
             if !self.blocked.any(candidate.axis) {
-                return Some((menu.h[place], place));
+                return Some(menu.rules[place]);
             }
             let (successors, cut) = candidate.without(&open[candidate.axis as usize])?;
-            let h = self.h(candidate.arrangement, successors, cut);
-            Some((h, place))
+            Some(self.left_rule(place, candidate.arrangement, successors, cut))
         });
-        let crossed = |lines: &[u16], axis: Axis| {
-            let blocked = self.blocked.along(axis);
-            lines.iter().any(|l| blocked[usize::from(*l)])
-        };
         let grids = (menu.candidates.len()..).zip(&menu.grids);
-        let grids = grids
-            .filter(|(_, grid)| !crossed(&grid.lines, Axis::X) && !crossed(&grid.rows, Axis::Y));
-        let left = left.chain(grids.map(|(place, _)| (menu.h[place], place)));
-        let remainder = Rc::new(Remainder::new(left, menu.h.len()));
+        let grids = grids.filter(|(_, grid)| !self.blocked.crosses(grid));
+        let left = left.chain(grids.map(|(place, _)| menu.rules[place]));
+        let remainder = Rc::new(Remainder::new(left, menu.rules.len()));
         self.remainders.keep(id, &self.blocked, &remainder);
         remainder
     }
@@ -214,11 +272,21 @@ impl Exploration {
         Rc::new(Choice::between(candidate.arrangement, lines, &strips))
     }
 
-    /// Eq. 5 for a rule whose lines cost `cut` together.
-    fn h(&self, arrangement: Arrangement, successors: usize, cut: f64) -> f64 {
+    /// A rule at a place of the menu whose lines cost `cut` together (Eq. 2 and 5).
+    fn left_rule(
+        &self,
+        place: usize,
+        arrangement: Arrangement,
+        successors: usize,
+        cut: f64,
+    ) -> LeftRule {
         let cost =
             operation_cost(arrangement, &self.costs) + self.costs.successor * successors as f64;
-        self.lambdas.rule * cost + self.lambdas.lines * cut
+        LeftRule {
+            place,
+            cost,
+            h: self.lambdas.rule * cost + self.lambdas.lines * cut,
+        }
     }
 
     /// For every cost that a line has, the grid of all lines that cost no more.
@@ -266,21 +334,20 @@ impl Exploration {
             let inner = &lines[1..lines.len() - 1];
             inner.iter().map(|l| line_costs[usize::from(*l)]).sum()
         };
-        let candidate_h = candidates.iter().map(|c| {
+        let along = candidates.iter().enumerate().map(|(place, c)| {
             let cut = cut(&c.lines, &line_costs[c.axis as usize]);
-            self.h(c.arrangement, c.lines.len() - 1, cut)
+            self.left_rule(place, c.arrangement, c.lines.len() - 1, cut)
         });
-        let grid_h = grids.iter().map(|grid| {
+        let across = (candidates.len()..).zip(&grids).map(|(place, grid)| {
             let cut = cut(&grid.lines, &line_costs[0]) + cut(&grid.rows, &line_costs[1]);
-            self.h(grid.arrangement, grid.successors.len(), cut)
+            self.left_rule(place, grid.arrangement, grid.successors.len(), cut)
         });
-        let h: Vec<f64> = candidate_h.chain(grid_h).collect();
-        let all = h.iter().copied().zip(0..);
+        let rules: Vec<LeftRule> = along.chain(across).collect();
         let menu = Rc::new(Menu {
-            open: Rc::new(Remainder::new(all, h.len())),
+            open: Rc::new(Remainder::new(rules.iter().copied(), rules.len())),
             candidates,
             grids,
-            h,
+            rules,
             line_costs,
         });
         self.menus[index] = Some(Rc::clone(&menu));

@@ -25,8 +25,9 @@ pub enum Protect {
         /// Draws at most.
         draws: usize,
     },
-    /// Once for all walks, until no other region fits between those drawn. Methods that learn nothing
-    /// from walk to walk draw for each walk, in up to [`Protect::DRAWS`] draws.
+    /// Once for all walks, until no other region fits between those drawn: against the text, but nearer
+    /// to its numbers. Methods that learn nothing from walk to walk draw for each walk, in up to
+    /// [`Protect::DRAWS`] draws.
     Run,
 }
 
@@ -35,14 +36,17 @@ pub enum Protect {
 pub enum Exploit {
     /// All reasonable rules that cut no protected region.
     AllRules,
-    /// The cheapest rules that earlier walks tried, at most so many for each region type.
+    /// Of the cheapest rules that earlier walks tried, at most so many for each region type, those that
+    /// cut no protected region.
     Remembered(usize),
 }
 
 impl Default for Readings {
     fn default() -> Self {
         Self {
-            protection: Protect::Run,
+            protection: Protect::Walk {
+                draws: Protect::DRAWS,
+            },
             exploitation: Exploit::AllRules,
             last_epsilon: 0.1,
         }

@@ -86,7 +86,7 @@ impl<'a> Search<'a> {
                 (rules, known.into_values())
             }
             Exploit::Remembered(most) => {
-                let values = Remembered::new(most);
+                let values = Remembered::new(most, Rc::clone(&self.exploration));
                 let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
                 (rules, known.into_values())
             }
@@ -119,9 +119,8 @@ impl<'a> Search<'a> {
         Ok((walk.actions, values))
     }
 
-    /// All the walks of `paper`, some that protect other regions each time, some that exploit by
-    /// shortest paths, then annealing over the set of types from the cheapest grammar found: never dearer
-    /// than `paper` with the same seed.
+    /// All the walks of `paper`, some that exploit by shortest paths, then annealing over the set of types
+    /// from the cheapest grammar found: never dearer than `paper` with the same seed.
     pub fn best(
         &self,
         observer: impl FnMut(Step) + Clone + 'static,
@@ -135,27 +134,17 @@ impl<'a> Search<'a> {
         let router = || Router::new(self.settings.costs, self.settings.operations);
         let (by_text, known) = self.paper(observer.clone())?;
         let share = share(iterations);
-        let anew = || self.explore(readings.protection.anew());
-        let (by_rules, rules) = self.walks(
-            anew(),
-            AllRules::new(Rc::clone(&self.exploration)),
+        let (by_routes, routes) = self.walks(
+            self.explore(readings.protection.anew()),
+            ShortestRoutes::new(router()),
             Epsilon::default(),
             share,
             later(iterations, observer.clone()),
         )?;
-        let (by_routes, routes) = self.walks(
-            anew(),
-            ShortestRoutes::new(router()),
-            Epsilon::default(),
-            share,
-            later(iterations + share, observer.clone()),
-        )?;
-        let start = self.cheapest([by_text, by_rules, by_routes]);
+        let start = self.cheapest([by_text, by_routes]);
         let mut values = routes.into_values();
-        for learnt in [known, rules.into_values()] {
-            for (value, known) in values.iter_mut().zip(learnt) {
-                *value = value.min(known);
-            }
+        for (value, known) in values.iter_mut().zip(known) {
+            *value = value.min(known);
         }
         let members = Members::new(
             Rc::clone(&self.types),
@@ -166,7 +155,7 @@ impl<'a> Search<'a> {
         );
         let annealing = Annealing::new(COOLING, share, MOVES_PER_ROUND, seed)?;
         Ok(annealing
-            .run(members, later(iterations + 2 * share, observer))?
+            .run(members, later(iterations + share, observer))?
             .0)
     }
 
@@ -192,7 +181,7 @@ impl<'a> Search<'a> {
     }
 
     /// The cheapest of the walks and of what the deterministic methods find; of several, the first.
-    fn cheapest(&self, walks: [Vec<AddRule>; 3]) -> Vec<AddRule> {
+    fn cheapest(&self, walks: [Vec<AddRule>; 2]) -> Vec<AddRule> {
         let cost = |rules: &[AddRule]| -> f64 {
             let costs = &self.settings.costs;
             rules.iter().map(|r| r.choice.cost(costs)).sum()
@@ -216,7 +205,7 @@ fn share(iterations: u64) -> u64 {
 
 /// Walks and rounds of the second stage of `best` after so many iterations.
 pub(super) fn second_stage_steps(iterations: u64) -> u64 {
-    3 * share(iterations)
+    2 * share(iterations)
 }
 
 /// An observer of a stage before which so many steps were made.
@@ -229,7 +218,7 @@ fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(St
     }
 }
 
-/// The second stage of `best` has two walks and one round of annealing for so many iterations.
+/// The second stage of `best` has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 10;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 100;

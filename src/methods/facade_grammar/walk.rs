@@ -151,33 +151,6 @@ impl Heuristic<Inference> for Explore {
     }
 }
 
-/// A rule, and what Eq. 4 asks of it.
-#[derive(Debug)]
-pub(crate) struct Priced {
-    pub choice: Rc<Choice>,
-    /// Eq. 2.
-    pub cost: f64,
-    /// Its successors that are no terminals, each once.
-    pub needs: Box<[TypeId]>,
-}
-
-impl Priced {
-    pub fn new(choice: Rc<Choice>, cost: f64, types: &Types) -> Self {
-        let successors = choice.successors.iter().copied();
-        let mut needs: Vec<TypeId> = Vec::new();
-        for id in successors.filter(|id| !types.is_terminal(*id)) {
-            if !needs.contains(&id) {
-                needs.push(id);
-            }
-        }
-        Self {
-            choice,
-            cost,
-            needs: needs.into(),
-        }
-    }
-}
-
 /// Importance sampling learns nothing.
 pub(crate) struct NothingKnown;
 
