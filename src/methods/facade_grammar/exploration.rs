@@ -14,11 +14,12 @@ use rustc_hash::FxHashSet;
 
 use super::choice::{Arrangement, Choice, operation_cost};
 use super::grid;
+use super::offers::{Offers, append_needs};
 use super::operations::Operations;
 use super::protection::{Protection, contains};
 use super::reasonable::{self, Candidate, OpenLines};
 use super::regions::{Region, Strips, TypeId, Types, ends};
-use super::remainder::{Blocked, LeftRule, Remainder, Remainders};
+use super::remainder::{Blocked, Remainder, Remainders};
 use super::symmetry::Repeated;
 use crate::grammar::Costs;
 use crate::shape::Axis;
@@ -47,22 +48,13 @@ pub(crate) struct Exploration {
     remainders: Remainders,
 }
 
-/// What rules are compared by.
-pub(crate) trait Pricing {
-    /// Makes room for types that were met since; all successors are among them.
-    fn meet(&mut self, types: &Types);
-    /// The price of a rule with these cost and successors, no less than its cost; anything above `limit`
-    /// when it is above.
-    fn price(&mut self, cost: f64, limit: f64, successors: impl Iterator<Item = TypeId>) -> f64;
-}
-
 /// The rules for one type, and the cost of every line. Rules are numbered: candidates, then grids.
 #[derive(Debug)]
 struct Menu {
     candidates: Vec<Candidate>,
     grids: Vec<Rc<Choice>>,
-    /// Each rule when nothing is protected.
-    rules: Vec<LeftRule>,
+    /// `H` of each rule when nothing is protected, Eq. 5.
+    h: Vec<f64>,
     line_costs: [Vec<f64>; 2],
     /// What is left when nothing is protected: all.
     open: Rc<Remainder>,
@@ -121,52 +113,45 @@ impl Exploration {
         self.rule_left(types, id, &menu, &left, place)
     }
 
-    /// Of all rules that [`Exploration::sample`] may draw, the one of least price; of several, the first.
-    /// `None` when all are infinite.
+    /// Of all rules that [`Exploration::sample`] may draw, the one with the least sum of its cost and what
+    /// the types that it needs are worth; `None` when all are infinite.
     pub fn cheapest(
         &mut self,
         types: &mut Types,
         id: TypeId,
-        prices: &mut impl Pricing,
+        worth: impl Fn(TypeId) -> f64,
     ) -> Option<Rc<Choice>> {
         let (menu, left) = self.left(types, id);
-        let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
-        prices.meet(types);
-        // What was cheapest last time makes most others not worth the sum.
-        let mut best = (f64::INFINITY, left.cheapest_last());
-        for (place, cost) in left.costs_from(best.1) {
-            if cost <= best.0 {
-                let price = match menu.candidates.get(place) {
-                    Some(candidate) => {
-                        let strips = &strips[candidate.axis as usize];
-                        let successors = self.successors(candidate, strips);
-                        prices.price(cost, best.0, successors)
-                    }
-                    None => {
-                        let grid = &menu.grids[place - menu.candidates.len()];
-                        prices.price(cost, best.0, grid.successors.iter().copied())
-                    }
-                };
-                if price < best.0 || price == best.0 && place < best.1 {
-                    best = (price, place);
-                }
+        let place = match left.offers() {
+            Some(offers) => offers.cheapest(worth),
+            None => {
+                let offers = self.offers(types, id, &menu, &left);
+                self.remainders.keep_offers(&left, offers).cheapest(worth)
             }
-        }
-        if best.0.is_infinite() {
-            return None;
-        }
-        left.remember_cheapest(best.1);
-        Some(self.rule_left(types, id, &menu, &left, best.1))
+        };
+        Some(self.rule_left(types, id, &menu, &left, place?))
     }
 
-    /// All rules that [`Exploration::sample`] may draw.
-    #[cfg(test)]
-    pub fn all_left(&mut self, types: &mut Types, id: TypeId) -> Vec<Rc<Choice>> {
-        let (menu, left) = self.left(types, id);
-        let places = left.costs_from(0).map(|(place, _)| place);
-        places
-            .map(|place| self.rule_left(types, id, &menu, &left, place))
-            .collect()
+    /// The rules of a remainder for Eq. 4.
+    fn offers(&self, types: &mut Types, id: TypeId, menu: &Menu, left: &Remainder) -> Offers {
+        let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
+        let is_terminal = |id| types.is_terminal(id);
+        Offers::new(left.places(), |place, needs| {
+            let (arrangement, successors) = match menu.candidates.get(place) {
+                Some(rule) => {
+                    let successors = self.successors(rule, &strips[rule.axis as usize]);
+                    let count = append_needs(needs, successors, is_terminal);
+                    (rule.arrangement, count)
+                }
+                None => {
+                    let grid = &menu.grids[place - menu.candidates.len()];
+                    let successors = grid.successors.iter().copied();
+                    let count = append_needs(needs, successors, is_terminal);
+                    (grid.arrangement, count)
+                }
+            };
+            self.cost(arrangement, successors)
+        })
     }
 
     /// The successors of a rule without the blocked lines.
@@ -175,18 +160,23 @@ impl Exploration {
         rule: &'a Candidate,
         strips: &'a Strips,
     ) -> impl Iterator<Item = TypeId> + 'a {
-        let blocked: &[bool] = if self.blocked.any(rule.axis) {
-            self.blocked.along(rule.axis)
-        } else {
-            &[]
-        };
-        let ends = rule.lines[1..].iter().map(|line| usize::from(*line));
-        let open = ends.filter(|line| !blocked.get(*line).is_some_and(|b| *b));
-        open.scan(0, |from, to| {
-            let strip = strips.strip(*from, to);
+        let mut lines = self.blocked.without(rule.axis, &rule.lines);
+        let first = lines.next().unwrap_or(0);
+        lines.scan(first, |from, to| {
+            let strip = strips.strip((*from).into(), to.into());
             *from = to;
             Some(strip)
         })
+    }
+
+    /// All rules that [`Exploration::sample`] may draw.
+    #[cfg(test)]
+    pub fn all_left(&mut self, types: &mut Types, id: TypeId) -> Vec<Rc<Choice>> {
+        let (menu, left) = self.left(types, id);
+        let rules = left.places();
+        rules
+            .map(|place| self.rule_left(types, id, &menu, &left, place))
+            .collect()
     }
 
     /// Which lines of a type cross a protected region.
@@ -231,8 +221,9 @@ impl Exploration {
     pub fn best(&mut self, types: &mut Types, id: TypeId) -> Option<Rc<Choice>> {
         self.unprotect();
         let menu = self.menu(types, id);
-        let best = menu.rules.iter().min_by(|a, b| a.h.total_cmp(&b.h))?;
-        Some(self.rule(types, id, &menu, best.place))
+        let places = menu.h.iter().enumerate();
+        let (best, _) = places.min_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(self.rule(types, id, &menu, best))
     }
 
     /// The rules of the menu that can do without the blocked lines.
@@ -245,15 +236,16 @@ impl Exploration {
         let candidates = menu.candidates.iter().enumerate();
         let left = candidates.filter_map(|(place, candidate)| {
             if !self.blocked.any(candidate.axis) {
-                return Some(menu.rules[place]);
+                return Some((menu.h[place], place));
             }
             let (successors, cut) = candidate.without(&open[candidate.axis as usize])?;
-            Some(self.left_rule(place, candidate.arrangement, successors, cut))
+            let h = self.h(candidate.arrangement, successors, cut);
+            Some((h, place))
         });
         let grids = (menu.candidates.len()..).zip(&menu.grids);
         let grids = grids.filter(|(_, grid)| !self.blocked.crosses(grid));
-        let left = left.chain(grids.map(|(place, _)| menu.rules[place]));
-        let remainder = Rc::new(Remainder::new(left, menu.rules.len()));
+        let left = left.chain(grids.map(|(place, _)| (menu.h[place], place)));
+        let remainder = Rc::new(Remainder::new(left, menu.h.len()));
         self.remainders.keep(id, &self.blocked, &remainder);
         remainder
     }
@@ -263,30 +255,22 @@ impl Exploration {
         let Some(candidate) = menu.candidates.get(place) else {
             return Rc::clone(&menu.grids[place - menu.candidates.len()]);
         };
-        let mut lines = candidate.lines.clone();
-        if self.blocked.any(candidate.axis) {
-            let blocked = self.blocked.along(candidate.axis);
-            lines.retain(|l| !blocked[usize::from(*l)]);
-        }
+        let lines = self
+            .blocked
+            .without(candidate.axis, &candidate.lines)
+            .collect();
         let strips = types.strips(id, candidate.axis);
         Rc::new(Choice::between(candidate.arrangement, lines, &strips))
     }
 
-    /// A rule at a place of the menu whose lines cost `cut` together (Eq. 2 and 5).
-    fn left_rule(
-        &self,
-        place: usize,
-        arrangement: Arrangement,
-        successors: usize,
-        cut: f64,
-    ) -> LeftRule {
-        let cost =
-            operation_cost(arrangement, &self.costs) + self.costs.successor * successors as f64;
-        LeftRule {
-            place,
-            cost,
-            h: self.lambdas.rule * cost + self.lambdas.lines * cut,
-        }
+    /// Eq. 5 for a rule whose lines cost `cut` together.
+    fn h(&self, arrangement: Arrangement, successors: usize, cut: f64) -> f64 {
+        self.lambdas.rule * self.cost(arrangement, successors) + self.lambdas.lines * cut
+    }
+
+    /// Eq. 2.
+    fn cost(&self, arrangement: Arrangement, successors: usize) -> f64 {
+        operation_cost(arrangement, &self.costs) + self.costs.successor * successors as f64
     }
 
     /// For every cost that a line has, the grid of all lines that cost no more.
@@ -334,20 +318,21 @@ impl Exploration {
             let inner = &lines[1..lines.len() - 1];
             inner.iter().map(|l| line_costs[usize::from(*l)]).sum()
         };
-        let along = candidates.iter().enumerate().map(|(place, c)| {
+        let candidate_h = candidates.iter().map(|c| {
             let cut = cut(&c.lines, &line_costs[c.axis as usize]);
-            self.left_rule(place, c.arrangement, c.lines.len() - 1, cut)
+            self.h(c.arrangement, c.lines.len() - 1, cut)
         });
-        let across = (candidates.len()..).zip(&grids).map(|(place, grid)| {
+        let grid_h = grids.iter().map(|grid| {
             let cut = cut(&grid.lines, &line_costs[0]) + cut(&grid.rows, &line_costs[1]);
-            self.left_rule(place, grid.arrangement, grid.successors.len(), cut)
+            self.h(grid.arrangement, grid.successors.len(), cut)
         });
-        let rules: Vec<LeftRule> = along.chain(across).collect();
+        let h: Vec<f64> = candidate_h.chain(grid_h).collect();
+        let all = h.iter().copied().zip(0..);
         let menu = Rc::new(Menu {
-            open: Rc::new(Remainder::new(rules.iter().copied(), rules.len())),
+            open: Rc::new(Remainder::new(all, h.len())),
             candidates,
             grids,
-            rules,
+            h,
             line_costs,
         });
         self.menus[index] = Some(Rc::clone(&menu));

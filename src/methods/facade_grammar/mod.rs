@@ -44,8 +44,8 @@
 //!   has 40.3 to 43.3, and `best` saves little more. Two departures come nearer to the printed numbers:
 //!   exploitation from the rules tried before (42.3 on average with one rule of each type, 41.4 with 64),
 //!   and protected regions drawn once for a run ([`Protect::Run`]: 42.5, and as large a difference between
-//!   runs as the text has). Neither is what `paper` does: a reading is not chosen for making the
-//!   configuration that it is compared with look better, and either would (see the report's `readings`).
+//!   runs as the text has). Neither is the default: the first leaves out rules that Eq. 4 minimizes over,
+//!   the second contradicts the text, and `best` would look better beside either.
 //! - These readings can be set ([`Readings`]); the report's `readings` shows what each does.
 //! - *Iterations* are walks. `best` makes the walks of `paper`, so that it is never dearer with the same
 //!   seed and iterations; its second stage comes on top and grows with the iterations.
@@ -66,6 +66,7 @@ mod grid;
 mod infer;
 mod kinds;
 mod members;
+mod offers;
 mod operations;
 mod protection;
 mod readings;

@@ -3,13 +3,14 @@
 //! A walk splits a type with some of its lines blocked. The rules that are left and their weights depend
 //! on nothing else, and walks meet the same blocked lines again and again: they are weighed once.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 
 use rand::{Rng, RngExt};
 use rustc_hash::FxHashMap;
 
 use super::choice::Choice;
+use super::offers::Offers;
 use super::protection::Protection;
 use super::regions::{TypeId, Types, ends};
 use crate::shape::Axis;
@@ -61,6 +62,17 @@ impl Blocked {
         &self.lines[axis as usize]
     }
 
+    /// Those of some lines along an axis that are not blocked.
+    pub fn without<'a>(&'a self, axis: Axis, lines: &'a [u16]) -> impl Iterator<Item = u16> + 'a {
+        let along: &[bool] = if self.any(axis) {
+            self.along(axis)
+        } else {
+            &[]
+        };
+        let blocked = |line: &u16| along.get(usize::from(*line)).is_some_and(|b| *b);
+        lines.iter().copied().filter(move |line| !blocked(line))
+    }
+
     /// Whether a rule has a blocked line.
     pub fn crosses(&self, rule: &Choice) -> bool {
         let along = |axis: Axis, lines: &[u16]| {
@@ -83,53 +95,35 @@ impl Blocked {
     }
 }
 
-/// A rule of a menu without the blocked lines.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LeftRule {
-    /// Its place in the menu.
-    pub place: usize,
-    /// Eq. 2.
-    pub cost: f64,
-    /// Eq. 5.
-    pub h: f64,
-}
-
 /// The rules of a menu that are left.
 #[derive(Debug)]
 pub(crate) struct Remainder {
     /// Their places in the menu.
     places: Vec<u32>,
-    /// What they cost (Eq. 2).
-    costs: Vec<f64>,
     /// Their `exp(-H)`, up to a factor, summed up to each.
     weights: Vec<f64>,
     /// Those that were drawn, by place.
     rules: RefCell<FxHashMap<usize, Rc<Choice>>>,
-    /// The place that was cheapest last.
-    cheapest: Cell<u32>,
+    /// All of them for Eq. 4, once they were asked for.
+    offers: OnceCell<Offers>,
 }
 
 impl Remainder {
-    /// These rules, at most `most`.
-    pub fn new(left: impl Iterator<Item = LeftRule>, most: usize) -> Self {
-        let with_room = || Vec::with_capacity(most);
-        let (mut weights, mut costs) = (with_room(), with_room());
-        let mut places = Vec::with_capacity(most);
-        for rule in left {
-            weights.push(rule.h);
-            costs.push(rule.cost);
-            places.push(rule.place as u32);
+    /// The rules with these `H` and places, at most `most`.
+    pub fn new(left: impl Iterator<Item = (f64, usize)>, most: usize) -> Self {
+        let (mut weights, mut places) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        for (h, place) in left {
+            weights.push(h);
+            places.push(place as u32);
         }
         weigh(&mut weights);
         weights.shrink_to_fit();
-        costs.shrink_to_fit();
         places.shrink_to_fit();
         Self {
             places,
-            costs,
             weights,
             rules: RefCell::default(),
-            cheapest: Cell::default(),
+            offers: OnceCell::new(),
         }
     }
 
@@ -138,22 +132,14 @@ impl Remainder {
         self.places.is_empty()
     }
 
-    /// Its rules' places in the menu and what they cost, those from a place on first.
-    pub fn costs_from(&self, place: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let from = self.places.partition_point(|p| (*p as usize) < place);
-        (from..self.places.len())
-            .chain(0..from)
-            .map(|i| (self.places[i] as usize, self.costs[i]))
+    /// The places of its rules in the menu.
+    pub fn places(&self) -> impl Iterator<Item = usize> + '_ {
+        self.places.iter().map(|place| *place as usize)
     }
 
-    /// The place that was cheapest last time.
-    pub fn cheapest_last(&self) -> usize {
-        self.cheapest.get() as usize
-    }
-
-    /// Remembers it.
-    pub fn remember_cheapest(&self, place: usize) {
-        self.cheapest.set(place as u32);
+    /// Its rules for Eq. 4, if they were asked for before.
+    pub fn offers(&self) -> Option<&Offers> {
+        self.offers.get()
     }
 
     /// Draws a place in the menu; there is one.
@@ -211,13 +197,20 @@ impl Remainders {
         remainder.rules.borrow_mut().insert(place, Rc::clone(rule));
     }
 
+    /// Keeps the rules of a remainder for Eq. 4.
+    pub fn keep_offers<'a>(&mut self, remainder: &'a Remainder, offers: Offers) -> &'a Offers {
+        self.held += offers.held();
+        remainder.offers.get_or_init(|| offers)
+    }
+
     fn insert(&mut self, key: Box<[u64]>, remainder: Rc<Remainder>) {
         if self.held > HELD {
             self.old = std::mem::take(&mut self.young);
             self.held = 0;
         }
+        let offers = remainder.offers.get().map_or(0, Offers::held);
         let rules = PER_RULE * remainder.rules.borrow().len();
-        self.held += PER_REMAINDER + key.len() + 3 * remainder.places.len() + rules;
+        self.held += PER_REMAINDER + key.len() + 2 * remainder.places.len() + rules + offers;
         self.young.insert(key, remainder);
     }
 }
@@ -247,19 +240,11 @@ mod tests {
         Blocked { lines, any }
     }
 
-    fn rule(place: usize, h: f64) -> LeftRule {
-        LeftRule {
-            place,
-            cost: 1.0,
-            h,
-        }
-    }
-
     #[test]
     fn remainders_are_told_apart_by_type_and_lines() {
         let mut remainders = Remainders::default();
         let here = blocked([vec![false, true, false], vec![false; 70]]);
-        let kept = Rc::new(Remainder::new([rule(4, 1.0), rule(6, 2.0)].into_iter(), 3));
+        let kept = Rc::new(Remainder::new([(1.0, 4), (2.0, 6)].into_iter(), 3));
         remainders.keep(8, &here, &kept);
         assert!(Rc::ptr_eq(&remainders.get(8, &here).unwrap(), &kept));
         assert!(remainders.get(9, &here).is_none());
@@ -273,7 +258,7 @@ mod tests {
     fn remainders_not_asked_for_give_way() {
         let mut remainders = Remainders::default();
         let here = blocked([vec![false, true, false], vec![false; 3]]);
-        let many = (0..=HELD).map(|place| rule(place, 1.0));
+        let many = (0..=HELD).map(|place| (1.0, place));
         let large = Rc::new(Remainder::new(many, HELD + 1));
         for id in 1..4 {
             // Each fills a generation; the first is asked for whenever one is full.
@@ -286,7 +271,7 @@ mod tests {
 
     #[test]
     fn weights_add_up_and_lesser_h_is_likelier() {
-        let left = [rule(10, 3.0), rule(11, 3.0 + 2f64.ln())].into_iter();
+        let left = [(3.0, 10), (3.0 + 2f64.ln(), 11)].into_iter();
         let remainder = Remainder::new(left, 2);
         assert!((remainder.weights[0] - 1.0).abs() < 1e-12);
         assert!((remainder.weights[1] - 1.5).abs() < 1e-12);
