@@ -3,8 +3,8 @@
 mod grammar_support;
 
 use edifice::grammar::{
-    GrammarError, Operation, Size, check, derive, derive_at, is_size_independent, same_tiling,
-    scaled, size_independent,
+    GrammarError, Operation, Sampler, Size, check, derive, derive_at, is_size_independent,
+    same_tiling, scaled, size_independent,
 };
 use edifice::io::grammar_cga::from_str;
 use edifice::rng::stream;
@@ -126,6 +126,27 @@ fn repeats_fill_the_space() {
             ..
         })
     ));
+}
+
+#[test]
+fn parts_larger_or_smaller_than_written_are_stretched() {
+    let text = "//@ facade F 10 x 40\nF --> split(y) { 10 : Shop | 30 : Floors }\n\
+                Floors --> split(y) { { 10 : Floor }* }\n\
+                Floor --> split(y) { 4 : wall | 6 : window }\n\
+                Shop --> split(x) { 2 : wall | 8 : shop }";
+    let grammar = size_independent(&from_str(text).unwrap());
+    let sampler = Sampler::new(&grammar).unwrap();
+    let stretch = |width, height| {
+        let mut rng = stream(0, "none", 0);
+        let derivation = sampler.derive(0, width, height, &mut rng).unwrap();
+        sampler.stretch(&derivation)
+    };
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(near(stretch(10.0, 40.0), 1.0));
+    // The whole by 1.25; three floors become four.
+    assert!(near(stretch(10.0, 50.0), 1.25));
+    assert!(near(stretch(20.0, 40.0), 2.0));
+    assert!(near(stretch(5.0, 40.0), 2.0));
 }
 
 mod combining {

@@ -218,6 +218,22 @@ impl<'g> Sampler<'g> {
         )
     }
 
+    /// How far the splits of a derivation are from the sizes that the grammar writes for their parts: the
+    /// largest factor between the two, at least 1. Repeats fill any extent with parts of about their own
+    /// size; but rules drawn for two floors, in the space of three, stretch their windows by 1.5.
+    pub fn stretch(&self, derivation: &Derivation) -> f64 {
+        let factors = derivation.non_terminals.iter().filter_map(|region| {
+            let rule = &self.grammar.rules[region.rule];
+            let Operation::Split { axis, successors } = &rule.operation else {
+                return None;
+            };
+            let written: f64 = successors.iter().map(|s| s.size.value()).sum();
+            let factor = region.rect.extent(*axis) / written;
+            Some(factor.max(1.0 / factor))
+        });
+        factors.fold(1.0, f64::max)
+    }
+
     /// One of the rules, with probability proportional to its weight.
     fn pick<R: Rng>(&self, rules: &[usize], rng: &mut R) -> usize {
         let weight = |rule: usize| self.grammar.rules[rule].weight.unwrap_or(1.0);

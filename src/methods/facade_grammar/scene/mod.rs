@@ -9,6 +9,8 @@
 //! - The paper drew 3,500 buildings with CityEngine and edited its twelve grammars by hand; here
 //!   nothing is edited, and windows, doors and balconies are boxes and niches by their label.
 //! - Every building is one box with four facades and a flat or pitched roof.
+//! - Sizes and rules are drawn together, several times, until the parts are nearly as large as in the facades
+//!   that the grammar was made from: two floors drawn at the height of three would stretch their windows.
 //! - Facades whose unit is not metric are scaled to [`Settings::height`].
 
 mod relief;
@@ -155,7 +157,7 @@ fn style(grammar: &Grammar, height: f64) -> Grammar {
     }
 }
 
-/// Draws a size that the grammar can fill, and derives front and side there.
+/// Draws sizes and rules that fit one another, and derives front and side.
 fn draw_type(
     sampler: &Sampler<'_>,
     style: &Grammar,
@@ -167,23 +169,40 @@ fn draw_type(
     let vary = |rng: &mut Stream, own: f64, low: f64, high: f64| {
         (own * rng.random_range(low..high) * 2.0).round() / 2.0
     };
-    // Both sides take their choices from the same numbers, so that they match.
-    let choices = || stream(seed, "building type choices", index as u64);
-    let derive = |width, height| {
-        let derivation = sampler.derive(0, width, height, &mut choices());
-        derivation.map(|d| d.facade)
-    };
-    for _ in 0..8 {
+    let mut best: Option<(f64, [Facade; 2])> = None;
+    for attempt in 0..ATTEMPTS {
         let width = vary(&mut rng, own.width, 0.8, 1.3).clamp(6.0, 40.0);
         let depth = rng.random_range(9.0..15.0f64).round();
         let height = vary(&mut rng, own.height, 0.85, 1.3).max(3.0);
-        if let (Ok(front), Ok(side)) = (derive(width, height), derive(depth, height)) {
-            return Ok([front, side]);
+        // Both sides take their choices from the same numbers, so that they match.
+        let number = index as u64 * ATTEMPTS + attempt;
+        let choices = || stream(seed, "building type choices", number);
+        let derive = |width| sampler.derive(0, width, height, &mut choices());
+        let (Ok(front), Ok(side)) = (derive(width), derive(depth)) else {
+            continue;
+        };
+        let stretched = sampler.stretch(&front).max(sampler.stretch(&side));
+        if best.as_ref().is_none_or(|(least, _)| stretched < *least) {
+            best = Some((stretched, [front.facade, side.facade]));
+        }
+        if stretched <= STRETCH {
+            break;
         }
     }
-    let front = derive(own.width, own.height)?;
+    if let Some((_, facades)) = best {
+        return Ok(facades);
+    }
+    let mut choices = stream(seed, "building type choices", index as u64 * ATTEMPTS);
+    let derivation = sampler.derive(0, own.width, own.height, &mut choices)?;
+    let front = derivation.facade;
     Ok([front.clone(), front])
 }
+
+/// Draws for a type of building.
+const ATTEMPTS: u64 = 16;
+/// The first draw is taken whose parts are at most this much larger or smaller than in the facades that
+/// the grammar was made from; or the one with the least such factor.
+const STRETCH: f64 = 1.5;
 
 /// Materials by label and style, in order of appearance.
 #[derive(Default)]
