@@ -55,6 +55,7 @@ pub struct Annealing {
     cooling: Cooling,
     iterations: u64,
     moves: u32,
+    goal: f64,
     rng: Stream,
 }
 
@@ -93,8 +94,15 @@ impl Annealing {
             cooling,
             iterations,
             moves,
+            goal: f64::NEG_INFINITY,
             rng: stream(seed, "annealing", 0),
         })
+    }
+
+    /// Stops once a solution costs no more than `goal`, for instance where a bound shows that none costs less.
+    #[must_use]
+    pub fn until(self, goal: f64) -> Self {
+        Self { goal, ..self }
     }
 
     /// Anneals and returns the best solution, its cost, and the landscape as it was left.
@@ -107,8 +115,12 @@ impl Annealing {
         observer: impl FnMut(Step) + 'static,
     ) -> Result<(L::Solution, f64, L), AnnealingError> {
         let (iterations, start, cost) = (self.iterations, landscape.solution(), landscape.cost());
+        let goal = self.goal;
         let result = Executor::new(landscape, self)
-            .configure(|state| state.param(start.clone()).cost(cost).max_iters(iterations))
+            .configure(|state| {
+                let state = state.param(start.clone()).cost(cost);
+                state.max_iters(iterations).target_cost(goal)
+            })
             .ctrlc(false)
             .add_observer(Steps(observer), ObserverMode::Always)
             .run()
