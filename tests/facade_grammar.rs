@@ -330,7 +330,12 @@ fn observers_are_told_of_every_step_in_order() {
         })
         .unwrap();
         let steps = steps.borrow();
-        assert_eq!(steps.len() as u64, settings.steps());
+        if method == Method::AdpBest {
+            // It stops once its grammar is proven optimal.
+            assert!((1..=settings.steps()).contains(&(steps.len() as u64)));
+        } else {
+            assert_eq!(steps.len() as u64, settings.steps());
+        }
         assert!(steps.is_sorted());
     }
 }
@@ -350,9 +355,9 @@ proptest! {
         prop_assert_eq!(derive(&outcome.grammar, 0).unwrap().regions.len(), facade.regions.len());
     }
 
-    /// The second stage only ever improves on what the walks, full lines and the greedy method find.
+    /// Neither the text nor a deterministic baseline finds a cheaper grammar.
     #[test]
-    fn best_is_never_dearer_than_what_it_starts_from(seed in 0u64..1_000_000) {
+    fn best_is_never_dearer_than_the_others(seed in 0u64..1_000_000) {
         let facade = random_layout(seed, 6);
         let run = |method| cost(&facade, &Settings { method, iterations: 60, seed, ..Settings::default() });
         let best = run(Method::AdpBest);

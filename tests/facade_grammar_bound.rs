@@ -171,7 +171,7 @@ proptest! {
     #[test]
     fn weak_bound_and_all_operations_stay_below(cells in tiny()) {
         let least = exhaustive(&rules(&cells, true));
-        let limits = BoundLimits { types: 0, ..BoundLimits::default() };
+        let limits = BoundLimits { items: 0, ..BoundLimits::default() };
         let weak = lower_bound(&facade(&cells), &settings(true), &limits).unwrap();
         prop_assert!(weak.weak && weak.lower <= least + 1e-6);
         // More operations can only lower the optimum.

@@ -1,4 +1,4 @@
-//! `edifice grammar derive` and `edifice grammar show`.
+//! `edifice grammar infer`, `derive` and `show`.
 
 use std::path::PathBuf;
 
@@ -45,6 +45,31 @@ fn show_prints_rules_and_counts() {
         "0",
     ]);
     assert!(out.contains("\"cost\":38.0"), "{out}");
+}
+
+#[test]
+fn infer_says_when_its_grammar_is_optimal() {
+    let facade = fig9().replace(".cga", ".facade.json");
+    let (code, out, _) = edifice(&["infer", &facade, "--json"]);
+    assert_eq!(code, 0);
+    let last: serde_json::Value = serde_json::from_str(out.lines().last().unwrap()).unwrap();
+    assert_eq!(
+        (&last["cost"], &last["lower_bound"]),
+        (&38.1.into(), &38.1.into())
+    );
+    let (_, _, message) = edifice(&["infer", &facade]);
+    assert!(message.contains("cost 38.1 (proven optimal)"), "{message}");
+    // The text's method proves nothing.
+    let paper = [
+        "infer",
+        &facade,
+        "--method",
+        "adp-paper",
+        "--iterations",
+        "9",
+    ];
+    let (_, _, message) = edifice(&paper);
+    assert!(!message.contains("optimal"), "{message}");
 }
 
 #[test]

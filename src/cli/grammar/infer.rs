@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
-use edifice::grammar::{Costs, Evaluation, Grammar, evaluate, listing};
+use edifice::grammar::{Costs, Evaluation, evaluate, listing};
 use edifice::io::{self, LabelMap, ReadOptions};
-use edifice::methods::facade_grammar::{Method, Operations, Protect, Settings, infer_observed};
+use edifice::methods::facade_grammar::{
+    Method, Operations, Outcome, Protect, Settings, infer_observed,
+};
 use edifice::methods::procedural_logic;
 use edifice::shape::Facade;
 use edifice::{Error, Result};
@@ -62,7 +64,7 @@ pub struct Args {
 /// Names of the contract.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// The walks of adp-paper, then annealing over the set of non-terminal types
+    /// Cost shares, which prove most grammars optimal; else also walks and annealing over the set of non-terminal types
     Adp,
     /// Approximate dynamic programming as Wu et al. 2014 describe it
     AdpPaper,
@@ -90,17 +92,17 @@ pub fn run(args: &Args) -> Result<()> {
         ..Costs::default()
     };
     let started = Instant::now();
-    let (grammar, iterations) = search(args, &facades, costs)?;
+    let found = search(args, &facades, costs)?;
     let seconds = started.elapsed().as_secs_f64();
     // No method marks its own work: the evaluator derives the grammar and compares.
-    let evaluation = evaluate(&grammar, &facades, &costs).map_err(Error::method)?;
+    let evaluation = evaluate(&found.grammar, &facades, &costs).map_err(Error::method)?;
     match &args.output {
-        Some(path) => io::write_grammar(&grammar, path)?,
-        None => listing(&grammar, true)
+        Some(path) => io::write_grammar(&found.grammar, path)?,
+        None => listing(&found.grammar, true)
             .iter()
             .try_for_each(|line| print::line(line))?,
     }
-    report(args, &evaluation, iterations, seconds)
+    report(args, &evaluation, &found, seconds)
 }
 
 fn read(args: &Args) -> Result<Vec<Facade>> {
@@ -120,7 +122,7 @@ fn read(args: &Args) -> Result<Vec<Facade>> {
     args.inputs.iter().map(checked).collect()
 }
 
-fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<(Grammar, u64)> {
+fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<Outcome> {
     let method = match args.method {
         MethodName::Adp => Method::AdpBest,
         MethodName::AdpPaper => Method::AdpPaper,
@@ -150,11 +152,10 @@ fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<(Grammar, u64
         }
     });
     bar.finish_and_clear();
-    let outcome = outcome.map_err(Error::method)?;
-    Ok((outcome.grammar, outcome.iterations))
+    outcome.map_err(Error::method)
 }
 
-fn procedural_logic_grammar(facades: &[Facade]) -> Result<(Grammar, u64)> {
+fn procedural_logic_grammar(facades: &[Facade]) -> Result<Outcome> {
     let [facade] = facades else {
         return Err(Error::option(
             "--method procedural-logic",
@@ -163,7 +164,11 @@ fn procedural_logic_grammar(facades: &[Facade]) -> Result<(Grammar, u64)> {
     };
     let parameters = procedural_logic::Parameters::COMPRESSION;
     let grammar = procedural_logic::baseline_grammar(facade, &parameters).map_err(Error::method)?;
-    Ok((grammar, 1))
+    Ok(Outcome {
+        grammar,
+        iterations: 1,
+        lower_bound: None,
+    })
 }
 
 /// A bar on standard error; hidden when that is no terminal.
@@ -176,22 +181,35 @@ fn progress_bar(iterations: u64) -> ProgressBar {
     bar
 }
 
-fn report(args: &Args, evaluation: &Evaluation, iterations: u64, seconds: f64) -> Result<()> {
+fn report(args: &Args, evaluation: &Evaluation, found: &Outcome, seconds: f64) -> Result<()> {
     let Evaluation {
         cost,
         rules,
         terminals,
     } = *evaluation;
+    let Outcome {
+        iterations,
+        lower_bound,
+        ..
+    } = *found;
     let cost = (cost * 1e9).round() / 1e9;
     if args.json {
-        let line = serde_json::json!({
+        let mut line = serde_json::json!({
             "cost": cost, "rules": rules, "terminals": terminals,
             "iterations": iterations, "seconds": seconds, "seed": args.seed,
         });
+        if let Some(bound) = lower_bound {
+            line["lower_bound"] = ((bound * 1e9).round() / 1e9).into();
+        }
         return print::line(&line.to_string());
     }
+    let proof = match lower_bound {
+        None => String::new(),
+        Some(bound) if cost <= bound + 1e-6 => " (proven optimal)".to_owned(),
+        Some(bound) => format!(" (no grammar costs less than {bound:.1})"),
+    };
     print::message(&format!(
-        "cost {cost}, {rules} rules for {terminals} terminals, {iterations} iterations in {seconds:.2} s"
+        "cost {cost}{proof}, {rules} rules for {terminals} terminals, at most {iterations} iterations in {seconds:.2} s"
     ));
     Ok(())
 }

@@ -5,9 +5,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::best::further_steps;
 use super::operations::Operations;
 use super::readings::Readings;
-use super::search::{Search, second_stage_steps};
+use super::search::Search;
 use crate::grammar::{Costs, Grammar};
 use crate::optim::Step;
 use crate::optim::adp::AdpError;
@@ -18,7 +19,8 @@ use crate::shape::{Facade, LayoutError, splittable};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Approximate dynamic programming, then annealing over the set of non-terminal types.
+    /// Cost shares; where these do not prove a grammar optimal, approximate dynamic programming, then annealing over the
+    /// set of non-terminal types.
     AdpBest,
     /// Approximate dynamic programming as the text describes it.
     AdpPaper,
@@ -37,8 +39,8 @@ pub enum Method {
 pub struct Settings {
     /// How to search.
     pub method: Method,
-    /// Walks, of the methods that repeat them. [`Method::AdpBest`] makes the walks of
-    /// [`Method::AdpPaper`], then a second stage that grows with their number.
+    /// Walks, of the methods that repeat them. Of [`Method::AdpBest`] a measure of the work that it may do (see
+    /// [`super`]): it stops once its grammar is proven optimal.
     pub iterations: u64,
     /// Seed of all randomness.
     pub seed: u64,
@@ -55,10 +57,10 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Steps that an observer is told of: the iterations, and of `best` its second stage.
+    /// Steps that an observer is told of at most: the iterations, and of `best` what comes before and after.
     pub fn steps(&self) -> u64 {
         match self.method {
-            Method::AdpBest => self.iterations + second_stage_steps(self.iterations),
+            Method::AdpBest => self.iterations + further_steps(self.iterations),
             Method::AdpPaper | Method::Importance => self.iterations,
             Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
         }
@@ -85,8 +87,10 @@ impl Default for Settings {
 pub struct Outcome {
     /// The grammar; its cost is for [`crate::grammar`] to say.
     pub grammar: Grammar,
-    /// Iterations run.
+    /// Iterations that the method was given; [`Method::AdpBest`] stops sooner once its grammar is proven optimal.
     pub iterations: u64,
+    /// No grammar of these facades costs less, as far as [`Method::AdpBest`] found out (see [`super::lower_bound`]).
+    pub lower_bound: Option<f64>,
 }
 
 /// Why no grammar was found.
@@ -178,7 +182,7 @@ pub fn infer(facades: &[Facade], settings: &Settings) -> Result<Outcome, InferEr
     infer_observed(facades, settings, |_| {})
 }
 
-/// As [`infer`], telling `observer` of every step; there are [`Settings::steps`].
+/// As [`infer`], telling `observer` of every step; there are at most [`Settings::steps`].
 ///
 /// # Errors
 /// [`InferError`].
@@ -189,13 +193,13 @@ pub fn infer_observed(
 ) -> Result<Outcome, InferError> {
     check(facades)?;
     let search = Search::new(facades, settings);
-    let rules = match settings.method {
-        Method::AdpBest => search.best(observer)?,
-        Method::AdpPaper => search.paper(observer)?.0,
-        Method::Importance => search.importance(observer)?,
-        Method::Greedy => search.greedy(),
-        Method::Bayesian => search.all_lines(),
-        Method::Symmetry => search.symmetry_maximization(),
+    let (rules, lower_bound) = match settings.method {
+        Method::AdpBest => search.best(facades, observer)?,
+        Method::AdpPaper => (search.paper(observer)?.0, None),
+        Method::Importance => (search.importance(observer)?, None),
+        Method::Greedy => (search.greedy(), None),
+        Method::Bayesian => (search.all_lines(), None),
+        Method::Symmetry => (search.symmetry_maximization(), None),
     };
     let iterations = match settings.method {
         Method::AdpBest | Method::AdpPaper | Method::Importance => settings.iterations,
@@ -204,6 +208,7 @@ pub fn infer_observed(
     Ok(Outcome {
         grammar: search.grammar(facades, &rules),
         iterations,
+        lower_bound,
     })
 }
 

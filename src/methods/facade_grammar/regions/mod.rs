@@ -10,4 +10,4 @@ mod types;
 
 pub(crate) use cells::Cells;
 pub(crate) use sheet::{Region, Sheet};
-pub(crate) use types::{Strips, TypeId, Types, ends};
+pub(crate) use types::{Strips, TypeId, Types, ends, part};

@@ -238,6 +238,20 @@ impl Types {
         strips
     }
 
+    /// Grid indices of the cuts of a type's strips where another region has that type.
+    pub fn cuts_at(&mut self, id: TypeId, axis: Axis, region: Region) -> Vec<u16> {
+        let strips = self.strips(id, axis);
+        let positions = self.positions(self.region(id), axis, &strips.cuts);
+        let sheet = &self.sheets[usize::from(region.sheet)];
+        let quanta = match axis {
+            Axis::X => &sheet.qx,
+            Axis::Y => &sheet.qy,
+        };
+        let start = quanta[usize::from(ends(region, axis).0)];
+        let line = |p| quanta.partition_point(|&q| q < start + p) as u16;
+        positions.into_iter().map(line).collect()
+    }
+
     /// Ends of the region and the full lines between them that cut no terminal.
     fn full_lines(&self, r: Region, axis: Axis) -> Vec<u16> {
         let sheet = &self.sheets[usize::from(r.sheet)];

@@ -1,0 +1,160 @@
+//! Subgradient steps that raise the bound.
+
+use std::collections::BTreeMap;
+
+use super::derivation::Rule;
+use super::{Incumbent, Shares};
+
+/// An item of a kind.
+pub(crate) type Item = (u32, usize);
+
+/// What some steps brought.
+#[derive(Debug)]
+pub(crate) struct Ascent {
+    /// The greatest `L`.
+    pub bound: f64,
+    /// In which part of the steps each item was used by the place that used it most, of kinds with several
+    /// places; from this a branch can be chosen.
+    pub usage: BTreeMap<Item, f64>,
+    /// The last cheapest derivation.
+    pub items: Vec<Item>,
+}
+
+/// Steps without progress after which the step length shrinks.
+const PATIENCE: u32 = 20;
+/// By how much it shrinks.
+const SHRINK: f64 = 0.7;
+/// How much of the direction of one step is kept for the next.
+const MOMENTUM: f64 = 0.7;
+
+/// Directions of the shares of an item, by place of its kind; each sums to 0.
+type Direction = BTreeMap<Item, Vec<f64>>;
+
+impl Shares<'_> {
+    /// Raises `L`, up to so many steps, until it shows that the incumbent is optimal; offers it the grammars
+    /// on the way. Keeps the shares of the greatest `L`.
+    pub fn ascend(&mut self, incumbent: &mut Incumbent, steps: u64) -> Ascent {
+        let mut found = Ascent {
+            bound: f64::NEG_INFINITY,
+            usage: BTreeMap::new(),
+            items: Vec::new(),
+        };
+        let mut made: u32 = 0;
+        let mut uses: BTreeMap<(Item, u32), u32> = BTreeMap::new();
+        let mut kept = self.shares.clone();
+        let mut direction = Direction::new();
+        let (mut scale, mut stalled) = (1.0, 0);
+        for _ in 0..steps {
+            let bound = self.bound();
+            if bound > found.bound + 1e-6 {
+                found.bound = bound;
+                kept.copy_from_slice(&self.shares);
+                stalled = 0;
+            } else {
+                stalled += 1;
+            }
+            if bound == f64::INFINITY || incumbent.is_optimal(found.bound) {
+                break;
+            }
+            if stalled > PATIENCE {
+                (scale, stalled) = (scale * SHRINK, 0);
+                self.shares.copy_from_slice(&kept);
+                direction.clear();
+                continue;
+            }
+            let derivation = self.derivation();
+            self.offer(&derivation, incumbent);
+            if incumbent.is_optimal(found.bound) {
+                break;
+            }
+            found.items.clear();
+            for (place, rule) in &derivation {
+                for item in rule.items(self.program.kind(*place)) {
+                    found.items.push((rule.kind, item));
+                    *uses.entry(((rule.kind, item), *place)).or_insert(0) += 1;
+                }
+            }
+            made += 1;
+            self.turn(&mut direction, &derivation);
+            let norm: f64 = direction.values().flatten().map(|d| d * d).sum();
+            if norm < 1e-12 {
+                break;
+            }
+            let above = (incumbent.cost - bound).max(1e-2);
+            self.shift(&direction, scale * above / norm);
+        }
+        self.shares = kept;
+        for ((item, _), count) in uses {
+            let usage = found.usage.entry(item).or_insert(0.0);
+            *usage = usage.max(f64::from(count) / f64::from(made));
+        }
+        found
+    }
+
+    /// Offers the best grammar over the kinds of a derivation.
+    fn offer(&mut self, derivation: &[(u32, Rule)], incumbent: &mut Incumbent) {
+        let mut members: Vec<u32> = derivation.iter().map(|(_, rule)| rule.kind).collect();
+        members.sort_unstable();
+        members.dedup();
+        let (cost, rules) = self.restricted.cheapest(self.program, &members);
+        incumbent.offer(cost, rules);
+    }
+
+    /// The direction of the next step: places that use an item are to pay more than the others.
+    fn turn(&self, direction: &mut Direction, derivation: &[(u32, Rule)]) {
+        direction.retain(|_, along| {
+            along.iter_mut().for_each(|d| *d *= MOMENTUM);
+            along.iter().any(|d| d.abs() > 1e-6)
+        });
+        for (place, rule) in derivation {
+            let kind = &self.program.kinds[rule.kind as usize];
+            let count = kind.places.len();
+            if count == 1 {
+                continue;
+            }
+            let at = kind.places.iter().position(|p| p == place);
+            for item in rule.items(kind) {
+                let along = direction
+                    .entry((rule.kind, item))
+                    .or_insert_with(|| vec![0.0; count]);
+                for (i, d) in along.iter_mut().enumerate() {
+                    *d += f64::from(u8::from(Some(i) == at)) - 1.0 / count as f64;
+                }
+            }
+        }
+    }
+
+    /// Moves the shares, which stay shares.
+    fn shift(&mut self, direction: &Direction, step: f64) {
+        for (&(kind, item), along) in direction {
+            let kind = &self.program.kinds[kind as usize];
+            let slot = |place: u32| self.program.places[place as usize].first + item;
+            let wanted = kind.places.iter().zip(along);
+            let mut moved: Vec<f64> = wanted
+                .map(|(&place, d)| self.shares[slot(place)] + step * d)
+                .collect();
+            onto_simplex(&mut moved, kind.costs[item]);
+            for (&place, share) in kind.places.iter().zip(moved) {
+                self.shares[slot(place)] = share;
+            }
+        }
+    }
+}
+
+/// The nearest point whose coordinates are not negative and sum to `total`.
+fn onto_simplex(point: &mut [f64], total: f64) {
+    let mut falling = point.to_vec();
+    falling.sort_by(|a, b| b.total_cmp(a));
+    let (mut sum, mut shift) = (0.0, 0.0);
+    for (i, x) in falling.iter().enumerate() {
+        sum += x;
+        let even = (sum - total) / (i + 1) as f64;
+        if *x <= even {
+            break;
+        }
+        shift = even;
+    }
+    for x in point {
+        *x = (*x - shift).max(0.0);
+    }
+}

@@ -1,0 +1,139 @@
+//! The best grammar known.
+
+use super::derivation::{Paths, Prices, Rule};
+use super::program::Program;
+use crate::grammar::Costs;
+use crate::methods::facade_grammar::regions::Types;
+use crate::methods::facade_grammar::walk::AddRule;
+
+/// Noise of sums of costs.
+const TOLERANCE: f64 = 1e-6;
+
+/// The cheapest grammar met, and when a bound shows that none is cheaper.
+#[derive(Debug)]
+pub(crate) struct Incumbent {
+    pub cost: f64,
+    /// Its rules; none when only the cost is known.
+    rules: Vec<Rule>,
+    /// What all costs are multiples of.
+    quantum: Option<f64>,
+}
+
+impl Incumbent {
+    /// Knows that some grammar has a cost; infinite when none is known.
+    pub fn new(cost: f64, costs: &Costs) -> Self {
+        Self {
+            cost,
+            rules: Vec::new(),
+            quantum: quantum(costs),
+        }
+    }
+
+    /// The least cost not below a bound that a grammar can have.
+    pub fn attainable(&self, bound: f64) -> f64 {
+        self.quantum
+            .map_or(bound, |q| ((bound - TOLERANCE) / q).ceil() * q)
+    }
+
+    /// Whether a bound shows that no grammar is cheaper.
+    pub fn is_optimal(&self, bound: f64) -> bool {
+        self.attainable(bound) >= self.cost - TOLERANCE
+    }
+
+    /// Keeps a grammar when it is cheaper.
+    pub fn offer(&mut self, cost: f64, rules: Vec<Rule>) {
+        if cost < self.cost - TOLERANCE {
+            (self.cost, self.rules) = (cost, rules);
+        }
+    }
+
+    /// The rules of the cheapest grammar that was offered, over the types of another search.
+    pub fn rules(&self, program: &Program, types: &mut Types) -> Vec<AddRule> {
+        let mut written = |rule: &Rule| {
+            let kind = &program.kinds[rule.kind as usize];
+            kind.rule(types, rule.way, &rule.arcs)
+        };
+        self.rules.iter().map(&mut written).collect()
+    }
+}
+
+/// The coarsest power of ten, down to a thousandth, that divides all costs.
+fn quantum(costs: &Costs) -> Option<f64> {
+    let all = [
+        costs.split,
+        costs.repeat,
+        costs.repeat_aba,
+        costs.sym_split,
+        costs.successor,
+    ];
+    (0..=3)
+        .map(|digits| 10f64.powi(-digits))
+        .find(|q| all.iter().all(|c| ((c / q).round() * q - c).abs() < 1e-12))
+}
+
+/// Best grammars over given sets of kinds.
+#[derive(Debug)]
+pub(super) struct Restricted {
+    /// 0 for terminals and the members, infinite for other places.
+    parts: Vec<f64>,
+    nothing_blocked: Vec<bool>,
+    paths: Paths,
+}
+
+impl Restricted {
+    pub fn new(program: &Program) -> Self {
+        let most = program.kinds.iter().map(|k| k.costs.len()).max();
+        let mut parts = vec![f64::INFINITY; program.places.len()];
+        parts.push(0.0);
+        Self {
+            parts,
+            nothing_blocked: vec![false; most.unwrap_or(0)],
+            paths: Paths::default(),
+        }
+    }
+
+    /// The best grammar over a set of kinds that contains those of the roots, each rule being the cheapest;
+    /// rules that the roots do not need are left out.
+    pub fn cheapest(&mut self, program: &Program, members: &[u32]) -> (f64, Vec<Rule>) {
+        self.price(program, members, 0.0);
+        let kind_of = |place: u32| program.places[place as usize].kind;
+        let mut needed: Vec<u32> = program.roots.iter().map(|&root| kind_of(root)).collect();
+        let (mut total, mut rules) = (0.0, Vec::new());
+        while let Some(&kind) = needed.get(rules.len()) {
+            let known = &program.kinds[kind as usize];
+            let place = known.places[0];
+            let prices = Prices {
+                items: &known.costs,
+                parts: &self.parts,
+                blocked: &self.nothing_blocked,
+            };
+            let (cost, way) = self.paths.cheapest(program, place, &prices);
+            if cost == f64::INFINITY {
+                total = cost;
+                break;
+            }
+            let rule = self.paths.rule(program, place, way, &prices);
+            for part in rule
+                .arcs
+                .iter()
+                .flat_map(|&arc| program.parts(place, known, arc))
+            {
+                if !program.is_terminal(part) && !needed.contains(&kind_of(part)) {
+                    needed.push(kind_of(part));
+                }
+            }
+            total += cost;
+            rules.push(rule);
+        }
+        self.price(program, members, f64::INFINITY);
+        (total, rules)
+    }
+
+    fn price(&mut self, program: &Program, kinds: &[u32], price: f64) {
+        for &kind in kinds {
+            for &place in &program.kinds[kind as usize].places {
+                self.parts[place as usize] = price;
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The cheapest grammar, and a proof that it is: the costs of rules shared out among places.
+//!
+//! [`super`] says what a share is and why the least cost of a derivation under any shares bounds the cost of all
+//! grammars from below. Here are the program (types, rules, places), the dynamic program over places, the
+//! steps that raise the bound, and branch and bound.
+
+mod ascent;
+mod branch;
+mod derivation;
+mod incumbent;
+mod program;
+
+pub use branch::BoundLimits;
+pub(crate) use branch::solve;
+pub(crate) use incumbent::Incumbent;
+pub(crate) use program::Program;
+
+use ascent::{Ascent, Item};
+use derivation::{Paths, Prices, Rule};
+use incumbent::Restricted;
+
+/// Shares of costs, and the dynamic program under them.
+#[derive(Debug)]
+pub(crate) struct Shares<'a> {
+    program: &'a Program,
+    /// By place and item.
+    shares: Vec<f64>,
+    /// Items that no rule may use, by kind and item.
+    blocked: Vec<bool>,
+    /// `V`, by place.
+    values: Vec<f64>,
+    /// Way of the cheapest rule, by place.
+    ways: Vec<usize>,
+    paths: Paths,
+    restricted: Restricted,
+}
+
+impl<'a> Shares<'a> {
+    /// Equal shares.
+    pub fn new(program: &'a Program) -> Self {
+        let shares = program.places.iter().flat_map(|place| {
+            let kind = &program.kinds[place.kind as usize];
+            kind.costs
+                .iter()
+                .map(|cost| cost / kind.places.len() as f64)
+        });
+        let shares: Vec<f64> = shares.collect();
+        Self {
+            program,
+            shares,
+            blocked: vec![false; program.kind_items],
+            values: vec![0.0; program.places.len() + 1],
+            ways: vec![0; program.places.len()],
+            paths: Paths::default(),
+            restricted: Restricted::new(program),
+        }
+    }
+
+    /// Forbids some items, each by its index among those of all kinds, and only these.
+    pub fn block(&mut self, items: &[usize]) {
+        self.blocked.fill(false);
+        for &item in items {
+            self.blocked[item] = true;
+        }
+    }
+
+    /// `L`; infinite when what is allowed derives no facade.
+    fn bound(&mut self) -> f64 {
+        for &place in &self.program.order {
+            let prices = prices(
+                self.program,
+                place,
+                &self.shares,
+                &self.values,
+                &self.blocked,
+            );
+            let (value, way) = self.paths.cheapest(self.program, place, &prices);
+            self.values[place as usize] = value;
+            self.ways[place as usize] = way;
+        }
+        let roots = self.program.roots.iter();
+        roots.map(|&root| self.values[root as usize]).sum()
+    }
+
+    /// The cheapest derivation: the rule of each place that it splits.
+    fn derivation(&mut self) -> Vec<(u32, Rule)> {
+        let program = self.program;
+        let mut derivation: Vec<(u32, Rule)> = Vec::new();
+        let mut waiting = program.roots.clone();
+        while let Some(place) = waiting.pop() {
+            let prices = prices(program, place, &self.shares, &self.values, &self.blocked);
+            let way = self.ways[place as usize];
+            let rule = self.paths.rule(program, place, way, &prices);
+            let kind = program.kind(place);
+            let parts = rule
+                .arcs
+                .iter()
+                .flat_map(|&arc| program.parts(place, kind, arc));
+            waiting.extend(parts.filter(|&part| !program.is_terminal(part)));
+            derivation.push((place, rule));
+        }
+        derivation
+    }
+}
+
+fn prices<'p>(
+    program: &Program,
+    place: u32,
+    shares: &'p [f64],
+    parts: &'p [f64],
+    blocked: &'p [bool],
+) -> Prices<'p> {
+    let (kind, first) = (program.kind(place), program.places[place as usize].first);
+    let items = kind.costs.len();
+    Prices {
+        items: &shares[first..first + items],
+        parts,
+        blocked: &blocked[kind.first..kind.first + items],
+    }
+}
+
+#[cfg(test)]
+mod tests;
