@@ -89,8 +89,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ends(ctx, &units, &traces, few);
     ctx.note(
         "The paper measures every 500 iterations on one facade of Fig. 5. Its time per iteration falls because exploitation is \
-         faster than exploration. `adp_best` makes the walks of `adp_paper`, then its second stage, beyond the last \
-         iteration: half of it walks by shortest paths, half rounds of annealing, where its cost drops. Bands run from the lowest to the highest seed.",
+         faster than exploration. `adp_best` starts with cost shares, which its first step stands for, \
+         then makes a walk by shortest paths and a round of annealing for every five iterations of the others, so that its line is short. Bands run from the lowest to the highest seed.",
     );
     Ok(())
 }

@@ -16,7 +16,7 @@ use crate::{Error, Result};
 const OPERATIONS: [&str; 2] = ["split", "split_repeat"];
 
 /// Branches for facades of more than 100 terminals, where each costs much and proofs are rare.
-const FEW_NODES: u64 = 200;
+const FEW_NODES: u64 = 100;
 
 /// Facades of each real set, evenly spread, among which the smallest are taken.
 const LOOKED_AT: usize = 40;
@@ -49,7 +49,7 @@ impl Answer {
 /// Bounds the cost of facade (i), of small shipped layouts, and of small real facades.
 pub fn run(ctx: &mut Context) -> Result<()> {
     let (_, many) = iterations(ctx.budget());
-    let (terminals, real) = ctx.budget().choose((60, 1), (150, 3), (1_200, 20));
+    let (terminals, real) = ctx.budget().choose((60, 1), (400, 8), (1_200, 40));
     let limits = match ctx.budget() {
         Budget::Smoke => BoundLimits {
             root_steps: 50,
@@ -60,7 +60,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     };
     ctx.setting("iterations", many);
     ctx.setting("most_terminals", terminals);
-    ctx.setting("most_types", limits.types);
+    ctx.setting("most_items", limits.items);
     ctx.setting("most_nodes", limits.nodes);
     ctx.setting("most_nodes_above_100_terminals", FEW_NODES);
     ctx.setting("root_steps", limits.root_steps);
@@ -104,11 +104,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 }
 
 const NOTE: &str = "Not in the paper, which proves nothing. *cost* is that of the grammar that `adp_best` finds with the \
-    iterations of `run.json`, *bound* is below every grammar with one symbol per region type (the grammars that are searched; \
-    the first page of `methods::facade_grammar`'s bound states the program), *known* is the least cost of any grammar met in the branch \
+    iterations of `run.json`, *bound* is below every grammar whose symbols each derive one region type (the grammars that are searched; \
+    the first page of `methods::facade_grammar` says how it is found), *known* is the least cost of any grammar met in the branch \
     and bound, *gap* is how much of the bound *cost* lies above it. A proof says that *known* is the optimum. \
     The search stops after a number of branches (fewer above 100 terminals), never by the clock. A *weak* bound only counts labels: \
-    there the facade has more region types than are taken on.";
+    there the facade has more rules and places than are taken on.";
 
 /// Facade (i) and the shipped and real facades of at most so many terminals, the smallest first;
 /// `real` of each real set, out of [`LOOKED_AT`].
@@ -195,7 +195,7 @@ fn tabulate<'a>(
             format!("{:.1}", answer.gap()),
             verdict(answer).to_owned(),
             answer.nodes.to_string(),
-            format!("{:.1}", answer.seconds),
+            format!("{:.2}", answer.seconds),
         ]);
         if instance.facade.name == FIGURE_9 {
             let text = match answer.proven {

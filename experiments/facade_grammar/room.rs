@@ -15,10 +15,10 @@ const ASKED: f64 = 5.0;
 
 /// Enough for a bound; the search for proofs on small facades is an artefact of its own.
 const LIMITS: BoundLimits = BoundLimits {
-    types: 20_000,
+    items: 5_000_000,
     root_steps: 1_000,
-    branch_steps: 40,
-    nodes: 20,
+    branch_steps: 100,
+    nodes: 40,
 };
 
 /// Iterations for the grammar that the bound starts from.
@@ -126,8 +126,9 @@ pub fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
     }
     ctx.table(&table);
     ctx.note(format!(
-        "*possible %, at most* comes from a lower bound on every grammar with one symbol per region type ({} branches), \
-         so it says what these facades leave to any method; a facade that hardly repeats leaves little.",
+        "*possible %, at most* is what `adp_best` would save if its grammars cost no more than the lower bounds: no grammar of these \
+         facades saves more, whatever the method (cost shares with {} branches at most; the first page of `methods::facade_grammar` has the \
+         proof, and says which grammars are bounded).",
         LIMITS.nodes
     ));
     Ok(())
