@@ -183,3 +183,82 @@ impl<L: Landscape> Solver<L, IterState<L::Solution, (), (), (), (), f64>> for An
         Ok((state.cost(cost), None))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::rc::Rc;
+
+    use super::*;
+
+    /// Steps along a line with a shallow valley at 5, a barrier, and the optimum at 15.
+    #[derive(Clone)]
+    struct Valleys {
+        at: i32,
+        before: i32,
+    }
+
+    impl Landscape for Valleys {
+        type Solution = i32;
+
+        fn cost(&self) -> f64 {
+            let distance = |to: i32| f64::from((self.at - to).abs());
+            (1.0 + distance(5)).min(distance(15))
+        }
+        fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64> {
+            self.before = self.at;
+            self.at = (self.at + if rng.random::<bool>() { 1 } else { -1 }).clamp(0, 20);
+            Some(self.cost())
+        }
+        fn accept(&mut self) {}
+        fn reject(&mut self) {
+            self.at = self.before;
+        }
+        fn solution(&self) -> i32 {
+            self.at
+        }
+    }
+
+    const VALLEY: Valleys = Valleys { at: 5, before: 5 };
+
+    /// The best solution from the shallow valley, and the rounds made.
+    fn run(start: f64, goal: f64, seed: u64) -> (i32, f64, u64) {
+        let rounds = Rc::new(Cell::new(0));
+        let seen = Rc::clone(&rounds);
+        let cooling = Cooling { start, end: 0.01 };
+        let annealing = Annealing::new(cooling, 200, 50, seed).unwrap().until(goal);
+        let found = annealing.run(VALLEY, move |_| seen.set(seen.get() + 1));
+        let (best, cost, _) = found.unwrap();
+        (best, cost, rounds.get())
+    }
+
+    #[test]
+    fn heat_crosses_a_barrier_that_cold_does_not() {
+        for seed in 0..5 {
+            assert_eq!(run(5.0, f64::NEG_INFINITY, seed), (15, 0.0, 200));
+            assert_eq!(run(0.01, f64::NEG_INFINITY, seed), (5, 1.0, 200));
+        }
+    }
+
+    #[test]
+    fn a_goal_ends_the_run() {
+        let (best, cost, rounds) = run(5.0, 0.5, 0);
+        assert_eq!((best, cost), (15, 0.0));
+        assert!(rounds < 200, "{rounds}");
+        // What it starts from may be good enough.
+        assert!(run(5.0, 1.0, 0).2 <= 1);
+    }
+
+    #[test]
+    fn temperatures_must_fall_and_be_positive() {
+        for (start, end) in [
+            (1.0, 2.0),
+            (1.0, 0.0),
+            (f64::NAN, 0.1),
+            (f64::INFINITY, 1.0),
+        ] {
+            let refused = Annealing::new(Cooling { start, end }, 1, 1, 0);
+            assert!(matches!(refused, Err(AnnealingError::Temperatures { .. })));
+        }
+    }
+}
