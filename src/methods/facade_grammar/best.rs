@@ -164,7 +164,7 @@ const MOST_BRANCHES: u64 = 30;
 /// Noise of sums of costs.
 const NOISE: f64 = 1e-6;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
-const SECOND_STAGE_SHARE: u64 = 5;
+const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 100;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.

@@ -21,25 +21,26 @@
 //! # Cost shares: a bound, and most often the optimum
 //! Not in the paper. A *place* is a rectangle of a facade that full lines can cut out. A derivation splits some
 //! places, each by one rule, into others and terminals. A rule pays for *items*: its operation and each
-//! successor. A grammar pays once for item `i` of a rule of type `t`, however many places use it. Let instead
-//! every place `p` of type `t` pay a share `s_pi >= 0` of the cost `c_i` of each item of `t`'s rules, so that
+//! successor. A grammar pays once for item `i` of a rule of type `t`, however many places use it. Of places that
+//! overlap a derivation splits one at most: let a *purse* of `t` be a largest group of its places that share a corner of
+//! one of them. Let every purse `q` pay a share `s_qi >= 0` of the cost `c_i` of each item of `t`'s rules, so that
 //!
 //! ```text
-//! sum_{p of type t} s_pi = c_i,
-//! L(s) = min over derivations of the sum of s_pi over the items i used at places p.
+//! sum_{q of type t} s_qi = c_i,
+//! L(s) = min over derivations of the sum of s_qi over the items i used at places p and the purses q of p.
 //! ```
 //!
-//! No grammar costs less than `L(s)`, whatever the shares: the places that its own derivation splits pay at most
-//! `c_i` for each item that it has. And nothing is shared any more, so that `L` is a dynamic program over places,
-//! parts before wholes, in which every rule is a shortest path over its lines:
+//! No grammar costs less than `L(s)`, whatever the shares: its own derivation empties each purse once at most for
+//! each item that it has, and so pays `c_i` at most. And nothing is shared any more, so that `L` is a dynamic program
+//! over places, parts before wholes, in which every rule is a shortest path over its lines:
 //!
 //! ```text
-//! V(p) = min over rules of sum_i ( s_pi + sum of V over the parts that i writes out ).
+//! V(p) = min over rules of sum_i ( sum_{q of p} s_qi + sum of V over the parts that i writes out ).
 //! ```
 //!
-//! `L` is concave and piecewise linear in the shares; it is the dual of a linear program, "a type has an item if
-//! any of its places uses it" (Lagrangian decomposition: Guignard and Kim, *Lagrangean decomposition*, Mathematical
-//! Programming 39, 1987). From equal shares, subgradient steps of Polyak's length raise it: places that use an
+//! `L` is concave and piecewise linear in the shares; it is the dual of a linear program, "a type has an item if a place of
+//! any purse uses it" (Lagrangian decomposition: Guignard and Kim, *Lagrangean decomposition*, Mathematical
+//! Programming 39, 1987). From equal shares, subgradient steps of Polyak's length raise it: purses whose places use an
 //! item in the cheapest derivation pay more of it, the others less. The types of each cheapest derivation are in
 //! turn the set of non-terminals of a grammar, whose best rules are independent shortest paths. When `L` meets the
 //! cost of the cheapest such grammar, that one is optimal; where a gap stays, branch and bound decides which items
@@ -80,7 +81,7 @@
 //!   the second contradicts the text, and `best` would look better beside either.
 //! - These readings can be set ([`Readings`]); the report's `readings` shows what each does.
 //! - *Iterations* are walks. Of `best` they are a measure of work: for each, cost shares may look at 2,000 items;
-//!   for every five there is one walk by shortest paths and one round of annealing. `best` stops once its
+//!   for every eight there is one walk by shortest paths and one round of annealing. `best` stops once its
 //!   grammar is proven optimal. Where there are too many places for the work allowed, it makes all walks of
 //!   `paper` first. With grids allowed, cost shares look for a start without them, and prove nothing.
 //! - *Bottom to top, left to right* orders types by the first region found with them.

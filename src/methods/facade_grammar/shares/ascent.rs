@@ -27,7 +27,7 @@ const SHRINK: f64 = 0.7;
 /// How much of the direction of one step is kept for the next.
 const MOMENTUM: f64 = 0.7;
 
-/// Directions of the shares of an item, by place of its kind; each sums to 0.
+/// Directions of the shares of an item, by purse of its kind; each sums to 0.
 type Direction = BTreeMap<Item, Vec<f64>>;
 
 impl Shares<'_> {
@@ -59,6 +59,7 @@ impl Shares<'_> {
             if stalled > PATIENCE {
                 (scale, stalled) = (scale * SHRINK, 0);
                 self.shares.copy_from_slice(&kept);
+                self.pay_all();
                 direction.clear();
                 continue;
             }
@@ -84,6 +85,7 @@ impl Shares<'_> {
             self.shift(&direction, scale * above / norm);
         }
         self.shares = kept;
+        self.pay_all();
         for ((item, _), count) in uses {
             let usage = found.usage.entry(item).or_insert(0.0);
             *usage = usage.max(f64::from(count) / f64::from(made));
@@ -100,7 +102,7 @@ impl Shares<'_> {
         incumbent.offer(cost, rules);
     }
 
-    /// The direction of the next step: places that use an item are to pay more than the others.
+    /// The direction of the next step: purses whose places use an item are to pay more than the others.
     fn turn(&self, direction: &mut Direction, derivation: &[(u32, Rule)]) {
         direction.retain(|_, along| {
             along.iter_mut().for_each(|d| *d *= MOMENTUM);
@@ -108,17 +110,20 @@ impl Shares<'_> {
         });
         for (place, rule) in derivation {
             let kind = &self.program.kinds[rule.kind as usize];
-            let count = kind.places.len();
+            let count = kind.purses.len();
             if count == 1 {
                 continue;
             }
-            let at = kind.places.iter().position(|p| p == place);
+            let index = self.program.places[*place as usize].index as usize;
+            let paying = &kind.purses_of[index];
+            let mean = paying.len() as f64 / count as f64;
             for item in rule.items(kind) {
                 let along = direction
                     .entry((rule.kind, item))
                     .or_insert_with(|| vec![0.0; count]);
-                for (i, d) in along.iter_mut().enumerate() {
-                    *d += f64::from(u8::from(Some(i) == at)) - 1.0 / count as f64;
+                along.iter_mut().for_each(|d| *d -= mean);
+                for &purse in paying {
+                    along[purse as usize] += 1.0;
                 }
             }
         }
@@ -128,15 +133,16 @@ impl Shares<'_> {
     fn shift(&mut self, direction: &Direction, step: f64) {
         for (&(kind, item), along) in direction {
             let kind = &self.program.kinds[kind as usize];
-            let slot = |place: u32| self.program.places[place as usize].first + item;
-            let wanted = kind.places.iter().zip(along);
+            let slot = |purse: usize| kind.first_share + purse * kind.costs.len() + item;
+            let wanted = along.iter().enumerate();
             let mut moved: Vec<f64> = wanted
-                .map(|(&place, d)| self.shares[slot(place)] + step * d)
+                .map(|(purse, d)| self.shares[slot(purse)] + step * d)
                 .collect();
             onto_simplex(&mut moved, kind.costs[item]);
-            for (&place, share) in kind.places.iter().zip(moved) {
-                self.shares[slot(place)] = share;
+            for (purse, share) in moved.into_iter().enumerate() {
+                self.shares[slot(purse)] = share;
             }
+            self.pay(kind, item);
         }
     }
 }

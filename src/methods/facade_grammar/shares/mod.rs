@@ -18,13 +18,16 @@ pub(crate) use program::Program;
 use ascent::{Ascent, Item};
 use derivation::{Paths, Prices, Rule};
 use incumbent::Restricted;
+use program::Kind;
 
 /// Shares of costs, and the dynamic program under them.
 #[derive(Debug)]
 pub(crate) struct Shares<'a> {
     program: &'a Program,
-    /// By place and item.
+    /// By purse and item.
     shares: Vec<f64>,
+    /// What each place pays, by place and item: the sum over its purses.
+    paid: Vec<f64>,
     /// Items that no rule may use, by kind and item.
     blocked: Vec<bool>,
     /// `V`, by place.
@@ -38,21 +41,44 @@ pub(crate) struct Shares<'a> {
 impl<'a> Shares<'a> {
     /// Equal shares.
     pub fn new(program: &'a Program) -> Self {
-        let shares = program.places.iter().flat_map(|place| {
-            let kind = &program.kinds[place.kind as usize];
-            kind.costs
-                .iter()
-                .map(|cost| cost / kind.places.len() as f64)
-        });
-        let shares: Vec<f64> = shares.collect();
-        Self {
+        let mut shares = Vec::with_capacity(program.shares);
+        for kind in &program.kinds {
+            let count = kind.purses.len();
+            for _ in 0..count {
+                shares.extend(kind.costs.iter().map(|cost| cost / count as f64));
+            }
+        }
+        let mut new = Self {
             program,
             shares,
+            paid: vec![0.0; program.items],
             blocked: vec![false; program.kind_items],
             values: vec![0.0; program.places.len() + 1],
             ways: vec![0; program.places.len()],
             paths: Paths::default(),
             restricted: Restricted::new(program),
+        };
+        new.pay_all();
+        new
+    }
+
+    /// What the places of a kind pay for an item.
+    fn pay(&mut self, kind: &Kind, item: usize) {
+        let share =
+            |&purse: &u32| self.shares[kind.first_share + purse as usize * kind.costs.len() + item];
+        for (&place, purses) in kind.places.iter().zip(&kind.purses_of) {
+            let slot = self.program.places[place as usize].first + item;
+            self.paid[slot] = purses.iter().map(share).sum();
+        }
+    }
+
+    /// What all places pay for all items.
+    fn pay_all(&mut self) {
+        let program = self.program;
+        for kind in &program.kinds {
+            for item in 0..kind.costs.len() {
+                self.pay(kind, item);
+            }
         }
     }
 
@@ -67,13 +93,7 @@ impl<'a> Shares<'a> {
     /// `L`; infinite when what is allowed derives no facade.
     fn bound(&mut self) -> f64 {
         for &place in &self.program.order {
-            let prices = prices(
-                self.program,
-                place,
-                &self.shares,
-                &self.values,
-                &self.blocked,
-            );
+            let prices = prices(self.program, place, &self.paid, &self.values, &self.blocked);
             let (value, way) = self.paths.cheapest(self.program, place, &prices);
             self.values[place as usize] = value;
             self.ways[place as usize] = way;
@@ -88,7 +108,7 @@ impl<'a> Shares<'a> {
         let mut derivation: Vec<(u32, Rule)> = Vec::new();
         let mut waiting = program.roots.clone();
         while let Some(place) = waiting.pop() {
-            let prices = prices(program, place, &self.shares, &self.values, &self.blocked);
+            let prices = prices(program, place, &self.paid, &self.values, &self.blocked);
             let way = self.ways[place as usize];
             let rule = self.paths.rule(program, place, way, &prices);
             let kind = program.kind(place);
@@ -106,14 +126,14 @@ impl<'a> Shares<'a> {
 fn prices<'p>(
     program: &Program,
     place: u32,
-    shares: &'p [f64],
+    paid: &'p [f64],
     parts: &'p [f64],
     blocked: &'p [bool],
 ) -> Prices<'p> {
     let (kind, first) = (program.kind(place), program.places[place as usize].first);
     let items = kind.costs.len();
     Prices {
-        items: &shares[first..first + items],
+        items: &paid[first..first + items],
         parts,
         blocked: &blocked[kind.first..kind.first + items],
     }

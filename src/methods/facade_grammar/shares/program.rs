@@ -31,6 +31,13 @@ pub(crate) struct Kind {
     pub first: usize,
     /// Where the type occurs.
     pub places: Vec<u32>,
+    /// Groups of places that pay together, each by its indices in `places`: of places that overlap, a derivation
+    /// splits one at most.
+    pub purses: Vec<Vec<u32>>,
+    /// The purses of each place.
+    pub purses_of: Vec<Vec<u32>>,
+    /// Index of the first purse's first item among those of all purses.
+    pub first_share: usize,
 }
 
 /// An operation along one axis: paths from node 0 to the last node.
@@ -105,6 +112,8 @@ impl Kind {
 #[derive(Debug)]
 pub(crate) struct Place {
     pub kind: u32,
+    /// Index among the places of its kind.
+    pub index: u32,
     /// Index of the place's first item among those of all places.
     pub first: usize,
     /// Index of its first part.
@@ -126,6 +135,8 @@ pub(crate) struct Program {
     pub items: usize,
     /// Number of items of all kinds.
     pub kind_items: usize,
+    /// Number of items of all purses.
+    pub shares: usize,
 }
 
 impl Program {
@@ -159,6 +170,7 @@ impl Program {
             roots,
             items: 0,
             kind_items: 0,
+            shares: 0,
         };
         let mut kinds: FxHashMap<TypeId, u32> = FxHashMap::default();
         while let Some(&region) = survey.regions.get(program.places.len()) {
@@ -176,6 +188,7 @@ impl Program {
                 return None;
             }
         }
+        program.fill_purses(&survey);
         let terminal = program.places.len() as u32;
         for part in &mut program.parts {
             *part = terminal.min(*part);
@@ -194,6 +207,7 @@ impl Program {
         let place = self.places.len() as u32;
         self.places.push(Place {
             kind,
+            index: self.kinds[kind as usize].places.len() as u32,
             first: self.items,
             parts: self.parts.len(),
         });
@@ -215,6 +229,21 @@ impl Program {
                         });
                 }
             }
+        }
+    }
+
+    fn fill_purses(&mut self, survey: &Survey) {
+        for kind in &mut self.kinds {
+            let region = |&place: &u32| survey.regions[place as usize];
+            kind.purses = purses(&kind.places.iter().map(region).collect::<Vec<_>>());
+            kind.purses_of = vec![Vec::new(); kind.places.len()];
+            for (purse, members) in kind.purses.iter().enumerate() {
+                for &index in members {
+                    kind.purses_of[index as usize].push(purse as u32);
+                }
+            }
+            kind.first_share = self.shares;
+            self.shares += kind.purses.len() * kind.costs.len();
         }
     }
 
@@ -252,6 +281,30 @@ impl Program {
     pub fn is_terminal(&self, place: u32) -> bool {
         place as usize == self.places.len()
     }
+}
+
+/// The largest groups of regions that share a corner of one of them, each by its indices.
+fn purses(regions: &[Region]) -> Vec<Vec<u32>> {
+    let covering = |corner: &Region| -> Vec<u32> {
+        let covers = |r: &Region| {
+            r.sheet == corner.sheet
+                && (r.x0..r.x1).contains(&corner.x0)
+                && (r.y0..r.y1).contains(&corner.y0)
+        };
+        (0..regions.len() as u32)
+            .filter(|&i| covers(&regions[i as usize]))
+            .collect()
+    };
+    let mut groups: Vec<Vec<u32>> = regions.iter().map(covering).collect();
+    groups.sort_by(|a, b| b.len().cmp(&a.len()).then_with(|| a.cmp(b)));
+    let mut largest: Vec<Vec<u32>> = Vec::new();
+    for group in groups {
+        let within = |other: &Vec<u32>| group.iter().all(|i| other.binary_search(i).is_ok());
+        if !largest.iter().any(within) {
+            largest.push(group);
+        }
+    }
+    largest
 }
 
 /// The places met so far.
@@ -300,6 +353,9 @@ fn kind_of(
         costs,
         first,
         places: Vec::new(),
+        purses: Vec::new(),
+        purses_of: Vec::new(),
+        first_share: 0,
     }
 }
 

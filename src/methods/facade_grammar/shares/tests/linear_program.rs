@@ -4,7 +4,7 @@ use super::super::Program;
 use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve};
 
 /// Its optimum. Variables: how much each place uses each item, then how much each type has it. What enters a
-/// place leaves it by its ways, each way's arcs are a flow, and a type has what any place uses.
+/// place leaves it by its ways, each way's arcs are a flow, and a type has what the places of any purse use.
 pub fn optimum(program: &Program) -> f64 {
     let (used, had) = (program.items, program.kind_items);
     let mut lp = QuadraticProgram::new(used + had);
@@ -40,8 +40,16 @@ pub fn optimum(program: &Program) -> f64 {
                 lp.equalities.push(Row::new(flow, 0.0));
             }
         }
-        for item in 0..kind.costs.len() {
-            let terms = [(known.first + item, 1.0), (used + kind.first + item, -1.0)];
+    }
+    for kind in &program.kinds {
+        for (purse, item) in kind
+            .purses
+            .iter()
+            .flat_map(|purse| (0..kind.costs.len()).map(move |item| (purse, item)))
+        {
+            let place = |&index: &u32| &program.places[kind.places[index as usize] as usize];
+            let uses = purse.iter().map(|index| (place(index).first + item, 1.0));
+            let terms = uses.chain([(used + kind.first + item, -1.0)]);
             lp.inequalities.push(Row::new(terms, 0.0));
         }
     }

@@ -125,6 +125,44 @@ fn steps_climb_to_the_optimum_of_the_linear_program() {
 }
 
 #[test]
+fn places_that_overlap_pay_together() {
+    let costs = Costs::default();
+    // `ab` stands at three places apart, `abab` at two that overlap, `ba` at two apart.
+    let facades = [facade(&["ababab"])];
+    let split = Operations::split_only();
+    let program = Program::new(&facades, &costs, split, usize::MAX).unwrap();
+    let mut purses: Vec<(usize, usize)> = program
+        .kinds
+        .iter()
+        .map(|kind| (kind.places.len(), kind.purses.len()))
+        .collect();
+    purses.sort_unstable();
+    assert_eq!(
+        purses,
+        // ababab; ababa, babab; abab twice in one purse, baba; aba and bab twice; ab, ba.
+        [
+            (1, 1),
+            (1, 1),
+            (1, 1),
+            (1, 1),
+            (2, 1),
+            (2, 1),
+            (2, 1),
+            (2, 2),
+            (3, 3)
+        ]
+    );
+    for kind in &program.kinds {
+        for (index, own) in kind.purses_of.iter().enumerate() {
+            assert!(!own.is_empty());
+            for &purse in own {
+                assert!(kind.purses[purse as usize].contains(&(index as u32)));
+            }
+        }
+    }
+}
+
+#[test]
 fn shares_of_an_item_sum_to_its_cost() {
     let costs = Costs::default();
     let facades = [facade(&["abcabc", "abdabd", "abcabc"])];
@@ -133,8 +171,8 @@ fn shares_of_an_item_sum_to_its_cost() {
     shares.ascend(&mut Incumbent::new(f64::INFINITY, &costs), 50);
     for kind in &program.kinds {
         for (item, cost) in kind.costs.iter().enumerate() {
-            let share = |&place: &u32| shares.shares[program.places[place as usize].first + item];
-            let paid: Vec<f64> = kind.places.iter().map(share).collect();
+            let share = |purse| shares.shares[kind.first_share + purse * kind.costs.len() + item];
+            let paid: Vec<f64> = (0..kind.purses.len()).map(share).collect();
             assert!(paid.iter().all(|s| *s >= 0.0));
             assert!((paid.iter().sum::<f64>() - cost).abs() < 1e-9);
         }
