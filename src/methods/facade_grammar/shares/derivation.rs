@@ -1,6 +1,7 @@
 //! The cheapest derivation of a facade, rule by rule a shortest path.
 
-use super::program::{Kind, Program};
+use super::kind::Kind;
+use super::program::Program;
 
 /// A rule: the way, and the arcs of its path from the first to the last.
 #[derive(Debug, Clone)]

@@ -8,7 +8,10 @@ mod ascent;
 mod branch;
 mod derivation;
 mod incumbent;
+mod kind;
 mod program;
+mod purses;
+mod rules;
 
 pub use branch::BoundLimits;
 pub(crate) use branch::solve;
@@ -18,7 +21,7 @@ pub(crate) use program::Program;
 use ascent::{Ascent, Item};
 use derivation::{Paths, Prices, Rule};
 use incumbent::Restricted;
-use program::Kind;
+use kind::Kind;
 
 /// Shares of costs, and the dynamic program under them.
 #[derive(Debug)]
