@@ -1,8 +1,9 @@
-//! The lower bound of facade grammars against exhaustive search on tiny layouts.
+//! The lower bound of facade grammars against exhaustive search on tiny layouts, and the optimum of facade (i).
 
 use std::collections::BTreeMap;
 
 use edifice::grammar::Costs;
+use edifice::io::facade_json;
 use edifice::methods::facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
 use edifice::shape::{Facade, Rect, Region};
 use proptest::prelude::*;
@@ -194,4 +195,36 @@ fn a_facade_of_one_region_needs_no_rule() {
     let bound = bound.unwrap();
     assert!(bound.proven && bound.types == 0);
     assert_eq!(bound.upper, bound.lower);
+}
+
+/// The optimum of facade (i) of Wu et al. 2014 is known for every set of operations but grids.
+#[test]
+fn facade_i_is_solved() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/datasets/facade_grammar/wu2014_fig9.facade.json"
+    );
+    let facade = facade_json::read(path.as_ref()).unwrap();
+    let extensions = Operations {
+        repeat_aba: true,
+        sym_split: true,
+        ..Operations::default()
+    };
+    for (operations, least) in [
+        (Operations::split_only(), 38.6),
+        (Operations::default(), 38.1),
+        (extensions, 37.2),
+    ] {
+        let settings = Settings {
+            iterations: 100,
+            operations,
+            ..Settings::default()
+        };
+        let bound = lower_bound(&facade, &settings, &BoundLimits::default()).unwrap();
+        assert!(bound.proven, "{operations:?}: {bound:?}");
+        assert!(
+            (bound.upper - least).abs() < 1e-6,
+            "{operations:?}: {bound:?}"
+        );
+    }
 }
