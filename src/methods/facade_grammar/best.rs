@@ -31,9 +31,8 @@ impl Search<'_> {
         } = *self.settings;
         let (first, lower, learnt, steps) = match self.shared(facades) {
             Some(Shared { rules, cost, lower }) => {
-                let iteration = 0;
                 observer(Step {
-                    iteration,
+                    iteration: 0,
                     cost,
                     best: cost,
                 });

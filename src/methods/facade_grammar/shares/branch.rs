@@ -9,7 +9,7 @@ use super::{Ascent, Incumbent, Item, Program, Shares};
 /// How much work a bound may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoundLimits {
-    /// Items of the rules of all places (some 20 bytes each) beyond which only the weak bound is given.
+    /// Items of the rules of all places (some 30 bytes each) beyond which only the weak bound is given.
     pub items: usize,
     /// Subgradient steps at the root.
     pub root_steps: u64,
