@@ -164,7 +164,7 @@ fn bound(
         proven: bound.proven,
         nodes: bound.nodes,
         types: bound.types,
-        weak: bound.weak,
+        weak: bound.weak.is_some(),
         seconds: start.elapsed().as_secs_f64(),
     })
 }

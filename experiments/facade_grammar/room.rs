@@ -69,7 +69,7 @@ pub fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
             bound
                 .map(|b| Lower {
                     cost: b.lower,
-                    weak: b.weak,
+                    weak: b.weak.is_some(),
                 })
                 .map_err(Error::method)
         },

@@ -5,6 +5,7 @@ mod infer;
 mod show;
 
 use clap::Subcommand;
+use edifice::grammar::Costs;
 
 /// Commands.
 #[derive(Subcommand)]
@@ -37,7 +38,11 @@ fn positive(text: &str) -> Result<f64, String> {
 /// A cost on the command line.
 fn cost(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(value) if f64::is_finite(value) && value >= 0.0 => Ok(value),
-        _ => Err("expected a number of at least zero".to_owned()),
+        Ok(value) if Costs::allows(value) => Ok(value),
+        _ => Err(format!(
+            "expected 0 or a number from {} to {}",
+            Costs::LEAST,
+            Costs::GREATEST
+        )),
     }
 }

@@ -33,7 +33,50 @@ impl Default for Costs {
     }
 }
 
+/// A cost that no sum of costs can be compared with.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "the cost of {name} is {cost}, expected 0 or a number from {} to {}",
+    Costs::LEAST,
+    Costs::GREATEST
+)]
+pub struct CostError {
+    /// The operation, or `successor`.
+    pub name: &'static str,
+    /// The cost.
+    pub cost: f64,
+}
+
 impl Costs {
+    /// Least cost of an operation or a successor that is not free: sums of costs are compared up to noise.
+    pub const LEAST: f64 = 1e-3;
+    /// Greatest cost.
+    pub const GREATEST: f64 = 1e3;
+
+    /// Whether an operation or a successor may cost so much.
+    pub fn allows(cost: f64) -> bool {
+        cost == 0.0 || (Self::LEAST..=Self::GREATEST).contains(&cost)
+    }
+
+    /// Checks that all costs are in range.
+    ///
+    /// # Errors
+    /// [`CostError`] with the first that is not.
+    pub fn check(&self) -> Result<(), CostError> {
+        let named = [
+            ("split", self.split),
+            ("repeat", self.repeat),
+            ("repeat_aba", self.repeat_aba),
+            ("sym_split", self.sym_split),
+            ("grid_split", self.grid_split),
+            ("successor", self.successor),
+        ];
+        match named.into_iter().find(|(_, cost)| !Self::allows(*cost)) {
+            Some((name, cost)) => Err(CostError { name, cost }),
+            None => Ok(()),
+        }
+    }
+
     /// `cost_op` of the operation.
     pub fn operation(&self, operation: &Operation) -> f64 {
         match operation {

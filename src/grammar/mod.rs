@@ -20,7 +20,7 @@ mod tiling;
 
 pub use check::{TOLERANCE, check};
 pub use combine::{LEAST_SIMILARITY, combine};
-pub use cost::Costs;
+pub use cost::{CostError, Costs};
 pub use derive::{Derivation, NonTerminal, REGION_LIMIT, derivation, derive};
 pub use error::{GrammarError, Warning};
 pub use evaluate::{EvaluateError, Evaluation, evaluate};

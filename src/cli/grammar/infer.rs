@@ -205,7 +205,7 @@ fn report(args: &Args, evaluation: &Evaluation, found: &Outcome, seconds: f64) -
     }
     let proof = match lower_bound {
         None => String::new(),
-        Some(bound) if cost <= bound + 1e-6 => " (proven optimal)".to_owned(),
+        Some(_) if found.proves(evaluation.cost) => " (proven optimal)".to_owned(),
         Some(bound) => format!(" (no grammar costs less than {bound:.1})"),
     };
     print::message(&format!(

@@ -24,7 +24,7 @@ use rustc_hash::FxHashSet;
 
 use super::choice::{Arrangement, Choice};
 use super::exploration::Exploration;
-use super::regions::{Strips, TypeId, Types};
+use super::regions::{Offsets, Strips, TypeId, Types};
 use super::walk::AddRule;
 use crate::shape::Axis;
 
@@ -111,7 +111,7 @@ fn integral_symmetry(types: &mut Types, measured: &mut Vec<Option<f64>>, id: Typ
     let symmetry = Axis::BOTH
         .map(|axis| {
             let strips = types.strips(id, axis);
-            mirror_sum(&strips, &types.positions(region, axis, &strips.cuts))
+            mirror_sum(&strips, &types.offsets(region, axis, &strips.cuts))
         })
         .into_iter()
         .fold(0.0, f64::max);
@@ -120,28 +120,27 @@ fn integral_symmetry(types: &mut Types, measured: &mut Vec<Option<f64>>, id: Typ
 }
 
 /// `(sum_c r(c)) / (sum_c min(c, w - c))` along one direction; 0 when no line splits the region.
-fn mirror_sum(strips: &Strips, position: &[i64]) -> f64 {
+fn mirror_sum(strips: &Strips, offsets: &Offsets) -> f64 {
     let n = strips.intervals();
     if n < 2 {
         return 0.0;
     }
-    let (mut reached, mut possible) = (0, 0);
+    let (mut reached, mut possible) = (0.0, 0.0);
+    let position = &offsets.at;
     // Twice the centre: even on lines, odd in the middle of intervals.
     for center in 1..2 * n {
         let (mut left, mut right) = (center / 2, center.div_ceil(2));
         let doubled = position[left] + position[right];
         while left > 0 && right < n {
             let equal = strips.strip(left - 1, left) == strips.strip(right, right + 1);
-            if !equal
-                || position[left] - position[left - 1] != position[right + 1] - position[right]
-            {
+            if !equal || offsets.interval(left - 1) != offsets.interval(right) {
                 break;
             }
             left -= 1;
             right += 1;
         }
         reached += position[right] - position[left];
-        possible += doubled.min(2 * position[n] - doubled);
+        possible += doubled.min(2.0 * position[n] - doubled);
     }
-    reached as f64 / possible as f64
+    reached / possible
 }

@@ -5,14 +5,12 @@ use std::rc::Rc;
 use super::choice::Router;
 use super::infer::{InferError, Settings};
 use super::members::Members;
-use super::operations::Operations;
 use super::search::Search;
-use super::shares::{BoundLimits, Incumbent, Program, solve};
+use super::shares::{BoundLimits, Incumbent, NOISE, Program, solve};
 use super::walk::{AddRule, ShortestRoutes};
 use crate::optim::Step;
 use crate::optim::adp::Epsilon;
 use crate::optim::annealing::{Annealing, Cooling};
-use crate::shape::Facade;
 
 impl Search<'_> {
     /// The optimum, where cost shares find and prove it. Else walks that exploit by shortest paths, then
@@ -20,7 +18,6 @@ impl Search<'_> {
     /// walks of `paper` come first. Also a bound below which no grammar costs, when there is one.
     pub fn best(
         &self,
-        facades: &[Facade],
         mut observer: impl FnMut(Step) + Clone + 'static,
     ) -> Result<(Vec<AddRule>, Option<f64>), InferError> {
         let Settings {
@@ -29,7 +26,7 @@ impl Search<'_> {
             readings,
             ..
         } = *self.settings;
-        let (first, lower, learnt, steps) = match self.shared(facades) {
+        let (first, lower, learnt, steps) = match self.shared() {
             Some(Shared { rules, cost, lower }) => {
                 observer(Step {
                     iteration: 0,
@@ -74,7 +71,7 @@ impl Search<'_> {
     }
 
     /// Cost shares, with work in proportion to the iterations; `None` where the facades have too many places.
-    fn shared(&self, facades: &[Facade]) -> Option<Shared> {
+    fn shared(&self) -> Option<Shared> {
         let Settings {
             iterations,
             costs,
@@ -83,11 +80,13 @@ impl Search<'_> {
         } = self.settings;
         let work = usize::try_from(*iterations).unwrap_or(usize::MAX);
         let work = work.saturating_mul(ITEMS_PER_ITERATION);
-        let without_grids = Operations {
-            grid_split: false,
-            ..*operations
-        };
-        let program = Program::new(facades, costs, without_grids, work / FEWEST_STEPS)?;
+        let without_grids = operations.without_grids();
+        let program = Program::new(
+            self.fresh.clone(),
+            costs,
+            without_grids,
+            work / FEWEST_STEPS,
+        )?;
         let steps = (work / program.items.max(1)) as u64;
         let limits = BoundLimits {
             items: program.items,
@@ -95,7 +94,7 @@ impl Search<'_> {
             branch_steps: BRANCH_STEPS,
             nodes: 1 + MOST_BRANCHES.min(steps.saturating_sub(ROOT_STEPS) / BRANCH_STEPS),
         };
-        let mut incumbent = Incumbent::new(f64::INFINITY, costs);
+        let mut incumbent = Incumbent::new(f64::INFINITY, costs, without_grids);
         let (lower, _) = solve(&program, &mut incumbent, &limits);
         Some(Shared {
             rules: incumbent.rules(&program, &mut self.types.borrow_mut()),
@@ -160,8 +159,6 @@ const ROOT_STEPS: u64 = 300;
 const BRANCH_STEPS: u64 = 60;
 /// Most branches of cost shares.
 const MOST_BRANCHES: u64 = 30;
-/// Noise of sums of costs.
-const NOISE: f64 = 1e-6;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.

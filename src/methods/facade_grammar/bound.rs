@@ -1,9 +1,12 @@
 //! What is known of the least cost of a facade's grammars.
 
+use std::fmt;
+
 use rustc_hash::FxHashSet;
 
 use super::infer::{InferError, Method, Settings, infer};
 use super::operations::Operations;
+use super::regions::Types;
 use super::shares::{BoundLimits, Incumbent, Program, solve};
 use crate::grammar::Costs;
 use crate::shape::Facade;
@@ -21,14 +24,46 @@ pub struct Bound {
     pub nodes: u64,
     /// Non-terminal types that full lines can make of the facade; 0 when they were not counted.
     pub types: usize,
-    /// Whether there were too many, so that `lower` only counts labels.
-    pub weak: bool,
+    /// Why `lower` is far from what branch and bound would give, if it is.
+    pub weak: Option<Weakness>,
 }
 
-/// Bounds the cost of the grammars of a facade from below, by cost shares (see [`super`]) as [`infer`] does, but with as much
-/// work as `limits` allow; the upper bound starts from what [`Method::AdpBest`] finds with the other `settings`. Where grid
-/// splits are allowed, and where the rules of a facade have more items than [`BoundLimits::items`], the bound is
-/// the weak one that every label is written once, and [`Bound::weak`] says so. The same limits give the same bound.
+/// Why a bound is weak.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weakness {
+    /// Grid splits are allowed: their rules are no shortest paths. The bound is that of grammars without grids, times what
+    /// a grid can save at most (see [`lower_bound`]).
+    Grids,
+    /// The rules of the facade have more items than [`BoundLimits::items`]: every label is written once.
+    Items,
+}
+
+impl fmt::Display for Weakness {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Weakness::Grids => {
+                "grid splits are no shortest paths; bounded by what they can save at most"
+            }
+            Weakness::Items => "too many rules; bounded by the number of labels",
+        })
+    }
+}
+
+/// Bounds the cost of the grammars of a facade from below, as [`infer`] does (see [`super`]), but with as much
+/// work as `limits` allow; the upper bound starts from what [`Method::AdpBest`] finds with the other `settings`.
+/// The same limits give the same bound.
+///
+/// Where the rules of a facade have more items than [`BoundLimits::items`], the bound is the weak one that every label is
+/// written once. Where grid splits are allowed, it comes from that without them: a grid of `m` by `n` cells can be
+/// written as one split into `m` strips and `m` splits into `n` cells, a grid of one row as one split, so that
+///
+/// ```text
+/// least cost with grids >= rho * least cost without,
+/// rho = min over 2 <= m <= n of (c_grid + m n c_1) / (c_split + m c_1 + m (c_split + n c_1))
+///       and of (c_grid + 2 c_1) / (c_split + 2 c_1),
+/// ```
+///
+/// `c_1` being the cost of a successor; 0.65 with the costs of the paper. [`Bound::weak`] names either case.
 ///
 /// # Errors
 /// [`InferError`], as of [`infer`].
@@ -41,34 +76,66 @@ pub fn lower_bound(
         method: Method::AdpBest,
         ..settings.clone()
     };
-    let facades = std::slice::from_ref(facade);
-    let upper = settings.costs.grammar(&infer(facades, &settings)?.grammar);
-    let mut incumbent = Incumbent::new(upper, &settings.costs);
-    if facade.regions.len() == 1 {
-        return Ok(known(&incumbent, upper, 0, 0));
-    }
     let (costs, operations) = (&settings.costs, settings.operations);
-    let Some(program) = Program::new(facades, costs, operations, limits.items) else {
-        let labels: FxHashSet<&str> = facade.regions.iter().map(|r| r.label.as_str()).collect();
-        let lower = labels_once(costs, operations, labels.len());
-        return Ok(Bound {
-            weak: true,
-            ..known(&incumbent, lower, 0, 0)
-        });
-    };
-    let (lower, nodes) = solve(&program, &mut incumbent, limits);
-    Ok(known(&incumbent, lower, nodes, program.kinds.len()))
-}
-
-fn known(incumbent: &Incumbent, lower: f64, nodes: u64, types: usize) -> Bound {
-    Bound {
+    let facades = std::slice::from_ref(facade);
+    let upper = costs.grammar(&infer(facades, &settings)?.grammar);
+    let known = |incumbent: &Incumbent, lower: f64, weak| Bound {
         lower: lower.min(incumbent.cost),
         upper: incumbent.cost,
         proven: incumbent.is_optimal(lower),
-        nodes,
-        types,
-        weak: false,
+        nodes: 0,
+        types: 0,
+        weak,
+    };
+    let mut incumbent = Incumbent::new(upper, costs, operations);
+    if facade.regions.len() == 1 {
+        return Ok(known(&incumbent, upper, None));
     }
+    let labels: FxHashSet<&str> = facade.regions.iter().map(|r| r.label.as_str()).collect();
+    let labels = labels_once(costs, operations, labels.len());
+    let without_grids = operations.without_grids();
+    let types = Types::new(facades).map_err(|(_, source)| InferError::NotATiling {
+        name: facade.name.clone(),
+        source,
+    })?;
+    let lines = types.extents()[0];
+    let Some(program) = Program::new(types, costs, without_grids, limits.items) else {
+        return Ok(known(&incumbent, labels, Some(Weakness::Items)));
+    };
+    if !operations.grid_split {
+        let (lower, nodes) = solve(&program, &mut incumbent, limits);
+        return Ok(Bound {
+            nodes,
+            types: program.kinds.len(),
+            ..known(&incumbent, lower, None)
+        });
+    }
+    let mut without = Incumbent::new(f64::INFINITY, costs, without_grids);
+    let (lower, nodes) = solve(&program, &mut without, limits);
+    let lower = without.attainable(lower) * saved_by_grids(costs, lines.0.max(lines.1));
+    Ok(Bound {
+        nodes,
+        types: program.kinds.len(),
+        ..known(&incumbent, lower.max(labels), Some(Weakness::Grids))
+    })
+}
+
+/// `rho` of [`lower_bound`] for grids of so many columns and rows at most. For given `m` the fraction grows with `n` as long
+/// as it is below 1, so that square grids, and rows of two cells, are the worst.
+fn saved_by_grids(costs: &Costs, most: usize) -> f64 {
+    let fraction = |grid: f64, splits: f64| match splits > 0.0 {
+        true => grid / splits,
+        false => 1.0,
+    };
+    let row = costs.split + 2.0 * costs.successor;
+    let row = fraction(costs.grid_split + 2.0 * costs.successor, row);
+    let square = |m: f64| {
+        let strip = costs.split + m * costs.successor;
+        let grid = costs.grid_split + m * m * costs.successor;
+        fraction(grid, strip + m * strip)
+    };
+    let squares = (2..=most).map(|m| square(m as f64));
+    squares.fold(row.min(1.0), f64::min)
 }
 
 /// One rule at least, and every label written once.

@@ -9,7 +9,8 @@ use super::best::further_steps;
 use super::operations::Operations;
 use super::readings::Readings;
 use super::search::Search;
-use crate::grammar::{Costs, Grammar};
+use super::shares::NOISE;
+use crate::grammar::{CostError, Costs, Grammar};
 use crate::optim::Step;
 use crate::optim::adp::AdpError;
 use crate::optim::annealing::AnnealingError;
@@ -93,6 +94,13 @@ pub struct Outcome {
     pub lower_bound: Option<f64>,
 }
 
+impl Outcome {
+    /// Whether no grammar is cheaper than one of this cost.
+    pub fn proves(&self, cost: f64) -> bool {
+        self.lower_bound.is_some_and(|lower| cost <= lower + NOISE)
+    }
+}
+
 /// Why no grammar was found.
 #[derive(Debug, thiserror::Error)]
 pub enum InferError {
@@ -125,6 +133,9 @@ pub enum InferError {
         /// Rows of the grid of edges.
         rows: usize,
     },
+    /// A cost is out of range.
+    #[error(transparent)]
+    Cost(#[from] CostError),
     /// Dynamic programming failed.
     #[error(transparent)]
     Adp(#[from] AdpError),
@@ -191,10 +202,11 @@ pub fn infer_observed(
     settings: &Settings,
     observer: impl FnMut(Step) + Clone + 'static,
 ) -> Result<Outcome, InferError> {
+    settings.costs.check()?;
     check(facades)?;
-    let search = Search::new(facades, settings);
+    let search = Search::new(facades, settings)?;
     let (rules, lower_bound) = match settings.method {
-        Method::AdpBest => search.best(facades, observer)?,
+        Method::AdpBest => search.best(observer)?,
         Method::AdpPaper => (search.paper(observer)?.0, None),
         Method::Importance => (search.importance(observer)?, None),
         Method::Greedy => (search.greedy(), None),

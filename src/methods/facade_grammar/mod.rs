@@ -117,7 +117,7 @@ mod symmetry;
 pub mod synthetic;
 mod walk;
 
-pub use bound::{Bound, lower_bound};
+pub use bound::{Bound, Weakness, lower_bound};
 pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer, infer_observed};
 pub use kinds::kinds;
 pub use operations::{Operations, UnknownOperation};

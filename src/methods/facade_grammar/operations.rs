@@ -49,6 +49,14 @@ impl Operations {
         }
     }
 
+    /// The same without grid splits, whose rules are no shortest paths.
+    pub(crate) fn without_grids(self) -> Self {
+        Self {
+            grid_split: false,
+            ..self
+        }
+    }
+
     /// Split, repeat, and the extensions of Sec. 4.7.
     pub fn all() -> Self {
         Self {

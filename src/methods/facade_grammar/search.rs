@@ -20,13 +20,19 @@ use crate::shape::Facade;
 /// What every method starts from, and the methods.
 pub(super) struct Search<'a> {
     pub settings: &'a Settings,
+    /// The facades before symmetry detection.
+    pub fresh: Types,
     pub types: SharedTypes,
     pub exploration: Rc<RefCell<Exploration>>,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(facades: &[Facade], settings: &'a Settings) -> Self {
-        let mut types = Types::new(facades);
+    pub fn new(facades: &[Facade], settings: &'a Settings) -> Result<Self, InferError> {
+        let fresh = Types::new(facades).map_err(|(index, source)| InferError::NotATiling {
+            name: facades[index].name.clone(),
+            source,
+        })?;
+        let mut types = fresh.clone();
         let repeated = symmetry::detect(&mut types);
         let lambdas = Lambdas {
             rule: settings.lambda_rule,
@@ -39,11 +45,12 @@ impl<'a> Search<'a> {
             settings.operations,
             lambdas,
         );
-        Self {
+        Ok(Self {
             settings,
+            fresh,
             types: Rc::new(RefCell::new(types)),
             exploration: Rc::new(RefCell::new(exploration)),
-        }
+        })
     }
 
     fn process(&self) -> Inference {

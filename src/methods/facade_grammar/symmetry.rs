@@ -77,9 +77,9 @@ pub(crate) fn detect(types: &mut Types) -> Vec<Repeated> {
 
 /// Terminals of equal label and size that occur at least twice.
 fn repeated_terminals(types: &Types) -> Vec<Vec<Region>> {
-    let mut groups: FxHashMap<(u32, i64, i64), usize> = FxHashMap::default();
+    let mut groups: FxHashMap<(u32, u64, u64), usize> = FxHashMap::default();
     let mut all: Vec<Vec<Region>> = Vec::new();
-    for sheet in &types.sheets {
+    for sheet in types.sheets.iter() {
         for &(region, label) in &sheet.terminals {
             let key = (label, sheet.extent_x(region), sheet.extent_y(region));
             let group = *groups.entry(key).or_insert_with(|| {

@@ -1,13 +1,16 @@
 //! Regions of facades, and region *types*: regions with equal contents.
 //!
 //! Two non-terminal regions share a symbol when their contents are equal, terminal by terminal, in
-//! label, offset and size (translational symmetry, Wu et al. 2014, Sec. 4.3). A terminal region's
+//! label, offset and size up to floating-point noise (translational symmetry, Wu et al. 2014, Sec. 4.3). A terminal region's
 //! type is its label, whatever its size.
 
 mod cells;
+mod lengths;
 mod sheet;
+mod strips;
 mod types;
 
 pub(crate) use cells::Cells;
 pub(crate) use sheet::{Region, Sheet};
-pub(crate) use types::{Strips, TypeId, Types, ends, part};
+pub(crate) use strips::{Offsets, Strips};
+pub(crate) use types::{TypeId, Types, ends, part};

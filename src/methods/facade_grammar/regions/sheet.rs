@@ -8,7 +8,8 @@
 //! - a hash of the region's contents that does not depend on where the region lies:
 //!   `sum_t h(label, w, h) P^(x_t - x_0) Q^(y_t - y_0) mod 2^61 - 1`.
 
-use crate::shape::Facade;
+use super::lengths::{Lines, minus};
+use crate::shape::{Axis, Facade};
 
 /// Modulus of the content hash, the Mersenne prime `2^61 - 1`.
 const MODULUS: u64 = (1 << 61) - 1;
@@ -32,9 +33,9 @@ pub(crate) struct Sheet {
     /// Edge coordinates in the facade's unit.
     pub xs: Vec<f64>,
     pub ys: Vec<f64>,
-    /// Edge coordinates in quanta, from 0.
-    pub qx: Vec<i64>,
-    pub qy: Vec<i64>,
+    /// Residues of the edge coordinates, equal for equal distances (see [`super::lengths`]).
+    pub residues_x: Vec<u64>,
+    pub residues_y: Vec<u64>,
     /// Terminals: rectangle in grid cells and label index.
     pub terminals: Vec<(Region, u32)>,
     /// Terminal that covers each cell, row by row.
@@ -51,48 +52,33 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Prepares a tiling. `label(name)` numbers the labels, `quantum` is the length unit in which
-    /// sizes are compared. The caller has checked that the facade is a tiling.
+    /// Prepares a tiling on its lines. `label(name)` numbers the labels.
     pub fn new(
         index: u16,
         facade: &Facade,
-        quantum: f64,
+        lines: Lines,
         mut label: impl FnMut(&str) -> u32,
     ) -> Self {
-        let quanta = |v: f64| (v / quantum).round() as i64;
-        let (xs, qx) = edges(
-            facade
-                .regions
-                .iter()
-                .flat_map(|r| [r.rect.x, r.rect.right()]),
-            quanta,
-        );
-        let (ys, qy) = edges(
-            facade.regions.iter().flat_map(|r| [r.rect.y, r.rect.top()]),
-            quanta,
-        );
-        let at = |edges: &[i64], v: f64| edges.partition_point(|&e| e < quanta(v)) as u16;
-        let terminals: Vec<(Region, u32)> = facade
-            .regions
+        let Lines { layout, x, y } = lines;
+        let terminals: Vec<(Region, u32)> = layout
+            .spans
             .iter()
-            .map(|r| {
-                let (x0, x1) = (at(&qx, r.rect.x), at(&qx, r.rect.right()));
-                let (y0, y1) = (at(&qy, r.rect.y), at(&qy, r.rect.top()));
-                (
-                    Region {
-                        sheet: index,
-                        x0,
-                        x1,
-                        y0,
-                        y1,
-                    },
-                    label(&r.label),
-                )
+            .zip(&facade.regions)
+            .map(|(span, region)| {
+                let rect = Region {
+                    sheet: index,
+                    x0: span.left as u16,
+                    x1: span.right as u16,
+                    y0: span.bottom as u16,
+                    y1: span.top as u16,
+                };
+                (rect, label(&region.label))
             })
             .collect();
+        let (xs, ys) = (layout.xs.values().to_vec(), layout.ys.values().to_vec());
         let mut sheet = Self {
-            inverse_x: powers(inverse(BASE_X), &qx),
-            inverse_y: powers(inverse(BASE_Y), &qy),
+            inverse_x: powers(inverse(BASE_X), &x),
+            inverse_y: powers(inverse(BASE_Y), &y),
             owner: vec![0; (xs.len() - 1) * (ys.len() - 1)],
             count: vec![0; xs.len() * ys.len()],
             hash: vec![0; xs.len() * ys.len()],
@@ -100,8 +86,8 @@ impl Sheet {
             cut_y: vec![0; xs.len() * ys.len()],
             xs,
             ys,
-            qx,
-            qy,
+            residues_x: x,
+            residues_y: y,
             terminals,
         };
         sheet.paint();
@@ -121,10 +107,13 @@ impl Sheet {
 
     fn accumulate(&mut self) {
         let stride = self.xs.len();
-        let (px, py) = (powers(BASE_X, &self.qx), powers(BASE_Y, &self.qy));
+        let (px, py) = (
+            powers(BASE_X, &self.residues_x),
+            powers(BASE_Y, &self.residues_y),
+        );
         for (r, label) in &self.terminals {
             let (w, h) = (self.extent_x(*r), self.extent_y(*r));
-            let own = mix(mix(mix(u64::from(*label) + 1) ^ w as u64) ^ h as u64) % MODULUS;
+            let own = mix(mix(mix(u64::from(*label) + 1) ^ w) ^ h) % MODULUS;
             let at = (usize::from(r.y0) + 1) * stride + usize::from(r.x0) + 1;
             self.count[at] += 1;
             self.hash[at] = add(
@@ -172,14 +161,24 @@ impl Sheet {
         }
     }
 
-    /// Width of a region in quanta.
-    pub fn extent_x(&self, r: Region) -> i64 {
-        self.qx[usize::from(r.x1)] - self.qx[usize::from(r.x0)]
+    /// Residue of the width of a region.
+    pub fn extent_x(&self, r: Region) -> u64 {
+        let at = |line: u16| self.residues_x[usize::from(line)];
+        minus(at(r.x1), at(r.x0))
     }
 
-    /// Height of a region in quanta.
-    pub fn extent_y(&self, r: Region) -> i64 {
-        self.qy[usize::from(r.y1)] - self.qy[usize::from(r.y0)]
+    /// Residue of the height of a region.
+    pub fn extent_y(&self, r: Region) -> u64 {
+        let at = |line: u16| self.residues_y[usize::from(line)];
+        minus(at(r.y1), at(r.y0))
+    }
+
+    /// Edge coordinates along an axis, and their residues.
+    pub fn lines(&self, axis: Axis) -> (&[f64], &[u64]) {
+        match axis {
+            Axis::X => (&self.xs, &self.residues_x),
+            Axis::Y => (&self.ys, &self.residues_y),
+        }
     }
 
     fn corner_sums<T: Copy>(&self, table: &[T], r: Region) -> [T; 4] {
@@ -232,18 +231,6 @@ impl Sheet {
     }
 }
 
-/// Distinct coordinates in ascending order, in units and in quanta.
-fn edges(values: impl Iterator<Item = f64>, quanta: impl Fn(f64) -> i64) -> (Vec<f64>, Vec<i64>) {
-    let mut all: Vec<(i64, f64)> = values.map(|v| (quanta(v), v)).collect();
-    all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    all.dedup_by_key(|e| e.0);
-    let origin = all.first().map_or(0, |e| e.0);
-    (
-        all.iter().map(|e| e.1).collect(),
-        all.iter().map(|e| e.0 - origin).collect(),
-    )
-}
-
 fn add(a: u64, b: u64) -> u64 {
     let s = a + b;
     if s >= MODULUS { s - MODULUS } else { s }
@@ -278,8 +265,8 @@ fn inverse(a: u64) -> u64 {
     power(a, MODULUS - 2)
 }
 
-fn powers(base: u64, exponents: &[i64]) -> Vec<u64> {
-    exponents.iter().map(|&e| power(base, e as u64)).collect()
+fn powers(base: u64, exponents: &[u64]) -> Vec<u64> {
+    exponents.iter().map(|&e| power(base, e)).collect()
 }
 
 /// Finalizer of SplitMix64.

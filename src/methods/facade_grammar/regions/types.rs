@@ -4,8 +4,9 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
-use super::{Cells, Region, Sheet};
-use crate::shape::{Axis, Facade};
+use super::lengths::{lines, minus};
+use super::{Cells, Offsets, Region, Sheet, Strips};
+use crate::shape::{Axis, Facade, LayoutError};
 
 /// Index of a region type. Types below [`Types::label_count`] are the terminal labels.
 pub(crate) type TypeId = u32;
@@ -18,66 +19,12 @@ struct Type {
 }
 
 /// What two regions share when they have one type: hash of contents, size, number of terminals.
-type Key = (u64, i64, i64, u32);
-
-/// `repeats` equal periods of `intervals` elementary intervals each fill the region.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Period {
-    pub intervals: u16,
-    pub repeats: u16,
-}
-
-/// Everything that full lines along one axis can make of a region.
-#[derive(Debug)]
-pub(crate) struct Strips {
-    /// Grid indices of the region's ends and of every full line that cuts no terminal.
-    pub cuts: Vec<u16>,
-    /// Type of the strip from `cuts[a]` to `cuts[b]` at `b (b - 1) / 2 + a`.
-    types: Vec<TypeId>,
-    /// Ways to see the region as a repetition.
-    pub periods: Vec<Period>,
-    /// Ways to see it as A B A B ... A: the ends of the first A and of the first B.
-    pub alternations: Vec<(u16, u16)>,
-    /// Pairs of cuts at equal distance from the two ends, from the outside in; the last pair is
-    /// one cut when there is one in the middle.
-    pub mirrors: Vec<(u16, u16)>,
-}
-
-impl Strips {
-    /// Number of elementary intervals, 1 when no line splits the region.
-    pub fn intervals(&self) -> usize {
-        self.cuts.len() - 1
-    }
-
-    /// Type of the strip between cuts `a < b`.
-    pub fn strip(&self, a: usize, b: usize) -> TypeId {
-        self.types[b * (b - 1) / 2 + a]
-    }
-
-    /// Types of the strips that end at cut `b`, by where they start.
-    pub fn ending_at(&self, b: usize) -> &[TypeId] {
-        let first = b * (b - 1) / 2;
-        &self.types[first..first + b]
-    }
-
-    /// End of the first A of the alternation whose first B ends at cut `b`.
-    pub fn alternation_inner(&self, b: usize) -> u16 {
-        self.alternations
-            .iter()
-            .find(|(_, end)| usize::from(*end) == b)
-            .map_or(0, |(a, _)| *a)
-    }
-
-    /// All strip types.
-    pub fn all(&self) -> &[TypeId] {
-        &self.types
-    }
-}
+type Key = (u64, u64, u64, u32);
 
 /// The region types of one or several facades.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Types {
-    pub sheets: Vec<Sheet>,
+    pub sheets: Rc<[Sheet]>,
     pub labels: Vec<String>,
     ids: FxHashMap<Key, TypeId>,
     types: Vec<Type>,
@@ -90,14 +37,17 @@ pub(crate) struct Types {
 
 impl Types {
     /// Prepares facades whose tilings were checked; labels and types are shared between them.
-    pub fn new(facades: &[Facade]) -> Self {
-        let quantum = common_quantum(facades);
+    ///
+    /// # Errors
+    /// The index of a facade with a region that is too thin, which a check of the tiling has excluded.
+    pub fn new(facades: &[Facade]) -> Result<Self, (usize, LayoutError)> {
         let mut labels: Vec<String> = Vec::new();
-        let sheets: Vec<Sheet> = facades
-            .iter()
+        let sheets: Rc<[Sheet]> = lines(facades)?
+            .into_iter()
+            .zip(facades)
             .enumerate()
-            .map(|(index, facade)| {
-                Sheet::new(index as u16, facade, quantum, |name| {
+            .map(|(index, (lines, facade))| {
+                Sheet::new(index as u16, facade, lines, |name| {
                     labels.iter().position(|l| l == name).unwrap_or_else(|| {
                         labels.push(name.to_owned());
                         labels.len() - 1
@@ -132,7 +82,7 @@ impl Types {
             let id = types.intern(root);
             types.roots.push(id);
         }
-        types
+        Ok(types)
     }
 
     /// Columns and rows of the grid of edges of each sheet.
@@ -217,39 +167,28 @@ impl Types {
                 types.push(self.intern(part(region, axis, cuts[a], cuts[b])));
             }
         }
-        let position = self.positions(region, axis, &cuts);
-        let empty = Vec::new;
-        let mut strips = Strips {
-            cuts,
-            types,
-            periods: Vec::new(),
-            alternations: empty(),
-            mirrors: mirrors(&position),
-        };
-        for (k, repeats, rest) in shifts(&position, &strips) {
-            match rest {
-                0 => strips.periods.push(Period {
-                    intervals: k as u16,
-                    repeats,
-                }),
-                a => strips.alternations.push((a as u16, k as u16)),
-            }
-        }
-        strips
+        let offsets = self.offsets(region, axis, &cuts);
+        Strips::new(cuts, types, &offsets)
     }
 
     /// Grid indices of the cuts of a type's strips where another region has that type.
     pub fn cuts_at(&mut self, id: TypeId, axis: Axis, region: Region) -> Vec<u16> {
         let strips = self.strips(id, axis);
-        let positions = self.positions(self.region(id), axis, &strips.cuts);
+        let offsets = self.offsets(self.region(id), axis, &strips.cuts);
         let sheet = &self.sheets[usize::from(region.sheet)];
-        let quanta = match axis {
-            Axis::X => &sheet.qx,
-            Axis::Y => &sheet.qy,
+        let (lines, _) = sheet.lines(axis);
+        let start = lines[usize::from(ends(region, axis).0)];
+        // Equal up to noise: the nearest line.
+        let nearest = |&offset: &f64| {
+            let after = lines.partition_point(|&line| line < start + offset);
+            let before = after.saturating_sub(1);
+            let distance = |line: usize| (lines[line] - start - offset).abs();
+            match after < lines.len() && distance(after) < distance(before) {
+                true => after as u16,
+                false => before as u16,
+            }
         };
-        let start = quanta[usize::from(ends(region, axis).0)];
-        let line = |p| quanta.partition_point(|&q| q < start + p) as u16;
-        positions.into_iter().map(line).collect()
+        offsets.at.iter().map(nearest).collect()
     }
 
     /// Ends of the region and the full lines between them that cut no terminal.
@@ -266,57 +205,18 @@ impl Types {
             .collect()
     }
 
-    /// Distances of the cuts from the region's start, in quanta.
-    pub fn positions(&self, region: Region, axis: Axis, cuts: &[u16]) -> Vec<i64> {
-        let sheet = &self.sheets[usize::from(region.sheet)];
-        let quanta = match axis {
-            Axis::X => &sheet.qx,
-            Axis::Y => &sheet.qy,
-        };
-        cuts.iter()
-            .map(|&c| quanta[usize::from(c)] - quanta[usize::from(cuts[0])])
-            .collect()
+    /// Distances of the cuts from the region's start.
+    pub fn offsets(&self, region: Region, axis: Axis, cuts: &[u16]) -> Offsets {
+        let (lines, residues) = self.sheets[usize::from(region.sheet)].lines(axis);
+        let from = |line: u16| usize::from(line);
+        let start = from(cuts[0]);
+        let offset = |&cut: &u16| lines[from(cut)] - lines[start];
+        let residue = |&cut: &u16| minus(residues[from(cut)], residues[start]);
+        Offsets {
+            at: cuts.iter().map(offset).collect(),
+            residues: cuts.iter().map(residue).collect(),
+        }
     }
-}
-
-/// Shifts by the length of the first `k` intervals that map the region onto itself: `k`, how many
-/// times that length fits, at least 2, and the cut at which what is left over ends (0 when nothing
-/// is left over). A region has such a shift when what remains without its last `k` intervals equals
-/// what remains without its first.
-fn shifts(position: &[i64], strips: &Strips) -> Vec<(usize, u16, usize)> {
-    let n = strips.intervals();
-    let total = position[n];
-    (1..n)
-        .filter_map(|k| {
-            let length = position[k];
-            if total < 2 * length {
-                return None;
-            }
-            let shifted = position.binary_search(&(total - length)).ok()?;
-            let rest = position.binary_search(&(total % length)).ok()?;
-            (strips.strip(0, shifted) == strips.strip(k, n)).then_some((
-                k,
-                (total / length) as u16,
-                rest,
-            ))
-        })
-        .collect()
-}
-
-/// Pairs of cuts at equal distance from the two ends, from the outside in.
-fn mirrors(position: &[i64]) -> Vec<(u16, u16)> {
-    let total = position[position.len() - 1];
-    position
-        .iter()
-        .enumerate()
-        .take_while(|(_, p)| **p * 2 <= total)
-        .filter_map(|(left, p)| {
-            position
-                .binary_search(&(total - p))
-                .ok()
-                .map(|right| (left as u16, right as u16))
-        })
-        .collect()
 }
 
 /// Grid indices of a region's ends along an axis.
@@ -341,24 +241,4 @@ pub(crate) fn part(r: Region, axis: Axis, from: u16, to: u16) -> Region {
             ..r
         },
     }
-}
-
-/// The coarsest power of ten that all coordinates are multiples of (within 1e-9 of the size); a
-/// millionth of the size when there is none, so that noise in the last digits never separates
-/// equal regions.
-fn common_quantum(facades: &[Facade]) -> f64 {
-    let size = facades
-        .iter()
-        .map(|f| f.width.max(f.height))
-        .fold(0.0, f64::max);
-    let coordinates = || {
-        facades
-            .iter()
-            .flat_map(|f| &f.regions)
-            .flat_map(|r| [r.rect.x, r.rect.right(), r.rect.y, r.rect.top()])
-    };
-    (0..=6)
-        .map(|digits| 10f64.powi(-digits))
-        .find(|q| coordinates().all(|v| ((v / q).round() * q - v).abs() <= 1e-9 * size))
-        .unwrap_or(1e-6 * size)
 }

@@ -44,7 +44,8 @@ impl Shares<'_> {
         let mut kept = self.shares.clone();
         let mut direction = Direction::new();
         let (mut scale, mut stalled) = (1.0, 0);
-        for _ in 0..steps {
+        // One step at least: a branch is closed only by what a derivation shows.
+        for _ in 0..steps.max(1) {
             let bound = self.bound();
             if bound > found.bound + 1e-6 {
                 found.bound = bound;
@@ -117,7 +118,8 @@ impl Shares<'_> {
             let index = self.program.places[*place as usize].index as usize;
             let paying = &kind.purses_of[index];
             let mean = paying.len() as f64 / count as f64;
-            for item in rule.items(kind) {
+            // An item that costs nothing has nothing to share.
+            for item in rule.items(kind).filter(|&item| kind.costs[item] > 0.0) {
                 let along = direction
                     .entry((rule.kind, item))
                     .or_insert_with(|| vec![0.0; count]);
@@ -155,12 +157,32 @@ fn onto_simplex(point: &mut [f64], total: f64) {
     for (i, x) in falling.iter().enumerate() {
         sum += x;
         let even = (sum - total) / (i + 1) as f64;
-        if *x <= even {
+        // Not `<=`: where the total is 0 the largest coordinate itself is the shift.
+        if *x < even {
             break;
         }
         shift = even;
     }
     for x in point {
         *x = (*x - shift).max(0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::onto_simplex;
+
+    #[test]
+    fn projections_are_points_of_the_simplex() {
+        for (point, total, nearest) in [
+            ([0.5, 0.2, -0.7], 0.0, [0.0; 3]),
+            ([0.0; 3], 0.0, [0.0; 3]),
+            ([0.5, 0.5, 0.5], 3.0, [1.0; 3]),
+            ([2.0, 0.5, -1.0], 1.0, [1.0, 0.0, 0.0]),
+        ] {
+            let mut moved = point;
+            onto_simplex(&mut moved, total);
+            assert_eq!(moved, nearest, "{point:?} onto {total}");
+        }
     }
 }

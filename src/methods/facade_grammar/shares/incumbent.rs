@@ -3,11 +3,12 @@
 use super::derivation::{Paths, Prices, Rule};
 use super::program::Program;
 use crate::grammar::Costs;
+use crate::methods::facade_grammar::operations::Operations;
 use crate::methods::facade_grammar::regions::Types;
 use crate::methods::facade_grammar::walk::AddRule;
 
-/// Noise of sums of costs.
-const TOLERANCE: f64 = 1e-6;
+/// Noise of sums of costs, which are 0 or between [`Costs::LEAST`] and [`Costs::GREATEST`].
+pub(crate) const NOISE: f64 = 1e-7;
 
 /// The cheapest grammar met, and when a bound shows that none is cheaper.
 #[derive(Debug)]
@@ -21,28 +22,28 @@ pub(crate) struct Incumbent {
 
 impl Incumbent {
     /// Knows that some grammar has a cost; infinite when none is known.
-    pub fn new(cost: f64, costs: &Costs) -> Self {
+    pub fn new(cost: f64, costs: &Costs, operations: Operations) -> Self {
         Self {
             cost,
             rules: Vec::new(),
-            quantum: quantum(costs),
+            quantum: quantum(costs, operations),
         }
     }
 
     /// The least cost not below a bound that a grammar can have.
     pub fn attainable(&self, bound: f64) -> f64 {
         self.quantum
-            .map_or(bound, |q| ((bound - TOLERANCE) / q).ceil() * q)
+            .map_or(bound, |q| ((bound - NOISE) / q).ceil() * q)
     }
 
     /// Whether a bound shows that no grammar is cheaper.
     pub fn is_optimal(&self, bound: f64) -> bool {
-        self.attainable(bound) >= self.cost - TOLERANCE
+        self.attainable(bound) >= self.cost - NOISE
     }
 
     /// Keeps a grammar when it is cheaper.
     pub fn offer(&mut self, cost: f64, rules: Vec<Rule>) {
-        if cost < self.cost - TOLERANCE {
+        if cost < self.cost - NOISE {
             (self.cost, self.rules) = (cost, rules);
         }
     }
@@ -57,18 +58,34 @@ impl Incumbent {
     }
 }
 
-/// The coarsest power of ten, down to a thousandth, that divides all costs.
-fn quantum(costs: &Costs) -> Option<f64> {
-    let all = [
-        costs.split,
-        costs.repeat,
-        costs.repeat_aba,
-        costs.sym_split,
-        costs.successor,
+/// The greatest common divisor of the costs of what rules may be made of, down to a thousandth; `None` where every
+/// grammar costs nothing, or the costs have no such divisor.
+fn quantum(costs: &Costs, operations: Operations) -> Option<f64> {
+    let used = [
+        (true, costs.split),
+        (true, costs.successor),
+        (operations.repeat, costs.repeat),
+        (operations.repeat_aba, costs.repeat_aba),
+        (operations.sym_split, costs.sym_split),
+        (operations.grid_split, costs.grid_split),
     ];
-    (0..=3)
-        .map(|digits| 10f64.powi(-digits))
-        .find(|q| all.iter().all(|c| ((c / q).round() * q - c).abs() < 1e-12))
+    let used = || used.iter().filter(|(used, _)| *used).map(|(_, cost)| *cost);
+    let divisor = used().fold(0.0, common_divisor);
+    let divides = |cost: f64| ((cost / divisor).round() * divisor - cost).abs() < EXACT;
+    (divisor >= 1e-3 - EXACT && used().all(divides)).then_some(divisor)
+}
+
+/// Noise of a single cost.
+const EXACT: f64 = 1e-12;
+
+/// Euclid's algorithm up to noise.
+fn common_divisor(a: f64, b: f64) -> f64 {
+    let (mut a, mut b) = (a.max(b), a.min(b));
+    while b > EXACT {
+        // A remainder within noise of the divisor is none.
+        (a, b) = (b, (a - b * (a / b + EXACT).floor()).max(0.0));
+    }
+    a
 }
 
 /// Best grammars over given sets of kinds.

@@ -15,7 +15,7 @@ mod rules;
 
 pub use branch::BoundLimits;
 pub(crate) use branch::solve;
-pub(crate) use incumbent::Incumbent;
+pub(crate) use incumbent::{Incumbent, NOISE};
 pub(crate) use program::Program;
 
 use ascent::{Ascent, Item};

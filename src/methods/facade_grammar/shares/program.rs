@@ -8,7 +8,7 @@ use super::rules::kind_of;
 use crate::grammar::Costs;
 use crate::methods::facade_grammar::operations::Operations;
 use crate::methods::facade_grammar::regions::{Region, TypeId, Types, part};
-use crate::shape::{Axis, Facade};
+use crate::shape::Axis;
 
 /// What stands for the place of a terminal until all places are known.
 const TERMINAL: u32 = u32::MAX;
@@ -48,7 +48,7 @@ impl Program {
     /// Everything that full lines can make of the facades; `None` when there are more than `limit` items,
     /// or when grids are allowed, whose rules are no paths.
     pub fn new(
-        facades: &[Facade],
+        mut types: Types,
         costs: &Costs,
         operations: Operations,
         limit: usize,
@@ -56,7 +56,7 @@ impl Program {
         if operations.grid_split {
             return None;
         }
-        let types = &mut Types::new(facades);
+        let types = &mut types;
         let mut survey = Survey::default();
         let mut roots: Vec<u32> = Vec::new();
         let mut seen: Vec<TypeId> = Vec::new();

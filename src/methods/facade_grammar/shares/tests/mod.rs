@@ -29,14 +29,15 @@ const EXTENSIONS: Operations = Operations {
 /// Bound and incumbent after some steps; the incumbent's rules must derive the facades at its cost.
 fn solved(facades: &[Facade], operations: Operations, nodes: u64) -> (f64, f64) {
     let costs = Costs::default();
-    let program = Program::new(facades, &costs, operations, usize::MAX).unwrap();
-    let mut incumbent = Incumbent::new(f64::INFINITY, &costs);
+    let program =
+        Program::new(Types::new(facades).unwrap(), &costs, operations, usize::MAX).unwrap();
+    let mut incumbent = Incumbent::new(f64::INFINITY, &costs, operations);
     let limits = BoundLimits {
         nodes,
         ..BoundLimits::default()
     };
     let (lower, _) = solve(&program, &mut incumbent, &limits);
-    let mut types = Types::new(facades);
+    let mut types = Types::new(facades).unwrap();
     let rules = incumbent.rules(&program, &mut types);
     let grammar = extract::grammar(&mut types, facades, &rules);
     let evaluation = evaluate(&grammar, facades, &costs).unwrap();
@@ -83,10 +84,16 @@ fn steps_only_raise_the_bound() {
     let costs = Costs::default();
     let rows = ["abcabd", "bacabd", "abcabd", "cabdab"];
     let facades = [facade(&rows)];
-    let program = Program::new(&facades, &costs, Operations::default(), usize::MAX).unwrap();
+    let program = Program::new(
+        Types::new(&facades).unwrap(),
+        &costs,
+        Operations::default(),
+        usize::MAX,
+    )
+    .unwrap();
     let bound_after = |steps| {
         // An incumbent out of reach, so that all steps are made.
-        let mut incumbent = Incumbent::new(f64::INFINITY, &costs);
+        let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
         Shares::new(&program).ascend(&mut incumbent, steps).bound
     };
     let bounds = [1, 10, 100].map(bound_after);
@@ -109,9 +116,15 @@ fn steps_climb_to_the_optimum_of_the_linear_program() {
         (&["abacaba", "bcbabcb", "abacaba"], EXTENSIONS),
     ] {
         let facades = [facade(rows)];
-        let program = Program::new(&facades, &costs, operations, usize::MAX).unwrap();
+        let program = Program::new(
+            Types::new(&facades).unwrap(),
+            &costs,
+            operations,
+            usize::MAX,
+        )
+        .unwrap();
         let optimum = linear_program::optimum(&program);
-        let mut incumbent = Incumbent::new(f64::INFINITY, &costs);
+        let mut incumbent = Incumbent::new(f64::INFINITY, &costs, operations);
         let found = Shares::new(&program).ascend(&mut incumbent, 2_000);
         assert!(
             found.bound <= optimum + 1e-6,
@@ -130,7 +143,7 @@ fn places_that_overlap_pay_together() {
     // `ab` stands at three places apart, `abab` at two that overlap, `ba` at two apart.
     let facades = [facade(&["ababab"])];
     let split = Operations::split_only();
-    let program = Program::new(&facades, &costs, split, usize::MAX).unwrap();
+    let program = Program::new(Types::new(&facades).unwrap(), &costs, split, usize::MAX).unwrap();
     let mut purses: Vec<(usize, usize)> = program
         .kinds
         .iter()
@@ -166,9 +179,16 @@ fn places_that_overlap_pay_together() {
 fn shares_of_an_item_sum_to_its_cost() {
     let costs = Costs::default();
     let facades = [facade(&["abcabc", "abdabd", "abcabc"])];
-    let program = Program::new(&facades, &costs, Operations::default(), usize::MAX).unwrap();
+    let program = Program::new(
+        Types::new(&facades).unwrap(),
+        &costs,
+        Operations::default(),
+        usize::MAX,
+    )
+    .unwrap();
     let mut shares = Shares::new(&program);
-    shares.ascend(&mut Incumbent::new(f64::INFINITY, &costs), 50);
+    let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
+    shares.ascend(&mut incumbent, 50);
     for kind in &program.kinds {
         for (item, cost) in kind.costs.iter().enumerate() {
             let share = |purse| shares.shares[kind.first_share + purse * kind.costs.len() + item];
@@ -182,19 +202,43 @@ fn shares_of_an_item_sum_to_its_cost() {
 #[test]
 fn too_many_items_and_grids_are_refused() {
     let (costs, facades) = (Costs::default(), [facade(&["abc", "abd"])]);
-    assert!(Program::new(&facades, &costs, Operations::default(), 3).is_none());
-    assert!(Program::new(&facades, &costs, Operations::all(), usize::MAX).is_none());
+    assert!(
+        Program::new(
+            Types::new(&facades).unwrap(),
+            &costs,
+            Operations::default(),
+            3
+        )
+        .is_none()
+    );
+    assert!(
+        Program::new(
+            Types::new(&facades).unwrap(),
+            &costs,
+            Operations::all(),
+            usize::MAX
+        )
+        .is_none()
+    );
 }
 
 #[test]
 fn costs_that_a_bound_allows_are_multiples_of_their_quantum() {
-    let incumbent = Incumbent::new(38.1, &Costs::default());
+    let incumbent = Incumbent::new(38.1, &Costs::default(), Operations::default());
     assert!((incumbent.attainable(37.93) - 38.0).abs() < 1e-9);
     assert!(incumbent.is_optimal(38.01) && !incumbent.is_optimal(37.99));
-    // No power of ten divides a third.
+    // Thirds, halves and ones are sixths.
     let thirds = Costs {
         split: 1.0 / 3.0,
         ..Costs::default()
     };
-    assert_eq!(Incumbent::new(1.0, &thirds).attainable(0.5), 0.5);
+    let attainable = |costs, operations| Incumbent::new(1.0, costs, operations).attainable(0.51);
+    assert!((attainable(&thirds, Operations::default()) - 2.0 / 3.0).abs() < 1e-9);
+    // The cost of an operation that is not allowed does not count; nothing divides 1 and its root of two.
+    assert!((attainable(&thirds, Operations::split_only()) - 2.0 / 3.0).abs() < 1e-9);
+    let roots = Costs {
+        split: 2f64.sqrt(),
+        ..Costs::default()
+    };
+    assert_eq!(attainable(&roots, Operations::default()), 0.51);
 }
