@@ -19,6 +19,7 @@ const LIMITS: BoundLimits = BoundLimits {
     root_steps: 1_000,
     branch_steps: 100,
     nodes: 40,
+    work: u64::MAX,
 };
 
 /// Iterations for the grammar that the bound starts from.

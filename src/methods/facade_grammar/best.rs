@@ -87,17 +87,17 @@ impl Search<'_> {
             without_grids,
             work / FEWEST_STEPS,
         )?;
-        let steps = (work / program.items.max(1)) as u64;
         let limits = BoundLimits {
             items: program.items,
-            root_steps: ROOT_STEPS.min(steps),
+            root_steps: ROOT_STEPS,
             branch_steps: BRANCH_STEPS,
-            nodes: 1 + MOST_BRANCHES.min(steps.saturating_sub(ROOT_STEPS) / BRANCH_STEPS),
+            nodes: MOST_BRANCHES,
+            work: work as u64,
         };
         let mut incumbent = Incumbent::new(f64::INFINITY, costs, without_grids);
-        let (lower, _) = solve(&program, &mut incumbent, &limits);
+        let (lower, _) = solve(program, &mut incumbent, &limits);
         Some(Shared {
-            rules: incumbent.rules(&program, &mut self.types.borrow_mut()),
+            rules: incumbent.rules(&mut self.types.borrow_mut()),
             cost: incumbent.cost,
             lower: (*operations == without_grids).then(|| incumbent.attainable(lower)),
         })
@@ -150,15 +150,17 @@ fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(St
     }
 }
 
-/// Items of rules that cost shares may look at for each iteration: a tenth of a second or two for 10,000.
-const ITEMS_PER_ITERATION: usize = 2_000;
+/// Items of rules that cost shares may look at for each iteration: half a second or a second for 10,000.
+const ITEMS_PER_ITERATION: usize = 10_000;
+/// Items of rules, some 30 bytes each, beyond which cost shares are not tried.
+const MOST_ITEMS: usize = 2_000_000;
 /// Steps below which cost shares are not worth a start.
 const FEWEST_STEPS: usize = 10;
 /// Most steps before cost shares branch, and in each branch.
-const ROOT_STEPS: u64 = 300;
-const BRANCH_STEPS: u64 = 60;
+const ROOT_STEPS: u64 = 2_000;
+const BRANCH_STEPS: u64 = 100;
 /// Most branches of cost shares.
-const MOST_BRANCHES: u64 = 30;
+const MOST_BRANCHES: u64 = 300;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.

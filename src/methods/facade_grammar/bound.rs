@@ -103,19 +103,21 @@ pub fn lower_bound(
         return Ok(known(&incumbent, labels, Some(Weakness::Items)));
     };
     if !operations.grid_split {
-        let (lower, nodes) = solve(&program, &mut incumbent, limits);
+        let types = program.kinds.len();
+        let (lower, nodes) = solve(program, &mut incumbent, limits);
         return Ok(Bound {
             nodes,
-            types: program.kinds.len(),
+            types,
             ..known(&incumbent, lower, None)
         });
     }
     let mut without = Incumbent::new(f64::INFINITY, costs, without_grids);
-    let (lower, nodes) = solve(&program, &mut without, limits);
+    let types = program.kinds.len();
+    let (lower, nodes) = solve(program, &mut without, limits);
     let lower = without.attainable(lower) * saved_by_grids(costs, lines.0.max(lines.1));
     Ok(Bound {
         nodes,
-        types: program.kinds.len(),
+        types,
         ..known(&incumbent, lower.max(labels), Some(Weakness::Grids))
     })
 }

@@ -31,9 +31,9 @@ const MOMENTUM: f64 = 0.7;
 type Direction = BTreeMap<Item, Vec<f64>>;
 
 impl Shares<'_> {
-    /// Raises `L`, up to so many steps, until it shows that the incumbent is optimal; offers it the grammars
-    /// on the way. Keeps the shares of the greatest `L`.
-    pub fn ascend(&mut self, incumbent: &mut Incumbent, steps: u64) -> Ascent {
+    /// Raises `L`, up to so many steps and so much work, one step at least, until it shows that the incumbent is
+    /// optimal; offers it the grammars on the way. Keeps the shares of the greatest `L`.
+    pub fn ascend(&mut self, incumbent: &mut Incumbent, steps: u64, work: &mut u64) -> Ascent {
         let mut found = Ascent {
             bound: f64::NEG_INFINITY,
             usage: BTreeMap::new(),
@@ -46,6 +46,7 @@ impl Shares<'_> {
         let (mut scale, mut stalled) = (1.0, 0);
         // One step at least: a branch is closed only by what a derivation shows.
         for _ in 0..steps.max(1) {
+            *work = work.saturating_sub(self.program.items as u64);
             let bound = self.bound();
             if bound > found.bound + 1e-6 {
                 found.bound = bound;
@@ -84,6 +85,9 @@ impl Shares<'_> {
             }
             let above = (incumbent.cost - bound).max(1e-2);
             self.shift(&direction, scale * above / norm);
+            if *work < self.program.items as u64 {
+                break;
+            }
         }
         self.shares = kept;
         self.pay_all();
@@ -100,7 +104,7 @@ impl Shares<'_> {
         members.sort_unstable();
         members.dedup();
         let (cost, rules) = self.restricted.cheapest(self.program, &members);
-        incumbent.offer(cost, rules);
+        incumbent.offer(self.program, cost, &rules);
     }
 
     /// The direction of the next step: purses whose places use an item are to pay more than the others.

@@ -17,6 +17,8 @@ pub struct BoundLimits {
     pub branch_steps: u64,
     /// Branches examined.
     pub nodes: u64,
+    /// Items that all steps may look at: those of all places that variable fixing leaves, for each step.
+    pub work: u64,
 }
 
 impl Default for BoundLimits {
@@ -26,6 +28,7 @@ impl Default for BoundLimits {
             root_steps: 2_000,
             branch_steps: 100,
             nodes: 1_000,
+            work: u64::MAX,
         }
     }
 }
@@ -33,17 +36,67 @@ impl Default for BoundLimits {
 /// The greatest lower bound on the cost of a grammar that is found, and how many branches were examined; the incumbent
 /// becomes the best grammar met.
 pub(crate) fn solve(
-    program: &Program,
+    program: Program,
     incumbent: &mut Incumbent,
     limits: &BoundLimits,
 ) -> (f64, u64) {
-    let shares = Shares::new(program);
-    let mut search = Search {
-        program,
-        shares,
-        limits,
+    let mut work = limits.work;
+    let Some(root) = ascend_root(program, incumbent, limits.root_steps, &mut work) else {
+        return (incumbent.cost, 1);
     };
-    search.run(incumbent)
+    let mut search = Search {
+        program: &root.program,
+        shares: Shares::from(&root.program, root.shares),
+        limits,
+        work,
+    };
+    search.run(root.lower, incumbent)
+}
+
+/// What is left at the root, where the bound does not meet the incumbent.
+struct Root {
+    program: Program,
+    shares: Vec<f64>,
+    lower: f64,
+}
+
+/// Steps of the first round at the root; each round doubles them.
+const FIRST_ROUND: u64 = 20;
+/// A program is made anew without what is fixed when at most this part of its items is left.
+const WORTH_FIXING: f64 = 0.8;
+
+/// Rounds of steps, each followed by variable fixing; `None` when the incumbent is proven optimal.
+fn ascend_root(
+    mut program: Program,
+    incumbent: &mut Incumbent,
+    steps: u64,
+    work: &mut u64,
+) -> Option<Root> {
+    let mut lower: f64 = 0.0;
+    let (mut round, mut made) = (FIRST_ROUND, 0);
+    let mut shares = Shares::new(&program).shares;
+    loop {
+        let mut at = Shares::from(&program, shares);
+        let found = at.ascend(incumbent, round.min(steps.saturating_sub(made)), work);
+        lower = lower.max(incumbent.attainable(found.bound));
+        if incumbent.is_optimal(lower) {
+            return None;
+        }
+        let live = at.live(incumbent);
+        shares = at.shares;
+        if live.items(&program) as f64 <= WORTH_FIXING * program.items as f64 {
+            (program, shares) = program.reduced(&live, &shares)?;
+        }
+        made += round;
+        round *= 2;
+        if made >= steps || *work < program.items as u64 {
+            return Some(Root {
+                program,
+                shares,
+                lower,
+            });
+        }
+    }
 }
 
 /// A branch: what rules may not have, and the bound inherited from where it branched off.
@@ -57,13 +110,15 @@ struct Search<'a> {
     program: &'a Program,
     shares: Shares<'a>,
     limits: &'a BoundLimits,
+    /// What is left of [`BoundLimits::work`].
+    work: u64,
 }
 
 impl Search<'_> {
     /// The lower bound of all branches, and how many were examined.
-    fn run(&mut self, incumbent: &mut Incumbent) -> (f64, u64) {
+    fn run(&mut self, root: f64, incumbent: &mut Incumbent) -> (f64, u64) {
         let mut open = vec![Branch {
-            lower: 0.0,
+            lower: root,
             blocked: Vec::new(),
         }];
         let mut nodes = 0;
@@ -71,28 +126,19 @@ impl Search<'_> {
             if incumbent.is_optimal(branch.lower) {
                 break;
             }
-            if nodes == self.limits.nodes {
+            if nodes == self.limits.nodes || self.work < self.program.items as u64 {
                 return (branch.lower, nodes);
             }
             nodes += 1;
-            self.expand(branch, nodes == 1, incumbent, &mut open);
+            self.expand(branch, incumbent, &mut open);
         }
         (incumbent.cost, nodes)
     }
 
-    fn expand(
-        &mut self,
-        branch: Branch,
-        root: bool,
-        incumbent: &mut Incumbent,
-        open: &mut Vec<Branch>,
-    ) {
-        let steps = match root {
-            true => self.limits.root_steps,
-            false => self.limits.branch_steps,
-        };
+    fn expand(&mut self, branch: Branch, incumbent: &mut Incumbent, open: &mut Vec<Branch>) {
         self.shares.block(&branch.blocked);
-        let found = self.shares.ascend(incumbent, steps);
+        let steps = self.limits.branch_steps;
+        let found = self.shares.ascend(incumbent, steps, &mut self.work);
         let lower = branch.lower.max(incumbent.attainable(found.bound));
         if incumbent.is_optimal(lower) {
             return;

@@ -1,6 +1,7 @@
 //! The best grammar known.
 
 use super::derivation::{Paths, Prices, Rule};
+use super::kind::Written;
 use super::program::Program;
 use crate::grammar::Costs;
 use crate::methods::facade_grammar::operations::Operations;
@@ -15,7 +16,7 @@ pub(crate) const NOISE: f64 = 1e-7;
 pub(crate) struct Incumbent {
     pub cost: f64,
     /// Its rules; none when only the cost is known.
-    rules: Vec<Rule>,
+    rules: Vec<Written>,
     /// What all costs are multiples of.
     quantum: Option<f64>,
 }
@@ -42,19 +43,19 @@ impl Incumbent {
     }
 
     /// Keeps a grammar when it is cheaper.
-    pub fn offer(&mut self, cost: f64, rules: Vec<Rule>) {
+    pub fn offer(&mut self, program: &Program, cost: f64, rules: &[Rule]) {
         if cost < self.cost - NOISE {
-            (self.cost, self.rules) = (cost, rules);
+            let written = |rule: &Rule| {
+                let kind = &program.kinds[rule.kind as usize];
+                kind.written(rule.way, &rule.arcs)
+            };
+            (self.cost, self.rules) = (cost, rules.iter().map(written).collect());
         }
     }
 
     /// The rules of the cheapest grammar that was offered, over the types of another search.
-    pub fn rules(&self, program: &Program, types: &mut Types) -> Vec<AddRule> {
-        let mut written = |rule: &Rule| {
-            let kind = &program.kinds[rule.kind as usize];
-            kind.rule(types, rule.way, &rule.arcs)
-        };
-        self.rules.iter().map(&mut written).collect()
+    pub fn rules(&self, types: &mut Types) -> Vec<AddRule> {
+        self.rules.iter().map(|rule| rule.rule(types)).collect()
     }
 }
 
@@ -100,8 +101,8 @@ pub(super) struct Restricted {
 impl Restricted {
     pub fn new(program: &Program) -> Self {
         let most = program.kinds.iter().map(|k| k.costs.len()).max();
-        let mut parts = vec![f64::INFINITY; program.places.len()];
-        parts.push(0.0);
+        let mut parts = vec![f64::INFINITY; program.values()];
+        parts[program.places.len()] = 0.0;
         Self {
             parts,
             nothing_blocked: vec![false; most.unwrap_or(0)],
@@ -113,7 +114,7 @@ impl Restricted {
     /// rules that the roots do not need are left out.
     pub fn cheapest(&mut self, program: &Program, members: &[u32]) -> (f64, Vec<Rule>) {
         self.price(program, members, 0.0);
-        let kind_of = |place: u32| program.places[place as usize].kind;
+        let kind_of = |part: u32| program.kind_of(part);
         let mut needed: Vec<u32> = program.roots.iter().map(|&root| kind_of(root)).collect();
         let (mut total, mut rules) = (0.0, Vec::new());
         while let Some(&kind) = needed.get(rules.len()) {
@@ -151,6 +152,7 @@ impl Restricted {
             for &place in &program.kinds[kind as usize].places {
                 self.parts[place as usize] = price;
             }
+            self.parts[program.removed(kind) as usize] = price;
         }
     }
 }

@@ -34,7 +34,7 @@ pub(crate) struct Kind {
 }
 
 /// An operation along one axis: paths from node 0 to the last node.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Way {
     pub arrangement: Arrangement,
     pub axis: Axis,
@@ -44,7 +44,7 @@ pub(crate) struct Way {
 }
 
 /// A successor of a rule, or the end of a mirrored rule whose halves meet.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Arc {
     pub from: u16,
     pub to: u16,
@@ -79,8 +79,8 @@ impl Kind {
         operations.map(|w| self.operation(w)).chain(overlapping)
     }
 
-    /// The rule that follows some arcs of a way, as the other methods write it.
-    pub fn rule(&self, types: &mut Types, way: usize, arcs: &[usize]) -> AddRule {
+    /// The rule that follows some arcs of a way.
+    pub fn written(&self, way: usize, arcs: &[usize]) -> Written {
         let written = arcs.iter().map(|&a| &self.arcs[a]).filter(|a| a.copies > 0);
         let lines = std::iter::once(0)
             .chain(written.map(|a| a.lines.1))
@@ -92,11 +92,37 @@ impl Kind {
             }
             other => other,
         };
+        Written {
+            region: self.region,
+            axis: self.ways[way].axis,
+            arrangement,
+            lines,
+        }
+    }
+}
+
+/// A rule of the type of a region, whatever program it was found with.
+#[derive(Debug)]
+pub(crate) struct Written {
+    region: Region,
+    axis: Axis,
+    arrangement: Arrangement,
+    /// Cuts between which the successors stand.
+    lines: Vec<u16>,
+}
+
+impl Written {
+    /// The rule as the other methods write it.
+    pub fn rule(&self, types: &mut Types) -> AddRule {
         let id = types.intern(self.region);
-        let strips = types.strips(id, self.ways[way].axis);
+        let strips = types.strips(id, self.axis);
         AddRule {
             id,
-            choice: Rc::new(Choice::between(arrangement, lines, &strips)),
+            choice: Rc::new(Choice::between(
+                self.arrangement,
+                self.lines.clone(),
+                &strips,
+            )),
         }
     }
 }

@@ -7,6 +7,7 @@
 mod ascent;
 mod branch;
 mod derivation;
+mod fixing;
 mod incumbent;
 mod kind;
 mod program;
@@ -51,12 +52,19 @@ impl<'a> Shares<'a> {
                 shares.extend(kind.costs.iter().map(|cost| cost / count as f64));
             }
         }
+        Self::from(program, shares)
+    }
+
+    /// Given shares, by purse and item.
+    pub fn from(program: &'a Program, shares: Vec<f64>) -> Self {
+        let mut values = vec![f64::INFINITY; program.values()];
+        values[program.places.len()] = 0.0;
         let mut new = Self {
             program,
             shares,
             paid: vec![0.0; program.items],
             blocked: vec![false; program.kind_items],
-            values: vec![0.0; program.places.len() + 1],
+            values,
             ways: vec![0; program.places.len()],
             paths: Paths::default(),
             restricted: Restricted::new(program),

@@ -16,13 +16,14 @@ const TERMINAL: u32 = u32::MAX;
 /// A rectangle of a facade that a derivation can split.
 #[derive(Debug)]
 pub(crate) struct Place {
+    pub region: Region,
     pub kind: u32,
     /// Index among the places of its kind.
     pub index: u32,
     /// Index of the place's first item among those of all places.
     pub first: usize,
     /// Index of its first part.
-    parts: usize,
+    pub(super) parts: usize,
 }
 
 /// Kinds and places of one or several facades.
@@ -30,8 +31,9 @@ pub(crate) struct Place {
 pub(crate) struct Program {
     pub kinds: Vec<Kind>,
     pub places: Vec<Place>,
-    /// Parts of all places: the strips along x, then those along y.
-    parts: Vec<u32>,
+    /// Parts of all places: the strips along x, then those along y. Each is a place, the number of places for a terminal,
+    /// or what [`Program::removed`] says.
+    pub(super) parts: Vec<u32>,
     /// Places, parts before what they are parts of.
     pub order: Vec<u32>,
     /// The facades as a whole; several facades of one type have one root.
@@ -93,14 +95,14 @@ impl Program {
                 return None;
             }
         }
-        program.fill_purses(&survey);
+        program.fill_purses();
         let terminal = program.places.len() as u32;
         for part in &mut program.parts {
             *part = terminal.min(*part);
         }
         program.order = (0..terminal).collect();
         program.order.sort_by_key(|&place| {
-            let r = survey.regions[place as usize];
+            let r = program.places[place as usize].region;
             u32::from(r.x1 - r.x0) * u32::from(r.y1 - r.y0)
         });
         Some(program)
@@ -111,6 +113,7 @@ impl Program {
         let id = types.intern(region);
         let place = self.places.len() as u32;
         self.places.push(Place {
+            region,
             kind,
             index: self.kinds[kind as usize].places.len() as u32,
             first: self.items,
@@ -137,9 +140,10 @@ impl Program {
         }
     }
 
-    fn fill_purses(&mut self, survey: &Survey) {
+    /// Groups the places of each kind.
+    pub(super) fn fill_purses(&mut self) {
         for kind in &mut self.kinds {
-            let region = |&place: &u32| survey.regions[place as usize];
+            let region = |&place: &u32| self.places[place as usize].region;
             kind.purses = purses(&kind.places.iter().map(region).collect::<Vec<_>>());
             kind.purses_of = vec![Vec::new(); kind.places.len()];
             for (purse, members) in kind.purses.iter().enumerate() {
@@ -183,8 +187,31 @@ impl Program {
     }
 
     /// Whether a part is a terminal.
-    pub fn is_terminal(&self, place: u32) -> bool {
-        place as usize == self.places.len()
+    pub fn is_terminal(&self, part: u32) -> bool {
+        part as usize == self.places.len()
+    }
+
+    /// What stands for the places of a kind that variable fixing removed.
+    pub fn removed(&self, kind: u32) -> u32 {
+        self.places.len() as u32 + 1 + kind
+    }
+
+    /// What stands for the places of kinds that were removed altogether.
+    pub(super) fn removed_kinds(&self) -> u32 {
+        self.removed(self.kinds.len() as u32)
+    }
+
+    /// The kind of a part that is no terminal.
+    pub fn kind_of(&self, part: u32) -> u32 {
+        match self.places.get(part as usize) {
+            Some(place) => place.kind,
+            None => part - self.removed(0),
+        }
+    }
+
+    /// Number of values that parts have: of places, of terminals, and of what was removed.
+    pub fn values(&self) -> usize {
+        self.removed_kinds() as usize + 1
     }
 }
 
