@@ -1,9 +1,12 @@
 //! Branch and bound where the shares leave a gap.
 //!
 //! Branches decide which items rules have: in one no rule may have the item, in the other every rule of its type
-//! has it, if the type has a rule at all. Shares found in one branch start the next, so the work is the same in
-//! every run.
+//! has it, if the type has a rule at all. A branch starts from the shares of the one that it branched off from, and
+//! without what variable fixing takes out.
 
+use std::rc::Rc;
+
+use super::fixing::Live;
 use super::{Ascent, Incumbent, Item, Program, Shares};
 
 /// How much work a bound may cost.
@@ -44,148 +47,153 @@ pub(crate) fn solve(
     let Some(root) = ascend_root(program, incumbent, limits.root_steps, &mut work) else {
         return (incumbent.cost, 1);
     };
-    let mut search = Search {
-        program: &root.program,
-        shares: Shares::from(&root.program, root.shares),
-        limits,
-        work,
-    };
-    search.run(root.lower, incumbent)
-}
-
-/// What is left at the root, where the bound does not meet the incumbent.
-struct Root {
-    program: Program,
-    shares: Vec<f64>,
-    lower: f64,
+    let mut open = vec![root];
+    let mut nodes = 0;
+    while let Some(branch) = pop_least(&mut open) {
+        if incumbent.is_optimal(branch.lower) {
+            break;
+        }
+        if nodes == limits.nodes || work < branch.parent.program.items as u64 {
+            return (branch.lower, nodes);
+        }
+        nodes += 1;
+        expand(
+            &branch,
+            incumbent,
+            limits.branch_steps,
+            &mut work,
+            &mut open,
+        );
+    }
+    (incumbent.cost, nodes)
 }
 
 /// Steps of the first round at the root; each round doubles them.
 const FIRST_ROUND: u64 = 20;
 /// A program is made anew without what is fixed when at most this part of its items is left.
 const WORTH_FIXING: f64 = 0.8;
+/// Rounds at the root go on while each closes this part of the gap.
+const WORTH_A_ROUND: f64 = 0.1;
 
-/// Rounds of steps, each followed by variable fixing; `None` when the incumbent is proven optimal.
+/// Rounds of steps at the root, each followed by variable fixing; `None` when the incumbent is proven optimal.
 fn ascend_root(
     mut program: Program,
     incumbent: &mut Incumbent,
     steps: u64,
     work: &mut u64,
-) -> Option<Root> {
-    let mut lower: f64 = 0.0;
+) -> Option<Branch> {
+    let mut best = f64::NEG_INFINITY;
     let (mut round, mut made) = (FIRST_ROUND, 0);
     let mut shares = Shares::new(&program).shares;
     loop {
         let mut at = Shares::from(&program, shares);
         let found = at.ascend(incumbent, round.min(steps.saturating_sub(made)), work);
-        lower = lower.max(incumbent.attainable(found.bound));
+        let before = best;
+        best = best.max(found.bound);
+        let lower = incumbent.attainable(best);
         if incumbent.is_optimal(lower) {
             return None;
         }
         let live = at.live(incumbent);
         shares = at.shares;
+        made += round;
+        round *= 2;
+        let converged = best - before < WORTH_A_ROUND * (incumbent.cost - best);
+        if made >= steps || converged || *work < program.items as u64 {
+            return Some(Branch {
+                lower,
+                parent: Rc::new(Expanded {
+                    program,
+                    shares,
+                    live,
+                }),
+                blocked: Vec::new(),
+            });
+        }
         if live.items(&program) as f64 <= WORTH_FIXING * program.items as f64 {
             (program, shares) = program.reduced(&live, &shares)?;
         }
-        made += round;
-        round *= 2;
-        if made >= steps || *work < program.items as u64 {
-            return Some(Root {
-                program,
-                shares,
-                lower,
-            });
-        }
     }
 }
 
-/// A branch: what rules may not have, and the bound inherited from where it branched off.
+/// A program whose bound was raised, and what variable fixing leaves of it.
+struct Expanded {
+    program: Program,
+    shares: Vec<f64>,
+    live: Live,
+}
+
+/// A branch: what rules may have, and the bound inherited from where it branched off.
 struct Branch {
     lower: f64,
-    /// Items by their index among those of all kinds.
+    parent: Rc<Expanded>,
+    /// Items that no rule may have, by their index among those of all kinds.
     blocked: Vec<usize>,
 }
 
-struct Search<'a> {
-    program: &'a Program,
-    shares: Shares<'a>,
-    limits: &'a BoundLimits,
-    /// What is left of [`BoundLimits::work`].
-    work: u64,
+fn expand(
+    branch: &Branch,
+    incumbent: &mut Incumbent,
+    steps: u64,
+    work: &mut u64,
+    open: &mut Vec<Branch>,
+) {
+    let parent = &branch.parent;
+    let live = parent.live.without(&branch.blocked);
+    let Some((program, shares)) = parent.program.reduced(&live, &parent.shares) else {
+        return;
+    };
+    let mut shares = Shares::from(&program, shares);
+    let found = shares.ascend(incumbent, steps, work);
+    let lower = branch.lower.max(incumbent.attainable(found.bound));
+    if incumbent.is_optimal(lower) {
+        return;
+    }
+    let Some(item) = undecided(&program, &found) else {
+        // One derivation is left, and its grammar was offered.
+        return;
+    };
+    let live = shares.live(incumbent);
+    let shares = shares.shares;
+    let alternatives = alternatives(&program, item).collect();
+    let item = index(&program, item);
+    let parent = Rc::new(Expanded {
+        program,
+        shares,
+        live,
+    });
+    for blocked in [vec![item], alternatives] {
+        open.push(Branch {
+            lower,
+            parent: Rc::clone(&parent),
+            blocked,
+        });
+    }
 }
 
-impl Search<'_> {
-    /// The lower bound of all branches, and how many were examined.
-    fn run(&mut self, root: f64, incumbent: &mut Incumbent) -> (f64, u64) {
-        let mut open = vec![Branch {
-            lower: root,
-            blocked: Vec::new(),
-        }];
-        let mut nodes = 0;
-        while let Some(branch) = pop_least(&mut open) {
-            if incumbent.is_optimal(branch.lower) {
-                break;
-            }
-            if nodes == self.limits.nodes || self.work < self.program.items as u64 {
-                return (branch.lower, nodes);
-            }
-            nodes += 1;
-            self.expand(branch, incumbent, &mut open);
-        }
-        (incumbent.cost, nodes)
-    }
+fn index(program: &Program, (kind, item): Item) -> usize {
+    program.kinds[kind as usize].first + item
+}
 
-    fn expand(&mut self, branch: Branch, incumbent: &mut Incumbent, open: &mut Vec<Branch>) {
-        self.shares.block(&branch.blocked);
-        let steps = self.limits.branch_steps;
-        let found = self.shares.ascend(incumbent, steps, &mut self.work);
-        let lower = branch.lower.max(incumbent.attainable(found.bound));
-        if incumbent.is_optimal(lower) {
-            return;
-        }
-        let Some(item) = self.undecided(&found, &branch.blocked) else {
-            // One derivation is left, and its grammar was offered.
-            return;
-        };
-        for blocked in [vec![self.index(item)], self.alternatives(item)] {
-            open.push(Branch {
-                lower,
-                blocked: [branch.blocked.as_slice(), &blocked].concat(),
-            });
-        }
-    }
+/// Items that no rule with this one has: other ways, and successors that overlap.
+fn alternatives(program: &Program, (kind, item): Item) -> impl Iterator<Item = usize> {
+    let known = &program.kinds[kind as usize];
+    known.excluded_by(item).map(|other| known.first + other)
+}
 
-    fn index(&self, (kind, item): Item) -> usize {
-        self.program.kinds[kind as usize].first + item
-    }
-
-    /// Items that no rule with this one has: other ways, and successors that overlap.
-    fn alternatives(&self, (kind, item): Item) -> Vec<usize> {
-        let known = &self.program.kinds[kind as usize];
-        known
-            .excluded_by(item)
-            .map(|other| known.first + other)
-            .collect()
-    }
-
-    /// The item to decide: the one that the cheapest derivations of the last steps were least sure of, else any of
-    /// the last one that has an alternative; `None` when there is none.
-    fn undecided(&self, found: &Ascent, blocked: &[usize]) -> Option<Item> {
-        let free = |item: Item| !blocked.contains(&self.index(item));
-        let open = |item: &Item| {
-            let others = self.alternatives(*item);
-            free(*item) && others.iter().any(|other| !blocked.contains(other))
-        };
-        let doubt = |usage: f64| usage.min(1.0 - usage);
-        let doubtful = found
-            .usage
-            .iter()
-            .filter(|(item, usage)| doubt(**usage) > 0.05 && open(item));
-        doubtful
-            .max_by(|a, b| doubt(*a.1).total_cmp(&doubt(*b.1)))
-            .map(|(item, _)| *item)
-            .or_else(|| found.items.iter().copied().find(open))
-    }
+/// The item to decide: the one that the cheapest derivations of the last steps were least sure of, else any of
+/// the last one that has an alternative; `None` when there is none.
+fn undecided(program: &Program, found: &Ascent) -> Option<Item> {
+    let open = |item: &Item| alternatives(program, *item).next().is_some();
+    let doubt = |usage: f64| usage.min(1.0 - usage);
+    let doubtful = found
+        .usage
+        .iter()
+        .filter(|(item, usage)| doubt(**usage) > 0.05 && open(item));
+    doubtful
+        .max_by(|a, b| doubt(*a.1).total_cmp(&doubt(*b.1)))
+        .map(|(item, _)| *item)
+        .or_else(|| found.items.iter().copied().find(open))
 }
 
 /// The branch with the least bound, the youngest of equals.

@@ -24,8 +24,6 @@ pub(crate) struct Prices<'a> {
     pub items: &'a [f64],
     /// What it costs to derive a part, by place; the entry behind all places is that of terminals.
     pub parts: &'a [f64],
-    /// Items of its kind that no rule may use.
-    pub blocked: &'a [bool],
 }
 
 /// Shortest paths through the rules of a place.
@@ -53,10 +51,6 @@ impl Paths {
     /// Cost of the cheapest rule along one way.
     fn along(&mut self, program: &Program, place: u32, way: usize, prices: &Prices) -> f64 {
         let kind = program.kind(place);
-        let operation = kind.operation(way);
-        if prices.blocked[operation] {
-            return f64::INFINITY;
-        }
         let Self { distance, previous } = self;
         let (last, arcs) = (
             usize::from(kind.ways[way].last),
@@ -65,12 +59,12 @@ impl Paths {
         distance.clear();
         distance.resize(last + 1, f64::INFINITY);
         previous.resize(previous.len().max(last + 1), 0);
-        distance[0] = prices.items[operation];
+        distance[0] = prices.items[kind.operation(way)];
         for item in arcs {
             let arc = &kind.arcs[item];
             let below = program.below(place, kind, item, prices.parts);
             let cost = distance[usize::from(arc.from)] + prices.items[item] + below;
-            if cost < distance[usize::from(arc.to)] && !prices.blocked[item] {
+            if cost < distance[usize::from(arc.to)] {
                 distance[usize::from(arc.to)] = cost;
                 previous[usize::from(arc.to)] = item;
             }

@@ -11,6 +11,7 @@ use super::program::{Place, Program};
 use super::{Incumbent, Shares, prices};
 
 /// What a grammar cheaper than the incumbent can use.
+#[derive(Clone)]
 pub(super) struct Live {
     places: Vec<bool>,
     /// By kind and item.
@@ -18,6 +19,15 @@ pub(super) struct Live {
 }
 
 impl Live {
+    /// The same without some items.
+    pub fn without(&self, items: &[usize]) -> Self {
+        let mut left = self.clone();
+        for &item in items {
+            left.items[item] = false;
+        }
+        left
+    }
+
     /// Items that a program of only these has, over all its places.
     pub fn items(&self, program: &Program) -> usize {
         let live = program.places.iter().zip(&self.places);
@@ -55,7 +65,7 @@ impl Shares<'_> {
             }
             live.places[place as usize] = true;
             let (kind, known) = (program.kind(place), &program.places[place as usize]);
-            let prices = prices(program, place, &self.paid, &self.values, &self.blocked);
+            let prices = prices(program, place, &self.paid, &self.values);
             let first = self.program.kinds[known.kind as usize].first;
             for way in 0..kind.ways.len() {
                 around.measure(program, place, way, &prices);
@@ -93,10 +103,8 @@ impl Around {
     fn measure(&mut self, program: &Program, place: u32, way: usize, prices: &Prices) {
         let kind = program.kind(place);
         let Way { last, arcs, .. } = &kind.ways[way];
-        let cost = |item: usize| match prices.blocked[item] {
-            true => f64::INFINITY,
-            false => prices.items[item] + program.below(place, kind, item, prices.parts),
-        };
+        let cost =
+            |item: usize| prices.items[item] + program.below(place, kind, item, prices.parts);
         self.costs.clear();
         self.costs.extend(arcs.clone().map(cost));
         let nodes = usize::from(*last) + 1;
@@ -104,10 +112,7 @@ impl Around {
             distances.clear();
             distances.resize(nodes, f64::INFINITY);
         }
-        let operation = kind.operation(way);
-        if !prices.blocked[operation] {
-            self.before[0] = prices.items[operation];
-        }
+        self.before[0] = prices.items[kind.operation(way)];
         self.after[nodes - 1] = 0.0;
         let ends = |item: usize| {
             let arc = &kind.arcs[item];

@@ -94,18 +94,15 @@ fn common_divisor(a: f64, b: f64) -> f64 {
 pub(super) struct Restricted {
     /// 0 for terminals and the members, infinite for other places.
     parts: Vec<f64>,
-    nothing_blocked: Vec<bool>,
     paths: Paths,
 }
 
 impl Restricted {
     pub fn new(program: &Program) -> Self {
-        let most = program.kinds.iter().map(|k| k.costs.len()).max();
         let mut parts = vec![f64::INFINITY; program.values()];
         parts[program.places.len()] = 0.0;
         Self {
             parts,
-            nothing_blocked: vec![false; most.unwrap_or(0)],
             paths: Paths::default(),
         }
     }
@@ -123,7 +120,6 @@ impl Restricted {
             let prices = Prices {
                 items: &known.costs,
                 parts: &self.parts,
-                blocked: &self.nothing_blocked,
             };
             let (cost, way) = self.paths.cheapest(program, place, &prices);
             if cost == f64::INFINITY {

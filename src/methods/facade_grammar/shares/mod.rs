@@ -32,8 +32,6 @@ pub(crate) struct Shares<'a> {
     shares: Vec<f64>,
     /// What each place pays, by place and item: the sum over its purses.
     paid: Vec<f64>,
-    /// Items that no rule may use, by kind and item.
-    blocked: Vec<bool>,
     /// `V`, by place.
     values: Vec<f64>,
     /// Way of the cheapest rule, by place.
@@ -63,7 +61,6 @@ impl<'a> Shares<'a> {
             program,
             shares,
             paid: vec![0.0; program.items],
-            blocked: vec![false; program.kind_items],
             values,
             ways: vec![0; program.places.len()],
             paths: Paths::default(),
@@ -93,18 +90,10 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// Forbids some items, each by its index among those of all kinds, and only these.
-    pub fn block(&mut self, items: &[usize]) {
-        self.blocked.fill(false);
-        for &item in items {
-            self.blocked[item] = true;
-        }
-    }
-
-    /// `L`; infinite when what is allowed derives no facade.
+    /// `L`; infinite when what is left derives no facade.
     fn bound(&mut self) -> f64 {
         for &place in &self.program.order {
-            let prices = prices(self.program, place, &self.paid, &self.values, &self.blocked);
+            let prices = prices(self.program, place, &self.paid, &self.values);
             let (value, way) = self.paths.cheapest(self.program, place, &prices);
             self.values[place as usize] = value;
             self.ways[place as usize] = way;
@@ -119,7 +108,7 @@ impl<'a> Shares<'a> {
         let mut derivation: Vec<(u32, Rule)> = Vec::new();
         let mut waiting = program.roots.clone();
         while let Some(place) = waiting.pop() {
-            let prices = prices(program, place, &self.paid, &self.values, &self.blocked);
+            let prices = prices(program, place, &self.paid, &self.values);
             let way = self.ways[place as usize];
             let rule = self.paths.rule(program, place, way, &prices);
             let kind = program.kind(place);
@@ -134,19 +123,12 @@ impl<'a> Shares<'a> {
     }
 }
 
-fn prices<'p>(
-    program: &Program,
-    place: u32,
-    paid: &'p [f64],
-    parts: &'p [f64],
-    blocked: &'p [bool],
-) -> Prices<'p> {
+fn prices<'p>(program: &Program, place: u32, paid: &'p [f64], parts: &'p [f64]) -> Prices<'p> {
     let (kind, first) = (program.kind(place), program.places[place as usize].first);
     let items = kind.costs.len();
     Prices {
         items: &paid[first..first + items],
         parts,
-        blocked: &blocked[kind.first..kind.first + items],
     }
 }
 
