@@ -85,7 +85,7 @@ impl Search<'_> {
             self.fresh.clone(),
             costs,
             without_grids,
-            work / FEWEST_STEPS,
+            MOST_ITEMS.min(work / FEWEST_STEPS),
         )?;
         let limits = BoundLimits {
             items: program.items,

@@ -1,9 +1,11 @@
 //! Branch and bound where the shares leave a gap.
 //!
-//! Branches decide which items rules have: in one no rule may have the item, in the other every rule of its type
-//! has it, if the type has a rule at all. A branch starts from the shares of the one that it branched off from, and
+//! Branches decide which types have rules: in one the type has none, in the other it has one, and what all its rules have
+//! in common is paid whatever the shares. Where all types of the cheapest derivation have rules, branches decide which
+//! items these have: in one the rule may not have the item, in the other nothing that excludes it. A branch starts from the shares of the one that it branched off from, and
 //! without what variable fixing takes out.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::fixing::Live;
@@ -107,7 +109,7 @@ fn ascend_root(
                     shares,
                     live,
                 }),
-                blocked: Vec::new(),
+                decision: Decision::Nothing,
             });
         }
         if live.items(&program) as f64 <= WORTH_FIXING * program.items as f64 {
@@ -127,8 +129,18 @@ struct Expanded {
 struct Branch {
     lower: f64,
     parent: Rc<Expanded>,
-    /// Items that no rule may have, by their index among those of all kinds.
-    blocked: Vec<usize>,
+    decision: Decision,
+}
+
+/// What a branch decides, in terms of its parent's program.
+enum Decision {
+    Nothing,
+    /// The type has no rule.
+    WithoutKind(u32),
+    /// The type has a rule.
+    WithKind(u32),
+    /// No rule has any of these items, by their index among those of all kinds.
+    WithoutItems(Vec<usize>),
 }
 
 fn expand(
@@ -138,9 +150,7 @@ fn expand(
     work: &mut u64,
     open: &mut Vec<Branch>,
 ) {
-    let parent = &branch.parent;
-    let live = parent.live.without(&branch.blocked);
-    let Some((program, shares)) = parent.program.reduced(&live, &parent.shares) else {
+    let Some((program, shares)) = branch.program() else {
         return;
     };
     let mut shares = Shares::from(&program, shares);
@@ -149,30 +159,58 @@ fn expand(
     if incumbent.is_optimal(lower) {
         return;
     }
-    let Some(item) = undecided(&program, &found) else {
+    let decisions = if let Some(kind) = undecided_kind(&program, &found) {
+        [Decision::WithoutKind(kind), Decision::WithKind(kind)]
+    } else if let Some(item) = undecided_item(&program, &found) {
+        let excluded = alternatives(&program, item).collect();
+        let item = program.kinds[item.0 as usize].first + item.1;
+        [vec![item], excluded].map(Decision::WithoutItems)
+    } else {
         // One derivation is left, and its grammar was offered.
         return;
     };
     let live = shares.live(incumbent);
     let shares = shares.shares;
-    let alternatives = alternatives(&program, item).collect();
-    let item = index(&program, item);
     let parent = Rc::new(Expanded {
         program,
         shares,
         live,
     });
-    for blocked in [vec![item], alternatives] {
-        open.push(Branch {
-            lower,
-            parent: Rc::clone(&parent),
-            blocked,
-        });
-    }
+    open.extend(decisions.map(|decision| Branch {
+        lower,
+        parent: Rc::clone(&parent),
+        decision,
+    }));
 }
 
-fn index(program: &Program, (kind, item): Item) -> usize {
-    program.kinds[kind as usize].first + item
+impl Branch {
+    /// Its program and the shares to start from; `None` when it has no grammar cheaper than the incumbent.
+    fn program(&self) -> Option<(Program, Vec<f64>)> {
+        let Expanded {
+            program,
+            shares,
+            live,
+        } = &*self.parent;
+        match &self.decision {
+            Decision::Nothing => program.reduced(live, shares),
+            Decision::WithoutItems(items) => program.reduced(&live.without_items(items), shares),
+            Decision::WithoutKind(kind) => {
+                let known = &program.kinds[*kind as usize];
+                program.reduced(&live.without_kind(known), shares)
+            }
+            Decision::WithKind(kind) => {
+                let region = program.kinds[*kind as usize].region;
+                let (mut program, mut shares) = program.reduced(live, shares)?;
+                // Where nothing of it is left, no cheaper grammar has it.
+                let kind = program
+                    .kinds
+                    .iter()
+                    .position(|known| known.region == region)?;
+                program.require(kind, &mut shares);
+                Some((program, shares))
+            }
+        }
+    }
 }
 
 /// Items that no rule with this one has: other ways, and successors that overlap.
@@ -181,19 +219,41 @@ fn alternatives(program: &Program, (kind, item): Item) -> impl Iterator<Item = u
     known.excluded_by(item).map(|other| known.first + other)
 }
 
-/// The item to decide: the one that the cheapest derivations of the last steps were least sure of, else any of
-/// the last one that has an alternative; `None` when there is none.
-fn undecided(program: &Program, found: &Ascent) -> Option<Item> {
-    let open = |item: &Item| alternatives(program, *item).next().is_some();
+/// The type to decide: the one that the derivations of the last steps were least sure of; `None` where the last one has
+/// only types that are known to have rules.
+fn undecided_kind(program: &Program, found: &Ascent) -> Option<u32> {
+    let mut doubts: BTreeMap<u32, f64> = BTreeMap::new();
+    for (&(kind, item), usage) in &found.usage {
+        let known = &program.kinds[kind as usize];
+        if item >= known.arcs.len() {
+            // Only one way is used at a place at a time.
+            *doubts.entry(kind).or_insert(0.0) += usage;
+        }
+    }
+    let open = |kind: u32| {
+        let known = &program.kinds[kind as usize];
+        !known.required && !known.places.iter().any(|p| program.roots.contains(p))
+    };
     let doubt = |usage: f64| usage.min(1.0 - usage);
-    let doubtful = found
-        .usage
+    let doubtful = doubts
         .iter()
-        .filter(|(item, usage)| doubt(**usage) > 0.05 && open(item));
+        .filter(|(kind, usage)| doubt(**usage) > 0.05 && open(**kind));
     doubtful
         .max_by(|a, b| doubt(*a.1).total_cmp(&doubt(*b.1)))
-        .map(|(item, _)| *item)
-        .or_else(|| found.items.iter().copied().find(open))
+        .map(|(kind, _)| *kind)
+        .or_else(|| {
+            found
+                .items
+                .iter()
+                .map(|(kind, _)| *kind)
+                .find(|kind| open(*kind))
+        })
+}
+
+/// The item to decide: any of the last derivation that has an alternative.
+fn undecided_item(program: &Program, found: &Ascent) -> Option<Item> {
+    let open = |item: &Item| alternatives(program, *item).next().is_some();
+    found.items.iter().copied().find(open)
 }
 
 /// The branch with the least bound, the youngest of equals.

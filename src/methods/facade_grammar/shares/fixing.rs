@@ -19,11 +19,20 @@ pub(super) struct Live {
 }
 
 impl Live {
-    /// The same without some items.
-    pub fn without(&self, items: &[usize]) -> Self {
+    /// The same without some items of rules.
+    pub fn without_items(&self, items: &[usize]) -> Self {
         let mut left = self.clone();
         for &item in items {
             left.items[item] = false;
+        }
+        left
+    }
+
+    /// The same without a type.
+    pub fn without_kind(&self, kind: &Kind) -> Self {
+        let mut left = self.clone();
+        for &place in &kind.places {
+            left.places[place as usize] = false;
         }
         left
     }
@@ -146,6 +155,7 @@ impl Program {
             parts: Vec::new(),
             order: Vec::new(),
             roots: Vec::new(),
+            constant: self.constant,
             items: 0,
             kind_items: 0,
             shares: 0,
@@ -254,7 +264,9 @@ fn reduced_kind(kind: &Kind, live: &[bool], first: usize) -> (Kind, Vec<usize>) 
         ways: Vec::new(),
         arcs: Vec::new(),
         slots: Vec::new(),
+        full_costs: Vec::new(),
         costs: Vec::new(),
+        required: kind.required,
         first,
         places: Vec::new(),
         purses: Vec::new(),
@@ -285,6 +297,7 @@ fn reduced_kind(kind: &Kind, live: &[bool], first: usize) -> (Kind, Vec<usize>) 
         });
     }
     kept.extend(operations);
+    new.full_costs = kept.iter().map(|&item| kind.full_costs[item]).collect();
     new.costs = kept.iter().map(|&item| kind.costs[item]).collect();
     (new, kept)
 }

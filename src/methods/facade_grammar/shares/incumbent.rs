@@ -118,7 +118,7 @@ impl Restricted {
             let known = &program.kinds[kind as usize];
             let place = known.places[0];
             let prices = Prices {
-                items: &known.costs,
+                items: &known.full_costs,
                 parts: &self.parts,
             };
             let (cost, way) = self.paths.cheapest(program, place, &prices);

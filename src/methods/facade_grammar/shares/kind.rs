@@ -19,7 +19,11 @@ pub(crate) struct Kind {
     /// Where the parts of arcs with several copies stand among those of a place.
     pub slots: Vec<u32>,
     /// Cost of each item: of the arcs, then of the ways.
+    pub full_costs: Vec<f64>,
+    /// What of it is shared: all, unless the type is known to have a rule ([`Program::require`](super::Program::require)).
     pub costs: Vec<f64>,
+    /// Whether it is.
+    pub required: bool,
     /// Index of the kind's first item among those of all kinds.
     pub first: usize,
     /// Where the type occurs.

@@ -12,6 +12,7 @@ mod incumbent;
 mod kind;
 mod program;
 mod purses;
+mod require;
 mod rules;
 
 pub use branch::BoundLimits;
@@ -99,7 +100,8 @@ impl<'a> Shares<'a> {
             self.ways[place as usize] = way;
         }
         let roots = self.program.roots.iter();
-        roots.map(|&root| self.values[root as usize]).sum()
+        let derivation: f64 = roots.map(|&root| self.values[root as usize]).sum();
+        self.program.constant + derivation
     }
 
     /// The cheapest derivation: the rule of each place that it splits.

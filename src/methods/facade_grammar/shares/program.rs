@@ -38,6 +38,8 @@ pub(crate) struct Program {
     pub order: Vec<u32>,
     /// The facades as a whole; several facades of one type have one root.
     pub roots: Vec<u32>,
+    /// Cost that no share pays: of what rules of required types have in common.
+    pub constant: f64,
     /// Number of items of all places.
     pub items: usize,
     /// Number of items of all kinds.
@@ -75,6 +77,7 @@ impl Program {
             parts: Vec::new(),
             order: Vec::new(),
             roots,
+            constant: 0.0,
             items: 0,
             kind_items: 0,
             shares: 0,
