@@ -151,7 +151,7 @@ fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(St
 }
 
 /// Items of rules that cost shares may look at for each iteration: half a second or a second for 10,000.
-const ITEMS_PER_ITERATION: usize = 10_000;
+const ITEMS_PER_ITERATION: usize = 9_000;
 /// Items of rules, some 30 bytes each, beyond which cost shares are not tried.
 const MOST_ITEMS: usize = 2_000_000;
 /// Steps below which cost shares are not worth a start.
@@ -160,7 +160,7 @@ const FEWEST_STEPS: usize = 10;
 const ROOT_STEPS: u64 = 2_000;
 const BRANCH_STEPS: u64 = 100;
 /// Most branches of cost shares.
-const MOST_BRANCHES: u64 = 300;
+const MOST_BRANCHES: u64 = 1_000;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.

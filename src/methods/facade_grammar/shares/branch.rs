@@ -71,7 +71,7 @@ pub(crate) fn solve(
 }
 
 /// Steps of the first round at the root; each round doubles them.
-const FIRST_ROUND: u64 = 20;
+const FIRST_ROUND: u64 = 10;
 /// A program is made anew without what is fixed when at most this part of its items is left.
 const WORTH_FIXING: f64 = 0.8;
 /// Rounds at the root go on while each closes this part of the gap.
