@@ -17,7 +17,8 @@ use crate::shape::Facade;
 impl Search<'_> {
     /// The optimum, where cost shares find and prove it. Else walks that exploit by shortest paths, then
     /// annealing over the set of types from the cheapest grammar found. Where cost shares cannot be tried, all
-    /// walks of `paper` come first. Also a bound below which no grammar costs, when there is one.
+    /// walks of `paper` come first. Several facades start from the union of their own grammars. Also a bound below
+    /// which no grammar costs, when there is one.
     pub fn best(
         &self,
         facades: &[Facade],
@@ -29,7 +30,11 @@ impl Search<'_> {
             readings,
             ..
         } = *self.settings;
-        let (first, lower, learnt, steps) = match self.shared(facades) {
+        let union = match facades {
+            [_] => None,
+            _ => self.union(facades)?,
+        };
+        let (first, lower, learnt, steps) = match self.shared(facades, union.as_deref()) {
             Some(Shared { rules, cost, lower }) => {
                 observer(Step {
                     iteration: 0,
@@ -55,7 +60,7 @@ impl Search<'_> {
             share,
             later(steps, observer.clone()),
         )?;
-        let start = self.cheapest([first, by_routes]);
+        let start = self.cheapest([first, by_routes].into_iter().chain(union));
         let mut values = routes.into_values();
         for (value, learnt) in values.iter_mut().zip(learnt) {
             *value = value.min(learnt);
@@ -73,8 +78,9 @@ impl Search<'_> {
         Ok((rules, lower))
     }
 
-    /// Cost shares, with work in proportion to the iterations; `None` where the facades have too many places.
-    fn shared(&self, facades: &[Facade]) -> Option<Shared> {
+    /// Cost shares from the rules of a known grammar, with work in proportion to the iterations and facades; `None` where
+    /// the facades have too many places.
+    fn shared(&self, facades: &[Facade], known: Option<&[AddRule]>) -> Option<Shared> {
         let Settings {
             iterations,
             costs,
@@ -82,7 +88,7 @@ impl Search<'_> {
             ..
         } = self.settings;
         let work = usize::try_from(*iterations).unwrap_or(usize::MAX);
-        let work = work.saturating_mul(ITEMS_PER_ITERATION);
+        let work = work.saturating_mul(ITEMS_PER_ITERATION * facades.len());
         let without_grids = Operations {
             grid_split: false,
             ..*operations
@@ -95,30 +101,37 @@ impl Search<'_> {
             branch_steps: BRANCH_STEPS,
             nodes: 1 + MOST_BRANCHES.min(steps.saturating_sub(ROOT_STEPS) / BRANCH_STEPS),
         };
-        let mut incumbent = Incumbent::new(f64::INFINITY, costs);
+        let cost = known.map_or(f64::INFINITY, |rules| self.cost(rules));
+        let mut incumbent = Incumbent::new(cost, costs);
         let (lower, _) = solve(&program, &mut incumbent, &limits);
+        let rules = match known {
+            Some(rules) if incumbent.cost >= cost => rules.to_vec(),
+            _ => incumbent.rules(&program, &mut self.types.borrow_mut()),
+        };
         Some(Shared {
-            rules: incumbent.rules(&program, &mut self.types.borrow_mut()),
+            rules,
             cost: incumbent.cost,
             lower: (*operations == without_grids).then(|| incumbent.attainable(lower)),
         })
     }
 
+    /// Eq. 1.
+    fn cost(&self, rules: &[AddRule]) -> f64 {
+        let costs = &self.settings.costs;
+        rules.iter().map(|r| r.choice.cost(costs)).sum()
+    }
+
     /// The cheapest of what was found and of what the deterministic baselines find; of several, the first.
-    fn cheapest(&self, found: [Vec<AddRule>; 2]) -> Vec<AddRule> {
-        let cost = |rules: &[AddRule]| -> f64 {
-            let costs = &self.settings.costs;
-            rules.iter().map(|r| r.choice.cost(costs)).sum()
-        };
+    fn cheapest(&self, found: impl Iterator<Item = Vec<AddRule>>) -> Vec<AddRule> {
         let cheaper = |best: Vec<AddRule>, other: Vec<AddRule>| {
-            if cost(&other) < cost(&best) {
+            if self.cost(&other) < self.cost(&best) {
                 other
             } else {
                 best
             }
         };
         let deterministic = cheaper(self.all_lines(), self.greedy());
-        found.into_iter().fold(deterministic, cheaper)
+        found.fold(deterministic, cheaper)
     }
 }
 
@@ -151,7 +164,7 @@ fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(St
     }
 }
 
-/// Items of rules that cost shares may look at for each iteration: a tenth of a second or two for 10,000.
+/// Items of rules that cost shares may look at for each iteration and facade: a tenth of a second or two for 10,000.
 const ITEMS_PER_ITERATION: usize = 2_000;
 /// Steps below which cost shares are not worth a start.
 const FEWEST_STEPS: usize = 10;
