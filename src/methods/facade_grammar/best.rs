@@ -88,13 +88,13 @@ impl Search<'_> {
             ..
         } = self.settings;
         let work = usize::try_from(*iterations).unwrap_or(usize::MAX);
-        let work = work.saturating_mul(ITEMS_PER_ITERATION * facades.len());
+        let work = work.saturating_mul(ITEMS_PER_ITERATION);
         let without_grids = Operations {
             grid_split: false,
             ..*operations
         };
         let program = Program::new(facades, costs, without_grids, work / FEWEST_STEPS)?;
-        let steps = (work / program.items.max(1)) as u64;
+        let steps = (work.saturating_mul(facades.len()) / program.items.max(1)) as u64;
         let limits = BoundLimits {
             items: program.items,
             root_steps: ROOT_STEPS.min(steps),
