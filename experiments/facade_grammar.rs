@@ -11,6 +11,7 @@ mod figure_12;
 mod figure_13;
 mod figure_14;
 mod figure_9;
+mod joint_real;
 mod likeness;
 mod optimality;
 mod published;

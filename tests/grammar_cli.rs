@@ -154,3 +154,74 @@ fn bad_input_is_named_and_leaves_nothing() {
     let (code, _, err) = edifice(&["derive", grammar_path, "-o", missing.to_str().unwrap()]);
     assert!(code == 1 && err.contains("none/a.svg"), "{err}");
 }
+
+#[test]
+fn other_sizes_are_aligned_unless_switched_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let layouts = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar/layouts");
+    let grammar = layouts.join("terrace_a.grammar.json");
+    let own = facade_json::read(&layouts.join("terrace_a.facade.json")).unwrap();
+    let out = folder.path().join("a.facade.json");
+    let derive = |options: &[&str]| {
+        let paths = [grammar.to_str().unwrap(), "-o", out.to_str().unwrap()];
+        let (code, _, err) = edifice(&[&["derive"], &paths[..], options].concat());
+        assert_eq!(code, 0, "{err}");
+        facade_json::read(&out).unwrap()
+    };
+    let same = derive(&[]);
+    assert!(edifice::grammar::same_tiling(&same, &own));
+    let (width, height) = (
+        (0.8 * own.width).to_string(),
+        (1.3 * own.height).to_string(),
+    );
+    let size = ["--width", &width, "--height", &height];
+    let aligned = derive(&size);
+    let plain = derive(&[&size[..], &["--no-align"]].concat());
+    assert_ne!(aligned, plain);
+    // Each element of one size at the own size has one size.
+    let sizes = |facade: &edifice::shape::Facade| {
+        let noise = 1e-5 * facade.height;
+        let whole = |v: f64| (v / noise).round() as i64;
+        let elements = facade.regions.iter();
+        let elements = elements.filter(|r| !edifice::shape::is_background(&r.label));
+        let sizes = elements.map(|r| (&r.label, whole(r.rect.width), whole(r.rect.height)));
+        sizes.collect::<std::collections::BTreeSet<_>>().len()
+    };
+    assert!(
+        sizes(&aligned) <= sizes(&own),
+        "{} {}",
+        sizes(&aligned),
+        sizes(&own)
+    );
+    assert!(sizes(&plain) > sizes(&own));
+}
+
+#[test]
+fn absolute_sizes_that_do_not_fit_shrink_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let grammar = folder.path().join("g.cga");
+    let out = folder.path().join("a.facade.json");
+    // One relative size, elsewhere absolute ones.
+    let text = "//@ facade F 40 x 40\nF --> split(y) { 10 : Shop | ~30 : Rest }\n\
+                Shop --> split(x) { 10 : wall | 20 : door | 10 : wall }\n\
+                Rest --> split(x) { 2 : frame | 36 : glass | 2 : frame }";
+    std::fs::write(&grammar, text).unwrap();
+    let (grammar, out) = (grammar.to_str().unwrap(), out.to_str().unwrap());
+    let derive = |width: &str, height: &str| {
+        let size = ["--width", width, "--height", height];
+        let (code, _, err) = edifice(&[&["derive", grammar, "-o", out], &size[..]].concat());
+        assert_eq!(code, 0, "{err}");
+        let facade = facade_json::read(out.as_ref()).unwrap();
+        assert_eq!(facade.check_tiling(), Ok(()));
+        (facade, err)
+    };
+    let (facade, err) = derive("20", "20");
+    assert_eq!(facade.regions[0].rect.height, 10.0);
+    assert!(err.is_empty(), "{err}");
+    let (facade, err) = derive("20", "8");
+    assert_eq!(facade.regions[0].rect.height, 6.0);
+    assert!(
+        err.contains("g.cga: absolute sizes of 1 rule do not fit"),
+        "{err}"
+    );
+}

@@ -108,6 +108,7 @@ fn build(
         let mut rng = stream(ctx.seed(), artefact, index as u64);
         let (width, height) = (style.starts[0].width, style.starts[0].height);
         let draws = (0..DRAWS).filter_map(|_| sampler.derive(0, width, height, &mut rng).ok());
+        let draws = draws.filter(|drawn| drawn.shrunk.is_empty());
         let stretched =
             |a: &Derivation, b: &Derivation| sampler.stretch(a).total_cmp(&sampler.stretch(b));
         if let Some(drawn) = draws.min_by(stretched) {

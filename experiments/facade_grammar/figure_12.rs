@@ -5,32 +5,27 @@ use rand::SeedableRng;
 use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
 use crate::experiments::Context;
-use crate::grammar::{derive_at, size_independent};
-use crate::methods::facade_grammar::kinds;
-use crate::methods::facade_grammar::regularize::align_resized;
+use crate::grammar::{derivation, derive_at, size_independent};
+use crate::methods::facade_grammar::{ALIGN_REACH, ALIGN_TOLERANCE, Aligned, align};
 use crate::report::{Align, Figure, Row, Table};
 use crate::shape::{Facade, is_background};
 use crate::{Error, Result};
 
 /// Facade to resize.
 const FACADE: &str = "boulevard_1";
-/// How far an edge may move to make equal terminals equal, in the facade's unit (centimetres).
-const REACH: f64 = 100.0;
-/// How far edges may lie apart to become one line.
-const TOLERANCE: f64 = 8.0;
-
 /// Resizes to other widths and heights, with and without alignment.
 pub fn run(ctx: &mut Context) -> Result<()> {
     let (few, _) = super::iterations(ctx.budget());
     ctx.setting("facade", FACADE);
-    ctx.setting("reach", REACH);
-    ctx.setting("tolerance", TOLERANCE);
+    ctx.setting("reach", ALIGN_REACH);
+    ctx.setting("tolerance", ALIGN_TOLERANCE);
     ctx.setting("iterations", few);
     let path = data::folder(ctx)?.join(format!("layouts/{FACADE}.facade.json"));
     let facade = crate::io::facade_json::read(&path)?;
     let question = Question::new(Solver::Infer(BEST, few), ctx.seed());
     let (grammar, _) = solve(std::slice::from_ref(&facade), &question)?;
     let free = size_independent(&grammar);
+    let own = derivation(&free, 0).map_err(Error::method)?;
     let mut figure = Figure::new("resized facades, before and after alignment", 5)
         .cell(270.0, 340.0)
         .panel(picture::tiles("Input", &facade));
@@ -55,10 +50,12 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         // The grammar is deterministic: nothing is drawn from this stream.
         let mut stream = crate::rng::Stream::seed_from_u64(ctx.seed());
         let derived = derive_at(&free, 0, width, height, &mut stream).map_err(Error::method)?;
-        let kinds = kinds(&free, &derived).map_err(Error::method)?;
+        let Aligned {
+            facade: aligned,
+            largest_move,
+            ..
+        } = align(&own, &derived).map_err(Error::method)?;
         let resized = derived.facade;
-        let (aligned, moved) =
-            align_resized(&resized, &kinds, REACH, TOLERANCE).map_err(Error::method)?;
         let name = format!("{wide} x {high}");
         figure = figure
             .panel(picture::tiles(&name, &resized).caption("derived"))
@@ -72,7 +69,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             sizes(&facade, is_pane) as f64,
             sizes(&resized, is_pane) as f64,
             sizes(&aligned, is_pane) as f64,
-            moved.largest_move,
+            largest_move,
         ];
         let metrics = [
             "lines",

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use super::place::place;
+use super::place::{Fit, place};
 use super::table::Table;
 use super::{Grammar, GrammarError, Operation, Rule, Size, Successor, Warning};
 use crate::shape::Rect;
@@ -190,7 +190,8 @@ fn check_sizes(grammar: &Grammar, table: &Table<'_>) -> Result<(), GrammarError>
             for &rule in &table.rules_of[symbol] {
                 let rect = Rect::new(0.0, 0.0, width, height);
                 parts.clear();
-                place(rule, &grammar.rules[rule], rect, tolerance, &mut parts)?;
+                let written = &grammar.rules[rule];
+                place(rule, written, rect, tolerance, Fit::AsWritten, &mut parts)?;
                 for (i, part) in &parts {
                     let child = table.right[rule][*i];
                     if !table.rules_of[child].is_empty() {

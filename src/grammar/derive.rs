@@ -1,6 +1,9 @@
 //! Derivation: from a grammar to the facade it describes (Wu et al. 2014, Sec. 3.1).
 
+use std::collections::BTreeMap;
+
 use super::check::{TOLERANCE, check_structure};
+pub(super) use super::place::Fit;
 use super::place::place;
 use super::table::Table;
 use super::{Grammar, GrammarError};
@@ -32,6 +35,9 @@ pub struct Derivation {
     /// Where the grammar writes each terminal region: the rule and the place in its right-hand side;
     /// `None` for a facade that is one terminal.
     pub origins: Vec<Option<(usize, usize)>>,
+    /// Rules whose absolute sizes left too little for the relative ones and shrank, by their index: the
+    /// least factor. Empty when all absolute sizes are as written.
+    pub shrunk: BTreeMap<usize, f64>,
 }
 
 /// Derives one start of a deterministic grammar at its own size.
@@ -91,6 +97,7 @@ pub fn derivation(grammar: &Grammar, start_index: usize) -> Result<Derivation, G
         &table,
         start_index,
         (start.width, start.height),
+        Fit::AsWritten,
         |_, rules| rules[0],
     )
 }
@@ -101,6 +108,7 @@ pub(super) fn walk(
     table: &Table<'_>,
     start_index: usize,
     (width, height): (f64, f64),
+    fit: Fit,
     mut choose: impl FnMut(usize, &[usize]) -> usize,
 ) -> Result<Derivation, GrammarError> {
     let tolerance = TOLERANCE * width.max(height);
@@ -108,6 +116,7 @@ pub(super) fn walk(
     let mut origins = Vec::new();
     let mut non_terminals = Vec::new();
     let mut parts = Vec::new();
+    let mut shrunk = BTreeMap::new();
     let domain = Rect::new(0.0, 0.0, width, height);
     let mut stack = vec![(table.starts[start_index], domain, 0, None)];
     while let Some((symbol, rect, depth, origin)) = stack.pop() {
@@ -121,7 +130,12 @@ pub(super) fn walk(
         let rule = choose(symbol, rules);
         non_terminals.push(NonTerminal { rule, rect, depth });
         parts.clear();
-        place(rule, &grammar.rules[rule], rect, tolerance, &mut parts)?;
+        let written = &grammar.rules[rule];
+        let factor = place(rule, written, rect, tolerance, fit, &mut parts)?;
+        if factor < 1.0 {
+            let least = shrunk.entry(rule).or_insert(factor);
+            *least = factor.min(*least);
+        }
         let made = regions.len() + non_terminals.len() + stack.len() + parts.len();
         if made > REGION_LIMIT {
             return Err(GrammarError::TooManyRegions {
@@ -147,5 +161,6 @@ pub(super) fn walk(
         },
         non_terminals,
         origins,
+        shrunk,
     })
 }

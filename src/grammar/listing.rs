@@ -1,6 +1,6 @@
 //! A grammar as the paper prints one (Wu et al. 2014, Sec. 4.6 and 4.7).
 
-use super::{Grammar, Operation, Size, Successor};
+use super::{Grammar, Operation, Size, Successor, summable};
 use crate::shape::Axis;
 
 /// One line a rule: `NT1 → split(y){Wall1 | NT2 | Wall1}`; with `sizes`, `8: Wall1 | ...`, a weight
@@ -23,8 +23,10 @@ pub fn listing(grammar: &Grammar, sizes: bool) -> Vec<String> {
 fn share(grammar: &Grammar, index: usize, weight: f64) -> String {
     let symbol = &grammar.rules[index].symbol;
     let rules = grammar.rules.iter().filter(|r| r.symbol == *symbol);
-    let total: f64 = rules.filter_map(|r| r.weight).sum();
-    format!("{:.4}%", 100.0 * weight / total).replace(".0000%", "%")
+    let all = std::iter::once(weight).chain(rules.filter_map(|r| r.weight));
+    let weights = summable(&all.collect::<Vec<_>>());
+    let total: f64 = weights[1..].iter().sum();
+    format!("{:.4}%", 100.0 * weights[0] / total).replace(".0000%", "%")
 }
 
 fn body(operation: &Operation, sizes: bool) -> String {

@@ -15,8 +15,10 @@ mod listing;
 mod place;
 mod resize;
 mod rule;
+mod sample;
 mod table;
 mod tiling;
+mod weights;
 
 pub use check::{TOLERANCE, check};
 pub use combine::{LEAST_SIMILARITY, combine};
@@ -25,9 +27,9 @@ pub use derive::{Derivation, NonTerminal, REGION_LIMIT, derivation, derive};
 pub use error::{GrammarError, Warning};
 pub use evaluate::{EvaluateError, Evaluation, evaluate};
 pub use listing::listing;
-pub use resize::{
-    Sampler, THIN_OF_FACADE, THIN_OF_NEIGHBOUR, derive_at, is_size_independent, scaled,
-    size_independent,
-};
+pub use place::LEAST_SHARE;
+pub use resize::{THIN_OF_FACADE, THIN_OF_NEIGHBOUR, scaled, size_independent};
 pub use rule::{Grammar, Operation, Rule, Size, Start, Successor};
+pub use sample::{Sampler, derive_at};
 pub use tiling::{Difference, same_tiling, tiling_difference};
+pub use weights::summable;

@@ -1,8 +1,21 @@
 //! Where the successors of a rule go in its rectangle.
 
 use super::derive::REGION_LIMIT;
-use super::{GrammarError, Operation, Rule, Size};
+use super::{GrammarError, Operation, Rule, Size, summable};
 use crate::shape::{Axis, Rect};
+
+/// Absolute sizes shrink before the relative ones beside them have less than this share of the region, or
+/// of what is written for them if that is less.
+pub const LEAST_SHARE: f64 = 0.25;
+
+/// What happens where absolute sizes leave nothing for the relative ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fit {
+    /// The grammar is wrong.
+    AsWritten,
+    /// The absolute ones shrink ([`LEAST_SHARE`]).
+    Shrink,
+}
 
 /// A part along one axis: index of the written successor, offset from the start, extent.
 type Part = (usize, f64, f64);
@@ -15,6 +28,8 @@ type Part = (usize, f64, f64);
 /// share what the absolute ones leave, in proportion; a repeat then takes the whole number of
 /// periods nearest to its nominal sizes, at least one (Wu et al. 2014, Sec. 5).
 ///
+/// Returns the factor by which the absolute sizes shrank to leave something, 1 as a rule.
+///
 /// The mirror image of `sym_split` mirrors the *order* of the successors, not their contents: a
 /// symbol means the same content wherever it stands.
 pub(super) fn place(
@@ -22,38 +37,38 @@ pub(super) fn place(
     rule: &Rule,
     rect: Rect,
     tolerance: f64,
+    fit: Fit,
     out: &mut Vec<(usize, Rect)>,
-) -> Result<(), GrammarError> {
+) -> Result<f64, GrammarError> {
     let line = |axis: Axis| Line {
         index,
         rule,
         axis,
         extent: rect.extent(axis),
         tolerance,
+        fit,
     };
-    let mut strips = |axis: Axis, parts: Vec<Part>| {
-        out.extend(
-            parts
-                .into_iter()
-                .map(|(i, at, extent)| (i, rect.strip(axis, rect.start(axis) + at, extent))),
-        );
+    let mut strips = |axis: Axis, filled: Filled| {
+        let place = |(i, at, extent)| (i, rect.strip(axis, rect.start(axis) + at, extent));
+        out.extend(filled.parts.into_iter().map(place));
+        filled.factor
     };
-    match &rule.operation {
+    Ok(match &rule.operation {
         Operation::Split { axis, successors } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
-            strips(*axis, line(*axis).fill((0..sizes.len()).collect(), &sizes)?);
+            strips(*axis, line(*axis).fill((0..sizes.len()).collect(), &sizes)?)
         }
         Operation::Repeat { axis, successors } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
             let times = line(*axis).periods(&sizes, &[], 2)?;
             let order = (0..times).flat_map(|_| 0..sizes.len()).collect();
-            strips(*axis, line(*axis).fill(order, &sizes)?);
+            strips(*axis, line(*axis).fill(order, &sizes)?)
         }
         Operation::RepeatAba { axis, a, b } => {
             let sizes = [a.size, b.size];
             let times = line(*axis).periods(&sizes, &sizes[..1], 1)?;
             let order = (0..2 * times + 1).map(|i| i % 2).collect();
-            strips(*axis, line(*axis).fill(order, &sizes)?);
+            strips(*axis, line(*axis).fill(order, &sizes)?)
         }
         Operation::SymSplit {
             axis,
@@ -63,20 +78,26 @@ pub(super) fn place(
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
             let mirrored = sizes.len() - usize::from(*center);
             let order = (0..sizes.len()).chain((0..mirrored).rev()).collect();
-            strips(*axis, line(*axis).fill(order, &sizes)?);
+            strips(*axis, line(*axis).fill(order, &sizes)?)
         }
         Operation::GridSplit { columns, rows, .. } => {
             let across = line(Axis::X).fill((0..columns.len()).collect(), columns)?;
             let up = line(Axis::Y).fill((0..rows.len()).collect(), rows)?;
-            for &(j, y, height) in &up {
-                for &(i, x, width) in &across {
+            for &(j, y, height) in &up.parts {
+                for &(i, x, width) in &across.parts {
                     let cell = Rect::new(rect.x + x, rect.y + y, width, height);
                     out.push((j * columns.len() + i, cell));
                 }
             }
+            across.factor.min(up.factor)
         }
-    }
-    Ok(())
+    })
+}
+
+/// The parts along one axis, and the factor by which their absolute sizes shrank.
+struct Filled {
+    parts: Vec<Part>,
+    factor: f64,
 }
 
 /// One axis of the region that a rule splits.
@@ -86,6 +107,7 @@ struct Line<'a> {
     axis: Axis,
     extent: f64,
     tolerance: f64,
+    fit: Fit,
 }
 
 impl Line<'_> {
@@ -126,7 +148,9 @@ impl Line<'_> {
     }
 
     /// Offsets and extents of the parts `order`, whose sizes are `sizes[order[..]]`.
-    fn fill(&self, order: Vec<usize>, sizes: &[Size]) -> Result<Vec<Part>, GrammarError> {
+    fn fill(&self, order: Vec<usize>, sizes: &[Size]) -> Result<Filled, GrammarError> {
+        let weights = relative_summable(sizes);
+        let sizes = weights.as_deref().unwrap_or(sizes);
         let (mut absolute, mut relative) = (0.0, 0.0);
         for &i in &order {
             match sizes[i] {
@@ -134,10 +158,14 @@ impl Line<'_> {
                 Size::Relative(v) => relative += v,
             }
         }
-        let scale = if relative > 0.0 {
-            (self.extent - absolute) / relative
+        let least = LEAST_SHARE * self.extent.min(relative);
+        let shrink = self.fit == Fit::Shrink && self.extent - absolute < least;
+        let (factor, scale) = if relative > 0.0 && shrink {
+            ((self.extent - least) / absolute, least / relative)
+        } else if relative > 0.0 {
+            (1.0, (self.extent - absolute) / relative)
         } else if (absolute - self.extent).abs() <= self.tolerance {
-            1.0
+            (1.0, 1.0)
         } else {
             return Err(GrammarError::SizesDoNotAddUp {
                 rule: self.index,
@@ -151,7 +179,7 @@ impl Line<'_> {
         let mut at = 0.0;
         for i in order {
             let extent = match sizes[i] {
-                Size::Absolute(v) => v,
+                Size::Absolute(v) => v * factor,
                 Size::Relative(v) => v * scale,
             };
             if extent.is_nan() || extent <= 0.0 {
@@ -166,8 +194,27 @@ impl Line<'_> {
             parts.push((i, at, extent));
             at += extent;
         }
-        Ok(parts)
+        Ok(Filled { parts, factor })
     }
+}
+
+/// The sizes with smaller weights in the same proportions, where the sum of the weights is not finite.
+fn relative_summable(sizes: &[Size]) -> Option<Vec<Size>> {
+    let weight = |size: &Size| match size {
+        Size::Absolute(_) => 0.0,
+        Size::Relative(v) => *v,
+    };
+    let weights: Vec<f64> = sizes.iter().map(weight).collect();
+    let smaller = summable(&weights);
+    (smaller != weights).then(|| {
+        let pairs = sizes.iter().zip(smaller);
+        pairs
+            .map(|(size, weight)| match size {
+                Size::Absolute(_) => *size,
+                Size::Relative(_) => Size::Relative(weight),
+            })
+            .collect()
+    })
 }
 
 /// Sum of the absolute ones of `sizes`.

@@ -57,7 +57,9 @@
 //! ```
 
 use argmin::core::observers::ObserverMode;
-use argmin::core::{Error as ArgminError, Executor, IterState, KV, Problem, Solver, State};
+use argmin::core::{
+    Error as ArgminError, Executor, IterState, KV, Problem, Solver, State, TerminationReason,
+};
 use rand::{Rng, RngExt};
 
 use super::run::{Step, Steps};
@@ -72,6 +74,10 @@ pub trait Process {
 
     /// The state `S_0`.
     fn initial(&self) -> Self::State;
+    /// Whether no further walk is to begin, for example because memory is used up; asked after each walk.
+    fn is_exhausted(&self) -> bool {
+        false
+    }
     /// Whether nothing is left to decide.
     fn is_final(&self, state: &Self::State) -> bool;
     /// `C_t(S_t, a_t)`.
@@ -292,6 +298,10 @@ where
             state.param(walk)
         } else {
             state
+        };
+        let state = match process.is_exhausted() {
+            true => state.terminate_with(TerminationReason::SolverExit("exhausted".into())),
+            false => state,
         };
         Ok((state.cost(cost), None))
     }

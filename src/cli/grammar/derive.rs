@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::grammar::{Grammar, check, derive_at, is_size_independent, size_independent};
+use edifice::grammar::{Derivation, Grammar, check, derive_at, size_independent};
 use edifice::io::{read_grammar, write_facade};
+use edifice::methods::facade_grammar::align;
 use edifice::shape::Facade;
 use edifice::{Error, Result, rng};
 
@@ -16,8 +17,11 @@ use crate::cli::print;
   edifice grammar derive house.grammar.json --width 800 --height 600 -o wide.svg
   edifice grammar derive street.cga --seed 7 -o variation.png
 
-At another size than its own, a grammar of absolute sizes is first made size-independent: sizes
-become relative, but for thin structures such as window frames, and repeats fill the space.
+At its own size a grammar gives the facade that it was inferred from. At another size, rules without
+a relative size (~) are made size-independent: their sizes become relative, but for thin structures
+such as window frames, and repeats fill the space. Absolute sizes give way last and in proportion,
+with a warning. Then edges are aligned, and terminals that are equal at the grammar's own size
+become equal again; --no-align leaves them where the rules put them.
 In a stochastic grammar the seed picks among the rules of each symbol.")]
 pub struct Args {
     /// Grammar to read: .grammar.json or .cga
@@ -34,6 +38,9 @@ pub struct Args {
     /// Facade of a joint grammar, by name or by number from 1 [default: the first]
     #[arg(long, value_name = "NAME")]
     facade: Option<String>,
+    /// At another size, leave edges where the rules put them
+    #[arg(long)]
+    no_align: bool,
     /// File to write: .facade.json, .svg or .png
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -65,18 +72,80 @@ fn derive(args: &Args) -> Result<Facade> {
         args.width.unwrap_or(own.width),
         args.height.unwrap_or(own.height),
     );
-    if (width, height) != (own.width, own.height) && !is_size_independent(&grammar) {
-        grammar = size_independent(&grammar);
-    }
-    let mut rng = rng::stream(args.seed, "grammar derive", 0);
-    let derivation =
-        derive_at(&grammar, index, width, height, &mut rng).map_err(|e| Error::content(path, e))?;
-    let mut facade = derivation.facade;
+    let own = (own.width, own.height);
+    let mut facade = match (width, height) == own {
+        true => {
+            let derivation = at_size(args, &grammar, index, own)?;
+            warn_of_shrunk(args, &grammar, &derivation);
+            derivation.facade
+        }
+        false => {
+            grammar = size_independent(&grammar);
+            resized(args, &grammar, index, own, (width, height))?
+        }
+    };
     if grammar.starts.len() == 1 && facade.name == grammar.starts[0].symbol {
         // The grammar says no more than its axiom: call the facade as its file.
         facade.name = stem(path);
     }
     Ok(facade)
+}
+
+/// The facade at another size than its own, aligned unless that is switched off.
+fn resized(
+    args: &Args,
+    grammar: &Grammar,
+    index: usize,
+    own: (f64, f64),
+    size: (f64, f64),
+) -> Result<Facade> {
+    let derivation = at_size(args, grammar, index, size)?;
+    warn_of_shrunk(args, grammar, &derivation);
+    if args.no_align {
+        return Ok(derivation.facade);
+    }
+    // The same seed draws the same rules.
+    let own = at_size(args, grammar, index, own)?;
+    let aligned = align(&own, &derivation).map_err(Error::method)?;
+    if !aligned.unequal.is_empty() {
+        let labels = aligned.unequal.join(", ");
+        let path = args.grammar.display();
+        print::message(&format!(
+            "warning: {path}: not all terminals that are equal at the own size could stay so: {labels}"
+        ));
+    }
+    Ok(aligned.facade)
+}
+
+/// A derivation with the rules that the seed draws.
+fn at_size(
+    args: &Args,
+    grammar: &Grammar,
+    index: usize,
+    (width, height): (f64, f64),
+) -> Result<Derivation> {
+    let mut rng = rng::stream(args.seed, "grammar derive", 0);
+    derive_at(grammar, index, width, height, &mut rng).map_err(|e| Error::content(&args.grammar, e))
+}
+
+/// Says how many rules have absolute sizes that shrank, and which of them most.
+fn warn_of_shrunk(args: &Args, grammar: &Grammar, derivation: &Derivation) {
+    let shrunk = derivation
+        .shrunk
+        .iter()
+        .map(|(&rule, &factor)| (rule, factor));
+    let Some((rule, factor)) = shrunk.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return;
+    };
+    let (path, symbol) = (args.grammar.display(), &grammar.rules[rule].symbol);
+    let rules = match derivation.shrunk.len() {
+        1 => "1 rule".to_owned(),
+        count => format!("{count} rules"),
+    };
+    print::message(&format!(
+        "warning: {path}: absolute sizes of {rules} do not fit and shrink in proportion, most to {factor:.2} of what \
+         rules[{rule}] ({symbol}) writes"
+    ));
 }
 
 /// The start asked for, by name or by number from 1.

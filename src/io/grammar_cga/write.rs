@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::grammar::{Grammar, Operation, Rule, Size, Successor};
+use crate::grammar::{Grammar, Operation, Rule, Size, Successor, summable};
 use crate::io::facade_json::quoted;
 use crate::shape::Axis;
 
@@ -312,6 +312,7 @@ fn percentages(weights: &[f64]) -> (Vec<f64>, bool) {
     if weights == [100.0] {
         return (weights.to_vec(), true);
     }
+    let weights = summable(weights);
     let total: f64 = weights.iter().sum();
     let percentages = weights.iter().map(|w| 100.0 * w / total).collect();
     (percentages, false)

@@ -1,7 +1,8 @@
-//! This project's own configuration: cost shares, walks by shortest paths, annealing.
+//! This project's own configuration: the Lagrangian bound, walks by shortest paths, annealing.
 
 use std::rc::Rc;
 
+use super::bound::{labels_once, saved_by_grids};
 use super::choice::Router;
 use super::infer::{InferError, Settings};
 use super::members::Members;
@@ -11,38 +12,51 @@ use super::walk::{AddRule, ShortestRoutes};
 use crate::optim::Step;
 use crate::optim::adp::Epsilon;
 use crate::optim::annealing::{Annealing, Cooling};
+use crate::shape::Facade;
 
 impl Search<'_> {
-    /// The optimum, where cost shares find and prove it. Else walks that exploit by shortest paths, then
-    /// annealing over the set of types from the cheapest grammar found. Where cost shares cannot be tried, all
-    /// walks of `paper` come first. Also a bound below which no grammar costs, when there is one.
+    /// The optimum, where the Lagrangian bound finds and proves it. Else walks that exploit by shortest paths, then
+    /// annealing over the set of types from the cheapest grammar found. Where there are too many rules for the
+    /// bound, walks of `paper` come first, and everything ends when a limit of memory is reached. Several facades start
+    /// from the union of their own grammars. Also a bound below which no grammar costs.
     pub fn best(
         &self,
+        facades: &[Facade],
         mut observer: impl FnMut(Step) + Clone + 'static,
-    ) -> Result<(Vec<AddRule>, Option<f64>), InferError> {
+    ) -> Result<(Vec<AddRule>, f64), InferError> {
         let Settings {
             iterations,
             seed,
             readings,
             ..
         } = *self.settings;
-        let (first, lower, learnt, steps) = match self.shared() {
-            Some(Shared { rules, cost, lower }) => {
+        let union = match facades {
+            [_] => None,
+            _ => self.union(facades)?,
+        };
+        let (first, lower, learnt, steps) = match self.bounded(facades, union.as_deref()) {
+            Some(Bounded { rules, cost, lower }) => {
                 observer(Step {
                     iteration: 0,
                     cost,
                     best: cost,
                 });
-                if lower.is_some_and(|lower| cost <= lower + NOISE) {
+                if cost <= lower + NOISE {
                     return Ok((rules, lower));
                 }
                 (rules, lower, Vec::new(), 1)
             }
             None => {
+                self.types.borrow_mut().limit = MOST_TYPES;
                 let (rules, learnt) = self.paper(observer.clone())?;
-                (rules, None, learnt, iterations)
+                (rules, self.labels_once(), learnt, iterations)
             }
         };
+        let full = || self.types.borrow().is_full();
+        if full() {
+            let start = self.cheapest([first].into_iter().chain(union));
+            return Ok((start, lower));
+        }
         let router = || Router::new(self.settings.costs, self.settings.operations);
         let share = share(iterations);
         let (by_routes, routes) = self.walks(
@@ -52,7 +66,10 @@ impl Search<'_> {
             share,
             later(steps, observer.clone()),
         )?;
-        let start = self.cheapest([first, by_routes]);
+        let start = self.cheapest([first, by_routes].into_iter().chain(union));
+        if full() {
+            return Ok((start, lower));
+        }
         let mut values = routes.into_values();
         for (value, learnt) in values.iter_mut().zip(learnt) {
             *value = value.min(learnt);
@@ -64,14 +81,14 @@ impl Search<'_> {
             values,
             &start,
         );
-        let annealing = Annealing::new(COOLING, share, MOVES_PER_ROUND, seed)?
-            .until(lower.map_or(f64::NEG_INFINITY, |cost| cost + NOISE));
+        let annealing = Annealing::new(COOLING, share, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
         let (rules, ..) = annealing.run(members, later(steps + share, observer))?;
         Ok((rules, lower))
     }
 
-    /// Cost shares, with work in proportion to the iterations; `None` where the facades have too many places.
-    fn shared(&self) -> Option<Shared> {
+    /// The Lagrangian bound from the rules of a known grammar, with work in proportion to the iterations and facades; `None`
+    /// where there are too many rules.
+    fn bounded(&self, facades: &[Facade], known: Option<&[AddRule]>) -> Option<Bounded> {
         let Settings {
             iterations,
             costs,
@@ -80,11 +97,10 @@ impl Search<'_> {
         } = self.settings;
         let work = usize::try_from(*iterations).unwrap_or(usize::MAX);
         let work = work.saturating_mul(ITEMS_PER_ITERATION);
-        let without_grids = operations.without_grids();
         let program = Program::new(
             self.fresh.clone(),
             costs,
-            without_grids,
+            operations.without_grids(),
             MOST_ITEMS.min(work / FEWEST_STEPS),
         )?;
         let limits = BoundLimits {
@@ -92,41 +108,72 @@ impl Search<'_> {
             root_steps: ROOT_STEPS,
             branch_steps: BRANCH_STEPS,
             nodes: MOST_BRANCHES,
-            work: work as u64,
+            work: work.saturating_mul(facades.len()) as u64,
         };
-        let mut incumbent = Incumbent::new(f64::INFINITY, costs, without_grids);
+        let cost = known.map_or(f64::INFINITY, |rules| self.cost(rules));
+        let mut incumbent = Incumbent::new(cost, costs, operations.without_grids());
         let (lower, _) = solve(program, &mut incumbent, &limits);
-        Some(Shared {
-            rules: incumbent.rules(&mut self.types.borrow_mut()),
+        let rules = match known {
+            Some(rules) if incumbent.cost >= cost => rules.to_vec(),
+            _ => incumbent.rules(&mut self.types.borrow_mut()),
+        };
+        let lower = incumbent.attainable(lower);
+        Some(Bounded {
+            rules,
             cost: incumbent.cost,
-            lower: (*operations == without_grids).then(|| incumbent.attainable(lower)),
+            lower: match operations.grid_split {
+                false => lower,
+                true => {
+                    let extents = self.fresh.extents().into_iter();
+                    let most = extents.map(|(x, y)| x.max(y)).max().unwrap_or(0);
+                    (lower * saved_by_grids(costs, most)).max(self.labels_once())
+                }
+            },
         })
     }
 
+    /// One rule at least, unless every facade is a terminal, and every label of a facade that is none written once.
+    fn labels_once(&self) -> f64 {
+        let types = &self.fresh;
+        let compound = types.roots.iter().zip(types.sheets.iter());
+        let compound = compound.filter(|(root, _)| !types.is_terminal(**root));
+        let mut labels: Vec<u32> = compound
+            .flat_map(|(_, sheet)| sheet.terminals.iter().map(|(_, label)| *label))
+            .collect();
+        labels.sort_unstable();
+        labels.dedup();
+        match labels.len() {
+            0 => 0.0,
+            count => labels_once(&self.settings.costs, self.settings.operations, count),
+        }
+    }
+
+    /// Eq. 1.
+    fn cost(&self, rules: &[AddRule]) -> f64 {
+        let costs = &self.settings.costs;
+        rules.iter().map(|r| r.choice.cost(costs)).sum()
+    }
+
     /// The cheapest of what was found and of what the deterministic baselines find; of several, the first.
-    fn cheapest(&self, found: [Vec<AddRule>; 2]) -> Vec<AddRule> {
-        let cost = |rules: &[AddRule]| -> f64 {
-            let costs = &self.settings.costs;
-            rules.iter().map(|r| r.choice.cost(costs)).sum()
-        };
+    fn cheapest(&self, found: impl Iterator<Item = Vec<AddRule>>) -> Vec<AddRule> {
         let cheaper = |best: Vec<AddRule>, other: Vec<AddRule>| {
-            if cost(&other) < cost(&best) {
+            if self.cost(&other) < self.cost(&best) {
                 other
             } else {
                 best
             }
         };
         let deterministic = cheaper(self.all_lines(), self.greedy());
-        found.into_iter().fold(deterministic, cheaper)
+        found.fold(deterministic, cheaper)
     }
 }
 
-/// What cost shares found.
-struct Shared {
+/// What the Lagrangian bound brings.
+struct Bounded {
     rules: Vec<AddRule>,
     cost: f64,
-    /// No grammar costs less; unknown when grids are allowed.
-    lower: Option<f64>,
+    /// No grammar costs less.
+    lower: f64,
 }
 
 /// Walks by shortest paths, and rounds of annealing, in the second stage of `best`.
@@ -134,7 +181,7 @@ fn share(iterations: u64) -> u64 {
     (iterations / SECOND_STAGE_SHARE).max(1)
 }
 
-/// Steps of `best` at most, besides so many iterations: cost shares count as one, then come the walks and rounds of the
+/// Maximum observer steps beyond `iterations`: the Lagrangian bound counts as one, then come the walks and rounds of the
 /// second stage.
 pub(super) fn further_steps(iterations: u64) -> u64 {
     1 + 2 * share(iterations)
@@ -150,17 +197,20 @@ fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(St
     }
 }
 
-/// Items of rules that cost shares may look at for each iteration: half a second or a second for 10,000.
+/// Items of rules that the Lagrangian bound may look at for each iteration and facade: a second or two for 10,000.
 const ITEMS_PER_ITERATION: usize = 9_000;
-/// Items of rules, some 30 bytes each, beyond which cost shares are not tried.
+/// Items of rules, some 30 bytes each, beyond which the Lagrangian bound is not tried.
 const MOST_ITEMS: usize = 2_000_000;
-/// Steps below which cost shares are not worth a start.
+/// Steps below which the Lagrangian bound is not worth a start.
 const FEWEST_STEPS: usize = 10;
-/// Most steps before cost shares branch, and in each branch.
+/// Most steps before branching, and in each branch.
 const ROOT_STEPS: u64 = 2_000;
 const BRANCH_STEPS: u64 = 100;
-/// Most branches of cost shares.
+/// Most branches.
 const MOST_BRANCHES: u64 = 1_000;
+/// Types beyond which layouts without a Lagrangian bound are searched no further: some hundred megabytes. Only
+/// layouts of thousands of regions without any structure have so many.
+const MOST_TYPES: usize = 200_000;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.

@@ -124,7 +124,7 @@ pub fn lower_bound(
 
 /// `rho` of [`lower_bound`] for grids of so many columns and rows at most. For given `m` the fraction grows with `n` as long
 /// as it is below 1, so that square grids, and rows of two cells, are the worst.
-fn saved_by_grids(costs: &Costs, most: usize) -> f64 {
+pub(super) fn saved_by_grids(costs: &Costs, most: usize) -> f64 {
     let fraction = |grid: f64, splits: f64| match splits > 0.0 {
         true => grid / splits,
         false => 1.0,
@@ -141,7 +141,7 @@ fn saved_by_grids(costs: &Costs, most: usize) -> f64 {
 }
 
 /// One rule at least, and every label written once.
-fn labels_once(costs: &Costs, operations: Operations, labels: usize) -> f64 {
+pub(super) fn labels_once(costs: &Costs, operations: Operations, labels: usize) -> f64 {
     let mut operation = costs.split;
     for (allowed, cost) in [
         (operations.repeat, costs.repeat),

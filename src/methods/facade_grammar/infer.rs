@@ -206,7 +206,10 @@ pub fn infer_observed(
     check(facades)?;
     let search = Search::new(facades, settings)?;
     let (rules, lower_bound) = match settings.method {
-        Method::AdpBest => search.best(observer)?,
+        Method::AdpBest => {
+            let (rules, lower) = search.best(facades, observer)?;
+            (rules, Some(lower))
+        }
         Method::AdpPaper => (search.paper(observer)?.0, None),
         Method::Importance => (search.importance(observer)?, None),
         Method::Greedy => (search.greedy(), None),

@@ -4,20 +4,16 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::{Derivation, Grammar, GrammarError, derivation};
+use crate::grammar::Derivation;
 
 /// Sizes within this fraction of the facade's longer side are one.
 const SAME: f64 = 1e-6;
 
-/// The kind of each terminal region of `resized`, a derivation of start 0 of a deterministic grammar
-/// at any size: terminals are of one kind when they have one label and, in the facade at its own
+/// The kind of each terminal region of `resized`, given `own`, a derivation by the same rules at the grammar's
+/// own size: terminals are of one kind when they have one label and, in the facade at its own
 /// size, one width and one height. "Equal terminals have the same size" asks that kinds keep equal
 /// sizes; [`align_resized`](super::regularize::align_resized) sees to it.
-///
-/// # Errors
-/// [`GrammarError`] when the grammar does not derive at its own size.
-pub fn kinds(grammar: &Grammar, resized: &Derivation) -> Result<Vec<u16>, GrammarError> {
-    let own = derivation(grammar, 0)?;
+pub fn kinds(own: &Derivation, resized: &Derivation) -> Vec<usize> {
     let unit = SAME * own.facade.width.max(own.facade.height);
     let whole = |size: f64| (size / unit).round() as i64;
     let mut sizes = FxHashMap::default();
@@ -27,11 +23,11 @@ pub fn kinds(grammar: &Grammar, resized: &Derivation) -> Result<Vec<u16>, Gramma
     }
     let mut numbers = BTreeMap::new();
     let kinds = resized.origins.iter().zip(&resized.facade.regions);
-    Ok(kinds
+    kinds
         .map(|(origin, region)| {
-            let next = numbers.len() as u16;
+            let next = numbers.len();
             let key = (region.label.as_str(), sizes.get(origin).copied());
             *numbers.entry(key).or_insert(next)
         })
-        .collect())
+        .collect()
 }

@@ -84,12 +84,16 @@
 //!   for every eight there is one walk by shortest paths and one round of annealing. `best` stops once its
 //!   grammar is proven optimal. Where there are too many places for the work allowed, it makes all walks of
 //!   `paper` first. With grids allowed, cost shares look for a start without them, and prove nothing.
+//! - *Several facades* share the rules of the types that they have in common. Of them `best` first searches each alone,
+//!   then all together, from the union of what it found: the joint grammar never costs more than the separate
+//!   ones. Cost shares may do as much for each facade as for one.
 //! - *Bottom to top, left to right* orders types by the first region found with them.
 //! - *gridsplit* (Sec. 4.7, named only): one successor per cell, columns times rows. The search looks
 //!   for grids in regions whose full lines make at most 4,000 rectangles.
 //! - *Symmetry detection* is exhaustive up to a number of occurrences that grows with the number of
 //!   terminals, most important first; the text gives no bound.
 
+mod align;
 mod baselines;
 mod best;
 mod bound;
@@ -115,8 +119,10 @@ mod search;
 mod shares;
 mod symmetry;
 pub mod synthetic;
+mod union;
 mod walk;
 
+pub use align::{ALIGN_REACH, ALIGN_TOLERANCE, AlignError, Aligned, align};
 pub use bound::{Bound, Weakness, lower_bound};
 pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer, infer_observed};
 pub use kinds::kinds;

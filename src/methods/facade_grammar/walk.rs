@@ -91,6 +91,10 @@ impl Process for Inference {
         state.waiting.is_empty()
     }
 
+    fn is_exhausted(&self) -> bool {
+        self.types.borrow().is_full()
+    }
+
     fn cost(&self, _: &Derivation, action: &AddRule) -> f64 {
         action.choice.cost(&self.costs)
     }

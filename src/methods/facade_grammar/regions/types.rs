@@ -33,6 +33,8 @@ pub(crate) struct Types {
     cells: FxHashMap<TypeId, Option<Rc<Cells>>>,
     /// Type of each facade as a whole.
     pub roots: Vec<TypeId>,
+    /// Number of types at which a search is to stop.
+    pub limit: usize,
 }
 
 impl Types {
@@ -74,6 +76,7 @@ impl Types {
             strips: vec![[None, None]; labels.len()],
             cells: FxHashMap::default(),
             roots: Vec::new(),
+            limit: usize::MAX,
             sheets,
             labels,
         };
@@ -99,6 +102,11 @@ impl Types {
     /// Number of types seen so far, labels included.
     pub fn len(&self) -> usize {
         self.types.len()
+    }
+
+    /// Whether there are as many types as there may be.
+    pub fn is_full(&self) -> bool {
+        self.types.len() >= self.limit
     }
 
     /// Whether the type is a terminal label.

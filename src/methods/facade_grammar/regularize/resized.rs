@@ -7,8 +7,8 @@
 //!             v_r - v_l = s_c                   every element (l, r) of kind c has its size s_c
 //!             v_i = v_j                         lines merged so far
 //! ```
-//! solved anew for each pair of neighbouring lines that might merge, nearest first; a merge without
-//! a solution is undone. In every strip the regions stay in order, so that the layout stays a
+//! solved anew after merges of neighbouring lines, nearest first: more and more pairs at once while that has a
+//! solution, fewer when it has none, and a pair that has none alone stays apart. In every strip the regions stay in order, so that the layout stays a
 //! tiling; lines of different floors may pass each other. If kinds have no solution even without a
 //! merge, they are admitted one by one, those with most edge first, and the others keep the sizes
 //! that the derivation gave them.
@@ -44,25 +44,33 @@ pub fn solve(
     };
     // Pairs of groups (by their first lines) that cannot merge.
     let mut apart = BTreeSet::new();
+    // Pairs merged at once.
+    let mut batch = 1;
     loop {
         let mut firsts: Vec<usize> = (0..cuts.len()).filter(|&k| lines.group[k] == k).collect();
         firsts.sort_by(|&a, &b| positions[a].total_cmp(&positions[b]).then(a.cmp(&b)));
         let pairs = firsts.windows(2).map(|pair| (pair[0], pair[1]));
         let distance = |(a, b): (usize, usize)| positions[b] - positions[a];
         let near = pairs.filter(|&pair| distance(pair) <= tolerance && !apart.contains(&pair));
-        let Some((a, b)) = near.min_by(|&p, &q| distance(p).total_cmp(&distance(q))) else {
+        let mut near: Vec<(usize, usize)> = near.collect();
+        if near.is_empty() {
             return Ok(positions);
-        };
-        let before = lines.group.clone();
-        let (first, second) = (a.min(b), a.max(b));
-        for group in lines.group.iter_mut().filter(|group| **group == second) {
-            *group = first;
         }
+        near.sort_by(|&p, &q| distance(p).total_cmp(&distance(q)));
+        let before = lines.group.clone();
+        let merged = lines.merge(&near, batch);
         match lines.place()? {
-            Some(placed) => positions = placed,
+            Some(placed) => {
+                positions = placed;
+                batch = 2 * merged;
+            }
             None => {
                 lines.group = before;
-                apart.extend([(a, b), (b, a)]);
+                if merged == 1 {
+                    let (a, b) = near[0];
+                    apart.extend([(a, b), (b, a)]);
+                }
+                batch = (merged / 2).max(1);
             }
         }
     }
@@ -97,6 +105,27 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
+    /// Merges the first pairs of groups, at most `most`, of which no two share a group; returns how many.
+    fn merge(&mut self, pairs: &[(usize, usize)], most: usize) -> usize {
+        let mut touched = BTreeSet::new();
+        let mut count = 0;
+        for &(a, b) in pairs {
+            if count == most {
+                break;
+            }
+            if touched.contains(&a) || touched.contains(&b) {
+                continue;
+            }
+            touched.extend([a, b]);
+            count += 1;
+            let (first, second) = (a.min(b), a.max(b));
+            for group in self.group.iter_mut().filter(|group| **group == second) {
+                *group = first;
+            }
+        }
+        count
+    }
+
     /// Keeps the kinds that can have one size together, in order, and places the lines.
     fn admit(&mut self) -> Result<Vec<f64>, RegularizeError> {
         let mut positions = self.cuts.to_vec();

@@ -21,9 +21,7 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rayon::prelude::*;
 
-use crate::grammar::{
-    Grammar, GrammarError, Sampler, is_size_independent, scaled, size_independent,
-};
+use crate::grammar::{Grammar, GrammarError, Sampler, scaled, size_independent};
 use crate::rng::{Stream, stream};
 use crate::shape::Facade;
 use crate::shape::scene::{Instance, Material, Scene};
@@ -151,10 +149,7 @@ fn style(grammar: &Grammar, height: f64) -> Grammar {
         _ => height / own,
     };
     let metres = scaled(grammar, factor, "m");
-    match is_size_independent(&metres) {
-        true => metres,
-        false => size_independent(&metres),
-    }
+    size_independent(&metres)
 }
 
 /// Draws sizes and rules that fit one another, and derives front and side.
@@ -181,6 +176,9 @@ fn draw_type(
         let (Ok(front), Ok(side)) = (derive(width), derive(depth)) else {
             continue;
         };
+        if !(front.shrunk.is_empty() && side.shrunk.is_empty()) {
+            continue;
+        }
         let stretched = sampler.stretch(&front).max(sampler.stretch(&side));
         if best.as_ref().is_none_or(|(least, _)| stretched < *least) {
             best = Some((stretched, [front.facade, side.facade]));
