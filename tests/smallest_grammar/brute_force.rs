@@ -33,6 +33,9 @@ fn cheapest(
     done.insert(content.clone());
     let mut best = f64::INFINITY;
     for (cost, parts) in rules(&content, operations, costs) {
+        if cost >= best {
+            continue;
+        }
         let mut waiting = waiting.clone();
         waiting.extend(parts.into_iter().filter(|part| !done.contains(part)));
         best = best.min(cost + cheapest(waiting, &done, operations, costs));

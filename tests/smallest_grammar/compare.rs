@@ -156,7 +156,7 @@ impl fmt::Display for Case {
 }
 
 /// Costs to try, by name.
-fn prices() -> [(&'static str, Costs); 9] {
+pub fn prices() -> [(&'static str, Costs); 9] {
     let costs = |split, repeat, repeat_aba, sym_split, grid_split, successor| Costs {
         split,
         repeat,

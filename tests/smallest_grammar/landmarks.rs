@@ -26,6 +26,8 @@ const NOISE: f64 = 1e-10;
 pub struct Landmarks<'n> {
     network: &'n Network,
     costs: Vec<f64>,
+    /// The steps that grammars at hand can make, in order.
+    active: Vec<usize>,
     /// By node: a lower bound on the cost to reach it, the dearest of what each step needs.
     value: Vec<f64>,
     /// By step: the dearest node that it needs; none when it needs nothing that is not there.
@@ -43,6 +45,7 @@ impl<'n> Landmarks<'n> {
         Self {
             network,
             costs: vec![0.0; steps],
+            active: Vec::new(),
             value: vec![0.0; nodes],
             supporter: vec![None; steps],
             reached: vec![0.0; steps],
@@ -54,9 +57,7 @@ impl<'n> Landmarks<'n> {
     /// A lower bound on the cost of all grammars that agree with `status`, complete or just above `enough`.
     /// Infinite when there is none.
     pub fn bound(&mut self, status: &[Status], enough: f64) -> f64 {
-        for (cost, step) in self.costs.iter_mut().zip(&self.network.steps) {
-            *cost = step.cost;
-        }
+        self.activate(status);
         let goals: Vec<usize> = (0..status.len())
             .filter(|&t| status[t] == Status::In)
             .collect();
@@ -76,10 +77,38 @@ impl<'n> Landmarks<'n> {
         bound
     }
 
+    /// Finds the steps of the types that are in and of those that these may need; their costs are whole again.
+    fn activate(&mut self, status: &[Status]) {
+        let network = self.network;
+        let mut relevant: Vec<bool> = status.iter().map(|s| *s == Status::In).collect();
+        self.active.clear();
+        // Parts come before wholes.
+        for t in (0..status.len())
+            .rev()
+            .filter(|&t| status[t] != Status::Out)
+        {
+            if !relevant[t] {
+                continue;
+            }
+            for i in network.steps_of[t].clone().rev() {
+                let step = &network.steps[i];
+                if step.needs.iter().all(|&need| status[need] != Status::Out) {
+                    for &need in &step.needs {
+                        relevant[need] = true;
+                    }
+                    self.costs[i] = step.cost;
+                    self.active.push(i);
+                }
+            }
+        }
+        self.active.reverse();
+    }
+
     /// Values of all nodes under the costs that are left.
     fn reach(&mut self, status: &[Status]) {
         self.value.fill(f64::INFINITY);
-        for (i, step) in self.network.steps.iter().enumerate() {
+        for &i in &self.active {
+            let step = &self.network.steps[i];
             let mut dearest = None;
             let mut most = 0.0;
             let needs = step.needs.iter().filter(|&&t| status[t] != Status::In);
@@ -102,7 +131,8 @@ impl<'n> Landmarks<'n> {
         let steps = &self.network.steps;
         self.zone.fill(false);
         self.zone[goal] = true;
-        for (i, step) in steps.iter().enumerate().rev() {
+        for &i in self.active.iter().rev() {
+            let step = &steps[i];
             if self.zone[step.to]
                 && self.costs[i] == 0.0
                 && self.reached[i] < f64::INFINITY
@@ -113,7 +143,8 @@ impl<'n> Landmarks<'n> {
         }
         self.before.fill(false);
         let mut cut = Vec::new();
-        for (i, step) in steps.iter().enumerate() {
+        for &i in &self.active {
+            let step = &steps[i];
             let starts = self.supporter[i].is_none_or(|node| self.before[node]);
             if starts && self.reached[i] < f64::INFINITY {
                 if self.zone[step.to] {

@@ -33,6 +33,8 @@ pub struct Smallest {
 
 /// Sums of costs that differ by less are equal.
 const NOISE: f64 = 1e-7;
+/// How often all types are tried before the search branches.
+const PASSES: usize = 2;
 
 /// The smallest grammar of some facades; `None` when `limits` do not suffice.
 pub fn smallest(
@@ -118,24 +120,19 @@ impl Search<'_> {
 
     /// Decides types one by one where the other decision is hopeless; false when limits do not suffice.
     fn fix(&mut self, status: &mut [Status]) -> bool {
-        let mut changed = true;
-        while changed {
-            changed = false;
-            for t in 0..status.len() {
-                if status[t] != Status::Open {
-                    continue;
-                }
-                if self.bounds >= self.most {
-                    return false;
-                }
-                status[t] = Status::In;
-                if self.hopeless(status) {
-                    status[t] = Status::Out;
-                    changed = true;
-                    continue;
-                }
-                status[t] = Status::Open;
+        let types = status.len();
+        for t in (0..PASSES).flat_map(|_| (0..types).rev()) {
+            if status[t] != Status::Open {
+                continue;
             }
+            if self.bounds >= self.most {
+                return false;
+            }
+            status[t] = Status::In;
+            status[t] = match self.hopeless(status) {
+                true => Status::Out,
+                false => Status::Open,
+            };
         }
         true
     }
