@@ -34,6 +34,7 @@ impl Search<'_> {
             [_] => None,
             _ => self.union(facades)?,
         };
+        let mut iterations = iterations;
         let (first, lower, learnt, steps) = match self.bounded(facades, union.as_deref()) {
             Some(Bounded { rules, cost, lower }) => {
                 observer(Step {
@@ -47,8 +48,10 @@ impl Search<'_> {
                 (rules, lower, Vec::new(), 1)
             }
             None => {
-                self.types.borrow_mut().limit = MOST_TYPES;
-                let (rules, learnt) = self.paper(observer.clone())?;
+                let terminals: usize = facades.iter().map(|f| f.regions.len()).sum();
+                iterations = iterations.min(MOST_WALKED / terminals as u64).max(1);
+                self.types.borrow_mut().limit = MOST_STRIPS;
+                let (rules, learnt) = self.paper(iterations, observer.clone())?;
                 (rules, self.labels_once(), learnt, iterations)
             }
         };
@@ -208,9 +211,11 @@ const ROOT_STEPS: u64 = 2_000;
 const BRANCH_STEPS: u64 = 100;
 /// Most branches.
 const MOST_BRANCHES: u64 = 1_000;
-/// Types beyond which layouts without a Lagrangian bound are searched no further: some hundred megabytes. Only
-/// layouts of thousands of regions without any structure have so many.
-const MOST_TYPES: usize = 200_000;
+/// Strips of all types, some 16 bytes each with what exploration knows of them, beyond which layouts without a Lagrangian
+/// bound are searched no further. Only layouts of a thousand regions and more without any structure have so many.
+const MOST_STRIPS: usize = 20_000_000;
+/// Regions that the walks over layouts without a Lagrangian bound may derive, all walks together.
+const MOST_WALKED: u64 = 3_000_000;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.

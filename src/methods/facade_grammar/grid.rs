@@ -2,7 +2,8 @@
 //!
 //! With the rows given, the best columns are a shortest path over the cut positions along x, where a
 //! strip costs what its cells cost, and the other way round. [`cheapest`] alternates the two, from the
-//! finest grid, and from every grid of two rows or two columns, until nothing changes.
+//! finest grid, and from every grid of two rows or two columns, until nothing changes. Grids of one row or one column
+//! are single shortest paths.
 
 use super::choice::{Arrangement, Choice, trace};
 use super::regions::{Cells, TypeId};
@@ -33,9 +34,6 @@ pub(crate) fn cheapest(
     price: &impl Fn(TypeId) -> f64,
 ) -> Option<(f64, Choice)> {
     let (across, up) = cells.intervals();
-    if across < 2 || up < 2 {
-        return None;
-    }
     let cell = |x, y| costs.successor + price(cells.cell(x, y));
     let best_columns = |rows: &[u16]| {
         shortest(across, |a, b| {
@@ -69,6 +67,17 @@ pub(crate) fn cheapest(
                 Some((sum, better)) if sum < cost - 1e-9 => columns = better,
                 _ => break,
             }
+        }
+    }
+    // One row or one column, which costs less than a split where the operation does.
+    let row = shortest(across, |a, b| cell((a, b), (0, up)));
+    let column = shortest(up, |a, b| cell((0, across), (a, b)));
+    let row = row.map(|(cost, columns)| (cost, columns, vec![0, up]));
+    let column = column.map(|(cost, rows)| (cost, vec![0, across], rows));
+    for (cost, columns, rows) in [row, column].into_iter().flatten() {
+        if cost < limit {
+            limit = cost - 1e-9;
+            found = Some((cost + costs.grid_split, columns, rows));
         }
     }
     found.map(|(cost, columns, rows)| (cost, between(cells, columns, rows)))

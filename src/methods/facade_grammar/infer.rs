@@ -210,7 +210,7 @@ pub fn infer_observed(
             let (rules, lower) = search.best(facades, observer)?;
             (rules, Some(lower))
         }
-        Method::AdpPaper => (search.paper(observer)?.0, None),
+        Method::AdpPaper => (search.paper(settings.iterations, observer)?.0, None),
         Method::Importance => (search.importance(observer)?, None),
         Method::Greedy => (search.greedy(), None),
         Method::Bayesian => (search.all_lines(), None),

@@ -71,13 +71,10 @@ impl<'a> Search<'a> {
     /// The text's algorithm (Sec. 4.2), and the `V(R)` that it learnt, by type.
     pub fn paper(
         &self,
+        iterations: u64,
         observer: impl FnMut(Step) + 'static,
     ) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
-        let Settings {
-            iterations,
-            readings,
-            ..
-        } = *self.settings;
+        let readings = self.settings.readings;
         let epsilon = Epsilon {
             end: readings.last_epsilon,
             ..Epsilon::default()

@@ -33,7 +33,8 @@ pub(crate) struct Types {
     cells: FxHashMap<TypeId, Option<Rc<Cells>>>,
     /// Type of each facade as a whole.
     pub roots: Vec<TypeId>,
-    /// Number of types at which a search is to stop.
+    /// Strips of all types so far, and the number at which a search is to stop.
+    cut: usize,
     pub limit: usize,
 }
 
@@ -76,6 +77,7 @@ impl Types {
             strips: vec![[None, None]; labels.len()],
             cells: FxHashMap::default(),
             roots: Vec::new(),
+            cut: 0,
             limit: usize::MAX,
             sheets,
             labels,
@@ -104,9 +106,9 @@ impl Types {
         self.types.len()
     }
 
-    /// Whether there are as many types as there may be.
+    /// Whether there are as many strips as there may be.
     pub fn is_full(&self) -> bool {
-        self.types.len() >= self.limit
+        self.cut >= self.limit
     }
 
     /// Whether the type is a terminal label.
@@ -153,6 +155,7 @@ impl Types {
             return Rc::clone(strips);
         }
         let strips = Rc::new(self.cut(self.region(id), axis));
+        self.cut += strips.all().len();
         self.strips[id as usize][slot] = Some(Rc::clone(&strips));
         strips
     }

@@ -94,7 +94,8 @@ impl Program {
                 program.kinds.push(new);
             }
             program.add(types, &mut survey, region, kind);
-            if program.items > limit {
+            // A place has two successors and an operation at least.
+            if program.items.max(3 * survey.regions.len()) > limit {
                 return None;
             }
         }
