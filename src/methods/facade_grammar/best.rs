@@ -211,9 +211,9 @@ const ROOT_STEPS: u64 = 2_000;
 const BRANCH_STEPS: u64 = 100;
 /// Most branches.
 const MOST_BRANCHES: u64 = 1_000;
-/// Strips of all types, some 16 bytes each with what exploration knows of them, beyond which layouts without a Lagrangian
+/// Strips of all types, some 50 bytes each with what exploration knows of them, beyond which layouts without a Lagrangian
 /// bound are searched no further. Only layouts of a thousand regions and more without any structure have so many.
-const MOST_STRIPS: usize = 20_000_000;
+const MOST_STRIPS: usize = 8_000_000;
 /// Regions that the walks over layouts without a Lagrangian bound may derive, all walks together.
 const MOST_WALKED: u64 = 3_000_000;
 /// The second stage of `best` has one walk and one round of annealing for so many iterations.
