@@ -6,7 +6,7 @@ use crate::shape::{Axis, Rect};
 
 /// Absolute sizes shrink before the relative ones beside them have less than this share of the region, or
 /// of what is written for them if that is less.
-pub const LEAST_SHARE: f64 = 0.25;
+pub const LEAST_SHARE: f64 = 0.5;
 
 /// What happens where absolute sizes leave nothing for the relative ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
