@@ -220,7 +220,7 @@ fn absolute_sizes_that_do_not_fit_shrink_with_a_warning() {
     assert!((facade.regions[0].rect.height - 10.0).abs() < 1e-6);
     assert!(err.is_empty(), "{err}");
     let (facade, err) = derive("20", "8");
-    assert!((facade.regions[0].rect.height - 4.0).abs() < 1e-6);
+    assert!((facade.regions[0].rect.height - 2.0).abs() < 1e-6);
     assert!(
         err.contains("g.cga: absolute sizes of 1 rule do not fit"),
         "{err}"
