@@ -86,7 +86,7 @@ fn thin_structures_keep_their_size() {
         .unwrap()
         .facade;
     assert_eq!(wide.regions[1].rect.width, 296.0);
-    assert!(wide_is_as_written(&grammar, 300.0) && wide_is_as_written(&grammar, 6.0));
+    assert!(wide_is_as_written(&grammar, 300.0) && wide_is_as_written(&grammar, 8.0));
     // Without thicker neighbours nothing is thin.
     let text = "//@ facade F 100 x 50\nF --> split(x) { { 1 : a | 1 : b }* }";
     let grammar = size_independent(&from_str(text).unwrap());
@@ -111,7 +111,7 @@ fn absolute_sizes_give_way_last_and_in_proportion() {
     let grammar = from_str(text).unwrap();
     let derive = |width| derive_at(&grammar, 0, width, 50.0, &mut stream(0, "none", 0)).unwrap();
     let mut before = 1.0;
-    for width in [100.0, 20.0, 14.0, 13.0, 10.0, 3.0, 1e-3, 1e-9] {
+    for width in [100.0, 21.0, 14.0, 13.0, 10.0, 3.0, 1e-3, 1e-9] {
         let derivation = derive(width);
         let widths: Vec<f64> = derivation
             .facade
@@ -131,7 +131,7 @@ fn absolute_sizes_give_way_last_and_in_proportion() {
                 "{width}: {widths:?}"
             );
         }
-        assert_eq!(factor < 1.0, width < 13.3, "{width}");
+        assert_eq!(factor < 1.0, width < 20.0, "{width}");
         assert!(factor <= before);
         before = factor;
     }

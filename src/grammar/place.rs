@@ -4,9 +4,10 @@ use super::derive::REGION_LIMIT;
 use super::{GrammarError, Operation, Rule, Size, summable};
 use crate::shape::{Axis, Rect};
 
-/// Absolute sizes shrink before the relative ones beside them have less than this share of the region, or
-/// of what is written for them if that is less.
-pub const LEAST_SHARE: f64 = 0.25;
+/// Absolute sizes keep what is written while they leave the relative ones beside them this share of the region, or
+/// of what is written for them if that is less. Else all sizes of the rule, relative ones as they are written, divide the
+/// region in proportion, so that parts of parts of parts never vanish.
+pub const LEAST_SHARE: f64 = 0.5;
 
 /// What happens where absolute sizes leave nothing for the relative ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,7 +162,8 @@ impl Line<'_> {
         let least = LEAST_SHARE * self.extent.min(relative);
         let shrink = self.fit == Fit::Shrink && self.extent - absolute < least;
         let (factor, scale) = if relative > 0.0 && shrink {
-            ((self.extent - least) / absolute, least / relative)
+            let factor = self.extent / (absolute + relative);
+            (factor, factor)
         } else if relative > 0.0 {
             (1.0, (self.extent - absolute) / relative)
         } else if (absolute - self.extent).abs() <= self.tolerance {

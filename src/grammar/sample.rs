@@ -15,8 +15,8 @@ use super::{Derivation, Grammar, GrammarError, Operation, summable};
 /// that equal symbols stay equal within one facade (an inconsistent choice is what makes variations
 /// look wrong: Wu et al. 2014, Sec. 1). A deterministic grammar takes nothing from `rng`.
 ///
-/// Relative sizes give way before absolute ones. Where absolute sizes leave almost nothing for the
-/// relative ones ([`LEAST_SHARE`](super::LEAST_SHARE)) they shrink too, in proportion, and
+/// Relative sizes give way before absolute ones. Where absolute sizes leave too little for the
+/// relative ones ([`LEAST_SHARE`](super::LEAST_SHARE)) they shrink too, all in proportion, and
 /// [`Derivation::shrunk`] says which rules do so. A deterministic grammar at its own size is derived as
 /// it is written, or not at all.
 ///
