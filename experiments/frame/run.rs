@@ -7,8 +7,9 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use super::context::{Context, STOP};
+use super::context::{Context, STOP, WORK};
 use super::document::readable;
+use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::line;
 use super::provenance::{Machine, Made, Run};
@@ -77,8 +78,8 @@ impl Report {
 /// units are removed only when everything asked for is done.
 ///
 /// # Errors
-/// [`Error::Option`] for an unknown artefact, [`Error::Io`] when the report cannot be written,
-/// [`Error::Interrupted`] after Ctrl-C.
+/// [`Error::Option`] for an unknown artefact, [`Error::Content`] when another run writes into the same
+/// folder, [`Error::Io`] when the report cannot be written, [`Error::Interrupted`] after Ctrl-C.
 pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Report> {
     let chosen = choose(experiments, &options.only)?;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -87,9 +88,15 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
         .map_err(Error::method)?;
     let start = Instant::now();
     let mut report = Report::default();
-    for (experiment, artefacts) in &chosen {
+    // All folders before any work, so that a second run on one of them says so at once.
+    let mut locks = Vec::new();
+    for (experiment, _) in &chosen {
         let folder = options.out.join(experiment.slug);
         std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create", e))?;
+        locks.push(Lock::take(&folder)?);
+    }
+    for (experiment, artefacts) in &chosen {
+        let folder = options.out.join(experiment.slug);
         for artefact in artefacts {
             let name = format!("{}/{}", experiment.slug, artefact.name);
             line(&format!("{name}: {}", artefact.title));
@@ -107,7 +114,7 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
     report.index = write_index(&options.out)?;
     if report.failed.is_empty() {
         for (experiment, _) in &chosen {
-            remove_journals(&options.out.join(experiment.slug).join(".work"))?;
+            remove_work(&options.out.join(experiment.slug).join(WORK))?;
         }
     }
     report.seconds = start.elapsed().as_secs_f64();
@@ -189,6 +196,8 @@ fn make(
 
 /// Writes `OUT/index.html` over every paper found there, so that papers run one by one add up.
 fn write_index(out: &Path) -> Result<PathBuf> {
+    // Of two runs that end at once, the second writes the page that has both.
+    let _lock = Lock::wait(out)?;
     let fail = |e| Error::io(out, "read", e);
     let mut folders = Vec::new();
     for entry in std::fs::read_dir(out).map_err(fail)? {
@@ -239,8 +248,8 @@ fn page(folder: &Path, run: &Run) -> Page {
     }
 }
 
-/// Removes a finished run's journals.
-fn remove_journals(folder: &Path) -> Result<()> {
+/// Removes a finished run's journals and unpacked data sets.
+fn remove_work(folder: &Path) -> Result<()> {
     match std::fs::remove_dir_all(folder) {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io(folder, "remove", e)),
         _ => Ok(()),

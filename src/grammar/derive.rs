@@ -121,7 +121,9 @@ pub(super) fn walk(
         let rule = choose(symbol, rules);
         non_terminals.push(NonTerminal { rule, rect, depth });
         parts.clear();
-        place(rule, &grammar.rules[rule], rect, tolerance, &mut parts)?;
+        place(rule, &grammar.rules[rule], rect, tolerance, |i, part| {
+            parts.push((i, part));
+        })?;
         let made = regions.len() + non_terminals.len() + stack.len() + parts.len();
         if made > REGION_LIMIT {
             return Err(GrammarError::TooManyRegions {
