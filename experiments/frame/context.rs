@@ -208,15 +208,15 @@ impl<'a> Context<'a> {
         self.document.block(table.markdown());
     }
 
-    /// Writes `<name>.svg` and `<name>.png` and shows the picture in `<artefact>.md`. The artefact's
-    /// own picture has the artefact's name; further ones append to it (`figure_14_right`).
+    /// Writes `<name>.png` and, unless it is long ([`report::MOST_SVG_BYTES`]), `<name>.svg`, and shows
+    /// the picture in `<artefact>.md`. The artefact's own picture has the artefact's name; further ones
+    /// append to it (`figure_14_right`).
     ///
     /// # Errors
     /// [`Error::Io`] when a file cannot be written.
     pub fn figure(&mut self, name: &str, figure: &Figure) -> Result<()> {
-        report::write_figure(&self.folder, name, figure)?;
-        self.files.push(format!("{name}.svg"));
-        self.files.push(format!("{name}.png"));
+        let files = report::write_report_figure(&self.folder, name, figure)?;
+        self.files.extend(files);
         self.document.image(name, figure.caption());
         Ok(())
     }

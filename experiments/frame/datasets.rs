@@ -66,3 +66,59 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     }
     std::fs::write(path, bytes).map_err(|e| Error::io(path, "write", e))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_program_carries_what_the_checkout_has() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
+        let mut found = Vec::new();
+        let mut folders = vec![root.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                match path.is_dir() {
+                    true => folders.push(path),
+                    false => found.push(path),
+                }
+            }
+        }
+        let name = |path: &PathBuf| {
+            let below = path.strip_prefix(&root).unwrap().to_string_lossy();
+            below.replace('\\', "/")
+        };
+        let mut names: Vec<String> = found.iter().map(name).collect();
+        names.sort_unstable();
+        let carried = files();
+        let ours: Vec<&String> = carried.iter().map(|(name, _)| name).collect();
+        assert!(ours.len() > 70);
+        // A file that is new needs `touch experiments/frame/datasets.rs`.
+        assert_eq!(ours, names.iter().collect::<Vec<_>>());
+        for (name, bytes) in &carried {
+            assert!(std::fs::read(root.join(name)).unwrap() == *bytes, "{name}");
+        }
+    }
+
+    #[test]
+    fn files_and_folders_are_unpacked_and_others_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = unpack("model/asia.bif", folder.path()).unwrap();
+        assert!(
+            std::fs::read_to_string(file)
+                .unwrap()
+                .contains("network asia")
+        );
+        std::fs::write(folder.path().join("model/old.bif"), b"x").unwrap();
+        let whole = unpack("model", folder.path()).unwrap();
+        assert!(whole.join("asia.bif").exists() && !whole.join("old.bif").exists());
+        let message = unpack("model/alarm.bif", folder.path())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("datasets/model/alarm.bif: nothing"),
+            "{message}"
+        );
+    }
+}
