@@ -42,7 +42,7 @@ fn a_second_run_on_the_same_folder_says_so_and_a_run_after_a_kill_cleans_up() {
 
     drop(lock);
     reproduce(folder.path()).assert().success();
-    assert!(paper.join("table_3.csv").exists() && paper.join("run.json").exists());
+    assert!(paper.join("table_3.md").exists() && paper.join("run.json").exists());
     assert!(!left_over.exists());
     assert!(!paper.join(".work").exists());
 }

@@ -24,6 +24,9 @@ pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 /// Folder of journals and unpacked data sets, below a paper's folder; removed by a run that succeeds.
 pub(super) const WORK: &str = ".work";
 
+/// Folder of the unpacked data sets, below that one.
+pub(super) const DATASETS: &str = "datasets";
+
 /// Two units of work with one name: the journal could not tell them apart.
 #[derive(Debug, thiserror::Error)]
 #[error("two units of work are both called {0:?}")]
@@ -96,7 +99,7 @@ impl<'a> Context<'a> {
     /// # Errors
     /// [`Error::Content`] when nothing of this name ships, [`Error::Io`] when the copy cannot be made.
     pub fn shipped(&mut self, name: &str) -> Result<PathBuf> {
-        let path = datasets::unpack(name, &self.work().join("datasets"))?;
+        let path = datasets::unpack(name, &self.work().join(DATASETS))?;
         self.data
             .insert(format!("datasets/{name}"), provenance::digest(&path)?);
         Ok(path)

@@ -136,4 +136,21 @@ mod tests {
         assert_eq!(journal.get::<f64>("zero"), Some(0.5));
         assert_eq!(journal.get::<f64>("one"), Some(1.5));
     }
+    #[test]
+    fn damaged_journals_are_read_as_far_as_they_are_whole() {
+        let line = |k: usize| format!("{{\"key\":\"u{k}\",\"value\":{k}}}\n");
+        let whole: String = (0..4).map(line).collect();
+        for length in 0..=whole.len() {
+            let (done, kept) = entries(&whole.as_bytes()[..length]);
+            assert!(kept <= length && done.len() == kept / line(0).len());
+        }
+        for at in 0..whole.len() {
+            for byte in [0, b'9', b'"', b'{', b'\n', 0xff] {
+                let mut bytes = whole.clone().into_bytes();
+                bytes[at] = byte;
+                let (done, kept) = entries(&bytes);
+                assert!(done.len() >= at / line(0).len() && kept <= bytes.len());
+            }
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Runs experiments and writes the report.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -7,7 +8,7 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use super::context::{Context, STOP, WORK};
+use super::context::{Context, DATASETS, STOP, WORK};
 use super::document::readable;
 use super::lock::Lock;
 use super::options::{Args, Options};
@@ -74,8 +75,8 @@ impl Report {
 
 /// Runs the experiments and writes the report.
 ///
-/// A failing artefact does not stop the others; see [`Report::check`]. The journals of finished
-/// units are removed only when everything asked for is done.
+/// A failing artefact does not stop the others; see [`Report::check`]. The journals of the artefacts
+/// asked for are removed only when all of these are done.
 ///
 /// # Errors
 /// [`Error::Option`] for an unknown artefact, [`Error::Content`] when another run writes into the same
@@ -113,8 +114,8 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
     }
     report.index = write_index(&options.out)?;
     if report.failed.is_empty() {
-        for (experiment, _) in &chosen {
-            remove_work(&options.out.join(experiment.slug).join(WORK))?;
+        for (experiment, artefacts) in &chosen {
+            remove_work(&options.out.join(experiment.slug).join(WORK), artefacts)?;
         }
     }
     report.seconds = start.elapsed().as_secs_f64();
@@ -248,10 +249,28 @@ fn page(folder: &Path, run: &Run) -> Page {
     }
 }
 
-/// Removes a finished run's journals and unpacked data sets.
-fn remove_work(folder: &Path) -> Result<()> {
-    match std::fs::remove_dir_all(folder) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io(folder, "remove", e)),
+/// Removes the journals of finished artefacts, whatever their settings, and the unpacked data sets. The
+/// journals of other artefacts stay for the runs that go on with them.
+fn remove_work(folder: &Path, artefacts: &[&'static Artefact]) -> Result<()> {
+    let there = |result: std::io::Result<()>, path: &Path| match result {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(Error::io(path, "remove", e)),
+        _ => Ok(()),
+    };
+    let unpacked = folder.join(DATASETS);
+    there(std::fs::remove_dir_all(&unpacked), &unpacked)?;
+    let mut left = 0;
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let owner = name.split('-').next();
+        if artefacts.iter().any(|a| owner == Some(a.name)) {
+            there(std::fs::remove_file(&path), &path)?;
+        } else {
+            left += 1;
+        }
+    }
+    match left {
+        0 => there(std::fs::remove_dir(folder), folder),
         _ => Ok(()),
     }
 }
