@@ -1,12 +1,21 @@
 //! Whole files in, whole files out: a file appears whole or not at all.
 
+use std::collections::BTreeSet;
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use tempfile::NamedTempFile;
 
 use crate::{Error, Result};
 
 /// Largest file that a reader accepts, in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Temporary files are named `.edifice-RANDOM.tmp`.
+const PREFIX: &str = ".edifice-";
+const SUFFIX: &str = ".tmp";
 
 /// Reads a whole file.
 ///
@@ -25,6 +34,10 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
 /// Writes `bytes` to `path` so that a reader sees the old file or the whole new one, never a part:
 /// a temporary file in the same folder is written, then renamed. Symbolic links are followed;
 /// pipes and devices are written directly.
+///
+/// A writer that is killed leaves its temporary file; the first write of another process into the
+/// folder removes it. Writers hold an advisory lock on their temporary file, so that one that still
+/// runs, in this process or another, keeps it.
 ///
 /// # Errors
 /// [`Error::Io`] naming `path` when its folder does not exist or cannot be written, when it is a
@@ -47,19 +60,62 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
         _ => PathBuf::from("."),
     };
+    remove_left_over(&folder);
+    // The system's error names the temporary file, which means nothing to the user: keep its kind.
+    let mut file = temporary(&folder).map_err(|e| e.kind())?;
+    file.write_all(bytes)?;
+    file.persist(target).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// A new temporary file in `folder`, locked.
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".edifice-").suffix(".tmp");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     {
         // The default of 0600 suits secrets; results follow the user's umask like any other file.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    // The system's error names the temporary file, which means nothing to the user: keep its kind.
-    let mut file = builder.tempfile_in(folder).map_err(|e| e.kind())?;
-    file.write_all(bytes)?;
-    file.persist(target).map_err(|e| e.error)?;
-    Ok(())
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        match file.as_file().lock() {
+            // Between its creation and the lock another process may have taken it for left over.
+            Ok(()) if !file.path().exists() => {}
+            Ok(()) => return Ok(file),
+            // Where there are no locks, nobody removes what is not his.
+            Err(e) if e.kind() == io::ErrorKind::Unsupported => return Ok(file),
+            Err(e) => return Err(e),
+        }
+    }
+}
+
+/// Removes the temporary files of killed writers from `folder`, once per process and folder. What
+/// cannot be listed, locked or removed stays: it is in nobody's way.
+fn remove_left_over(folder: &Path) {
+    static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let mut done = DONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let Ok(folder) = std::fs::canonicalize(folder) else {
+        return;
+    };
+    if done.insert(folder.clone()) {
+        remove_from(&folder);
+    }
+}
+
+fn remove_from(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let ours = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if ours
+            && let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 #[cfg(test)]
@@ -74,6 +130,42 @@ mod tests {
         write_atomic(&path, b"two").unwrap();
         assert_eq!(read_bytes(&path).unwrap(), b"two");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn temporary_files_of_killed_writers_are_removed_and_of_running_ones_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let dead = folder.path().join(".edifice-killed.tmp");
+        std::fs::write(&dead, b"half").unwrap();
+        let alive = temporary(folder.path()).unwrap();
+        let alien = folder.path().join("edifice-notes.tmp");
+        std::fs::write(&alien, b"mine").unwrap();
+        write_atomic(&folder.path().join("a.txt"), b"one").unwrap();
+        assert!(!dead.exists());
+        assert!(alive.path().exists() && alien.exists());
+    }
+
+    #[test]
+    fn writers_in_one_folder_do_not_disturb_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = &|name: usize| {
+            for k in 0..50 {
+                // As other processes do at their first write, at any moment.
+                remove_from(folder.path());
+                let path = folder.path().join(format!("{name}.txt"));
+                write_atomic(&path, format!("{name} {k}").as_bytes()).unwrap();
+            }
+        };
+        std::thread::scope(|s| {
+            for name in 0..4 {
+                s.spawn(move || write(name));
+            }
+        });
+        for name in 0..4 {
+            let text = read_bytes(&folder.path().join(format!("{name}.txt"))).unwrap();
+            assert_eq!(text, format!("{name} 49").as_bytes());
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
     }
 
     #[test]

@@ -1,6 +1,8 @@
-//! Every experiment, end to end, at the smoke budget.
+//! Every experiment, end to end, at the smoke budget: by the library, and by the program alone.
 
 use std::path::Path;
+
+use assert_cmd::Command;
 
 use edifice::experiments::{ALL, Budget, Experiment, Options, run};
 
@@ -50,15 +52,33 @@ fn check(experiment: &'static Experiment, out: &Path) {
 }
 
 #[test]
-fn every_experiment_runs_and_threads_do_not_matter() {
+fn every_experiment_runs_anywhere_and_threads_do_not_matter() {
     let one = tempfile::tempdir().expect("a folder");
     let two = tempfile::tempdir().expect("a folder");
-    for (out, threads) in [(one.path(), 1), (two.path(), 2)] {
-        let report = run(ALL, &options(out, threads)).expect("experiments run");
-        assert!(report.failed.is_empty(), "{:?}", report.failed);
-        for experiment in ALL {
-            check(experiment, out);
-        }
+    let report = run(ALL, &options(one.path(), 1)).expect("experiments run");
+    assert!(report.failed.is_empty(), "{:?}", report.failed);
+
+    // As installed: a copy of the program in an empty folder, with no data but what it carries.
+    let installed = tempfile::tempdir().expect("a folder");
+    let program = installed.path().join("edifice");
+    std::fs::copy(env!("CARGO_BIN_EXE_edifice"), &program).expect("copied");
+    Command::new(&program)
+        .current_dir(installed.path())
+        .env_remove("EDIFICE_DATA")
+        .args(["reproduce", "--budget", "smoke", "--threads", "2", "--out"])
+        .arg(two.path())
+        .assert()
+        .success();
+    assert_eq!(
+        std::fs::read_dir(installed.path())
+            .expect("a folder")
+            .count(),
+        1
+    );
+
+    for experiment in ALL {
+        check(experiment, one.path());
+        check(experiment, two.path());
     }
     for experiment in ALL {
         for artefact in experiment.artefacts {

@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
+use super::datasets;
 use super::document::Document;
 use super::journal::Journal;
 use super::options::{Budget, Options};
@@ -20,15 +21,16 @@ use crate::{Error, Result};
 /// Set when the user asked to stop; units under way finish, no new one starts.
 pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 
+/// Folder of journals and unpacked data sets, below a paper's folder; removed by a run that succeeds.
+pub(super) const WORK: &str = ".work";
+
+/// Folder of the unpacked data sets, below that one.
+pub(super) const DATASETS: &str = "datasets";
+
 /// Two units of work with one name: the journal could not tell them apart.
 #[derive(Debug, thiserror::Error)]
 #[error("two units of work are both called {0:?}")]
 struct DuplicateUnit(String);
-
-/// No shipped data of this name.
-#[derive(Debug, thiserror::Error)]
-#[error("no such folder; run from the project's folder, where `datasets` is")]
-struct NoDatasets;
 
 /// The options of the run and the artefact in the making.
 pub struct Context<'a> {
@@ -91,17 +93,13 @@ impl<'a> Context<'a> {
         self.settings.insert(name.to_string(), value.into());
     }
 
-    /// Path of a file or folder below `datasets/`; its digest is recorded.
+    /// Path of a copy of a file or folder of `datasets/`, which is part of the program; its digest is
+    /// recorded.
     ///
     /// # Errors
-    /// [`Error::Content`] when the shipped data cannot be found, [`Error::Io`] when it cannot be read.
+    /// [`Error::Content`] when nothing of this name ships, [`Error::Io`] when the copy cannot be made.
     pub fn shipped(&mut self, name: &str) -> Result<PathBuf> {
-        let built = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let path = [Path::new("datasets"), &built.join("datasets")]
-            .iter()
-            .map(|folder| folder.join(name))
-            .find(|path| path.exists())
-            .ok_or_else(|| Error::content(&Path::new("datasets").join(name), NoDatasets))?;
+        let path = datasets::unpack(name, &self.work().join(DATASETS))?;
         self.data
             .insert(format!("datasets/{name}"), provenance::digest(&path)?);
         Ok(path)
@@ -194,7 +192,12 @@ impl<'a> Context<'a> {
             self.batches,
             &provenance::hex(&hash.finalize())[..16]
         );
-        self.folder.join(".work").join(name)
+        self.work().join(name)
+    }
+
+    /// Folder of what only a run in progress needs.
+    fn work(&self) -> PathBuf {
+        self.folder.join(WORK)
     }
 
     /// Adds an observation to `<artefact>.csv`; the experiment's name is filled in.
@@ -208,15 +211,15 @@ impl<'a> Context<'a> {
         self.document.block(table.markdown());
     }
 
-    /// Writes `<name>.svg` and `<name>.png` and shows the picture in `<artefact>.md`. The artefact's
-    /// own picture has the artefact's name; further ones append to it (`figure_14_right`).
+    /// Writes `<name>.png` and, unless it is long ([`report::MOST_SVG_BYTES`]), `<name>.svg`, and shows
+    /// the picture in `<artefact>.md`. The artefact's own picture has the artefact's name; further ones
+    /// append to it (`figure_14_right`).
     ///
     /// # Errors
     /// [`Error::Io`] when a file cannot be written.
     pub fn figure(&mut self, name: &str, figure: &Figure) -> Result<()> {
-        report::write_figure(&self.folder, name, figure)?;
-        self.files.push(format!("{name}.svg"));
-        self.files.push(format!("{name}.png"));
+        let files = report::write_report_figure(&self.folder, name, figure)?;
+        self.files.extend(files);
         self.document.image(name, figure.caption());
         Ok(())
     }

@@ -1,17 +1,19 @@
 //! Finished units of work, kept so that a run that was stopped goes on where it was.
 //!
 //! One JSON object a line, `{"key": ..., "value": ...}`, appended in one write when a unit ends. A
-//! kill can leave half a line at the end, which is dropped on the next start. The file's name
-//! carries a hash of the settings, so that other settings find nothing to reuse.
+//! kill can leave half a line at the end, which is cut off on the next start. The file's name
+//! carries a hash of the settings, so that other settings find nothing to reuse. A journal is locked
+//! while it is open: what one process cuts off could be what another one is writing.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
 
+use super::lock;
 use crate::{Error, Result};
 
 #[derive(Serialize, Deserialize)]
@@ -29,24 +31,29 @@ pub struct Journal {
 
 impl Journal {
     /// Opens or starts the journal at `path`, whose folder is made when missing.
+    ///
+    /// # Errors
+    /// [`Error::Content`] when another process has it open.
     pub fn open(path: &Path) -> Result<Self> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
         }
-        let old = match std::fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-            Err(e) => return Err(Error::io(path, "read", e)),
-        };
-        let (done, whole) = entries(&old);
-        if whole < old.len() {
-            crate::file::write_atomic(path, &old[..whole])?;
-        }
-        let file = OpenOptions::new()
+        let mut file = OpenOptions::new()
             .create(true)
+            .read(true)
             .append(true)
             .open(path)
             .map_err(|e| Error::io(path, "write", e))?;
+        lock::exclusive(&file, path)?;
+        let mut old = Vec::new();
+        file.read_to_end(&mut old)
+            .map_err(|e| Error::io(path, "read", e))?;
+        let (done, whole) = entries(&old);
+        if whole < old.len() {
+            // In place: the file that is locked is the one that is appended to.
+            file.set_len(whole as u64)
+                .map_err(|e| Error::io(path, "write", e))?;
+        }
         Ok(Self {
             path: path.to_path_buf(),
             done,
@@ -111,7 +118,39 @@ mod tests {
         assert_eq!(journal.get::<f64>("two"), Some(0.1 + 0.2));
         assert_eq!(journal.get::<f64>("three"), None);
         journal.put("three", &3.0).unwrap();
+        drop(journal);
         let journal = Journal::open(&path).unwrap();
         assert_eq!(journal.get::<f64>("three"), Some(3.0));
+    }
+    #[test]
+    fn a_journal_in_use_is_not_opened_again_and_loses_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.jsonl");
+        std::fs::write(&path, b"{\"key\":\"zero\",\"value\":0.5}\n{\"key\":\"ha").unwrap();
+        let journal = Journal::open(&path).unwrap();
+        let message = Journal::open(&path).err().unwrap().to_string();
+        assert!(message.contains("another run"), "{message}");
+        journal.put("one", &1.5).unwrap();
+        drop(journal);
+        let journal = Journal::open(&path).unwrap();
+        assert_eq!(journal.get::<f64>("zero"), Some(0.5));
+        assert_eq!(journal.get::<f64>("one"), Some(1.5));
+    }
+    #[test]
+    fn damaged_journals_are_read_as_far_as_they_are_whole() {
+        let line = |k: usize| format!("{{\"key\":\"u{k}\",\"value\":{k}}}\n");
+        let whole: String = (0..4).map(line).collect();
+        for length in 0..=whole.len() {
+            let (done, kept) = entries(&whole.as_bytes()[..length]);
+            assert!(kept <= length && done.len() == kept / line(0).len());
+        }
+        for at in 0..whole.len() {
+            for byte in [0, b'9', b'"', b'{', b'\n', 0xff] {
+                let mut bytes = whole.clone().into_bytes();
+                bytes[at] = byte;
+                let (done, kept) = entries(&bytes);
+                assert!(done.len() >= at / line(0).len() && kept <= bytes.len());
+            }
+        }
     }
 }

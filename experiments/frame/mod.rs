@@ -1,8 +1,10 @@
 //! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
 
 mod context;
+mod datasets;
 mod document;
 mod journal;
+mod lock;
 mod options;
 mod progress;
 mod provenance;

@@ -29,6 +29,8 @@ impl Budget {
 
 /// Command-line options of `edifice reproduce` and of each paper's binary.
 #[derive(Debug, Clone, clap::Args)]
+// The command that these are flattened into has a group of the default name, `Args`.
+#[group(id = "experiment")]
 pub struct Args {
     /// Run only these tables and figures, for example table_1,figure_14
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]

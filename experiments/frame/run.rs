@@ -1,5 +1,6 @@
 //! Runs experiments and writes the report.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -7,8 +8,9 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use super::context::{Context, STOP};
+use super::context::{Context, DATASETS, STOP, WORK};
 use super::document::readable;
+use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::line;
 use super::provenance::{Machine, Made, Run};
@@ -73,12 +75,12 @@ impl Report {
 
 /// Runs the experiments and writes the report.
 ///
-/// A failing artefact does not stop the others; see [`Report::check`]. The journals of finished
-/// units are removed only when everything asked for is done.
+/// A failing artefact does not stop the others; see [`Report::check`]. The journals of the artefacts
+/// asked for are removed only when all of these are done.
 ///
 /// # Errors
-/// [`Error::Option`] for an unknown artefact, [`Error::Io`] when the report cannot be written,
-/// [`Error::Interrupted`] after Ctrl-C.
+/// [`Error::Option`] for an unknown artefact, [`Error::Content`] when another run writes into the same
+/// folder, [`Error::Io`] when the report cannot be written, [`Error::Interrupted`] after Ctrl-C.
 pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Report> {
     let chosen = choose(experiments, &options.only)?;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -87,9 +89,15 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
         .map_err(Error::method)?;
     let start = Instant::now();
     let mut report = Report::default();
-    for (experiment, artefacts) in &chosen {
+    // All folders before any work, so that a second run on one of them says so at once.
+    let mut locks = Vec::new();
+    for (experiment, _) in &chosen {
         let folder = options.out.join(experiment.slug);
         std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create", e))?;
+        locks.push(Lock::take(&folder)?);
+    }
+    for (experiment, artefacts) in &chosen {
+        let folder = options.out.join(experiment.slug);
         for artefact in artefacts {
             let name = format!("{}/{}", experiment.slug, artefact.name);
             line(&format!("{name}: {}", artefact.title));
@@ -106,8 +114,8 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
     }
     report.index = write_index(&options.out)?;
     if report.failed.is_empty() {
-        for (experiment, _) in &chosen {
-            remove_journals(&options.out.join(experiment.slug).join(".work"))?;
+        for (experiment, artefacts) in &chosen {
+            remove_work(&options.out.join(experiment.slug).join(WORK), artefacts)?;
         }
     }
     report.seconds = start.elapsed().as_secs_f64();
@@ -189,6 +197,8 @@ fn make(
 
 /// Writes `OUT/index.html` over every paper found there, so that papers run one by one add up.
 fn write_index(out: &Path) -> Result<PathBuf> {
+    // Of two runs that end at once, the second writes the page that has both.
+    let _lock = Lock::wait(out)?;
     let fail = |e| Error::io(out, "read", e);
     let mut folders = Vec::new();
     for entry in std::fs::read_dir(out).map_err(fail)? {
@@ -239,10 +249,28 @@ fn page(folder: &Path, run: &Run) -> Page {
     }
 }
 
-/// Removes a finished run's journals.
-fn remove_journals(folder: &Path) -> Result<()> {
-    match std::fs::remove_dir_all(folder) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io(folder, "remove", e)),
+/// Removes the journals of finished artefacts, whatever their settings, and the unpacked data sets. The
+/// journals of other artefacts stay for the runs that go on with them.
+fn remove_work(folder: &Path, artefacts: &[&'static Artefact]) -> Result<()> {
+    let there = |result: std::io::Result<()>, path: &Path| match result {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(Error::io(path, "remove", e)),
+        _ => Ok(()),
+    };
+    let unpacked = folder.join(DATASETS);
+    there(std::fs::remove_dir_all(&unpacked), &unpacked)?;
+    let mut left = 0;
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let owner = name.split('-').next();
+        if artefacts.iter().any(|a| owner == Some(a.name)) {
+            there(std::fs::remove_file(&path), &path)?;
+        } else {
+            left += 1;
+        }
+    }
+    match left {
+        0 => there(std::fs::remove_dir(folder), folder),
         _ => Ok(()),
     }
 }

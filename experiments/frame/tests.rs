@@ -79,6 +79,11 @@ fn a_run_that_was_stopped_goes_on_where_it_was() {
     assert!(matches!(stopped, Err(crate::Error::Interrupted)));
     assert!(parts.path().join("fake/.work").exists());
 
+    // Another artefact's run, which goes on with nothing of this one, takes nothing from it.
+    let mut other = options(parts.path());
+    other.only = vec!["table_2".into()];
+    run(&[&FAKE], &other).unwrap();
+
     RUNS.store(0, Ordering::SeqCst);
     LIMIT.store(usize::MAX, Ordering::SeqCst);
     let report = run(&[&FAKE], &options(parts.path())).unwrap();
@@ -93,4 +98,21 @@ fn a_run_that_was_stopped_goes_on_where_it_was() {
     assert!(!parts.path().join("fake/.work").exists());
     let index = std::fs::read_to_string(&report.index).unwrap();
     assert!(index.contains("five squared") && index.contains("25.1"));
+}
+
+#[test]
+fn a_folder_that_another_run_has_is_refused() {
+    let out = tempfile::tempdir().unwrap();
+    let mut table = options(out.path());
+    table.only = vec!["table_2".into()];
+    let folder = out.path().join("fake");
+    std::fs::create_dir(&folder).unwrap();
+    let other = lock::Lock::take(&folder).unwrap();
+    let message = run(&[&FAKE], &table).unwrap_err().to_string();
+    assert!(
+        message.contains("fake: another run writes here"),
+        "{message}"
+    );
+    drop(other);
+    run(&[&FAKE], &table).unwrap();
 }

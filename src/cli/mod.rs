@@ -5,6 +5,7 @@ mod building;
 mod facade;
 mod grammar;
 mod logic;
+mod model;
 mod print;
 mod reproduce;
 
@@ -34,6 +35,9 @@ enum Command {
     /// Learn how houses look (Fan and Wonka 2016).
     #[command(subcommand)]
     Building(building::Command),
+    /// Show and convert Bayesian networks and logic models.
+    #[command(subcommand)]
+    Model(model::Command),
     /// Run the experiments of the papers and write the report.
     Reproduce(reproduce::Args),
 }
@@ -45,6 +49,7 @@ pub fn run() -> ExitCode {
         Command::Facade(command) => facade::run(command),
         Command::Logic(command) => logic::run(command),
         Command::Building(command) => building::run(command),
+        Command::Model(command) => model::run(command),
         Command::Reproduce(args) => reproduce::run(args),
     };
     match outcome {

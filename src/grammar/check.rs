@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
+use super::derive::REGION_LIMIT;
 use super::place::{Fit, place};
 use super::table::Table;
 use super::{Grammar, GrammarError, Operation, Rule, Size, Successor, Warning};
@@ -10,8 +11,8 @@ use crate::shape::Rect;
 /// Lengths are equal when they differ by at most this fraction of the facade's larger side.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Regions of different sizes tried per check; grammars whose relative sizes make more are
-/// checked further when they are derived.
+/// Regions of different sizes tried per check; grammars whose relative sizes make more, or which
+/// split these into more than [`REGION_LIMIT`] parts, are checked further when they are derived.
 const SIZES_TRIED: usize = 200_000;
 
 /// Checks a grammar: symbols, numbers, one rule per non-terminal (or weights), no cycle, and sizes
@@ -178,26 +179,29 @@ fn check_rule(index: usize, rule: &Rule) -> Result<(), GrammarError> {
 /// Lays out every rule once in every size of region that the starts lead to.
 fn check_sizes(grammar: &Grammar, table: &Table<'_>) -> Result<(), GrammarError> {
     let mut seen: FxHashSet<(usize, u64, u64)> = FxHashSet::default();
-    let mut parts = Vec::new();
+    let mut visited = 0;
     for (start, &symbol) in grammar.starts.iter().zip(&table.starts) {
         let tolerance = TOLERANCE * start.width.max(start.height);
-        let mut stack = vec![(symbol, start.width, start.height)];
-        while let Some((symbol, width, height)) = stack.pop() {
-            let new = seen.insert((symbol, width.to_bits(), height.to_bits()));
-            if !new || seen.len() > SIZES_TRIED {
-                continue;
-            }
+        let mut stack = Vec::new();
+        let mut new = |symbol: usize, width: f64, height: f64| {
+            seen.len() < SIZES_TRIED && seen.insert((symbol, width.to_bits(), height.to_bits()))
+        };
+        if new(symbol, start.width, start.height) {
+            stack.push((symbol, start.width, start.height));
+        }
+        while visited <= REGION_LIMIT
+            && let Some((symbol, width, height)) = stack.pop()
+        {
             for &rule in &table.rules_of[symbol] {
                 let rect = Rect::new(0.0, 0.0, width, height);
-                parts.clear();
                 let written = &grammar.rules[rule];
-                place(rule, written, rect, tolerance, Fit::AsWritten, &mut parts)?;
-                for (i, part) in &parts {
-                    let child = table.right[rule][*i];
-                    if !table.rules_of[child].is_empty() {
+                place(rule, written, rect, tolerance, Fit::AsWritten, |i, part| {
+                    visited += 1;
+                    let child = table.right[rule][i];
+                    if !table.rules_of[child].is_empty() && new(child, part.width, part.height) {
                         stack.push((child, part.width, part.height));
                     }
-                }
+                })?;
             }
         }
     }

@@ -131,7 +131,9 @@ pub(super) fn walk(
         non_terminals.push(NonTerminal { rule, rect, depth });
         parts.clear();
         let written = &grammar.rules[rule];
-        let factor = place(rule, written, rect, tolerance, fit, &mut parts)?;
+        let factor = place(rule, written, rect, tolerance, fit, |i, part| {
+            parts.push((i, part));
+        })?;
         if factor < 1.0 {
             let least = shrunk.entry(rule).or_insert(factor);
             *least = factor.min(*least);

@@ -21,9 +21,10 @@ pub(crate) enum Fit {
 /// A part along one axis: index of the written successor, offset from the start, extent.
 type Part = (usize, f64, f64);
 
-/// Lays out the successors of a rule in `rect`: pairs of the index of a successor, in the order of
-/// [`Operation::symbols`], and its rectangle, from left to right or bottom to top (a grid: row by
-/// row from the bottom).
+/// Lays out the successors of a rule in `rect`: visits the index of each successor, in the order of
+/// [`Operation::symbols`], with its rectangle, from left to right or bottom to top (a grid: row by
+/// row from the bottom). Nothing is allocated for the periods of a repeat, whose number follows from
+/// sizes that a file may state.
 ///
 /// Absolute sizes must fill the rectangle up to `tolerance`. Where there are relative sizes they
 /// share what the absolute ones leave, in proportion; a repeat then takes the whole number of
@@ -39,7 +40,7 @@ pub(super) fn place(
     rect: Rect,
     tolerance: f64,
     fit: Fit,
-    out: &mut Vec<(usize, Rect)>,
+    mut visit: impl FnMut(usize, Rect),
 ) -> Result<f64, GrammarError> {
     let line = |axis: Axis| Line {
         index,
@@ -49,27 +50,25 @@ pub(super) fn place(
         tolerance,
         fit,
     };
-    let mut strips = |axis: Axis, filled: Filled| {
-        let place = |(i, at, extent)| (i, rect.strip(axis, rect.start(axis) + at, extent));
-        out.extend(filled.parts.into_iter().map(place));
-        filled.factor
+    let mut strip = |axis: Axis, (i, at, extent): Part| {
+        visit(i, rect.strip(axis, rect.start(axis) + at, extent));
     };
     Ok(match &rule.operation {
         Operation::Split { axis, successors } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
-            strips(*axis, line(*axis).fill((0..sizes.len()).collect(), &sizes)?)
+            line(*axis).fill(0..sizes.len(), &sizes, |part| strip(*axis, part))?
         }
         Operation::Repeat { axis, successors } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
             let times = line(*axis).periods(&sizes, &[], 2)?;
-            let order = (0..times).flat_map(|_| 0..sizes.len()).collect();
-            strips(*axis, line(*axis).fill(order, &sizes)?)
+            let order = (0..times).flat_map(|_| 0..sizes.len());
+            line(*axis).fill(order, &sizes, |part| strip(*axis, part))?
         }
         Operation::RepeatAba { axis, a, b } => {
             let sizes = [a.size, b.size];
             let times = line(*axis).periods(&sizes, &sizes[..1], 1)?;
-            let order = (0..2 * times + 1).map(|i| i % 2).collect();
-            strips(*axis, line(*axis).fill(order, &sizes)?)
+            let order = (0..2 * times + 1).map(|i| i % 2);
+            line(*axis).fill(order, &sizes, |part| strip(*axis, part))?
         }
         Operation::SymSplit {
             axis,
@@ -78,27 +77,22 @@ pub(super) fn place(
         } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
             let mirrored = sizes.len() - usize::from(*center);
-            let order = (0..sizes.len()).chain((0..mirrored).rev()).collect();
-            strips(*axis, line(*axis).fill(order, &sizes)?)
+            let order = (0..sizes.len()).chain((0..mirrored).rev());
+            line(*axis).fill(order, &sizes, |part| strip(*axis, part))?
         }
         Operation::GridSplit { columns, rows, .. } => {
-            let across = line(Axis::X).fill((0..columns.len()).collect(), columns)?;
-            let up = line(Axis::Y).fill((0..rows.len()).collect(), rows)?;
-            for &(j, y, height) in &up.parts {
-                for &(i, x, width) in &across.parts {
+            let (mut across, mut up) = (Vec::new(), Vec::new());
+            let factor = line(Axis::X).fill(0..columns.len(), columns, |part| across.push(part))?;
+            let other = line(Axis::Y).fill(0..rows.len(), rows, |part| up.push(part))?;
+            for &(j, y, height) in &up {
+                for &(i, x, width) in &across {
                     let cell = Rect::new(rect.x + x, rect.y + y, width, height);
-                    out.push((j * columns.len() + i, cell));
+                    visit(j * columns.len() + i, cell);
                 }
             }
-            across.factor.min(up.factor)
+            factor.min(other)
         }
     })
-}
-
-/// The parts along one axis, and the factor by which their absolute sizes shrank.
-struct Filled {
-    parts: Vec<Part>,
-    factor: f64,
 }
 
 /// One axis of the region that a rule splits.
@@ -148,12 +142,18 @@ impl Line<'_> {
         Ok(times as usize)
     }
 
-    /// Offsets and extents of the parts `order`, whose sizes are `sizes[order[..]]`.
-    fn fill(&self, order: Vec<usize>, sizes: &[Size]) -> Result<Filled, GrammarError> {
+    /// Visits the offsets and extents of the parts `order`, whose sizes are `sizes[order[..]]`; returns the factor by which
+    /// their absolute sizes shrank.
+    fn fill(
+        &self,
+        order: impl Iterator<Item = usize> + Clone,
+        sizes: &[Size],
+        mut visit: impl FnMut(Part),
+    ) -> Result<f64, GrammarError> {
         let weights = relative_summable(sizes);
         let sizes = weights.as_deref().unwrap_or(sizes);
         let (mut absolute, mut relative) = (0.0, 0.0);
-        for &i in &order {
+        for i in order.clone() {
             match sizes[i] {
                 Size::Absolute(v) => absolute += v,
                 Size::Relative(v) => relative += v,
@@ -177,7 +177,6 @@ impl Line<'_> {
                 extent: self.extent,
             });
         };
-        let mut parts = Vec::with_capacity(order.len());
         let mut at = 0.0;
         for i in order {
             let extent = match sizes[i] {
@@ -193,10 +192,10 @@ impl Line<'_> {
                     extent: self.extent,
                 });
             }
-            parts.push((i, at, extent));
+            visit((i, at, extent));
             at += extent;
         }
-        Ok(Filled { parts, factor })
+        Ok(factor)
     }
 }
 

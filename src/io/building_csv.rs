@@ -9,6 +9,9 @@ use crate::{Error, Result};
 /// Most bytes that a compressed table may unpack to.
 const MOST_BYTES: u64 = 1 << 28;
 
+/// Most cells of a table: a compressed one may have half as many as bytes, each a text of its own.
+const MOST_CELLS: usize = 1 << 24;
+
 /// A CSV file: its header and its rows, all of the header's length.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextTable {
@@ -30,7 +33,8 @@ pub fn read(path: &Path) -> Result<TextTable> {
 /// Parses the bytes of a table; `path` only names the file in errors.
 ///
 /// # Errors
-/// As [`read`]; [`Error::Content`] for a compressed table of more than 256 MB.
+/// As [`read`]; [`Error::Content`] for a compressed table of more than 256 MB, or one of more than
+/// 16 million cells.
 pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
     let mut unpacked = Vec::new();
     let text = if bytes.starts_with(&[0x1f, 0x8b]) {
@@ -53,9 +57,14 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
     };
     let mut reader = csv::Reader::from_reader(text);
     let header = reader.headers().map_err(at)?;
-    let header = header.iter().map(str::to_owned).collect();
+    let header: Vec<String> = header.iter().map(str::to_owned).collect();
+    let most_rows = MOST_CELLS / header.len().max(1);
     let mut rows = Vec::new();
     for record in reader.records() {
+        if rows.len() == most_rows {
+            let message = format!("the table has more than {MOST_CELLS} cells");
+            return Err(Error::content(path, message));
+        }
         rows.push(record.map_err(at)?.iter().map(str::to_owned).collect());
     }
     if rows.is_empty() {

@@ -71,6 +71,9 @@ impl Pixels {
         };
         let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
         decoder.set_transformations(Transformations::STRIP_16);
+        // Compressed texts and profiles could unpack to the limit, and say nothing about labels.
+        decoder.set_ignore_text_chunk(true);
+        decoder.set_ignore_iccp_chunk(true);
         let header = decoder.read_header_info()?;
         let (width, height) = (header.width, header.height);
         let pixels = u64::from(width) * u64::from(height);

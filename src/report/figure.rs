@@ -1,10 +1,11 @@
 //! Figures: panels in a grid.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::drawing::{Area, Drawing};
 use super::{Bars, Chart, Dendrogram, HeatMap, Tiles, render};
-use crate::Result;
+use crate::{Error, Result};
 
 /// One panel of a figure.
 #[derive(Debug, Clone)]
@@ -102,16 +103,45 @@ impl Figure {
     }
 }
 
+/// Longest SVG that a report holds, in bytes: layouts of thousands of rectangles make megabytes of
+/// text that no browser shows well.
+pub const MOST_SVG_BYTES: usize = 200_000;
+
 /// Writes `<name>.svg` and `<name>.png` into a folder.
 ///
 /// # Errors
 /// [`crate::Error::Io`] when a file cannot be written, [`crate::Error::Method`] when plotters cannot draw.
 pub fn write_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
+    write_within(folder, name, figure, usize::MAX).map(|_| ())
+}
+
+/// As [`write_figure`], without an SVG above [`MOST_SVG_BYTES`]; one that an earlier run left is
+/// removed. Returns the names of the files.
+///
+/// # Errors
+/// As [`write_figure`].
+pub fn write_report_figure(folder: &Path, name: &str, figure: &Figure) -> Result<Vec<String>> {
+    write_within(folder, name, figure, MOST_SVG_BYTES)
+}
+
+fn write_within(folder: &Path, name: &str, figure: &Figure, most: usize) -> Result<Vec<String>> {
     let drawing = figure.draw();
+    let mut files = Vec::new();
+    let (vector, pixels) = (format!("{name}.svg"), format!("{name}.png"));
     let svg = render::svg(&drawing)?;
-    crate::file::write_atomic(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+    let path = folder.join(&vector);
+    if svg.len() <= most {
+        crate::file::write_atomic(&path, svg.as_bytes())?;
+        files.push(vector);
+    } else if let Err(e) = std::fs::remove_file(&path)
+        && e.kind() != ErrorKind::NotFound
+    {
+        return Err(Error::io(&path, "remove", e));
+    }
     let png = render::png(&drawing)?;
-    crate::file::write_atomic(&folder.join(format!("{name}.png")), &png)
+    crate::file::write_atomic(&folder.join(&pixels), &png)?;
+    files.push(pixels);
+    Ok(files)
 }
 
 #[cfg(test)]

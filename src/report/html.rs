@@ -58,7 +58,7 @@ pub fn index(pages: &[Page]) -> String {
             }
             body { main {
                 h1 { "Edifice: report" }
-                p { "Every table and figure that was made, each beside what its paper printed. Pictures link to their vector form." }
+                p { "Every table and figure that was made, each beside what its paper printed. Pictures link to their vector form where it is small enough to ship." }
                 nav { @for page in pages {
                     h3 { (page.paper) }
                     ul { @for s in &page.sections { li { a href=(format!("#{}-{}", page.slug, s.name)) { (s.heading) } } } }
@@ -69,7 +69,7 @@ pub fn index(pages: &[Page]) -> String {
                     @for s in &page.sections {
                         section id=(format!("{}-{}", page.slug, s.name)) {
                             h3 { (s.heading) }
-                            (markdown::html(&s.markdown, &page.slug))
+                            (markdown::html(&s.markdown, markdown::Place { folder: &page.slug, files: &s.files }))
                             p.made {
                                 (s.made) ". Files: "
                                 @for (i, file) in s.files.iter().enumerate() {

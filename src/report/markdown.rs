@@ -2,9 +2,17 @@
 
 use maud::{Markup, PreEscaped, html};
 
-/// Renders the page of an artefact; links and pictures are relative to `folder`. The first heading
-/// is left out, since the index has its own.
-pub fn html(text: &str, folder: &str) -> Markup {
+/// Where the links of a page lead.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// Folder that links and pictures are relative to.
+    pub folder: &'a str,
+    /// Files in it: a picture links to its vector form where there is one.
+    pub files: &'a [String],
+}
+
+/// Renders the page of an artefact. The first heading is left out, since the index has its own.
+pub fn html(text: &str, place: Place) -> Markup {
     let blocks: Vec<&str> = text
         .split("\n\n")
         .map(str::trim)
@@ -13,18 +21,18 @@ pub fn html(text: &str, folder: &str) -> Markup {
     html! {
         @for block in blocks {
             @if block.starts_with("# ") {}
-            @else if block.starts_with('|') { (table(block, folder)) }
-            @else if let Some(heading) = block.strip_prefix("## ") { h4 { (inline(heading, folder)) } }
+            @else if block.starts_with('|') { (table(block, place)) }
+            @else if let Some(heading) = block.strip_prefix("## ") { h4 { (inline(heading, place)) } }
             @else if block.starts_with("```") { pre { (block.trim_matches('`').trim()) } }
             @else if block.starts_with("- ") {
-                ul { @for line in block.lines() { li { (inline(line.trim_start_matches("- "), folder)) } } }
+                ul { @for line in block.lines() { li { (inline(line.trim_start_matches("- "), place)) } } }
             }
-            @else { p { (inline(block, folder)) } }
+            @else { p { (inline(block, place)) } }
         }
     }
 }
 
-fn table(block: &str, folder: &str) -> Markup {
+fn table(block: &str, place: Place) -> Markup {
     let cells = |line: &str| -> Vec<String> {
         let line = line.trim().trim_start_matches('|').trim_end_matches('|');
         let line = line.replace("\\|", "\u{1}");
@@ -47,22 +55,22 @@ fn table(block: &str, folder: &str) -> Markup {
     };
     html! {
         div.scroll { table {
-            thead { tr { @for (i, cell) in head.iter().enumerate() { th class=(class(i)) { (inline(cell, folder)) } } } }
+            thead { tr { @for (i, cell) in head.iter().enumerate() { th class=(class(i)) { (inline(cell, place)) } } } }
             tbody { @for line in lines {
-                tr { @for (i, cell) in cells(line).iter().enumerate() { td class=(class(i)) { (inline(cell, folder)) } } }
+                tr { @for (i, cell) in cells(line).iter().enumerate() { td class=(class(i)) { (inline(cell, place)) } } }
             } }
         } }
     }
 }
 
 /// Pictures, links, bold and code within a line.
-fn inline(text: &str, folder: &str) -> Markup {
+fn inline(text: &str, place: Place) -> Markup {
     let mut out = String::new();
     let mut rest = text;
     while let Some(at) = rest.find(['!', '[', '*', '`']) {
         out.push_str(&html! { (rest[..at]) }.into_string());
         rest = &rest[at..];
-        let (piece, used) = special(rest, folder);
+        let (piece, used) = special(rest, place);
         out.push_str(&piece.into_string());
         rest = &rest[used..];
     }
@@ -71,19 +79,19 @@ fn inline(text: &str, folder: &str) -> Markup {
 }
 
 /// The construct that `text` starts with, and its length; one plain character when there is none.
-fn special(text: &str, folder: &str) -> (Markup, usize) {
+fn special(text: &str, place: Place) -> (Markup, usize) {
     let picture = text.starts_with("![");
     if let Some((name, target, used)) = link(text.strip_prefix('!').unwrap_or(text)) {
+        let vector = target.strip_suffix(".png").map(|t| format!("{t}.svg"));
+        let vector = vector.filter(|name| place.files.contains(name));
         let outside = target.contains("://") || target.starts_with('#');
-        let target = if outside {
-            target.to_string()
-        } else {
-            format!("{folder}/{target}")
+        let located = |name: &str| match outside {
+            true => name.to_string(),
+            false => format!("{}/{name}", place.folder),
         };
+        let fine = located(vector.as_deref().unwrap_or(target));
+        let target = located(target);
         if picture {
-            let fine = target
-                .strip_suffix(".png")
-                .map_or(target.clone(), |t| format!("{t}.svg"));
             return (
                 html! { a href=(fine) { img src=(target) alt=(name) loading="lazy"; } },
                 used + 1,
@@ -119,14 +127,26 @@ mod tests {
     #[test]
     fn tables_links_and_escapes() {
         let text = "# Title\n\n| a | b |\n| --- | --: |\n| x \\| y | **1.5** |\n\n![plot](p.png)\n\n1 < 2, see [csv](t.csv) and `code` [1] 2*3!";
-        let page = html(text, "facade_grammar").into_string();
+        let files = ["q.svg".to_string()];
+        let place = Place {
+            folder: "facade_grammar",
+            files: &files,
+        };
+        let page = html(text, place).into_string();
         assert!(
             page.contains("<td class=\"\">x | y</td><td class=\"number\"><b>1.5</b></td>"),
             "{page}"
         );
         assert!(
-            page.contains("<img src=\"facade_grammar/p.png\" alt=\"plot\""),
+            page.contains(
+                "<a href=\"facade_grammar/p.png\"><img src=\"facade_grammar/p.png\" alt=\"plot\""
+            ),
             "{page}"
+        );
+        let fine = html("![fine](q.png)", place).into_string();
+        assert!(
+            fine.contains("<a href=\"facade_grammar/q.svg\"><img src=\"facade_grammar/q.png\""),
+            "{fine}"
         );
         assert!(page.contains("1 &lt; 2, see <a href=\"facade_grammar/t.csv\">csv</a> and <code>code</code> [1] 2*3!"), "{page}");
         assert!(!page.contains("Title"));

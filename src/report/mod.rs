@@ -29,7 +29,7 @@ pub use bars::{BarGroup, Bars};
 pub use chart::{Chart, Corner, Series};
 pub use colour::{Colour, category, ramp};
 pub use dendrogram::{Dendrogram, Merge};
-pub use figure::{Figure, Panel, write_figure};
+pub use figure::{Figure, MOST_SVG_BYTES, Panel, write_figure, write_report_figure};
 pub use heat_map::HeatMap;
 pub use html::{Page, Section, index};
 pub use rows::{Row, csv_bytes, write_rows};

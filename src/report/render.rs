@@ -3,7 +3,6 @@
 //! plotters' backends have whole-pixel coordinates: the SVG is drawn on a canvas eight times as fine and its
 //! header sets the logical size; the PNG is drawn at four times the size and halved, which smooths edges.
 
-use std::io::Cursor;
 use std::sync::Once;
 
 use plotters::prelude::*;
@@ -80,13 +79,17 @@ pub fn png(drawing: &Drawing) -> Result<Vec<u8>> {
         let root = BitMapBackend::with_buffer(&mut buffer, fine).into_drawing_area();
         draw(&root, drawing, PNG_SCALE * f64::from(PNG_SAMPLES))?;
     }
-    let image = image::RgbImage::from_raw(width, height, halved(&buffer, width, height))
-        .ok_or_else(|| Error::method(CannotDraw("the picture has no size".into())))?;
-    let mut bytes = Cursor::new(Vec::new());
-    image
-        .write_to(&mut bytes, image::ImageFormat::Png)
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    // Half the size of the default, in a fraction of the time that drawing takes.
+    encoder.set_filter(png::Filter::Adaptive);
+    encoder.set_compression(png::Compression::Balanced);
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&halved(&buffer, width, height)))
         .map_err(Error::method)?;
-    Ok(bytes.into_inner())
+    Ok(bytes)
 }
 
 /// Means of two by two pixels.

@@ -1,5 +1,7 @@
 //! A fitted model: affinities, rules, and each facade as a call of a starting rule.
 
+use rustc_hash::FxHashSet;
+
 use super::affinity::Affinity;
 use super::alphabet::Alphabet;
 use super::canvas::Canvas;
@@ -10,6 +12,9 @@ use super::parameters::{ParameterError, Parameters};
 use super::parse::{BinaryTree, NoSplit, parse};
 use super::rules::{Instance, InstanceError};
 use crate::shape::{Facade, GridError, LabelGrid};
+
+/// Most labels that a model is fitted to: affinities take the square of their number.
+const MOST_LABELS: usize = 4096;
 
 /// A facade that the model knows.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +48,9 @@ pub enum FitError {
     /// There are no facades to learn from.
     #[error("no facades to learn from")]
     Empty,
+    /// More labels than affinities are learned for.
+    #[error("the facades have {0} labels, expected at most {MOST_LABELS}")]
+    Labels(usize),
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
@@ -55,11 +63,15 @@ impl Model {
     /// Learns affinities from all facades, then adds them one by one.
     ///
     /// # Errors
-    /// [`FitError`] for no facades or parameters out of range.
+    /// [`FitError`] for no facades, too many labels or parameters out of range.
     pub fn fit(grids: &[LabelGrid], parameters: Parameters) -> Result<Self, FitError> {
         let parameters = parameters.checked()?;
         if grids.is_empty() {
             return Err(FitError::Empty);
+        }
+        let labels: FxHashSet<&String> = grids.iter().flat_map(|g| &g.labels).collect();
+        if labels.len() > MOST_LABELS {
+            return Err(FitError::Labels(labels.len()));
         }
         let mut alphabet = Alphabet::default();
         let affinity = learn_affinity(grids, &mut alphabet, &parameters);

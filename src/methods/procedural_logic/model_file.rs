@@ -15,6 +15,9 @@ pub const MODEL_FORMAT: &str = "edifice/logic-model";
 /// Version of the format.
 pub const MODEL_VERSION: u64 = 1;
 
+/// Largest count that a file may state, so that counting on never overflows.
+const MOST_COUNTED: u64 = 1 << 53;
+
 /// The record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -104,6 +107,14 @@ pub enum ModelFileError {
         /// The value found.
         value: f64,
     },
+    /// A count is larger than can be counted on from.
+    #[error("counts.{name} is {value}, expected at most {MOST_COUNTED}")]
+    Count {
+        /// Name of the count.
+        name: &'static str,
+        /// The value found.
+        value: u64,
+    },
     /// A facade starts with a label that does not exist.
     #[error("facades[{index}] starts with label {label}, which does not exist")]
     Label {
@@ -165,6 +176,16 @@ impl TryFrom<ModelFile> for Model {
         if !file.affinity.is_sound(labels) {
             return Err(ModelFileError::Affinity { labels });
         }
+        for (name, value) in [
+            ("facades", file.counts.facades),
+            ("binary_splits", file.counts.binary_splits),
+            ("nary_splits", file.counts.nary_splits),
+            ("forced", file.counts.forced),
+        ] {
+            if value > MOST_COUNTED {
+                return Err(ModelFileError::Count { name, value });
+            }
+        }
         let mut rules = RuleSet::default();
         for (index, record) in file.rules.into_iter().enumerate() {
             let wrong = |what| ModelFileError::Rule { index, what };
@@ -207,6 +228,9 @@ fn check_parts(record: &RuleRecord, index: usize, labels: usize) -> Result<(), &
     }
     if record.mean.len() != parts || record.deviation.len() != parts {
         return Err("mean and deviation need one number per part");
+    }
+    if record.uses > MOST_COUNTED {
+        return Err("it has more uses than can be counted on from");
     }
     let known = |call: &Call| match *call {
         Call::Insert(label) => (label as usize) < labels,

@@ -72,25 +72,11 @@ impl Hierarchy {
         }
         check_schema(&stored.schema)?;
         check_structure(&stored.schema, &stored.structure)?;
+        check_sizes(&stored)?;
         let shape = Shape::new(&stored.schema, stored.structure)?;
-        let empty = shape.stats();
-        let styles = shape.structure.styles;
-        distributions("style", &stored.style, styles, 1, styles)?;
-        check_tables("tables", &stored.tables, &empty.tables, styles, |g| {
-            shape.states(g)
-        })?;
-        check_tables("codes", &stored.codes, &empty.codes, styles, |c| {
-            shape.sizes[c]
-        })?;
-        if stored.linear.len() != shape.groups() {
-            return Err(corrupt("linear", "one list per real group is needed"));
-        }
         let mut linear = Vec::new();
         for (g, states) in stored.linear.into_iter().enumerate() {
             let place = format!("linear[{g}] ({})", stored.schema.groups[g]);
-            if states.len() != shape.states(g) {
-                return Err(corrupt(&place, "one entry per state is needed"));
-            }
             let states: Option<Vec<Linear>> = states
                 .into_iter()
                 .map(|l| Linear::new(shape.p[g], shape.d[g], l.coefficients, l.covariance))
@@ -155,7 +141,11 @@ fn check_schema(schema: &Schema) -> Result<(), ModelError> {
 
 fn check_structure(schema: &Schema, structure: &Structure) -> Result<(), ModelError> {
     let (groups, codes) = (schema.groups.len(), schema.codes.len());
-    let below = |lists: &[Vec<usize>], limit: usize| lists.iter().flatten().all(|&p| p < limit);
+    let below = |lists: &[Vec<usize>], limit: usize| {
+        lists
+            .iter()
+            .all(|list| list.is_sorted_by(|a, b| a < b) && list.last().is_none_or(|&p| p < limit))
+    };
     let selectors = structure.selectors.iter().all(|s| match s {
         Selector::Hidden(k) => *k >= 1,
         Selector::Style => true,
@@ -175,40 +165,76 @@ fn check_structure(schema: &Schema, structure: &Structure) -> Result<(), ModelEr
     Ok(())
 }
 
-fn check_tables(
-    name: &str,
-    tables: &[Vec<f64>],
-    like: &[Vec<f64>],
-    styles: usize,
-    values: impl Fn(usize) -> usize,
-) -> Result<(), ModelError> {
-    if tables.len() != like.len() {
-        return Err(corrupt(name, format!("{} tables are needed", like.len())));
+/// Compares every length that the structure asks for with what the file holds, before anything is
+/// allocated by a number in it.
+fn check_sizes(stored: &Stored) -> Result<(), ModelError> {
+    let (schema, structure) = (&stored.schema, &stored.structure);
+    let (styles, sizes) = (structure.styles, schema.sizes());
+    let product = |columns: &[usize]| {
+        columns
+            .iter()
+            .try_fold(1_usize, |n, &c| n.checked_mul(sizes[c]))
+    };
+    distributions("style", &stored.style, styles, 1, Some(1))?;
+    for (name, found, expected) in [
+        ("tables", stored.tables.len(), schema.groups.len()),
+        ("codes", stored.codes.len(), sizes.len()),
+        ("linear", stored.linear.len(), schema.groups.len()),
+    ] {
+        if found != expected {
+            return Err(corrupt(name, format!("{expected} entries are needed")));
+        }
     }
-    for (i, (table, like)) in tables.iter().zip(like).enumerate() {
-        if !like.is_empty() || !table.is_empty() {
-            distributions(
-                &format!("{name}[{i}]"),
-                table,
-                values(i),
-                styles,
-                like.len(),
-            )?;
+    for (c, table) in stored.codes.iter().enumerate() {
+        let rows = product(&structure.code_parents[c]);
+        distributions(&format!("codes[{c}]"), table, sizes[c], styles, rows)?;
+    }
+    for (g, (table, states)) in stored.tables.iter().zip(&stored.linear).enumerate() {
+        let place = format!("tables[{g}]");
+        let count = match &structure.selectors[g] {
+            Selector::Hidden(k) => {
+                distributions(&place, table, *k, styles, Some(1))?;
+                Some(*k)
+            }
+            _ if !table.is_empty() => {
+                return Err(corrupt(&place, "only a hidden variable has a table"));
+            }
+            Selector::Style => Some(styles),
+            Selector::Codes(columns) => product(columns),
+        };
+        let place = format!("linear[{g}] ({})", schema.groups[g]);
+        if count != Some(states.len()) {
+            return Err(corrupt(&place, "one entry per state is needed"));
+        }
+        let own = schema.columns(g).len();
+        let parents = structure.parents[g]
+            .iter()
+            .map(|&p| schema.columns(p).len());
+        let coefficients = (1 + parents.sum::<usize>()).checked_mul(own);
+        let fits = |l: &StoredLinear| Some(l.coefficients.len()) == coefficients;
+        if !states.iter().all(fits) {
+            return Err(corrupt(
+                &place,
+                "coefficients must fit the parents and columns",
+            ));
         }
     }
     Ok(())
 }
 
-/// Checks a table of distributions over `values` values, with `styles` fastest.
+/// Checks a table of `rows` distributions over `values` values, with `styles` fastest.
 fn distributions(
     place: &str,
     table: &[f64],
     values: usize,
     styles: usize,
-    size: usize,
+    rows: Option<usize>,
 ) -> Result<(), ModelError> {
-    if table.len() != size || table.iter().any(|p| !(0.0..=1.0).contains(p)) {
-        return Err(corrupt(place, format!("{size} probabilities are needed")));
+    let block = values.checked_mul(styles);
+    let size = block.zip(rows).and_then(|(b, r)| b.checked_mul(r));
+    if size != Some(table.len()) || table.iter().any(|p| !(0.0..=1.0).contains(p)) {
+        let needed = size.map_or("too many".into(), |size| size.to_string());
+        return Err(corrupt(place, format!("{needed} probabilities are needed")));
     }
     for block in table.chunks(values * styles) {
         for s in 0..styles {

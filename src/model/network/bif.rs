@@ -2,10 +2,16 @@
 //!
 //! Read are `network`, `variable` blocks with `type discrete`, and `probability` blocks with
 //! `table`, one line per configuration `(a, b) p, q;`, or `default`; properties and comments are
-//! skipped. Rows that are off 1 by rounding (less than 1e-3) are normalised.
+//! skipped. Rows that are off 1 by rounding (less than 1e-3) are normalised. `default` fills at most
+//! [`MOST_DEFAULTS`] numbers in all: a line of it can stand for more than there is memory.
+
+use std::collections::HashMap;
 
 use super::super::error::ModelError;
 use super::{Cpd, Network, Stated, Variable};
+
+/// Most probabilities that the `default` lines of a file may stand for.
+pub const MOST_DEFAULTS: usize = 1 << 22;
 
 impl Network {
     /// Reads a discrete network.
@@ -16,12 +22,21 @@ impl Network {
         let mut reader = Reader {
             tokens: tokens(text),
             at: 0,
+            places: HashMap::new(),
+            defaults: 0,
         };
         let mut variables: Vec<Variable> = Vec::new();
         while let Some((_, word)) = reader.next() {
             match word.as_str() {
                 "network" => reader.skip_block()?,
-                "variable" => variables.push(reader.variable()?),
+                "variable" => {
+                    let variable = reader.variable()?;
+                    let place = variables.len();
+                    if reader.places.insert(variable.name.clone(), place).is_some() {
+                        return Err(reader.wrong(&format!("`{}` is declared twice", variable.name)));
+                    }
+                    variables.push(variable);
+                }
                 "probability" => reader.probability(&mut variables)?,
                 other => return Err(reader.wrong(&format!("`{other}` starts no block"))),
             }
@@ -144,6 +159,10 @@ fn tokens(text: &str) -> Vec<(usize, String)> {
 struct Reader {
     tokens: Vec<(usize, String)>,
     at: usize,
+    /// Place of each variable among those read.
+    places: HashMap<String, usize>,
+    /// Probabilities that `default` lines have stood for.
+    defaults: usize,
 }
 
 impl Reader {
@@ -261,20 +280,27 @@ impl Reader {
             return Err(self.wrong("`|` is needed before the parents"));
         }
         let parents: Vec<String> = head.iter().skip(2).cloned().collect();
-        let find = |name: &String| variables.iter().position(|v| v.name == *name);
-        let unknown = |name: &String| ModelError::Unknown { name: name.clone() };
-        let own = find(child).ok_or_else(|| unknown(child))?;
-        let mut sizes = Vec::new();
-        for p in &parents {
-            sizes.push(
-                variables[find(p).ok_or_else(|| unknown(p))?]
-                    .categories
-                    .clone(),
-            );
+        let find = |name: &String| {
+            let place = self.places.get(name).copied();
+            place.ok_or_else(|| ModelError::Unknown { name: name.clone() })
+        };
+        let own = find(child)?;
+        if variables[own].stated != Stated::Open {
+            return Err(self.wrong(&format!("`{child}` has probabilities already")));
         }
+        let sizes: Result<Vec<&Vec<String>>, ModelError> = parents
+            .iter()
+            .map(|p| Ok(&variables[find(p)?].categories))
+            .collect();
+        let sizes = sizes?;
         let k = variables[own].categories.len();
-        let rows: usize = sizes.iter().map(Vec::len).product();
-        let mut table: Vec<Option<Vec<f64>>> = vec![None; rows];
+        let rows = sizes
+            .iter()
+            .try_fold(1_usize, |n, c| n.checked_mul(c.len()))
+            .filter(|rows| rows.checked_mul(k).is_some());
+        let rows = rows.ok_or_else(|| self.wrong("more configurations than can be counted"))?;
+        // By configuration: the file need not state all those that its parents have.
+        let mut table: HashMap<usize, Vec<f64>> = HashMap::new();
         let mut default = None;
         self.expect("{")?;
         loop {
@@ -288,9 +314,9 @@ impl Reader {
                     if all.len() != rows * k {
                         return Err(self.wrong(&format!("{} numbers are needed", rows * k)));
                     }
-                    for (i, row) in table.iter_mut().enumerate() {
+                    for i in 0..rows {
                         let column = (0..k).map(|v| all[v * rows + i]).collect();
-                        *row = Some(self.normal(column)?);
+                        table.insert(i, self.normal(column)?);
                     }
                 }
                 "(" => {
@@ -305,15 +331,25 @@ impl Reader {
                             value.ok_or_else(|| self.wrong(&format!("no parent is `{word}`")))?;
                         index = index * categories.len() + value;
                     }
-                    table[index] = Some(self.row(k)?);
+                    let row = self.row(k)?;
+                    table.insert(index, row);
                 }
                 other => return Err(self.wrong(&format!("`{other}` belongs to no probability"))),
             }
         }
+        if default.is_none() && table.len() < rows {
+            return Err(self.wrong("a configuration has no probabilities"));
+        }
+        self.defaults = self
+            .defaults
+            .saturating_add((rows - table.len()).saturating_mul(k));
+        if self.defaults > MOST_DEFAULTS {
+            let problem = format!("`default` stands for more than {MOST_DEFAULTS} probabilities");
+            return Err(self.wrong(&problem));
+        }
         let mut flat = Vec::with_capacity(rows * k);
-        for row in table {
-            let row = row.or_else(|| default.clone());
-            flat.extend(row.ok_or_else(|| self.wrong("a configuration has no probabilities"))?);
+        for i in 0..rows {
+            flat.extend(table.get(&i).or(default.as_ref()).into_iter().flatten());
         }
         variables[own].parents = parents;
         variables[own].stated = Stated::Table(flat);

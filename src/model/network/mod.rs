@@ -30,6 +30,7 @@
 //! Sources: Koller and Friedman 2009, Ch. 9, 13 and 14; Dechter 1999; Lauritzen 1992.
 
 mod bif;
+mod check;
 mod evidence;
 mod expect;
 mod factor;
@@ -38,12 +39,16 @@ mod query;
 mod store;
 mod tree;
 
+use std::collections::{HashMap, HashSet};
+
 use super::conjugate::Linear;
 use super::error::ModelError;
 use super::hierarchy::order;
+use check::check;
 pub use evidence::Evidence;
 pub use learn::{LearnSettings, Trained};
 pub use query::{Answer, Explanation};
+pub use store::FORMAT;
 
 /// A conditional distribution as stated.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,21 +192,21 @@ impl Network {
             return Err(ModelError::Empty { what: "variables" });
         }
         let names: Vec<String> = variables.iter().map(|v| v.name.clone()).collect();
-        let mut width = 0;
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        for (i, v) in variables.iter().enumerate() {
+            if places.insert(&v.name, i).is_some() {
+                let name = v.name.clone();
+                return Err(ModelError::Duplicate { name });
+            }
+        }
+        let mut width = 0_usize;
         let mut coordinates = Vec::new();
         let mut parents = Vec::new();
-        for (i, v) in variables.iter().enumerate() {
-            if names[..i].contains(&v.name) {
-                return Err(ModelError::Duplicate {
-                    name: v.name.clone(),
-                });
-            }
-            for (c, category) in v.categories.iter().enumerate() {
-                if v.categories[..c].contains(category) {
-                    return Err(ModelError::Duplicate {
-                        name: format!("{}={category}", v.name),
-                    });
-                }
+        for v in &variables {
+            let mut seen = HashSet::new();
+            if let Some(category) = v.categories.iter().find(|c| !seen.insert(*c)) {
+                let name = format!("{}={category}", v.name);
+                return Err(ModelError::Duplicate { name });
             }
             if v.categories.is_empty() == (v.dimension == 0) {
                 return Err(ModelError::parameter(
@@ -209,13 +214,21 @@ impl Network {
                     "needs categories or coordinates",
                 ));
             }
-            coordinates.push(width..width + v.dimension);
-            width += v.dimension;
+            let end = width.checked_add(v.dimension).ok_or_else(|| {
+                ModelError::parameter(&v.name, "has more coordinates than can be counted")
+            })?;
+            coordinates.push(width..end);
+            width = end;
+            let mut seen = HashSet::new();
+            if let Some(twice) = v.parents.iter().find(|p| !seen.insert(*p)) {
+                let problem = format!("has the parent `{twice}` twice");
+                return Err(ModelError::parameter(&v.name, problem));
+            }
             let found: Result<Vec<usize>, ModelError> = v
                 .parents
                 .iter()
                 .map(|p| {
-                    let at = names.iter().position(|n| n == p);
+                    let at = places.get(p.as_str()).copied();
                     at.ok_or_else(|| ModelError::Unknown { name: p.clone() })
                 })
                 .collect();
@@ -231,10 +244,12 @@ impl Network {
             let (discrete, real): (Vec<usize>, Vec<usize>) = parents[i]
                 .iter()
                 .partition(|&&p| variables[p].dimension == 0);
-            let regressors: Vec<usize> =
-                real.iter().flat_map(|&p| coordinates[p].clone()).collect();
-            let configurations = discrete.iter().map(|&p| sizes[p]).product();
-            let cpd = check(v, configurations, regressors.len() + 1)?;
+            let configurations = discrete.iter().try_fold(1, |n, &p| sizes[p].checked_mul(n));
+            let inputs = real
+                .iter()
+                .try_fold(1, |n, &p| coordinates[p].len().checked_add(n));
+            let cpd = check(v, configurations, inputs)?;
+            let regressors = real.iter().flat_map(|&p| coordinates[p].clone()).collect();
             nodes.push(Node {
                 name: v.name.clone(),
                 categories: v.categories.clone(),
@@ -325,76 +340,5 @@ impl Network {
             .ok_or_else(|| ModelError::Unknown {
                 name: name.to_owned(),
             })
-    }
-}
-
-/// The stated distribution of `v` with so many configurations of discrete parents and `p` = 1 +
-/// continuous coordinates.
-fn check(v: &Variable, configurations: usize, p: usize) -> Result<Cpd, ModelError> {
-    let (k, d) = (v.categories.len(), v.dimension);
-    let sized = |got: usize, expected: usize| {
-        let problem = format!("has {got} numbers, {expected} are needed");
-        (got == expected)
-            .then_some(())
-            .ok_or_else(|| ModelError::parameter(&v.name, problem))
-    };
-    match (&v.stated, d > 0) {
-        (Stated::Table(_) | Stated::Open, false) if p > 1 => Err(ModelError::Kind {
-            column: v.name.clone(),
-            got: "a table with a continuous parent",
-            expected: "a softmax",
-        }),
-        (Stated::Table(table), false) => {
-            sized(table.len(), configurations * k)?;
-            for (i, row) in table.chunks(k).enumerate() {
-                let sum: f64 = row.iter().sum();
-                let fine = row.iter().all(|p| (0.0..=1.0).contains(p)) && (sum - 1.0).abs() < 1e-6;
-                if !fine {
-                    let problem = format!("configuration {i}: {row:?} is no distribution");
-                    return Err(ModelError::parameter(&v.name, problem));
-                }
-            }
-            Ok(Cpd::Table(table.clone()))
-        }
-        (Stated::Softmax(weights), false) => {
-            sized(weights.len(), configurations * k * p)?;
-            if !weights.iter().all(|w| w.is_finite()) {
-                return Err(ModelError::parameter(
-                    &v.name,
-                    "has a weight that is not finite",
-                ));
-            }
-            Ok(Cpd::Softmax(weights.clone()))
-        }
-        (Stated::Linear(states), true) => {
-            sized(states.len(), configurations)?;
-            let linear: Result<Vec<Linear>, ModelError> = states
-                .iter()
-                .map(|(b, s)| {
-                    sized(b.len(), p * d)?;
-                    sized(s.len(), d * d)?;
-                    Linear::new(p, d, b.clone(), s.clone()).ok_or_else(|| ModelError::Singular {
-                        variable: v.name.clone(),
-                    })
-                })
-                .collect();
-            Ok(Cpd::Linear(linear?))
-        }
-        (Stated::Open, false) => Ok(Cpd::Table(vec![1.0 / k as f64; configurations * k])),
-        (Stated::Open, true) => {
-            let identity = (0..d * d)
-                .map(|i| f64::from(u8::from(i % (d + 1) == 0)))
-                .collect();
-            let linear = Linear::new(p, d, vec![0.0; p * d], identity);
-            let linear = linear.ok_or_else(|| ModelError::Singular {
-                variable: v.name.clone(),
-            })?;
-            Ok(Cpd::Linear(vec![linear; configurations]))
-        }
-        _ => Err(ModelError::Kind {
-            column: v.name.clone(),
-            got: if d > 0 { "a real vector" } else { "discrete" },
-            expected: "of the kind of its distribution",
-        }),
     }
 }

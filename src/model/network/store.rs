@@ -4,7 +4,7 @@ use super::super::error::ModelError;
 use super::{Cpd, Network, Stated, Variable};
 
 /// Format of the text; raised when its meaning changes.
-const FORMAT: &str = "edifice-network-1";
+pub const FORMAT: &str = "edifice-network-1";
 
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]

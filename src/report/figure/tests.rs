@@ -120,3 +120,23 @@ fn empty_panels_are_pictures_too() {
         .panel(Dendrogram::new("", "", vec![], vec![]));
     write_figure(folder.path(), "empty", &figure).unwrap();
 }
+
+#[test]
+fn a_report_has_no_long_svg() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = |tiles: usize| {
+        let tile = |i: usize| Tile {
+            x: (i % 50) as f64,
+            y: (i / 50) as f64,
+            width: 0.5,
+            height: 0.5,
+            colour: category(i),
+        };
+        let tiles = Tiles::new("", 50.0, 100.0, (0..tiles).map(tile).collect());
+        write_report_figure(folder.path(), "a", &Figure::single("", tiles)).unwrap()
+    };
+    assert_eq!(picture(10), ["a.svg", "a.png"]);
+    assert!(folder.path().join("a.svg").exists());
+    assert_eq!(picture(4000), ["a.png"]);
+    assert!(!folder.path().join("a.svg").exists());
+}

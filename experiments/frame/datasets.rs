@@ -1,0 +1,124 @@
+//! The data that ships with the project, as part of the program: an installed one needs no checkout.
+
+use std::path::{Path, PathBuf};
+
+use include_dir::{Dir, DirEntry, include_dir};
+
+use crate::{Error, Result};
+
+/// `datasets/` of the checkout that the program was built from.
+static DATASETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/datasets");
+
+/// Nothing ships under this name.
+#[derive(Debug, thiserror::Error)]
+#[error("nothing of this name ships with the project")]
+struct NotShipped;
+
+/// Every shipped file: its path below `datasets/`, with `/` between folders, and its bytes.
+pub fn files() -> Vec<(String, &'static [u8])> {
+    let mut found = Vec::new();
+    let mut folders = vec![&DATASETS];
+    while let Some(folder) = folders.pop() {
+        folders.extend(folder.dirs());
+        found.extend(folder.files().map(|file| {
+            let path = file.path().to_string_lossy().replace('\\', "/");
+            (path, file.contents())
+        }));
+    }
+    found.sort_unstable();
+    found
+}
+
+/// Writes a shipped file or folder below `folder` and returns its path there.
+///
+/// # Errors
+/// [`Error::Content`] when there is none of this name, [`Error::Io`].
+pub fn unpack(name: &str, folder: &Path) -> Result<PathBuf> {
+    let place = folder.join(name);
+    match DATASETS.get_entry(name) {
+        None => {
+            let named = Path::new("datasets").join(name);
+            return Err(Error::content(&named, NotShipped));
+        }
+        Some(DirEntry::File(file)) => write(&place, file.contents())?,
+        Some(DirEntry::Dir(_)) => {
+            // The digest is over the folder's files: none that an older program left may stay.
+            match std::fs::remove_dir_all(&place) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(Error::io(&place, "remove", e));
+                }
+                _ => {}
+            }
+            let within = format!("{name}/");
+            for (path, bytes) in files() {
+                if path.starts_with(&within) {
+                    write(&folder.join(path), bytes)?;
+                }
+            }
+        }
+    }
+    Ok(place)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+    }
+    std::fs::write(path, bytes).map_err(|e| Error::io(path, "write", e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_program_carries_what_the_checkout_has() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
+        let mut found = Vec::new();
+        let mut folders = vec![root.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                match path.is_dir() {
+                    true => folders.push(path),
+                    false => found.push(path),
+                }
+            }
+        }
+        let name = |path: &PathBuf| {
+            let below = path.strip_prefix(&root).unwrap().to_string_lossy();
+            below.replace('\\', "/")
+        };
+        let mut names: Vec<String> = found.iter().map(name).collect();
+        names.sort_unstable();
+        let carried = files();
+        let ours: Vec<&String> = carried.iter().map(|(name, _)| name).collect();
+        assert!(ours.len() > 70);
+        // A file that is new needs `touch experiments/frame/datasets.rs`.
+        assert_eq!(ours, names.iter().collect::<Vec<_>>());
+        for (name, bytes) in &carried {
+            assert!(std::fs::read(root.join(name)).unwrap() == *bytes, "{name}");
+        }
+    }
+
+    #[test]
+    fn files_and_folders_are_unpacked_and_others_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = unpack("model/asia.bif", folder.path()).unwrap();
+        assert!(
+            std::fs::read_to_string(file)
+                .unwrap()
+                .contains("network asia")
+        );
+        std::fs::write(folder.path().join("model/old.bif"), b"x").unwrap();
+        let whole = unpack("model", folder.path()).unwrap();
+        assert!(whole.join("asia.bif").exists() && !whole.join("old.bif").exists());
+        let message = unpack("model/alarm.bif", folder.path())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("datasets/model/alarm.bif: nothing"),
+            "{message}"
+        );
+    }
+}
