@@ -6,6 +6,7 @@ mod facade;
 mod grammar;
 mod logic;
 mod print;
+mod reading;
 mod reproduce;
 
 use std::process::ExitCode;
