@@ -32,8 +32,10 @@
 
 mod error;
 mod lower;
+mod names;
 mod note;
 mod parse;
+mod reserved;
 mod syntax;
 mod token;
 mod write;

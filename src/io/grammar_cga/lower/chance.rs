@@ -25,9 +25,10 @@ impl Builder<'_> {
             let Note::Weights(weights) = Note::parse(text, span)? else {
                 return Err(Fault::new(span, "this comment belongs below the arrow"));
             };
-            let total: f64 = weights.iter().sum();
+            let most = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
+            let total: f64 = weights.iter().map(|w| w / most).sum();
             let explains = |(weight, share): (&f64, &Option<f64>)| {
-                share.is_some_and(|s| (100.0 * weight / total - s).abs() <= PERCENT_SLACK)
+                share.is_some_and(|s| (100.0 * (weight / most / total) - s).abs() <= PERCENT_SLACK)
             };
             // A closing `else : NIL` of nothing has no weight.
             let extra = shares.len() - weights.len().min(shares.len());
