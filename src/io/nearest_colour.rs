@@ -42,8 +42,17 @@ impl fmt::Display for NearestColours {
 pub(super) struct NearestSearch {
     candidates: Vec<([u8; 3], u16)>,
     labels: FxHashMap<[u8; 3], u16>,
-    /// Squared distance, colour, place and label of the furthest colour.
-    furthest: Option<(u32, [u8; 3], (usize, usize), u16)>,
+    furthest: Option<Furthest>,
+}
+
+/// The furthest colour so far.
+#[derive(Clone, Copy)]
+struct Furthest {
+    /// Square of its distance.
+    squared: u32,
+    colour: [u8; 3],
+    place: (usize, usize),
+    label: u16,
 }
 
 impl NearestSearch {
@@ -68,18 +77,28 @@ impl NearestSearch {
         // The first of equally near ones.
         let (distance, label) = distances.min_by_key(|&(d, _)| d).unwrap_or_default();
         self.labels.insert(colour, label);
-        if self.furthest.is_none_or(|(most, ..)| distance > most) {
-            self.furthest = Some((distance, colour, place, label));
+        if self.furthest.is_none_or(|f| distance > f.squared) {
+            self.furthest = Some(Furthest {
+                squared: distance,
+                colour,
+                place,
+                label,
+            });
         }
         label
     }
 
     /// What was found; `None` when no colour was asked for.
     pub fn found(&self, map: &LabelMap) -> Option<NearestColours> {
-        let (distance, colour, place, label) = self.furthest?;
+        let Furthest {
+            squared,
+            colour,
+            place,
+            label,
+        } = self.furthest?;
         Some(NearestColours {
             colours: self.labels.len(),
-            distance: f64::from(distance).sqrt(),
+            distance: f64::from(squared).sqrt(),
             colour,
             place,
             label: map.names().nth(label.into())?.to_owned(),

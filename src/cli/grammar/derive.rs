@@ -20,7 +20,7 @@ At another size than its own, a grammar of absolute sizes is first made size-ind
 become relative, but for thin structures such as window frames, and repeats fill the space.
 In a stochastic grammar the seed picks among the rules of each symbol.")]
 pub struct Args {
-    /// Grammar to read: .grammar.json or .cga
+    /// Grammar to read: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Width to derive at, in the grammar's unit [default: its own]
     #[arg(long, value_name = "W", value_parser = super::positive)]

@@ -14,7 +14,7 @@ use crate::cli::reading::{self, Reading};
 /// Facades to read.
 #[derive(clap::Args)]
 pub struct Facades {
-    /// Facade files (.png, .facade.json, .xml, .txt), and folders of .png and .facade.json files.
+    /// Facade files (.png, .facade.json, .xml, .txt, text also as .gz), and folders of .png and .facade.json files.
     #[arg(value_name = "IN")]
     pub inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -44,7 +44,10 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(path).map_err(|e| Error::io(path, "read", e))? {
         let file = entry.map_err(|e| Error::io(path, "read", e))?.path();
         let name = file.to_string_lossy().to_lowercase();
-        if name.ends_with(".png") || name.ends_with(".facade.json") {
+        if [".png", ".facade.json", ".facade.json.gz"]
+            .iter()
+            .any(|ending| name.ends_with(ending))
+        {
             files.push(file);
         }
     }

@@ -31,10 +31,9 @@ pub(super) fn lower(
     for (note, span) in header {
         match note {
             Note::Symbol { identifier, name } => {
-                if builder.renamed.insert(identifier, name).is_some() {
-                    let message = "this identifier already stands for a symbol";
-                    return Err(Fault::new(*span, message));
-                }
+                let before = builder.renamed.insert(identifier, name);
+                let twice = "this identifier already stands for a symbol";
+                before.map_or(Ok(()), |_| Err(Fault::new(*span, twice)))?;
             }
             Note::SizesAbsolute => builder.sizes_absolute = true,
             _ => {}
