@@ -271,6 +271,12 @@ fn labelme_and_coco_are_element_layouts() {
         "{}",
         stderr(&assert)
     );
+    for other in ["l.json", "l.png"] {
+        let arguments = ["facade", "convert", other, "--image", "a", "-o", "d.svg"];
+        let assert = edifice(folder, &arguments).code(1);
+        let expected = format!("--image: {other} is no COCO file");
+        assert!(stderr(&assert).contains(&expected), "{}", stderr(&assert));
+    }
 }
 
 #[test]

@@ -109,6 +109,9 @@ pub fn read_noted(path: &Path, options: &ReadOptions) -> Result<(Source, Option<
     let bytes = read_bytes(path)?;
     let map = options.label_map.as_ref();
     let format = format_of(path, &bytes).map_err(|e| Error::content(path, e))?;
+    if let (Some(_), false) = (&options.image, matches!(format, Format::Json)) {
+        return Err(no_images(path));
+    }
     let source = match format {
         Format::Json => json(&bytes, path, options)?,
         Format::Png | Format::Jpeg if options.nearest_colour => {
@@ -129,6 +132,12 @@ pub fn read_noted(path: &Path, options: &ReadOptions) -> Result<(Source, Option<
     Ok((source, None))
 }
 
+/// The error for an image asked of a file that is one facade.
+fn no_images(path: &Path) -> Error {
+    let message = format!("{} is no COCO file", path.display());
+    Error::option("--image", message)
+}
+
 /// The keys that tell kinds of JSON files apart.
 #[derive(Deserialize)]
 struct Keys {
@@ -140,6 +149,10 @@ struct Keys {
 /// A layout from JSON of any kind.
 fn json(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Source> {
     let keys: Keys = facade_json::parse_json(bytes, path)?;
+    let coco = keys.format.is_none() && keys.shapes.is_none() && keys.annotations.is_some();
+    if options.image.is_some() && !coco {
+        return Err(no_images(path));
+    }
     let facade = match keys {
         Keys {
             format: Some(_), ..
