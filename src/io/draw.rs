@@ -14,7 +14,7 @@ fn palette(facade: &Facade) -> Palette {
     Palette::new(labels(facade).chain([BACKGROUND]))
 }
 
-/// Labels that a [`png`] of the layout shows in one colour: read back, they are one label.
+/// Labels that a [`png()`] of the layout shows in one colour: read back, they are one label.
 pub fn shared_colours(facade: &Facade) -> Vec<Vec<String>> {
     let owned = |labels: Vec<&str>| labels.into_iter().map(str::to_owned).collect();
     let palette = Palette::new(labels(facade));

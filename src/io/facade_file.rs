@@ -96,7 +96,7 @@ fn is_text(bytes: &[u8]) -> bool {
 /// and the text formats gzipped.
 ///
 /// # Errors
-/// Names the file and the place of what is wrong; [`Unsupported`] for other kinds of files.
+/// Names the file and the place of what is wrong; other kinds of files are called unsupported.
 pub fn read_source(path: &Path, options: &ReadOptions) -> Result<Source> {
     Ok(read_noted(path, options)?.0)
 }

@@ -22,7 +22,7 @@ pub struct TooLarge(pub u64);
 ///
 /// # Errors
 /// [`Error::Io`] as [`file::read_bytes`]; [`Error::Content`] for a damaged or truncated archive and for
-/// one that unpacks to more than [`MOST_BYTES`], of which no more than that is ever unpacked.
+/// one that unpacks to more than 256 MB, of which no more than that is ever unpacked.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     unpacked(file::read_bytes(path)?, path)
 }
