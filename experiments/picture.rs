@@ -1,11 +1,12 @@
 //! Layouts as pictures.
 
+use crate::io::palette::leading_word;
 use crate::report::{Colour, Tile, Tiles, category};
 use crate::shape::Facade;
 
 /// Colour of a material, muted so that elements stand out from the wall.
 pub fn material(label: &str) -> Colour {
-    let [r, g, b] = match label.to_lowercase().trim_end_matches(char::is_numeric) {
+    let [r, g, b] = match leading_word(label).as_str() {
         "wall" => [0xe9, 0xdf, 0xcd],
         "window" | "glass" => [0x7d, 0xa3, 0xbd],
         "frame" | "trim" => [0xfb, 0xf9, 0xf4],
@@ -23,8 +24,8 @@ pub fn material(label: &str) -> Colour {
         "dormer" => [0xa7, 0xa9, 0xb4],
         "chimney" => [0x8b, 0x5a, 0x4a],
         "sky" | "background" => [0xd8, 0xe8, 0xf3],
-        other => {
-            let sum: usize = other.bytes().map(usize::from).sum();
+        _ => {
+            let sum: usize = label.bytes().map(usize::from).sum();
             return category(sum);
         }
     };

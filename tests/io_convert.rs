@@ -102,5 +102,8 @@ fn bad_input_is_named_and_leaves_nothing() {
 fn help_shows_an_example() {
     let assert = convert(Path::new("."), &["--help"]).success();
     let text = String::from_utf8(assert.get_output().stdout.clone()).unwrap();
-    assert!(text.contains("Example: edifice facade convert"), "{text}");
+    assert!(
+        text.contains("Examples:\n  edifice facade convert monge_42.png"),
+        "{text}"
+    );
 }

@@ -4,7 +4,9 @@
 use std::path::Path;
 
 use edifice::Result;
-use edifice::io::{self, LabelMap, cmp_xml, draw, facade_json, label_image, label_text};
+use edifice::io::{
+    self, LabelMap, cmp_xml, coco, draw, facade_json, label_image, label_text, labelme,
+};
 use edifice::shape::{Facade, LabelGrid, Rect, Region, decompose};
 use proptest::prelude::*;
 
@@ -19,6 +21,9 @@ fn read_all(bytes: &[u8]) -> std::result::Result<(), TestCaseError> {
     named(label_image::parse(bytes, path, Some(&map)))?;
     named(label_text::parse(bytes, path, Some(&map)))?;
     named(LabelMap::parse(bytes, path))?;
+    named(labelme::parse(bytes, path))?;
+    named(coco::parse(bytes, path, None))?;
+    named(label_image::parse_nearest(bytes, path, None))?;
     if let Some(cmp) = named(cmp_xml::parse(bytes, path))? {
         cmp.elements(100.0, 80.0).unwrap();
         let grid = cmp.label_grid(100.0, 80.0).unwrap();
@@ -90,7 +95,21 @@ fn files() -> Vec<Vec<u8>> {
         label_text::to_string(&facade).unwrap().into_bytes(),
         CMP.as_bytes().to_vec(),
         br#"{"window": [255, 0, 0], "wall": 2}"#.to_vec(),
+        include_bytes!("../fuzz/seeds/labelme/a.json").to_vec(),
+        include_bytes!("../fuzz/seeds/coco/a.json").to_vec(),
+        jpeg(),
     ]
+}
+
+/// A JPEG of two colours that are near those of walls and windows.
+fn jpeg() -> Vec<u8> {
+    let colour = |x, _| image::Rgb([250, if x < 8 { 250 } else { 5 }, 5]);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_fn(16, 8, colour);
+    image
+        .write_to(&mut bytes, image::ImageFormat::Jpeg)
+        .unwrap();
+    bytes.into_inner()
 }
 
 proptest! {
@@ -106,7 +125,7 @@ proptest! {
 
     #[test]
     fn mutated_files_never_panic(
-        file in 0usize..5,
+        file in 0usize..8,
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..8),
     ) {
         let mut bytes = files().swap_remove(file);

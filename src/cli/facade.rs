@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use edifice::io::{self, LabelMap, ReadOptions, Source};
+use edifice::io::{self, Source};
 use edifice::methods::facade_grammar::regularize::{
     RegularizeError, Report, regularize_facade, regularize_grid,
 };
@@ -11,18 +11,27 @@ use edifice::shape::{self, Decomposition, Facade, LabelGrid};
 use edifice::{Error, Result};
 
 use super::print;
+use super::reading::{self, Reading};
 
 /// Commands.
 #[derive(Subcommand)]
 pub enum Command {
     /// Convert a facade to another format, told by the file names.
     ///
-    /// Reads .facade.json, label images (.png), matrices of labels (.txt) and rectangles of the CMP
-    /// database (.xml); writes .facade.json, .svg, .png and .txt. Label images become tilings of
-    /// rectangles that full lines can split.
-    #[command(
-        after_help = "Example: edifice facade convert monge_42.png -o monge_42.facade.json --regularize 2\n\nA label map is a JSON file: {\"window\": [255, 0, 0], \"wall\": 2}\nWithout one, the colours of the ECP and Graz databases and the numbers of the CMP database are known."
-    )]
+    /// Reads .facade.json, label images (.png), matrices of labels (.txt, .csv), rectangles of the CMP
+    /// database (.xml) and boxes drawn with LabelMe or kept as COCO (.json); all text files also as .gz.
+    /// Writes .facade.json, .svg, .png and .txt. Label images become tilings of rectangles that full
+    /// lines can split; boxes become element layouts, which are drawn on a wall.
+    #[command(after_help = "Examples:
+  edifice facade convert monge_42.png -o monge_42.facade.json --regularize 2
+  edifice facade convert labels.txt.gz --label-map map.json -o labels.svg
+  edifice facade convert labels.jpg --nearest-colour -o labels.png
+  edifice facade convert instances.json --image house_7 -o house_7.facade.json
+
+A label map is a JSON file: {\"window\": [255, 0, 0], \"wall\": 2, \"unlabelled\": -1}
+Without one, the colours of the ECP and Graz databases and the numbers of the CMP database are known.
+A colour or number that the map does not name is an error. With --nearest-colour such a colour is
+read as the nearest one of the map (without a map: of ECP and Graz), and the largest distance is told.")]
     Convert(Convert),
 }
 
@@ -34,9 +43,8 @@ pub struct Convert {
     /// File to write.
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// What the colours or numbers of a label image or matrix stand for, as JSON.
-    #[arg(long, value_name = "FILE")]
-    label_map: Option<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
     /// Keep only elements (windows, doors, ...), not the wall.
     #[arg(long)]
     elements: bool,
@@ -55,16 +63,8 @@ pub fn run(command: Command) -> Result<()> {
 
 fn convert(options: &Convert) -> Result<()> {
     let path = &options.input;
-    let label_map = options
-        .label_map
-        .as_deref()
-        .map(LabelMap::read)
-        .transpose()?;
-    let read_options = ReadOptions {
-        label_map,
-        size: None,
-    };
-    let source = match (io::read_source(path, &read_options)?, options.regularize) {
+    let source = reading::source(path, &options.reading.options()?)?;
+    let source = match (source, options.regularize) {
         (source, None) => source,
         (Source::Layout(facade), Some(tolerance)) => {
             let moved = regularize_facade(&facade, tolerance);
@@ -90,6 +90,15 @@ fn convert(options: &Convert) -> Result<()> {
         (Source::Picture(grid), false) => tiling(path, &grid)?,
     };
     io::write_facade(&facade, &options.output)?;
+    if options
+        .output
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+    {
+        for labels in io::draw::shared_colours(&facade) {
+            print::message(&format!("note: drawn in one colour: {}", labels.join(", ")));
+        }
+    }
     let count = facade.regions.len();
     print::line(&format!("{}: {count} regions", options.output.display()))
 }

@@ -7,6 +7,7 @@ mod grammar;
 mod logic;
 mod model;
 mod print;
+mod reading;
 mod reproduce;
 
 use std::process::ExitCode;

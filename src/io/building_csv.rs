@@ -1,13 +1,10 @@
 //! Houses as a CSV table of text cells, plain or gzipped (`*.csv`, `*.csv.gz`).
 
-use std::io::Read;
 use std::path::Path;
 
+use super::packed::unpacked;
 use super::read_bytes;
 use crate::{Error, Result};
-
-/// Most bytes that a compressed table may unpack to.
-const MOST_BYTES: u64 = 1 << 28;
 
 /// Most cells of a table: a compressed one may have half as many as bytes, each a text of its own.
 const MOST_CELLS: usize = 1 << 24;
@@ -36,26 +33,12 @@ pub fn read(path: &Path) -> Result<TextTable> {
 /// As [`read`]; [`Error::Content`] for a compressed table of more than 256 MB, or one of more than
 /// 16 million cells.
 pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
-    let mut unpacked = Vec::new();
-    let text = if bytes.starts_with(&[0x1f, 0x8b]) {
-        let mut gz = flate2::read::GzDecoder::new(bytes).take(MOST_BYTES + 1);
-        gz.read_to_end(&mut unpacked)
-            .map_err(|e| Error::content(path, e))?;
-        if unpacked.len() as u64 > MOST_BYTES {
-            return Err(Error::content(
-                path,
-                "the table unpacks to more than 256 MB",
-            ));
-        }
-        unpacked.as_slice()
-    } else {
-        bytes
-    };
+    let text = unpacked(bytes.to_vec(), path)?;
     let at = |e: csv::Error| {
         let line = e.position().map_or(1, csv::Position::line);
         Error::input(path, format!("line {line}"), e)
     };
-    let mut reader = csv::Reader::from_reader(text);
+    let mut reader = csv::Reader::from_reader(text.as_slice());
     let header = reader.headers().map_err(at)?;
     let header: Vec<String> = header.iter().map(str::to_owned).collect();
     let most_rows = MOST_CELLS / header.len().max(1);

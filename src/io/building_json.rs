@@ -19,6 +19,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::facade_json::{check_header, parse_json};
+use super::packed::extension;
 use super::{read_bytes, write_atomic};
 use crate::shape::{Building, FacadePiece, MassBox, Special};
 use crate::{Error, Result};
@@ -45,14 +46,14 @@ struct File {
 }
 
 /// Reads one building, or a database of buildings, one JSON object a line when the name of the
-/// file ends in `.jsonl`.
+/// file ends in `.jsonl` or `.jsonl.gz`.
 ///
 /// # Errors
 /// Names the file and the line or JSON path of what is wrong; a database without buildings is an
 /// error too.
 pub fn read(path: &Path) -> Result<Vec<Building>> {
     let bytes = read_bytes(path)?;
-    if path.extension().is_some_and(|e| e == "jsonl") {
+    if extension(path) == "jsonl" {
         return parse_lines(&bytes, path);
     }
     Ok(vec![parse(&bytes, path)?])

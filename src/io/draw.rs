@@ -6,14 +6,19 @@ use super::palette::Palette;
 use super::raster::{BACKGROUND, Raster};
 use crate::shape::Facade;
 
+fn labels(facade: &Facade) -> impl Iterator<Item = &str> {
+    facade.regions.iter().map(|r| r.label.as_str())
+}
+
 fn palette(facade: &Facade) -> Palette {
-    Palette::new(
-        facade
-            .regions
-            .iter()
-            .map(|r| r.label.as_str())
-            .chain([BACKGROUND]),
-    )
+    Palette::new(labels(facade).chain([BACKGROUND]))
+}
+
+/// Labels that a [`png()`] of the layout shows in one colour: read back, they are one label.
+pub fn shared_colours(facade: &Facade) -> Vec<Vec<String>> {
+    let owned = |labels: Vec<&str>| labels.into_iter().map(str::to_owned).collect();
+    let palette = Palette::new(labels(facade));
+    palette.shared().into_iter().map(owned).collect()
 }
 
 /// A label image: an RGB PNG in the colours of [`Palette`], sampled as [`Raster`] says.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::packed::extension;
 use super::{grammar_cga, grammar_json, read_bytes};
 use crate::grammar::Grammar;
 use crate::{Error, Result};
@@ -15,12 +16,7 @@ fn is_json(path: &Path, bytes: &[u8]) -> bool {
     }
 }
 
-fn extension(path: &Path) -> String {
-    let extension = path.extension().unwrap_or_default();
-    extension.to_string_lossy().to_lowercase()
-}
-
-/// Reads a grammar: `.grammar.json` or `.cga`.
+/// Reads a grammar: `.grammar.json` or `.cga`, plain or gzipped.
 ///
 /// # Errors
 /// Names the file and the place of what is wrong.
@@ -38,7 +34,8 @@ pub fn read_grammar(path: &Path) -> Result<Grammar> {
 /// [`Error::Option`] for an extension other than `.json` and `.cga`; [`Error::Io`] when the file
 /// cannot be written.
 pub fn write_grammar(grammar: &Grammar, path: &Path) -> Result<()> {
-    match extension(path).as_str() {
+    let written = path.extension().unwrap_or_default().to_string_lossy();
+    match written.to_lowercase().as_str() {
         "json" => grammar_json::write(grammar, path),
         "cga" => grammar_cga::write(grammar, path),
         _ => {

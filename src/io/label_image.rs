@@ -1,12 +1,14 @@
-//! Label images: PNG files in which every pixel's colour or number is a label.
+//! Label images: PNG files in which every pixel's colour or number is a label, and images whose colours
+//! are only near those of labels.
 //!
 //! Image rows go down, a facade's y goes up: the last row of the image is the lowest row of the grid.
 //! Pixels are units, so an image of W x H pixels is a grid W wide and H high.
 
 use std::path::Path;
 
-use super::label_map::{Key, LabelMap};
-use super::pixels::Pixels;
+use super::label_map::{ECP, Key, LabelMap};
+use super::nearest_colour::{NearestColours, NearestSearch};
+use super::pixels::{JPEG_MAGIC, Pixels};
 use super::{file_stem, read_bytes};
 use crate::shape::LabelGrid;
 use crate::{Error, Result};
@@ -40,25 +42,79 @@ pub fn read(path: &Path, map: Option<&LabelMap>) -> Result<LabelGrid> {
 pub fn parse(bytes: &[u8], path: &Path, map: Option<&LabelMap>) -> Result<LabelGrid> {
     let pixels = Pixels::decode(bytes).map_err(|e| Error::content(path, e))?;
     let name = file_stem(path);
+    let exact = |map: &LabelMap, name| label_pixels(&pixels, map, name, &mut |_, _| None);
     let labelled = match map {
-        Some(map) => label_pixels(&pixels, map, name),
+        Some(map) => exact(map, name),
         None => {
-            let colored = label_pixels(&pixels, &LabelMap::colors(), name.clone());
+            let colored = exact(&LabelMap::colors(), name.clone());
             if colored.is_err() && pixels.is_numbered() {
-                label_pixels(&pixels, &LabelMap::cmp(), name)
+                exact(&LabelMap::cmp(), name)
             } else {
                 colored
             }
         }
     };
-    labelled.map_err(|unknown| {
-        let place = format!("pixel ({}, {})", unknown.column, unknown.row);
-        Error::input(path, place, unknown)
-    })
+    labelled.map_err(|unknown| unknown.at(path))
 }
 
+/// Parses the bytes of a label image whose colours were blended or compressed, a PNG or a JPEG: a pixel
+/// of a colour that the map does not name takes the label of the nearest colour, by the distance of red,
+/// green and blue, the first in the map where two are equally near. Without a `map`, the colours of ECP
+/// and Graz are candidates, and those of [`LabelMap::colors`] are known. The second value tells what was
+/// changed; it is `None` when [`parse`] reads the image.
+///
+/// # Errors
+/// As [`read`], but for unknown colours; a map without colours.
+pub fn parse_nearest(
+    bytes: &[u8],
+    path: &Path,
+    map: Option<&LabelMap>,
+) -> Result<(LabelGrid, Option<NearestColours>)> {
+    let pixels = if bytes.starts_with(JPEG_MAGIC) {
+        Pixels::decode_jpeg(bytes)
+    } else if let Ok(grid) = parse(bytes, path, map) {
+        return Ok((grid, None));
+    } else {
+        Pixels::decode(bytes)
+    };
+    let pixels = pixels.map_err(|e| Error::content(path, e))?;
+    let known = map.cloned().unwrap_or_else(LabelMap::colors);
+    // Colours of ours for labels that only CMP has lie between those of ECP: they are no candidates.
+    let candidates = match map {
+        Some(map) => map.colours(),
+        None => LabelMap::colors().colours()[..ECP.len()].to_vec(),
+    };
+    if candidates.is_empty() {
+        let message = "the label map names no colours";
+        return Err(Error::option("--nearest-colour", message));
+    }
+    let mut search = NearestSearch::new(candidates);
+    let mut nearest = |place, key| match key {
+        Key::Color(color) => Some(search.label(place, color)),
+        Key::Id(_) => None,
+    };
+    let grid = label_pixels(&pixels, &known, file_stem(path), &mut nearest);
+    let grid = grid.map_err(|unknown| unknown.at(path))?;
+    Ok((grid, search.found(&known)))
+}
+
+impl UnknownPixel {
+    fn at(self, path: &Path) -> Error {
+        let place = format!("pixel ({}, {})", self.column, self.row);
+        Error::input(path, place, self)
+    }
+}
+
+/// What to take for a pixel, at a column and row, that the map does not name: a label, or an error.
+type Otherwise<'o> = &'o mut dyn FnMut((usize, usize), Key) -> Option<u16>;
+
 /// The merged grid of labels of an image.
-fn label_pixels(pixels: &Pixels, map: &LabelMap, name: String) -> Result<LabelGrid, UnknownPixel> {
+fn label_pixels(
+    pixels: &Pixels,
+    map: &LabelMap,
+    name: String,
+    otherwise: Otherwise<'_>,
+) -> Result<LabelGrid, UnknownPixel> {
     let (width, height) = (pixels.width, pixels.height);
     let mut ys = Vec::new();
     let mut cells = Vec::new();
@@ -74,7 +130,10 @@ fn label_pixels(pixels: &Pixels, map: &LabelMap, name: String) -> Result<LabelGr
             let label = match last {
                 Some((bytes, label)) if bytes == pixel => label,
                 _ => {
-                    label_of(pixels, pixel, map).map_err(|key| UnknownPixel { column, row, key })?
+                    let unknown = |key| otherwise((column, row), key).ok_or(key);
+                    label_of(pixels, pixel, map)
+                        .or_else(unknown)
+                        .map_err(|key| UnknownPixel { column, row, key })?
                 }
             };
             last = Some((pixel, label));
@@ -181,6 +240,89 @@ mod tests {
         let text = claim(60_000);
         assert!(text.contains("claims 60000 x 60000 pixels"), "{text}");
         let text = claim(8_000);
+        assert!(text.contains("truncated"), "{text}");
+    }
+
+    #[test]
+    fn blended_colours_take_the_nearest_label() {
+        let near = |[r, g, b]: [u8; 3]| [r ^ 3, g ^ 2, b ^ 1];
+        let data = [near(WALL), WALL, WINDOW, near(WINDOW), near(WALL), WINDOW].concat();
+        let bytes = png(3, 2, png::ColorType::Rgb, &data);
+        let text = message(&bytes, None);
+        assert!(
+            text.contains("pixel (0, 1): unknown colour [252, 2, 1]"),
+            "{text}"
+        );
+        let (grid, found) = parse_nearest(&bytes, "a.png".as_ref(), None).unwrap();
+        let exact = [WALL, WALL, WINDOW, WINDOW, WALL, WINDOW].concat();
+        let exact = png(3, 2, png::ColorType::Rgb, &exact);
+        let (same, none) = parse_nearest(&exact, "a.png".as_ref(), None).unwrap();
+        assert_eq!((&grid, none), (&same, None));
+        assert_eq!(grid, parse(&exact, "a.png".as_ref(), None).unwrap());
+        let found = found.unwrap();
+        assert_eq!(found.colours, 2);
+        assert!((found.distance - 14f64.sqrt()).abs() < 1e-12);
+        // Rows are read from the lowest, so the window of the last row comes first.
+        assert_eq!((found.place, found.label.as_str()), ((0, 1), "window"));
+        assert_eq!(
+            found.to_string(),
+            "2 colours are not in the label map; the furthest, [252, 2, 1] at pixel (0, 1), is 3.7 from that of window"
+        );
+    }
+
+    #[test]
+    fn maps_say_which_colours_are_near() {
+        let data = [[250, 128, 2], [0, 100, 1]].concat();
+        let bytes = png(2, 1, png::ColorType::Rgb, &data);
+        // Without a map the colours that we chose for CMP are no candidates.
+        let (grid, _) = parse_nearest(&bytes, "a.png".as_ref(), None).unwrap();
+        assert_eq!(grid.labels, ["door", "void"]);
+        let map = LabelMap::parse(
+            br#"{"a": [250, 120, 0], "b": [9, 99, 9], "c": 7}"#,
+            "m".as_ref(),
+        );
+        let (grid, found) = parse_nearest(&bytes, "a.png".as_ref(), Some(&map.unwrap())).unwrap();
+        assert_eq!(grid.labels, ["a", "b"]);
+        assert_eq!(found.unwrap().label, "b");
+        let numbers = parse_nearest(&bytes, "a.png".as_ref(), Some(&LabelMap::cmp()));
+        let text = numbers.unwrap_err().to_string();
+        assert_eq!(text, "--nearest-colour: the label map names no colours");
+    }
+
+    #[test]
+    fn jpeg_colours_are_read_as_the_nearest() {
+        let mut image = image::RgbImage::from_pixel(64, 48, image::Rgb(WALL));
+        for (x, y) in (0..16).flat_map(|x| (0..16).map(move |y| (x, y))) {
+            image.put_pixel(16 + x, 16 + y, image::Rgb(WINDOW));
+        }
+        let mut jpeg = Vec::new();
+        let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut jpeg, 90);
+        image.write_with_encoder(encoder).unwrap();
+        let map = br#"{"wall": [255, 255, 0], "window": [255, 0, 0]}"#;
+        let map = LabelMap::parse(map, "m".as_ref()).unwrap();
+        let (grid, found) = parse_nearest(&jpeg, "a.jpg".as_ref(), Some(&map)).unwrap();
+        assert_eq!(
+            (grid.xs, grid.ys),
+            (vec![0.0, 16.0, 32.0, 64.0], vec![0.0, 16.0, 32.0, 48.0])
+        );
+        assert_eq!(grid.cells, [0, 0, 0, 0, 1, 0, 0, 0, 0]);
+        assert!(found.unwrap().distance > 0.0);
+        let text = parse_nearest(&jpeg[..200], "a.jpg".as_ref(), None)
+            .unwrap_err()
+            .to_string();
+        assert!(text.starts_with("a.jpg: not a readable JPEG"), "{text}");
+        // The size stands behind the marker of the frame: claims of it are checked before decoding.
+        let frame = jpeg.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
+        let mut huge = jpeg.clone();
+        huge[frame + 5..frame + 9].copy_from_slice(&[0x23, 0x28, 0x23, 0x28]);
+        let text = parse_nearest(&huge, "a.jpg".as_ref(), None)
+            .unwrap_err()
+            .to_string();
+        assert!(text.contains("claims 9000 x 9000 pixels"), "{text}");
+        huge[frame + 5..frame + 9].copy_from_slice(&[0x1f, 0xff, 0x1f, 0xff]);
+        let text = parse_nearest(&huge, "a.jpg".as_ref(), None)
+            .unwrap_err()
+            .to_string();
         assert!(text.contains("truncated"), "{text}");
     }
 

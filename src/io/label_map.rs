@@ -56,8 +56,8 @@ pub const CMP_COLORS: [(&str, [u8; 3]); 8] = [
 pub enum Key {
     /// Red, green, blue.
     Color([u8; 3]),
-    /// A number.
-    Id(u32),
+    /// A number; negative ones stand in text matrices only.
+    Id(i64),
 }
 
 impl fmt::Display for Key {
@@ -144,6 +144,18 @@ impl LabelMap {
         u16::try_from(position).ok()
     }
 
+    /// The colours of the map with their positions, in order.
+    pub fn colours(&self) -> Vec<([u8; 3], u16)> {
+        let colour = |(position, (_, key)): (u16, &(String, Key))| match key {
+            Key::Color(color) => Some((*color, position)),
+            Key::Id(_) => None,
+        };
+        (0..=u16::MAX)
+            .zip(&self.entries)
+            .filter_map(colour)
+            .collect()
+    }
+
     /// Whether the map names colours (rather than only numbers).
     pub fn has_colors(&self) -> bool {
         self.entries
@@ -157,11 +169,11 @@ impl<'de> Deserialize<'de> for LabelMap {
         #[derive(Deserialize)]
         #[serde(
             untagged,
-            expecting = "expected a colour [r, g, b] of 0..255 or a number from 0"
+            expecting = "expected a colour [r, g, b] of 0..255 or a whole number"
         )]
         enum Value {
             Color([u8; 3]),
-            Id(u32),
+            Id(i64),
         }
         // A visitor, because a map type would silently keep the last of two equal keys.
         struct Entries;
@@ -196,6 +208,8 @@ mod tests {
         let map = parse(r#"{"window": [255, 0, 0], "wall": 2}"#).unwrap();
         assert_eq!(map.find(Key::Id(2)), Some(1));
         assert_eq!(map.find(Key::Color([0, 0, 0])), None);
+        let map = parse(r#"{"unlabelled": -1, "wall": 0}"#).unwrap();
+        assert_eq!(map.find(Key::Id(-1)), Some(0));
         let cases = [
             (r#"{"a": 1, "a": 2}"#, "a: this label is given twice"),
             (
@@ -204,6 +218,8 @@ mod tests {
             ),
             (r#"{"a": [1, 2, 300]}"#, "a: expected a colour"),
             (r#"{"a": [1, 2]}"#, "expected a colour"),
+            (r#"{"a": -1.5}"#, "or a whole number"),
+            (r#"{"a": -1, "b": -1}"#, "b: number -1 already stands"),
             (r#"{"": 1}"#, "empty name"),
             (r#"{}"#, "empty"),
             (r#"[1]"#, "expected an object like"),

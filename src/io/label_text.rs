@@ -1,7 +1,8 @@
 //! Label images as text: a matrix of labels or numbers, one row a line, the top row first.
 //!
 //! Entries are separated by blanks, tabs or commas; blank lines are skipped. A label has no blanks
-//! or commas in it. Each entry is a square of one unit.
+//! or commas in it. Each entry is a square of one unit. Numbers may be negative, and written as whole
+//! numbers or with a point (`2`, `-1`, `2.000e+00`).
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -36,9 +37,9 @@ pub fn parse(bytes: &[u8], path: &Path, map: Option<&LabelMap>) -> Result<LabelG
         let mut row = Vec::new();
         for (entry, word) in (1..).zip(entries) {
             let place = || format!("line {line}, entry {entry}");
-            let label = match (map, word.parse::<u32>()) {
-                (Some(map), Ok(id)) => named(map, id).ok_or_else(|| {
-                    let message = format!("unknown number {id}: the label map does not name it");
+            let label = match map {
+                Some(map) if word.parse::<f64>().is_ok() => named(map, word).ok_or_else(|| {
+                    let message = format!("unknown number {word}: the label map does not name it");
                     Error::input(path, place(), message)
                 })?,
                 _ => word,
@@ -108,7 +109,11 @@ pub fn to_string(facade: &Facade) -> Result<String, UnfitLabel> {
     Ok(out)
 }
 
-fn named(map: &LabelMap, id: u32) -> Option<&str> {
+/// The label of a number; `None` for one that the map does not name, and for one that is not whole.
+fn named<'m>(map: &'m LabelMap, word: &str) -> Option<&'m str> {
+    let whole = |v: f64| v.fract() == 0.0 && v.abs() < 2f64.powi(53);
+    let written = || word.parse().ok().filter(|&v| whole(v)).map(|v| v as i64);
+    let id = word.parse().ok().or_else(written)?;
     map.find(Key::Id(id))
         .and_then(|position| map.names().nth(position.into()))
 }
@@ -127,12 +132,27 @@ mod tests {
         let grid = parse(b"2 3\n2 2", "a.txt".as_ref(), Some(&map)).unwrap();
         assert_eq!(grid.labels, ["facade", "window"]);
         assert_eq!(grid.cells, [0, 0, 0, 1]);
+        let map = LabelMap::parse(br#"{"void": -1, "wall": 0}"#, "m".as_ref()).unwrap();
+        let text = b"-1 0 +0.0\n-1.000e+00 0.0e0 other";
+        let grid = parse(text, "a.txt".as_ref(), Some(&map)).unwrap();
+        assert_eq!(grid.labels, ["other", "void", "wall"]);
+        assert_eq!(grid.cells, [1, 2, 0, 1, 2, 2]);
     }
 
     #[test]
     fn bad_matrices_name_their_place() {
         let map = LabelMap::cmp();
-        let cases: [(&[u8], &str); 4] = [
+        let cases: [(&[u8], &str); 8] = [
+            (
+                b"1 -1",
+                "line 1, entry 2: unknown number -1: the label map does not name it",
+            ),
+            (b"1 1.5", "line 1, entry 2: unknown number 1.5"),
+            (b"1 nan", "line 1, entry 2: unknown number nan"),
+            (
+                b"1 99999999999999999999",
+                "entry 2: unknown number 99999999999999999999",
+            ),
             (b"a a\na", "line 2: 1 entries, the first row has 2"),
             (b"1 1\n1 99", "line 2, entry 2: unknown number 99"),
             (b"\n \n", "a.txt: the matrix is empty"),

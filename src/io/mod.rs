@@ -2,11 +2,13 @@
 //!
 //! Readers check everything at the door and name the file and the place of what is wrong. Writers
 //! go through [`write_atomic`], so that a failed run leaves nothing half-written. [`read_facade`] and
-//! [`write_facade`] tell the format by the file name.
+//! [`write_facade`] tell the format by the file name. Every text format is also read gzipped.
 
+mod annotation;
 pub mod building_csv;
 pub mod building_json;
 pub mod cmp_xml;
+pub mod coco;
 pub mod draw;
 mod facade_file;
 pub mod facade_json;
@@ -17,6 +19,9 @@ pub mod grammar_json;
 pub mod label_image;
 pub mod label_map;
 pub mod label_text;
+pub mod labelme;
+pub mod nearest_colour;
+mod packed;
 pub mod palette;
 pub mod pixels;
 pub mod raster;
@@ -24,12 +29,13 @@ pub mod scene_png;
 
 use std::path::Path;
 
-pub use crate::file::{read_bytes, write_atomic};
+pub use crate::file::write_atomic;
 pub use facade_file::{
-    ReadOptions, Source, read_facade, read_label_grid, read_source, write_facade,
+    ReadOptions, Source, read_facade, read_label_grid, read_noted, read_source, write_facade,
 };
 pub use grammar_file::{read_grammar, write_grammar};
 pub use label_map::LabelMap;
+pub use packed::read_bytes;
 
 /// Name of a facade that carries none: the file name up to its first dot.
 fn file_stem(path: &Path) -> String {

@@ -1,37 +1,29 @@
-//! Colours for labels: those of the ECP database for names it knows, distinct ones for others.
+//! Colours for labels: those of the ECP database for leading words it knows, distinct ones for others.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::label_map::{CMP_COLORS, ECP};
 
-/// A colour for each label of a drawing, no two alike.
+/// A colour for each label of a drawing. Labels of one known leading word share the colour of that word;
+/// no two others are alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Palette {
     colors: BTreeMap<String, [u8; 3]>,
 }
 
 impl Palette {
-    /// Gives every label a colour: a known one by its name, another by a hash of the name, so that
-    /// it has the same colour in other drawings unless another label has taken that.
+    /// Gives every label a colour: one of a known [leading word](leading_word) that word's, another by a
+    /// hash of the name, so that it has the same colour in other drawings unless another label has
+    /// taken that.
     pub fn new<'a>(labels: impl IntoIterator<Item = &'a str>) -> Self {
         let mut colors: BTreeMap<String, [u8; 3]> = BTreeMap::new();
-        let labels: std::collections::BTreeSet<&str> = labels.into_iter().collect();
-        let known = |label: &str| {
-            let lower = label.to_lowercase();
-            ECP.iter()
-                .chain(&CMP_COLORS)
-                .find(|(name, _)| *name == lower)
-                .map(|(_, color)| *color)
-        };
-        let mut taken: std::collections::BTreeSet<[u8; 3]> = ECP
-            .iter()
-            .chain(&CMP_COLORS)
-            .map(|(_, color)| *color)
-            .collect();
+        let labels: BTreeSet<&str> = labels.into_iter().collect();
+        let known = || ECP.iter().chain(&CMP_COLORS);
+        let mut taken: BTreeSet<[u8; 3]> = known().map(|(_, color)| *color).collect();
         for label in labels {
-            // Labels that differ only in case may both claim a known colour: the first gets it.
-            let claimed = known(label).filter(|c| !colors.values().any(|taken| taken == c));
-            let color = claimed.unwrap_or_else(|| {
+            let word = leading_word(label);
+            let shared = known().find(|(name, _)| *name == word);
+            let color = shared.map(|(_, color)| *color).unwrap_or_else(|| {
                 let start = hash(label);
                 let tries = (0..).map(|k| spread(start.wrapping_add(k)));
                 tries
@@ -49,6 +41,30 @@ impl Palette {
     pub fn color(&self, label: &str) -> [u8; 3] {
         self.colors.get(label).copied().unwrap_or_default()
     }
+
+    /// The labels that share a colour with others: a reader of the picture cannot tell them apart.
+    pub fn shared(&self) -> Vec<Vec<&str>> {
+        let mut by_color: BTreeMap<[u8; 3], Vec<&str>> = BTreeMap::new();
+        for (label, color) in &self.colors {
+            by_color.entry(*color).or_default().push(label);
+        }
+        by_color.into_values().filter(|l| l.len() > 1).collect()
+    }
+}
+
+/// The leading word of a label in lower case: its first letters, up to another character or a capital
+/// after a small letter. `Wall1`, `wall_left` and `WallLeft` are walls.
+pub fn leading_word(label: &str) -> String {
+    let mut word = String::new();
+    let mut small = false;
+    for c in label.chars() {
+        if !c.is_alphabetic() || (small && c.is_uppercase()) {
+            break;
+        }
+        small = c.is_lowercase();
+        word.extend(c.to_lowercase());
+    }
+    word
 }
 
 /// FNV-1a.
@@ -77,19 +93,41 @@ mod tests {
     #[test]
     fn colours_are_known_or_distinct() {
         let names: Vec<String> = (0..500).map(|k| format!("label{k}")).collect();
-        let all = || {
-            names
-                .iter()
-                .map(String::as_str)
-                .chain(["window", "Window", "wall"])
-        };
+        let all = || names.iter().map(String::as_str).chain(["window", "wall"]);
         let palette = Palette::new(all());
         assert_eq!(palette.color("wall"), [255, 255, 0]);
-        let distinct: std::collections::BTreeSet<_> = all().map(|l| palette.color(l)).collect();
-        assert_eq!(distinct.len(), 503);
+        let distinct: BTreeSet<_> = all().map(|l| palette.color(l)).collect();
+        assert_eq!(distinct.len(), 502);
+        assert!(palette.shared().is_empty());
         assert_eq!(
             Palette::new(["zinc"]).color("zinc"),
             Palette::new(["zinc", "wall"]).color("zinc")
+        );
+    }
+
+    #[test]
+    fn labels_have_the_colour_of_their_leading_word() {
+        let words = [
+            ("Wall1", "wall"),
+            ("Window_2", "window"),
+            ("WINDOW", "window"),
+            ("balcony.left", "balcony"),
+            ("doorLeft", "door"),
+            ("2nd", ""),
+            ("Wände", "wände"),
+        ];
+        for (label, word) in words {
+            assert_eq!(leading_word(label), word);
+        }
+        let labels = ["Wall1", "Wall2", "Window_2", "wallpaper", "window"];
+        let palette = Palette::new(labels);
+        let [wall, other, window, paper, same] = labels.map(|l| palette.color(l));
+        assert_eq!((wall, other), ([255, 255, 0], [255, 255, 0]));
+        assert_eq!((window, same), ([255, 0, 0], [255, 0, 0]));
+        assert!(paper != wall && paper != window);
+        assert_eq!(
+            palette.shared(),
+            [vec!["Window_2", "window"], vec!["Wall1", "Wall2"]]
         );
     }
 }

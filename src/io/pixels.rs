@@ -1,7 +1,8 @@
-//! PNG files as rows of raw pixels, decoded within limits.
+//! PNG and JPEG files as rows of raw pixels, decoded within limits.
 
 use std::io::Cursor;
 
+use image::{ImageFormat, ImageReader};
 use png::{ColorType, Decoder, DecodingError, Limits, Transformations};
 
 use super::label_map::Key;
@@ -11,6 +12,12 @@ pub const MAX_PIXELS: u64 = 1 << 26;
 
 /// A deflate stream cannot expand more than this: a header that claims more is not honest.
 const MAX_EXPANSION: u64 = 1032;
+
+/// A JPEG spends at least one bit on the mean of each 8 x 8 block of pixels.
+const MAX_JPEG_EXPANSION: u64 = 8 * 64;
+
+/// First bytes of a JPEG file.
+pub(super) const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
 
 /// Why a file is not a readable image.
 #[derive(Debug, thiserror::Error)]
@@ -36,6 +43,9 @@ pub enum PixelError {
     /// Not a PNG, or a damaged or truncated one.
     #[error("not a readable PNG: {0}")]
     Png(#[from] DecodingError),
+    /// Not a JPEG, or a damaged or truncated one.
+    #[error("not a readable JPEG: {0}")]
+    Jpeg(#[from] image::ImageError),
 }
 
 /// A decoded image: rows from the top, `stride` bytes a pixel.
@@ -112,6 +122,34 @@ impl Pixels {
             stride: color.samples(),
             bytes,
             palette: palette.filter(|_| color == ColorType::Indexed),
+        })
+    }
+
+    /// Decodes a JPEG, whose pixels are always colours.
+    ///
+    /// # Errors
+    /// As [`Pixels::decode`].
+    pub fn decode_jpeg(bytes: &[u8]) -> Result<Self, PixelError> {
+        let reader = || ImageReader::with_format(Cursor::new(bytes), ImageFormat::Jpeg);
+        let (width, height) = reader().into_dimensions()?;
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels > MAX_PIXELS {
+            return Err(PixelError::TooLarge { width, height });
+        }
+        if pixels / MAX_JPEG_EXPANSION > bytes.len() as u64 {
+            let bytes = bytes.len();
+            return Err(PixelError::TooShort {
+                width,
+                height,
+                bytes,
+            });
+        }
+        Ok(Self {
+            width: width as usize,
+            height: height as usize,
+            stride: 3,
+            bytes: reader().decode()?.into_rgb8().into_raw(),
+            palette: None,
         })
     }
 

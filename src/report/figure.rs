@@ -22,6 +22,16 @@ pub enum Panel {
     Tiles(Tiles),
 }
 
+impl Panel {
+    /// The height that the panel takes where a width and a height are offered.
+    fn height(&self, cell: (f64, f64)) -> f64 {
+        match self {
+            Panel::Dendrogram(tree) => tree.height(cell),
+            _ => cell.1,
+        }
+    }
+}
+
 macro_rules! panel {
     ($($kind:ident),*) => {$(
         impl From<$kind> for Panel {
@@ -58,7 +68,7 @@ impl Figure {
         Self::new(caption, 1).cell(680.0, 420.0).panel(panel)
     }
 
-    /// Sets the size of each panel in logical pixels.
+    /// Sets the size of each panel in logical pixels; a tree of many leaves is higher.
     pub fn cell(mut self, width: f64, height: f64) -> Self {
         self.cell = (width, height);
         self
@@ -78,18 +88,23 @@ impl Figure {
     fn draw(&self) -> Drawing {
         const MARGIN: f64 = 10.0;
         let columns = self.columns.min(self.panels.len().max(1));
-        let rows = self.panels.len().div_ceil(columns).max(1);
         let (width, height) = self.cell;
+        let needed = |row: &[Panel]| {
+            row.iter()
+                .map(|p| p.height(self.cell))
+                .fold(height, f64::max)
+        };
+        let heights: Vec<f64> = self.panels.chunks(columns).map(needed).collect();
         let mut out = Drawing::new(
             columns as f64 * width + 2.0 * MARGIN,
-            rows as f64 * height + 2.0 * MARGIN,
+            heights.iter().sum::<f64>().max(height) + 2.0 * MARGIN,
         );
         for (i, panel) in self.panels.iter().enumerate() {
             let area = Area {
                 x: MARGIN + (i % columns) as f64 * width,
-                y: MARGIN + (i / columns) as f64 * height,
+                y: MARGIN + heights[..i / columns].iter().sum::<f64>(),
                 width,
-                height,
+                height: panel.height(self.cell),
             };
             match panel {
                 Panel::Chart(p) => p.draw(&mut out, area),

@@ -13,7 +13,7 @@ use edifice::{Error, Result};
 /// Where houses come from.
 #[derive(clap::Args)]
 pub struct Input {
-    /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`, `*.csv.gz`).
+    /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`.
     pub input: PathBuf,
     /// Which columns of a CSV are which attributes (`*.schema.json`).
     #[arg(long)]

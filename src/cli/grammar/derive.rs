@@ -24,7 +24,7 @@ with a warning. Then edges are aligned, and terminals that are equal at the gram
 become equal again; --no-align leaves them where the rules put them.
 In a stochastic grammar the seed picks among the rules of each symbol.")]
 pub struct Args {
-    /// Grammar to read: .grammar.json or .cga
+    /// Grammar to read: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Width to derive at, in the grammar's unit [default: its own]
     #[arg(long, value_name = "W", value_parser = super::positive)]

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use edifice::grammar::{Costs, Evaluation, evaluate, listing};
-use edifice::io::{self, LabelMap, ReadOptions};
+use edifice::io;
 use edifice::methods::facade_grammar::{
     Method, Operations, Outcome, Protect, Settings, infer_observed,
 };
@@ -15,6 +15,7 @@ use edifice::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::print;
+use crate::cli::reading::{self, Reading};
 
 /// Options of `edifice grammar infer`.
 #[derive(clap::Args)]
@@ -26,7 +27,7 @@ use crate::cli::print;
 Several facades give one joint grammar, with the rules that they share written once.
 Without -o the grammar is listed on standard output.")]
 pub struct Args {
-    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml)
+    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
     /// How to search
@@ -50,9 +51,8 @@ pub struct Args {
     /// Do not protect important regions (Sec. 4.7) in exploration
     #[arg(long)]
     no_protection: bool,
-    /// What the colours or numbers of label images stand for, as JSON
-    #[arg(long, value_name = "FILE")]
-    label_map: Option<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
     /// Grammar to write: .grammar.json or .cga
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
@@ -106,13 +106,9 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 fn read(args: &Args) -> Result<Vec<Facade>> {
-    let label_map = args.label_map.as_deref().map(LabelMap::read).transpose()?;
-    let options = ReadOptions {
-        label_map,
-        size: None,
-    };
+    let options = args.reading.options()?;
     let checked = |path: &PathBuf| {
-        let facade = io::read_facade(path, &options)?;
+        let facade = reading::source(path, &options)?.facade(path)?;
         facade
             .check_tiling()
             .map_err(|error| Error::content(path, error))?;

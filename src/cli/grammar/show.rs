@@ -18,7 +18,7 @@ use crate::cli::print;
 The cost of a rule is that of its operation plus the number of symbols written in it; the cost of a
 grammar is the sum over its rules.")]
 pub struct Args {
-    /// Grammar to read: .grammar.json or .cga
+    /// Grammar to read: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Write the sizes into the rules; ~ marks relative ones
     #[arg(long)]

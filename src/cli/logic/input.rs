@@ -2,36 +2,33 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{self, LabelMap, ReadOptions, facade_json};
+use edifice::io::{self, facade_json};
 use edifice::methods::procedural_logic::{
     MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters,
 };
 use edifice::shape::LabelGrid;
 use edifice::{Error, Result, cluster, methods::procedural_logic};
 
+use crate::cli::reading::{self, Reading};
+
 /// Facades to read.
 #[derive(clap::Args)]
 pub struct Facades {
-    /// Facade files (.png, .facade.json, .xml, .txt), and folders of .png and .facade.json files.
+    /// Facade files (.png, .facade.json, .xml, .txt, text also as .gz), and folders of .png and .facade.json files.
     #[arg(value_name = "IN")]
     pub inputs: Vec<PathBuf>,
-    /// What the colours or numbers of label images stand for, as JSON.
-    #[arg(long, value_name = "FILE")]
-    label_map: Option<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 impl Facades {
     /// Reads all facades as label pictures, folders in the order of their file names.
     pub fn read(&self) -> Result<Vec<LabelGrid>> {
-        let label_map = self.label_map.as_deref().map(LabelMap::read).transpose()?;
-        let options = ReadOptions {
-            label_map,
-            ..ReadOptions::default()
-        };
+        let options = self.reading.options()?;
         let mut grids = Vec::new();
         for input in &self.inputs {
             for path in files(input)? {
-                grids.push(io::read_label_grid(&path, &options)?);
+                grids.push(reading::source(&path, &options)?.label_grid(&path)?);
             }
         }
         Ok(grids)
@@ -47,7 +44,10 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(path).map_err(|e| Error::io(path, "read", e))? {
         let file = entry.map_err(|e| Error::io(path, "read", e))?.path();
         let name = file.to_string_lossy().to_lowercase();
-        if name.ends_with(".png") || name.ends_with(".facade.json") {
+        if [".png", ".facade.json", ".facade.json.gz"]
+            .iter()
+            .any(|ending| name.ends_with(ending))
+        {
             files.push(file);
         }
     }

@@ -2,6 +2,8 @@
 
 mod chance;
 mod natural;
+mod operation;
+mod value;
 mod written_out;
 
 use chumsky::span::SimpleSpan;
@@ -9,10 +11,12 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::error::Fault;
 use super::note::Note;
-use super::syntax::{Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Target};
-use crate::grammar::{Grammar, GrammarError, Operation, Rule, Size, Start, Successor, check};
+use super::reserved::is_leaf_operation;
+use super::syntax::{At, CgaRule, Chance, Item, Target};
+use crate::grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
 use crate::shape::Axis;
 use natural::natural_extent;
+use value::{DRAWS, Draw};
 
 /// The unit of text that names none: CityEngine's metre.
 const UNIT: &str = "m";
@@ -25,13 +29,14 @@ pub(super) fn lower(
 ) -> Result<Grammar, Fault> {
     let mut builder = Builder::default();
     for (note, span) in header {
-        if let Note::Symbol { identifier, name } = note
-            && builder.renamed.insert(identifier, name).is_some()
-        {
-            return Err(Fault::new(
-                *span,
-                "this identifier already stands for a symbol",
-            ));
+        match note {
+            Note::Symbol { identifier, name } => {
+                let before = builder.renamed.insert(identifier, name);
+                let twice = "this identifier already stands for a symbol";
+                before.map_or(Ok(()), |_| Err(Fault::new(*span, twice)))?;
+            }
+            Note::SizesAbsolute => builder.sizes_absolute = true,
+            _ => {}
         }
     }
     for item in items {
@@ -46,24 +51,25 @@ pub(super) fn lower(
                 let symbol = builder.symbol(rule.name.0);
                 builder.used.insert(symbol);
             }
-            Item::Version | Item::StartRule => {}
+            Item::Skipped | Item::StartRule => {}
         }
     }
-    let mut axiom = None;
+    let (mut first, mut start) = (None, None);
     let mut marked = false;
     for item in items {
         match item {
             Item::StartRule => marked = true,
             Item::Rule(rule) => {
-                if std::mem::take(&mut marked) || axiom.is_none() {
-                    axiom = Some(rule.name);
+                first = first.or(Some(rule.name));
+                if std::mem::take(&mut marked) {
+                    start = start.or(Some(rule.name));
                 }
                 builder.rule(rule)?;
             }
-            Item::Version | Item::Constant(..) => {}
+            Item::Skipped | Item::Constant(..) => {}
         }
     }
-    builder.finish(header, axiom, end)
+    builder.finish(header, start.or(first), end)
 }
 
 #[derive(Default)]
@@ -73,9 +79,17 @@ struct Builder<'a> {
     constants: FxHashMap<&'a str, f64>,
     /// Left-hand sides, so that helper symbols are new.
     used: FxHashSet<String>,
+    /// Symbols whose rule only says how they look, and where it is written.
+    leaves: FxHashMap<String, SimpleSpan>,
     rules: Vec<Rule>,
     /// Where each rule is written.
     places: Vec<SimpleSpan>,
+    /// `//@ sizes absolute`.
+    sizes_absolute: bool,
+    /// Whether floating sizes of the alternative at hand are absolute.
+    floats_absolute: bool,
+    /// What `rand` gives in the alternative at hand.
+    draw: Draw,
 }
 
 impl<'a> Builder<'a> {
@@ -84,192 +98,71 @@ impl<'a> Builder<'a> {
         name.copied().unwrap_or(identifier).to_owned()
     }
 
-    fn value(&self, (expression, span): &At<Expression<'_>>) -> Result<f64, Fault> {
-        let value = self.evaluate(expression, *span)?;
-        match value.is_finite() {
-            true => Ok(value),
-            false => Err(Fault::new(
-                *span,
-                format!("this is {value}, expected a finite number"),
-            )),
-        }
-    }
-
-    fn evaluate(&self, expression: &Expression<'_>, span: SimpleSpan) -> Result<f64, Fault> {
-        match expression {
-            Expression::Number(text) => text
-                .parse()
-                .map_err(|_| Fault::new(span, format!("{text} is not a number"))),
-            Expression::Name(name) => self.constants.get(name).copied().ok_or_else(|| {
-                Fault::new(
-                    span,
-                    format!("constant {name} is not defined above this line"),
-                )
-            }),
-            Expression::Negative(value) => Ok(-self.evaluate(value, span)?),
-            Expression::Binary(left, sign, right) => {
-                let (left, right) = (self.evaluate(left, span)?, self.evaluate(right, span)?);
-                Ok(match sign {
-                    '+' => left + right,
-                    '-' => left - right,
-                    '*' => left * right,
-                    _ => left / right,
-                })
-            }
-        }
-    }
-
     fn rule(&mut self, rule: &CgaRule<'_>) -> Result<(), Fault> {
         let symbol = self.symbol(rule.name.0);
+        if let [alternative] = &rule.alternatives[..]
+            && matches!(alternative.chance, Chance::Always)
+            && let (Target::Calls(calls, None), _) = &alternative.target
+        {
+            return self.leaf(symbol, rule.name.1, calls);
+        }
         let weights = self.weights(rule)?;
         for (alternative, weight) in rule.alternatives.iter().zip(weights) {
             let leftover = matches!(alternative.target.0, Target::Symbol("NIL"));
             if leftover && matches!(alternative.chance, Chance::Else) && weight == Some(0.0) {
                 continue;
             }
-            // The rule takes its place before the helpers that its parts need.
-            let index = self.rules.len();
-            self.rules.push(Rule {
-                symbol: symbol.clone(),
-                weight,
-                operation: Operation::Split {
-                    axis: Axis::X,
-                    successors: Vec::new(),
-                },
-            });
-            self.places.push(match rule.alternatives.len() {
+            let place = match rule.alternatives.len() {
                 1 => rule.name.1,
                 _ => alternative.target.1,
-            });
-            self.rules[index].operation = self.alternative(alternative, &symbol)?;
+            };
+            if !value::is_random(&alternative.target.0) {
+                self.push(&symbol, weight, place, alternative)?;
+                continue;
+            }
+            // A range of sizes: equally likely rules, one for each of its equal parts.
+            let share = weight.unwrap_or(100.0) / DRAWS as f64;
+            for part in 0..DRAWS {
+                self.draw = Draw::new(part);
+                let pushed = self.push(&symbol, Some(share), place, alternative);
+                self.draw = Draw::default();
+                pushed?;
+            }
         }
         Ok(())
     }
 
-    fn alternative(
+    /// A rule that divides nothing: its symbol is a terminal.
+    fn leaf(&mut self, symbol: String, at: SimpleSpan, calls: &[At<&str>]) -> Result<(), Fault> {
+        if let Some(&(name, span)) = calls.iter().find(|(name, _)| !is_leaf_operation(name)) {
+            return Err(operation::changes_shape(name, span));
+        }
+        match self.leaves.insert(symbol, at) {
+            None => Ok(()),
+            Some(_) => Err(Fault::new(at, "this symbol already has a rule")),
+        }
+    }
+
+    fn push(
         &mut self,
-        alternative: &Alternative<'_>,
         symbol: &str,
-    ) -> Result<Operation, Fault> {
-        let (target, _) = &alternative.target;
-        let mut notes = alternative.notes.iter();
-        let note = match notes.next() {
-            None => return self.operation(target, symbol),
-            Some(&(text, at)) => (Note::parse(text, at)?, at),
-        };
-        if let Some(&(_, at)) = notes.next() {
-            return Err(Fault::new(at, "one comment of this kind is enough"));
-        }
-        match (note, target) {
-            ((Note::SymSplit, at), Target::Split(axis, entries)) => {
-                self.sym_split(*axis, entries, symbol, at)
-            }
-            ((Note::GridSplit, at), Target::Split(Axis::Y, entries)) => {
-                self.grid_split(entries, at)
-            }
-            ((_, at), _) => Err(Fault::new(at, "this comment does not fit what is below it")),
-        }
-    }
-
-    fn operation(&mut self, target: &Target<'_>, symbol: &str) -> Result<Operation, Fault> {
-        let (axis, entries) = match target {
-            Target::Split(axis, entries) => (*axis, entries),
-            Target::Symbol(name) => {
-                let size = Size::Relative(1.0);
-                let successors = vec![Successor {
-                    symbol: self.symbol(name),
-                    size,
-                }];
-                return Ok(Operation::Split {
-                    axis: Axis::X,
-                    successors,
-                });
-            }
-        };
-        if let [Entry::Repeat(parts, _)] = &entries[..] {
-            let successors = self.successors(parts, symbol)?;
-            return Ok(Operation::Repeat { axis, successors });
-        }
-        if let [Entry::Part(a), Entry::Repeat(parts, _)] = &entries[..]
-            && let [b, again] = &parts[..]
-            && let (Target::Symbol(first), Target::Symbol(last)) = (&a.target.0, &again.target.0)
-            && first == last
-            && self.size(a)? == self.size(again)?
-        {
-            let a = self.successor(a, symbol)?;
-            let b = self.successor(b, symbol)?;
-            return Ok(Operation::RepeatAba { axis, a, b });
-        }
-        let mut successors = Vec::new();
-        let mut repeats = 0;
-        for entry in entries {
-            successors.push(match entry {
-                Entry::Part(part) => self.successor(part, symbol)?,
-                Entry::Repeat(parts, span) => {
-                    repeats += 1;
-                    if repeats > 1 {
-                        return Err(Fault::new(*span, "a split can have one repeat"));
-                    }
-                    self.repeated_middle(axis, parts, *span, symbol)?
-                }
-            });
-        }
-        Ok(Operation::Split { axis, successors })
-    }
-
-    /// A repeat among other parts: a helper symbol that takes what the others leave.
-    fn repeated_middle(
-        &mut self,
-        axis: Axis,
-        parts: &[Part<'_>],
-        span: SimpleSpan,
-        symbol: &str,
-    ) -> Result<Successor, Fault> {
-        let successors = self.successors(parts, symbol)?;
-        let period = successors.iter().map(|s| s.size.value()).sum();
-        let operation = Operation::Repeat { axis, successors };
-        Ok(Successor {
-            symbol: self.helper(symbol, operation, span),
-            size: Size::Relative(period),
-        })
-    }
-
-    fn successors<'p, 't: 'p>(
-        &mut self,
-        parts: impl IntoIterator<Item = &'p Part<'t>>,
-        symbol: &str,
-    ) -> Result<Vec<Successor>, Fault> {
-        parts
-            .into_iter()
-            .map(|part| self.successor(part, symbol))
-            .collect()
-    }
-
-    fn successor(&mut self, part: &Part<'_>, symbol: &str) -> Result<Successor, Fault> {
-        let size = self.size(part)?;
-        let (target, span) = &part.target;
-        let symbol = match target {
-            Target::Symbol(name) => self.symbol(name),
-            Target::Split(..) => {
-                let operation = self.operation(target, symbol)?;
-                self.helper(symbol, operation, *span)
-            }
-        };
-        Ok(Successor { symbol, size })
-    }
-
-    fn size(&self, part: &Part<'_>) -> Result<Size, Fault> {
-        let value = self.value(&part.size)?;
-        if value <= 0.0 {
-            return Err(Fault::new(
-                part.size.1,
-                format!("size {value}, expected a positive number"),
-            ));
-        }
-        Ok(match part.relative {
-            true => Size::Relative(value),
-            false => Size::Absolute(value),
-        })
+        weight: Option<f64>,
+        place: SimpleSpan,
+        alternative: &super::syntax::Alternative<'_>,
+    ) -> Result<(), Fault> {
+        // The rule takes its place before the helpers that its parts need.
+        let index = self.rules.len();
+        self.rules.push(Rule {
+            symbol: symbol.to_owned(),
+            weight,
+            operation: Operation::Split {
+                axis: Axis::X,
+                successors: Vec::new(),
+            },
+        });
+        self.places.push(place);
+        self.rules[index].operation = self.alternative(alternative, symbol)?;
+        Ok(())
     }
 
     /// A new symbol for an operation written inside another.
@@ -346,6 +239,14 @@ impl<'a> Builder<'a> {
                 height,
             });
             places.push(span);
+        }
+        if let Some(rule) = self
+            .rules
+            .iter()
+            .find(|r| self.leaves.contains_key(&r.symbol))
+        {
+            let at = self.leaves[&rule.symbol];
+            return Err(Fault::new(at, "this symbol already has a rule"));
         }
         let unit = unit.unwrap_or_else(|| UNIT.to_owned());
         let grammar = Grammar {

@@ -23,6 +23,10 @@ pub(super) enum Note {
     SymSplit,
     /// `//@ grid_split`: the nested splits below are one grid.
     GridSplit,
+    /// `//@ sizes absolute`: the sizes after `~` are absolute ones, which other lots may stretch.
+    SizesAbsolute,
+    /// `//@ relative`: but in the split below they are weights.
+    Relative,
     /// `//@ weights 3 1.5`: the weights that the percentages below were rounded from.
     Weights(Vec<f64>),
 }
@@ -45,6 +49,9 @@ impl Note {
                 .ok_or_else(|| wrong("//@ unit \"px\"")),
             "facade" => facade(rest).ok_or_else(|| wrong("//@ facade Symbol 400 x 600 \"name\"")),
             "symbol" => symbol(rest).ok_or_else(|| wrong("//@ symbol identifier \"any text\"")),
+            "sizes" if rest == "absolute" => Ok(Note::SizesAbsolute),
+            "sizes" => Err(wrong("//@ sizes absolute")),
+            "relative" => bare(Note::Relative),
             "sym_split" => bare(Note::SymSplit),
             "grid_split" => bare(Note::GridSplit),
             "weights" => {
@@ -55,7 +62,7 @@ impl Note {
                     .ok_or_else(|| wrong("//@ weights 3 1.5 ..."))
             }
             _ => Err(wrong(
-                "//@ unit, facade, symbol, sym_split, grid_split or weights",
+                "//@ unit, facade, symbol, sizes, relative, sym_split, grid_split or weights",
             )),
         }
     }
@@ -64,7 +71,7 @@ impl Note {
     pub fn is_header(&self) -> bool {
         matches!(
             self,
-            Note::Unit(_) | Note::Facade { .. } | Note::Symbol { .. }
+            Note::Unit(_) | Note::Facade { .. } | Note::Symbol { .. } | Note::SizesAbsolute
         )
     }
 }

@@ -5,7 +5,9 @@ use chumsky::input::{Stream, ValueInput};
 use chumsky::prelude::*;
 
 use super::error::Fault;
-use super::syntax::{Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Target};
+use super::syntax::{
+    Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Prefix, Target,
+};
 use super::token::Token;
 use crate::shape::Axis;
 
@@ -53,8 +55,11 @@ where
     I: ValueInput<'t, Token = Token<'a>, Span = SimpleSpan>,
 {
     let reserved = ["attr", "const", "version", "else", "split", "case"];
-    let name =
-        select! { Token::Name(name) if !reserved.contains(&name) => name }.labelled("a symbol");
+    // A dot behind a name says that it is a leaf; it is no part of the name.
+    let name = select! {
+        Token::Name(name) if !reserved.contains(&name) => name.strip_suffix('.').unwrap_or(name)
+    }
+    .labelled("a symbol");
     let note = select! { Token::Note(note) = e => (note, e.span()) };
     let notes = note.repeated().collect::<Vec<At<&str>>>();
 
@@ -62,8 +67,20 @@ where
         let number =
             select! { Token::Number(text) => Expression::Number(text) }.labelled("a number");
         let constant = name.map(Expression::Name).labelled("a constant");
+        let arguments = expression
+            .clone()
+            .separated_by(just(Token::Comma))
+            .at_most(2)
+            .collect::<Vec<_>>()
+            .delimited_by(just(Token::OpenParen), just(Token::CloseParen));
+        let between = word("rand").ignore_then(arguments).map(|arguments| {
+            let mut from_last = arguments.into_iter().rev();
+            let high = from_last.next().unwrap_or(Expression::Number("1"));
+            let low = from_last.next().unwrap_or(Expression::Number("0"));
+            Expression::Between(Box::new(low), Box::new(high))
+        });
         let group = expression.delimited_by(just(Token::OpenParen), just(Token::CloseParen));
-        let atom = choice((number, constant, group));
+        let atom = choice((number, between, constant, group));
         let signed = just(Token::Minus)
             .or_not()
             .then(atom)
@@ -84,46 +101,59 @@ where
         let axis = select! { Token::Name("x") => Axis::X, Token::Name("y") => Axis::Y }
             .labelled("x or y")
             .delimited_by(just(Token::OpenParen), just(Token::CloseParen));
-        let part = just(Token::Tilde)
+        let prefix = choice((
+            just(Token::Tilde).to(Prefix::Floating),
+            just(Token::Quote).to(Prefix::Fraction),
+        ));
+        let part = prefix
             .or_not()
             .then(expression.clone())
             .then_ignore(just(Token::Colon))
             .then(target)
-            .map(|((tilde, size), target)| Part {
-                relative: tilde.is_some(),
+            .map(|((prefix, size), target)| Part {
+                prefix: prefix.unwrap_or(Prefix::Absolute),
                 size,
                 target,
             });
-        let parts = part
-            .clone()
-            .separated_by(just(Token::Bar))
-            .at_least(1)
-            .collect::<Vec<_>>();
-        let period = parts
-            .delimited_by(just(Token::OpenBrace), just(Token::CloseBrace))
-            .then_ignore(just(Token::Star))
-            .map_with(|parts, e| Entry::Repeat(parts, e.span()));
-        let body = choice((period, part.map(Entry::Part)))
-            .separated_by(just(Token::Bar))
-            .at_least(1)
-            .collect::<Vec<_>>()
-            .delimited_by(just(Token::OpenBrace), just(Token::CloseBrace));
+        let body = recursive(|body| {
+            let group = body
+                .then(just(Token::Star).or_not())
+                .map_with(|(entries, star), e| match star {
+                    Some(_) => vec![Entry::Repeat(entries, e.span())],
+                    None => entries,
+                });
+            choice((group, part.map(|part| vec![Entry::Part(part)])))
+                .separated_by(just(Token::Bar))
+                .at_least(1)
+                .collect::<Vec<Vec<Entry>>>()
+                .map(|entries| entries.into_iter().flatten().collect::<Vec<Entry>>())
+                .delimited_by(just(Token::OpenBrace), just(Token::CloseBrace))
+        });
         let split = word("split")
             .ignore_then(axis)
             .then(body)
             .then(just(Token::Star).map_with(|_, e| e.span()).or_not())
-            .try_map(|((axis, body), star), _| {
-                let Some(star) = star else {
-                    return Ok(Target::Split(axis, body));
-                };
-                let parts = body.into_iter().map(|entry| match entry {
-                    Entry::Part(part) => Ok(part),
-                    Entry::Repeat(_, span) => Err(Rich::custom(span, "a repeat inside a repeat")),
-                });
-                let parts = parts.collect::<Result<_, _>>()?;
-                Ok(Target::Split(axis, vec![Entry::Repeat(parts, star)]))
+            .map(|((axis, body), star)| match star {
+                None => Target::Split(axis, body),
+                Some(star) => Target::Split(axis, vec![Entry::Repeat(body, star)]),
             });
-        choice((split, name.map(Target::Symbol))).map_with(|target, e| (target, e.span()))
+        let arguments = recursive(|arguments| {
+            let text = none_of([Token::OpenParen, Token::CloseParen]).ignored();
+            choice((arguments, text))
+                .repeated()
+                .delimited_by(just(Token::OpenParen), just(Token::CloseParen))
+        });
+        let call = name
+            .map_with(|name, e| (name, e.span()))
+            .then_ignore(arguments);
+        let calls = call.repeated().at_least(1).collect::<Vec<At<&str>>>();
+        // The name of the next rule is not what this one becomes.
+        let symbol = name.then_ignore(just(Token::Arrow).not());
+        let after = choice((split.clone(), symbol.map(Target::Symbol)));
+        let called = calls
+            .then(after.or_not())
+            .map(|(calls, target)| Target::Calls(calls, target.map(Box::new)));
+        choice((split, called, name.map(Target::Symbol))).map_with(|target, e| (target, e.span()))
     });
 
     let percent = expression
@@ -163,9 +193,19 @@ where
         .then_ignore(just(Token::Equals))
         .then(expression)
         .map(|(name, value)| Item::Constant(name, value));
-    let start = just(Token::At).then(word("StartRule")).to(Item::StartRule);
-    let version = word("version").then(text).to(Item::Version);
-    choice((version, start, constant, rule))
+    let argument = none_of([Token::CloseParen]).ignored();
+    let arguments = argument
+        .repeated()
+        .delimited_by(just(Token::OpenParen), just(Token::CloseParen));
+    let annotation = just(Token::At)
+        .ignore_then(select! { Token::Name(name) => name }.labelled("an annotation"))
+        .then_ignore(arguments.or_not())
+        .map(|name| match name {
+            "StartRule" => Item::StartRule,
+            _ => Item::Skipped,
+        });
+    let version = word("version").then(text).to(Item::Skipped);
+    choice((version, annotation, constant, rule))
         .repeated()
         .collect::<Vec<_>>()
         .then_ignore(end())

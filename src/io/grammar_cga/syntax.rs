@@ -10,8 +10,8 @@ pub(super) type At<T> = (T, SimpleSpan);
 /// A statement at the top of the text.
 #[derive(Debug, Clone)]
 pub(super) enum Item<'a> {
-    /// `version "2019.0"`: nothing depends on it.
-    Version,
+    /// `version "2019.0"` and annotations such as `@Group("roof")`: nothing depends on them.
+    Skipped,
     /// `@StartRule`: the next rule is where derivation starts.
     StartRule,
     /// `attr name = value`, `const name = value`.
@@ -51,6 +51,8 @@ pub(super) enum Chance<'a> {
 pub(super) enum Target<'a> {
     Symbol(&'a str),
     Split(Axis, Vec<Entry<'a>>),
+    /// `color("#ff0000") A`: calls of operations, and what follows them.
+    Calls(Vec<At<&'a str>>, Option<Box<Target<'a>>>),
 }
 
 /// One entry between the bars of a split.
@@ -58,14 +60,25 @@ pub(super) enum Target<'a> {
 pub(super) enum Entry<'a> {
     /// `3 : A`
     Part(Part<'a>),
-    /// `{ 3 : A | 2 : B }*`
-    Repeat(Vec<Part<'a>>, SimpleSpan),
+    /// `{ 3 : A | 2 : B }*`, whose parts may be repeats again.
+    Repeat(Vec<Entry<'a>>, SimpleSpan),
 }
 
-/// `3 : A` or `~3 : A`.
+/// What stands before a size.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Prefix {
+    /// Nothing: exactly this size.
+    Absolute,
+    /// `~`: a share of what the others leave.
+    Floating,
+    /// `'`: a fraction of the whole.
+    Fraction,
+}
+
+/// `3 : A`, `~3 : A` or `'0.3 : A`.
 #[derive(Debug, Clone)]
 pub(super) struct Part<'a> {
-    pub relative: bool,
+    pub prefix: Prefix,
     pub size: At<Expression<'a>>,
     pub target: At<Target<'a>>,
 }
@@ -75,6 +88,8 @@ pub(super) struct Part<'a> {
 pub(super) enum Expression<'a> {
     Number(&'a str),
     Name(&'a str),
+    /// `rand(1, 2)`: any number between two.
+    Between(Box<Expression<'a>>, Box<Expression<'a>>),
     Negative(Box<Expression<'a>>),
     Binary(Box<Expression<'a>>, char, Box<Expression<'a>>),
 }

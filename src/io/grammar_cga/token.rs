@@ -54,6 +54,10 @@ pub(super) enum Token<'a> {
     Slash,
     #[token("@")]
     At,
+    #[token(",")]
+    Comma,
+    #[token("'")]
+    Quote,
 }
 
 impl fmt::Display for Token<'_> {
@@ -75,6 +79,8 @@ impl fmt::Display for Token<'_> {
             Token::Minus => "-",
             Token::Slash => "/",
             Token::At => "@",
+            Token::Comma => ",",
+            Token::Quote => "'",
         };
         f.write_str(text)
     }

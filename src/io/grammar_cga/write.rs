@@ -4,37 +4,20 @@ use std::fmt::Write;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::grammar::{Grammar, Operation, Rule, Size, Successor, summable};
+use super::names::{SizeKey, constants, identifiers};
+use super::reserved;
+use crate::grammar::{Grammar, Operation, Rule, Size, Successor, size_independent};
 use crate::io::facade_json::quoted;
+use crate::io::palette::Palette;
 use crate::shape::Axis;
 
-/// Words with a meaning of their own in CGA.
-const RESERVED: [&str; 16] = [
-    "attr",
-    "const",
-    "version",
-    "else",
-    "split",
-    "case",
-    "NIL",
-    "x",
-    "y",
-    "import",
-    "style",
-    "true",
-    "false",
-    "with",
-    "extension",
-    "inline",
-];
-
-/// A size that is written more than once for the same symbol and axis has a name.
-type SizeKey<'g> = (&'g str, Axis, u64);
+/// The version of CGA that the text keeps to: every word of it is known since then.
+const VERSION: &str = "2019.0";
 
 /// The text of a grammar. Reading it gives back the same value, bit by bit, with the rules of each
 /// symbol of a stochastic grammar brought together.
 pub(super) fn to_string(grammar: &Grammar) -> String {
-    let mut taken: FxHashSet<String> = RESERVED.iter().map(|s| (*s).to_owned()).collect();
+    let mut taken: FxHashSet<String> = reserved::words().map(str::to_owned).collect();
     let (identifiers, renamed) = identifiers(grammar, &mut taken);
     let constants = constants(grammar, &identifiers, &mut taken);
     let text = Text {
@@ -43,10 +26,16 @@ pub(super) fn to_string(grammar: &Grammar) -> String {
             .iter()
             .map(|(key, name, _)| (*key, name.clone()))
             .collect(),
+        shown: shown(grammar),
     };
+    let floating = grammar
+        .rules
+        .iter()
+        .any(|rule| !has_weights(&rule.operation));
 
-    let mut out =
-        String::from("// Split grammar in CGA (CityEngine) syntax, written by Edifice.\n");
+    let mut out = format!(
+        "// Split grammar in CGA (CityEngine) syntax, written by Edifice.\nversion \"{VERSION}\"\n"
+    );
     let mut line = |text: String| {
         out.push_str(&text);
         out.push('\n');
@@ -63,6 +52,9 @@ pub(super) fn to_string(grammar: &Grammar) -> String {
             start.width, start.height
         ));
     }
+    if floating {
+        line("//@ sizes absolute".to_owned());
+    }
     for (identifier, symbol) in renamed {
         line(format!("//@ symbol {identifier} {}", quoted(symbol)));
     }
@@ -72,112 +64,76 @@ pub(super) fn to_string(grammar: &Grammar) -> String {
     for (_, name, value) in &constants {
         line(format!("const {name} = {value}"));
     }
+    let starts: FxHashSet<&str> = grammar.starts.iter().map(|s| s.symbol.as_str()).collect();
+    let mark = |symbol: &str| match starts.contains(symbol) {
+        true => "@StartRule\n",
+        false => "",
+    };
     let mut written: FxHashSet<&str> = FxHashSet::default();
     for rule in &grammar.rules {
         if written.insert(&rule.symbol) {
-            line(String::new());
-            line(text.rules(grammar, &rule.symbol));
+            let rules = text.rules(grammar, &rule.symbol, floating);
+            line(format!("\n{}{rules}", mark(&rule.symbol)));
         }
+    }
+    let leaves: Vec<&str> = leaves(grammar, &written);
+    if !leaves.is_empty() {
+        line(String::new());
+    }
+    let palette = Palette::new(leaves.iter().copied());
+    for leaf in leaves {
+        let [r, g, b] = palette.color(leaf);
+        let (mark, name) = (mark(leaf), text.symbol(leaf));
+        line(format!(
+            "{mark}{name} --> color(\"#{r:02x}{g:02x}{b:02x}\")"
+        ));
     }
     out
 }
 
-/// An identifier for each symbol, and the list of those that are not spelt like their symbol.
-#[allow(clippy::type_complexity)] // a map and a list of pairs
-fn identifiers<'g>(
-    grammar: &'g Grammar,
-    taken: &mut FxHashSet<String>,
-) -> (FxHashMap<&'g str, String>, Vec<(String, &'g str)>) {
+/// The symbols without rules, in the order in which they are written.
+fn leaves<'g>(grammar: &'g Grammar, defined: &FxHashSet<&str>) -> Vec<&'g str> {
     let starts = grammar.starts.iter().map(|s| s.symbol.as_str());
-    let written = grammar.rules.iter().flat_map(|rule| {
-        let symbols = rule.operation.symbols();
-        std::iter::once(rule.symbol.as_str()).chain(symbols)
-    });
+    let written = grammar.rules.iter().flat_map(|r| r.operation.symbols());
     let mut seen = FxHashSet::default();
-    let symbols: Vec<&str> = starts.chain(written).filter(|s| seen.insert(*s)).collect();
-    let plain = |symbol: &str| {
-        let head = symbol.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-        head && symbol
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.')
-    };
-    let mut identifiers = FxHashMap::default();
-    // Symbols that are identifiers keep their names; the others get what is left.
-    let (same, others): (Vec<&str>, Vec<&str>) = symbols
-        .into_iter()
-        .partition(|s| plain(s) && !RESERVED.contains(s));
-    for symbol in same {
-        taken.insert(symbol.to_owned());
-        identifiers.insert(symbol, symbol.to_owned());
-    }
-    let mut renamed = Vec::new();
-    for symbol in others {
-        let letters = symbol
-            .chars()
-            .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
-        let base: String = letters.collect();
-        let head = base.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-        let identifier = free(if head { base } else { format!("S{base}") }, taken);
-        renamed.push((identifier.clone(), symbol));
-        identifiers.insert(symbol, identifier);
-    }
-    (identifiers, renamed)
-}
-
-/// `base`, or the first of `base_2`, `base_3`, ... that is not taken.
-fn free(base: String, taken: &mut FxHashSet<String>) -> String {
-    let numbered = (2..).map(|n| format!("{base}_{n}"));
-    let free = std::iter::once(base.clone())
-        .chain(numbered)
-        .find(|name| !taken.contains(name))
-        .unwrap_or(base);
-    taken.insert(free.clone());
-    free
-}
-
-/// Absolute sizes that are written at least twice for a symbol along an axis, in order.
-fn constants<'g>(
-    grammar: &'g Grammar,
-    identifiers: &FxHashMap<&str, String>,
-    taken: &mut FxHashSet<String>,
-) -> Vec<(SizeKey<'g>, String, f64)> {
-    let mut counts: FxHashMap<SizeKey<'g>, usize> = FxHashMap::default();
-    let mut order = Vec::new();
-    for rule in &grammar.rules {
-        let (axis, successors): (Axis, Vec<&Successor>) = match &rule.operation {
-            Operation::Split { axis, successors }
-            | Operation::Repeat { axis, successors }
-            | Operation::SymSplit {
-                axis, successors, ..
-            } => (*axis, successors.iter().collect()),
-            Operation::RepeatAba { axis, a, b } => (*axis, vec![a, b]),
-            Operation::GridSplit { .. } => continue,
-        };
-        for successor in successors {
-            if let Size::Absolute(value) = successor.size {
-                let key = (successor.symbol.as_str(), axis, value.to_bits());
-                let count = counts.entry(key).or_default();
-                *count += 1;
-                if *count == 2 {
-                    order.push((key, value));
-                }
-            }
+    let mut leaves = Vec::new();
+    for symbol in starts.chain(written) {
+        if !defined.contains(symbol) && seen.insert(symbol) {
+            leaves.push(symbol);
         }
     }
-    let named = order.into_iter().map(|(key, value)| {
-        let what = match key.1 {
-            Axis::X => "width",
-            Axis::Y => "height",
-        };
-        let name = free(format!("{}_{what}", identifiers[key.0]), taken);
-        (key, name, value)
-    });
-    named.collect()
+    leaves
+}
+
+/// Whether some size of an operation is a weight, so that it fills any space.
+fn has_weights(operation: &Operation) -> bool {
+    let weight = |size: &Size| matches!(size, Size::Relative(_));
+    match operation {
+        Operation::Split { successors, .. }
+        | Operation::Repeat { successors, .. }
+        | Operation::SymSplit { successors, .. } => successors.iter().any(|s| weight(&s.size)),
+        Operation::RepeatAba { a, b, .. } => weight(&a.size) || weight(&b.size),
+        Operation::GridSplit { columns, rows, .. } => columns.iter().chain(rows).any(weight),
+    }
+}
+
+/// The operations as they are written: where all sizes are absolute, all but thin structures float, so
+/// that CityEngine fills other lots as `edifice grammar derive` does.
+fn shown(grammar: &Grammar) -> Vec<Operation> {
+    let floating = size_independent(grammar).rules;
+    let pairs = grammar.rules.iter().zip(floating);
+    let pick = |(rule, floating): (&Rule, Rule)| match has_weights(&rule.operation) {
+        true => rule.operation.clone(),
+        false => floating.operation,
+    };
+    pairs.map(pick).collect()
 }
 
 struct Text<'g> {
     identifiers: FxHashMap<&'g str, String>,
     constants: FxHashMap<SizeKey<'g>, String>,
+    /// The operation of each rule, as it is written.
+    shown: Vec<Operation>,
 }
 
 impl Text<'_> {
@@ -186,23 +142,35 @@ impl Text<'_> {
     }
 
     /// The rule, or rules with percentages, of a symbol.
-    fn rules(&self, grammar: &Grammar, symbol: &str) -> String {
-        let rules: Vec<&Rule> = grammar
+    fn rules(&self, grammar: &Grammar, symbol: &str, floating: bool) -> String {
+        let rules: Vec<(&Rule, &Operation)> = grammar
             .rules
             .iter()
-            .filter(|r| r.symbol == symbol)
+            .zip(&self.shown)
+            .filter(|(r, _)| r.symbol == symbol)
             .collect();
+        let notes = |rule: &Rule| -> Vec<&str> {
+            let relative = floating && has_weights(&rule.operation);
+            let written_out = match rule.operation {
+                Operation::SymSplit { .. } => Some("//@ sym_split"),
+                Operation::GridSplit { .. } => Some("//@ grid_split"),
+                _ => None,
+            };
+            let relative = relative.then_some("//@ relative");
+            relative.into_iter().chain(written_out).collect()
+        };
         let name = self.symbol(symbol);
-        if let [rule] = rules[..]
+        if let [(rule, shown)] = rules[..]
             && rule.weight.is_none()
         {
-            let (note, body) = self.operation(&rule.operation);
-            return match note {
-                None => format!("{name} --> {body}"),
-                Some(note) => format!("{name} -->\n    {note}\n    {body}"),
+            let body = self.operation(shown);
+            let notes = notes(rule);
+            return match notes.is_empty() {
+                true => format!("{name} --> {body}"),
+                false => format!("{name} -->\n    {}\n    {body}", notes.join("\n    ")),
             };
         }
-        let weights: Vec<f64> = rules.iter().map(|r| r.weight.unwrap_or(1.0)).collect();
+        let weights: Vec<f64> = rules.iter().map(|(r, _)| r.weight.unwrap_or(1.0)).collect();
         let (percentages, exact) = percentages(&weights);
         let mut out = String::new();
         if !exact {
@@ -210,13 +178,13 @@ impl Text<'_> {
             out += &format!("//@ weights {}\n", texts.join(" "));
         }
         out += &format!("{name} -->");
-        for (i, rule) in rules.iter().enumerate() {
-            let (note, body) = self.operation(&rule.operation);
+        for (i, (rule, shown)) in rules.iter().enumerate() {
+            let body = self.operation(shown);
             let chance = match i + 1 == rules.len() && i > 0 {
                 true => "else".to_owned(),
                 false => format!("{}%", percentages[i]),
             };
-            if let Some(note) = note {
+            for note in notes(rule) {
                 out += &format!("\n    {note}");
             }
             out += &format!("\n    {chance} : {body}");
@@ -227,8 +195,8 @@ impl Text<'_> {
         out
     }
 
-    /// A comment that restores the operation, where CGA has no word for it, and its text.
-    fn operation(&self, operation: &Operation) -> (Option<&'static str>, String) {
+    /// The text of an operation, written out where CGA has no word for it.
+    fn operation(&self, operation: &Operation) -> String {
         let parts = |axis: Axis, successors: &mut dyn Iterator<Item = &Successor>| {
             let texts: Vec<String> = successors.map(|s| self.part(s, axis)).collect();
             texts.join(" | ")
@@ -236,15 +204,15 @@ impl Text<'_> {
         match operation {
             Operation::Split { axis, successors } => {
                 let parts = parts(*axis, &mut successors.iter());
-                (None, format!("split({}) {{ {parts} }}", axis.name()))
+                format!("split({}) {{ {parts} }}", axis.name())
             }
             Operation::Repeat { axis, successors } => {
                 let parts = parts(*axis, &mut successors.iter());
-                (None, format!("split({}) {{ {{ {parts} }}* }}", axis.name()))
+                format!("split({}) {{ {{ {parts} }}* }}", axis.name())
             }
             Operation::RepeatAba { axis, a, b } => {
                 let (axis, a, b) = (axis.name(), self.part(a, *axis), self.part(b, *axis));
-                (None, format!("split({axis}) {{ {a} | {{ {b} | {a} }}* }}"))
+                format!("split({axis}) {{ {a} | {{ {b} | {a} }}* }}")
             }
             Operation::SymSplit {
                 axis,
@@ -254,8 +222,7 @@ impl Text<'_> {
                 let mirrored = successors.len() - usize::from(*center);
                 let mirror = successors[..mirrored].iter().rev();
                 let parts = parts(*axis, &mut successors.iter().chain(mirror));
-                let text = format!("split({}) {{ {parts} }}", axis.name());
-                (Some("//@ sym_split"), text)
+                format!("split({}) {{ {parts} }}", axis.name())
             }
             Operation::GridSplit {
                 columns,
@@ -277,21 +244,23 @@ impl Text<'_> {
                         parts.join(" | ")
                     );
                 }
-                (Some("//@ grid_split"), out + " }")
+                out + " }"
             }
         }
     }
 
     fn part(&self, successor: &Successor, axis: Axis) -> String {
-        let constant = match successor.size {
-            Size::Absolute(v) => {
-                self.constants
-                    .get(&(successor.symbol.as_str(), axis, v.to_bits()))
-            }
-            Size::Relative(_) => None,
+        let value = successor.size.value();
+        let key = (successor.symbol.as_str(), axis, value.to_bits());
+        let value = match self.constants.get(&key) {
+            Some(name) => name.clone(),
+            None => value.to_string(),
         };
-        let size = constant.cloned().unwrap_or_else(|| size(successor.size));
-        format!("{size} : {}", self.symbol(&successor.symbol))
+        let tilde = match successor.size {
+            Size::Absolute(_) => "",
+            Size::Relative(_) => "~",
+        };
+        format!("{tilde}{value} : {}", self.symbol(&successor.symbol))
     }
 }
 
@@ -312,8 +281,9 @@ fn percentages(weights: &[f64]) -> (Vec<f64>, bool) {
     if weights == [100.0] {
         return (weights.to_vec(), true);
     }
-    let weights = summable(weights);
-    let total: f64 = weights.iter().sum();
-    let percentages = weights.iter().map(|w| 100.0 * w / total).collect();
+    // Divided first, so that the sum of the largest numbers is one.
+    let most = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let total: f64 = weights.iter().map(|w| w / most).sum();
+    let percentages = weights.iter().map(|w| 100.0 * (w / most / total)).collect();
     (percentages, false)
 }

@@ -4,7 +4,6 @@ use super::super::error::Fault;
 use super::super::note::Note;
 use super::super::syntax::{CgaRule, Chance};
 use super::Builder;
-use crate::grammar::summable;
 
 /// Two percentages are the same when they differ by at most this much.
 const PERCENT_SLACK: f64 = 1e-6;
@@ -26,10 +25,10 @@ impl Builder<'_> {
             let Note::Weights(weights) = Note::parse(text, span)? else {
                 return Err(Fault::new(span, "this comment belongs below the arrow"));
             };
-            let parts = summable(&weights);
-            let total: f64 = parts.iter().sum();
+            let most = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
+            let total: f64 = weights.iter().map(|w| w / most).sum();
             let explains = |(weight, share): (&f64, &Option<f64>)| {
-                share.is_some_and(|s| (100.0 * weight / total - s).abs() <= PERCENT_SLACK)
+                share.is_some_and(|s| (100.0 * (weight / most / total) - s).abs() <= PERCENT_SLACK)
             };
             // A closing `else : NIL` of nothing has no weight.
             let extra = shares.len() - weights.len().min(shares.len());
@@ -37,7 +36,7 @@ impl Builder<'_> {
                 shares[weights.len().min(shares.len())..] == vec![Some(0.0); extra];
             if weights.len() > shares.len()
                 || !rest_is_nothing
-                || !parts.iter().zip(&shares).all(explains)
+                || !weights.iter().zip(&shares).all(explains)
             {
                 let message = "these weights do not match the percentages below; correct or remove the comment";
                 return Err(Fault::new(span, message));

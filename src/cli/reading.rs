@@ -1,0 +1,43 @@
+//! How facades are read, for every command that reads them.
+
+use std::path::{Path, PathBuf};
+
+use edifice::Result;
+use edifice::io::{self, LabelMap, ReadOptions, Source};
+
+use super::print;
+
+/// Options of reading.
+#[derive(clap::Args)]
+pub struct Reading {
+    /// What the colours or numbers of label images and text matrices stand for, as JSON
+    #[arg(long, value_name = "FILE")]
+    label_map: Option<PathBuf>,
+    /// Read a colour that the label map does not name as the nearest one (blended colours, JPEG)
+    #[arg(long)]
+    nearest_colour: bool,
+    /// Image of a COCO file that has several: its file name, or its number
+    #[arg(long, value_name = "NAME")]
+    image: Option<String>,
+}
+
+impl Reading {
+    /// The options of the library; reads the label map.
+    pub fn options(&self) -> Result<ReadOptions> {
+        Ok(ReadOptions {
+            label_map: self.label_map.as_deref().map(LabelMap::read).transpose()?,
+            nearest_colour: self.nearest_colour,
+            image: self.image.clone(),
+            size: None,
+        })
+    }
+}
+
+/// Reads a facade file and tells what was not read exactly.
+pub fn source(path: &Path, options: &ReadOptions) -> Result<Source> {
+    let (source, nearest) = io::read_noted(path, options)?;
+    if let Some(nearest) = nearest {
+        print::message(&format!("note: {}: {nearest}", path.display()));
+    }
+    Ok(source)
+}

@@ -1,0 +1,102 @@
+//! Identifiers of symbols and names of sizes.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::grammar::{Grammar, Operation, Size, Successor};
+use crate::shape::Axis;
+
+/// A size that is written more than once for the same symbol and axis has a name.
+pub(super) type SizeKey<'g> = (&'g str, Axis, u64);
+
+/// An identifier for each symbol, and the list of those that are not spelt like their symbol.
+#[allow(clippy::type_complexity)] // a map and a list of pairs
+pub(super) fn identifiers<'g>(
+    grammar: &'g Grammar,
+    taken: &mut FxHashSet<String>,
+) -> (FxHashMap<&'g str, String>, Vec<(String, &'g str)>) {
+    let starts = grammar.starts.iter().map(|s| s.symbol.as_str());
+    let written = grammar.rules.iter().flat_map(|rule| {
+        let symbols = rule.operation.symbols();
+        std::iter::once(rule.symbol.as_str()).chain(symbols)
+    });
+    let mut seen = FxHashSet::default();
+    let symbols: Vec<&str> = starts.chain(written).filter(|s| seen.insert(*s)).collect();
+    let plain = |symbol: &str| {
+        let head = symbol.starts_with(|c: char| c.is_ascii_alphabetic());
+        head && symbol
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let mut identifiers = FxHashMap::default();
+    // Symbols that are identifiers keep their names; the others get what is left.
+    let (same, others): (Vec<&str>, Vec<&str>) = symbols
+        .into_iter()
+        .partition(|s| plain(s) && !taken.contains(*s));
+    for symbol in same {
+        taken.insert(symbol.to_owned());
+        identifiers.insert(symbol, symbol.to_owned());
+    }
+    let mut renamed = Vec::new();
+    for symbol in others {
+        let letters = symbol
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+        let base: String = letters.collect();
+        let head = base.starts_with(|c: char| c.is_ascii_alphabetic());
+        let identifier = free(if head { base } else { format!("S{base}") }, taken);
+        renamed.push((identifier.clone(), symbol));
+        identifiers.insert(symbol, identifier);
+    }
+    (identifiers, renamed)
+}
+
+/// `base`, or the first of `base_2`, `base_3`, ... that is not taken.
+fn free(base: String, taken: &mut FxHashSet<String>) -> String {
+    let numbered = (2..).map(|n| format!("{base}_{n}"));
+    let free = std::iter::once(base.clone())
+        .chain(numbered)
+        .find(|name| !taken.contains(name))
+        .unwrap_or(base);
+    taken.insert(free.clone());
+    free
+}
+
+/// Absolute sizes that are written at least twice for a symbol along an axis, in order.
+pub(super) fn constants<'g>(
+    grammar: &'g Grammar,
+    identifiers: &FxHashMap<&str, String>,
+    taken: &mut FxHashSet<String>,
+) -> Vec<(SizeKey<'g>, String, f64)> {
+    let mut counts: FxHashMap<SizeKey<'g>, usize> = FxHashMap::default();
+    let mut order = Vec::new();
+    for rule in &grammar.rules {
+        let (axis, successors): (Axis, Vec<&Successor>) = match &rule.operation {
+            Operation::Split { axis, successors }
+            | Operation::Repeat { axis, successors }
+            | Operation::SymSplit {
+                axis, successors, ..
+            } => (*axis, successors.iter().collect()),
+            Operation::RepeatAba { axis, a, b } => (*axis, vec![a, b]),
+            Operation::GridSplit { .. } => continue,
+        };
+        for successor in successors {
+            if let Size::Absolute(value) = successor.size {
+                let key = (successor.symbol.as_str(), axis, value.to_bits());
+                let count = counts.entry(key).or_default();
+                *count += 1;
+                if *count == 2 {
+                    order.push((key, value));
+                }
+            }
+        }
+    }
+    let named = order.into_iter().map(|(key, value)| {
+        let what = match key.1 {
+            Axis::X => "width",
+            Axis::Y => "height",
+        };
+        let name = free(format!("{}_{what}", identifiers[key.0]), taken);
+        (key, name, value)
+    });
+    named.collect()
+}
