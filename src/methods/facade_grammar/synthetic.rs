@@ -16,6 +16,7 @@
 mod composition;
 mod draft;
 mod elements;
+pub mod references;
 mod theme;
 
 use crate::grammar::{Grammar, GrammarError, derive};
