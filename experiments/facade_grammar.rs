@@ -3,6 +3,8 @@
 //! Settings stand here; each artefact is a file of its own. Seeds and facades for each budget are in
 //! `facade_grammar/compare.rs`.
 
+mod baseline_ranges;
+mod baseline_settings;
 mod city;
 mod compare;
 pub mod data;
@@ -11,11 +13,13 @@ mod figure_12;
 mod figure_13;
 mod figure_14;
 mod figure_9;
+mod judge;
 mod likeness;
 mod optimality;
 mod published;
 mod ratios;
 mod readings;
+mod references;
 mod regularization;
 mod room;
 mod runs;
@@ -24,6 +28,7 @@ mod table_1;
 mod table_2;
 mod table_3;
 mod table_4;
+mod table_5;
 
 use super::{Artefact, Budget, Experiment, picture};
 use crate::methods::facade_grammar::Method;
@@ -57,19 +62,24 @@ const ARTEFACTS: &[Artefact] = &[
         run: table_2::run,
     },
     Artefact {
+        name: "baseline_ranges",
+        title: "procedural logic of Table 2 over the ranges of its parameters",
+        run: baseline_ranges::run,
+    },
+    Artefact {
         name: "table_3",
         title: "scores that people gave",
         run: table_3::run,
     },
     Artefact {
         name: "table_4",
-        title: "precision and recall of non-terminal regions",
-        run: table_4::table_4,
+        title: "precision and recall of non-terminal regions, by kind of reference",
+        run: table_4::run,
     },
     Artefact {
         name: "table_5",
         title: "costs of the rules and what they do to precision and recall",
-        run: table_4::table_5,
+        run: table_5::run,
     },
     Artefact {
         name: "figure_9",
