@@ -83,7 +83,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 const WHICH: &str = "**Which setting Table 2 prints.** The column `procedural_logic` of Table 2 has alpha 0.6, b_p 0.25, b_h 0.5, the setting of \
     Weissenberg et al. 2013, Sec. 5.3: it is theirs for compression, which is what Table 2 measures. Wu et al. only say that \
     the parameters \"are known\". *nearest* is the setting nearest to the printed cost of facade (i) and, among equals, to the printed ratio to ADP. \
-    Settings hardly matter: a part of a facade that full lines split in one direction only has \
+    On most facades the setting changes nothing: a part of a facade that full lines split in one direction only has \
     one n-ary split, since Eq. 9 joins nested splits of one direction and forgets the order of their lines. The parameters decide \
     only where a part has full lines in both directions. Where the parse then takes all lines of one direction before the other, horizontal ones first, it is \
     BGL's initial step, and the two columns coincide.";
@@ -360,7 +360,7 @@ fn picture(found: &Found, (cost, ratio): (f64, f64)) -> Figure {
         .panel(chart);
     for dataset in datasets {
         let title = format!("{dataset}: average over that of adp_best");
-        let y = Scale::new("times the cost of adp_best").from_zero();
+        let y = Scale::new("times the cost of adp_best").range(0.0, 3.0);
         let mut chart = Chart::new(title, scale(), y);
         for (j, (name, _)) in JOININGS.iter().enumerate() {
             let each = 0..settings().len();

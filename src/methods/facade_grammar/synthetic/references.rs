@@ -1,8 +1,8 @@
 //! Reference grammars of several kinds: one layout, written as people with different habits would write it.
 //!
 //! Wu et al. 2014, Table 4 compares inferred grammars with grammars that people made. How alike two grammars are (the
-//! non-terminal regions that both have) depends on the order in which the reference splits, so one reference of one kind
-//! judges that order. Here every layout has five references, which all derive the same terminals:
+//! non-terminal regions that both have) can depend on the order in which the reference splits, so one kind of reference is
+//! not enough. Here every layout has five references, which all derive the same terminals:
 //!
 //! | kind | the facade, from the whole to the tiles | model |
 //! | --- | --- | --- |
