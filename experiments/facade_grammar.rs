@@ -3,6 +3,8 @@
 //! Settings stand here; each artefact is a file of its own. Seeds and facades for each budget are in
 //! `facade_grammar/compare.rs`.
 
+mod baseline_ranges;
+mod baseline_settings;
 mod city;
 mod compare;
 pub mod data;
@@ -12,11 +14,13 @@ mod figure_13;
 mod figure_14;
 mod figure_9;
 mod joint_real;
+mod judge;
 mod likeness;
 mod optimality;
 mod published;
 mod ratios;
 mod readings;
+mod references;
 mod regularization;
 mod room;
 mod runs;
@@ -25,6 +29,7 @@ mod table_1;
 mod table_2;
 mod table_3;
 mod table_4;
+mod table_5;
 
 use super::{Artefact, Budget, Experiment, picture};
 use crate::methods::facade_grammar::Method;
@@ -58,19 +63,24 @@ const ARTEFACTS: &[Artefact] = &[
         run: table_2::run,
     },
     Artefact {
+        name: "baseline_ranges",
+        title: "procedural logic of Table 2 over the ranges of its parameters",
+        run: baseline_ranges::run,
+    },
+    Artefact {
         name: "table_3",
         title: "scores that people gave",
         run: table_3::run,
     },
     Artefact {
         name: "table_4",
-        title: "precision and recall of non-terminal regions",
-        run: table_4::table_4,
+        title: "precision and recall of non-terminal regions, by kind of reference",
+        run: table_4::run,
     },
     Artefact {
         name: "table_5",
         title: "costs of the rules and what they do to precision and recall",
-        run: table_4::table_5,
+        run: table_5::run,
     },
     Artefact {
         name: "figure_9",

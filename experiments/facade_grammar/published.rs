@@ -3,6 +3,9 @@
 use crate::experiments::Context;
 use crate::{Error, Result};
 
+/// The automatic methods of the paper's Tables 2 to 4, in their order.
+pub const AUTOMATIC: [&str; 4] = ["procedural_logic", "bayesian", "symmetry", "adp"];
+
 /// The printed numbers.
 pub struct Published(Vec<[String; 7]>);
 
@@ -18,6 +21,15 @@ impl Published {
     /// A number as printed; a dash when the paper has none.
     pub fn text(&self, key: [&str; 5]) -> String {
         self.find(key).unwrap_or("–").to_string()
+    }
+
+    /// A number of the paper.
+    ///
+    /// # Errors
+    /// [`Error::Method`] when the paper has none of this name.
+    pub fn number(&self, key: [&str; 5]) -> Result<f64> {
+        let value = self.find(key).and_then(|text| text.parse().ok());
+        value.ok_or_else(|| Error::method(format!("the paper prints no number for {key:?}")))
     }
 
     /// By artefact, method, instance, metric and statistic.

@@ -41,6 +41,17 @@ impl Solver {
         }
     }
 
+    /// Its name in the paper's Tables 2 to 4; `None` when they do not have it.
+    pub fn published(self) -> Option<&'static str> {
+        match self {
+            Solver::ProceduralLogic => Some("procedural_logic"),
+            Solver::Infer(Method::Bayesian, _) => Some("bayesian"),
+            Solver::Infer(Method::Symmetry, _) => Some("symmetry"),
+            Solver::Infer(Method::AdpBest | Method::AdpPaper, _) => Some("adp"),
+            Solver::Infer(Method::Greedy | Method::Importance, _) => None,
+        }
+    }
+
     /// Whether chance has a part in it, so that more than one seed says more.
     pub fn random(self) -> bool {
         matches!(

@@ -1,6 +1,6 @@
 //! Table 3: scores that people gave. It needs people: only the printed row is shown.
 
-use super::published::Published;
+use super::published::{AUTOMATIC, Published};
 use crate::Result;
 use crate::experiments::Context;
 use crate::report::{Align, Table};
@@ -9,8 +9,7 @@ use crate::report::{Align, Table};
 pub fn run(ctx: &mut Context) -> Result<()> {
     let printed = Published::read(ctx)?;
     let users = (1..=7).map(|u| format!("user_{u}"));
-    let automatic = ["procedural_logic", "bayesian", "symmetry", "adp"];
-    let methods: Vec<String> = automatic
+    let methods: Vec<String> = AUTOMATIC
         .map(String::from)
         .into_iter()
         .chain(users)

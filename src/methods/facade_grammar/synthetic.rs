@@ -11,11 +11,15 @@
 //! *known* grammar, which the methods do not see (precision and recall, as in Table 4). Sizes are whole
 //! centimetres; every facade can be split by full lines. The last four share their elements (Fig. 13).
 //!
+//! Those grammars split all floors of a wing at once and then all elements of a floor, as some baselines do; [`references`] makes
+//! layouts with grammars of other kinds too.
+//!
 //! Nothing here looks at a method: no layout is made easy or hard for one.
 
 mod composition;
 mod draft;
 mod elements;
+pub mod references;
 mod theme;
 
 use crate::grammar::{Grammar, GrammarError, derive};

@@ -3,7 +3,7 @@
 use super::affinity::Affinity;
 use super::alphabet::Alphabet;
 use super::canvas::Canvas;
-use super::nary::NaryTree;
+use super::joining::Joining;
 use super::parameters::{ParameterError, Parameters};
 use super::parse::{NoSplit, parse};
 use super::split_grammar::split_grammar;
@@ -36,12 +36,24 @@ pub fn baseline_grammar(
     facade: &Facade,
     parameters: &Parameters,
 ) -> Result<Grammar, BaselineError> {
+    baseline_grammar_joining(facade, parameters, Joining::All)
+}
+
+/// As [`baseline_grammar`], with another reading of which binary splits are made n-ary.
+///
+/// # Errors
+/// As [`baseline_grammar`].
+pub fn baseline_grammar_joining(
+    facade: &Facade,
+    parameters: &Parameters,
+    joining: Joining,
+) -> Result<Grammar, BaselineError> {
     let parameters = parameters.checked()?;
     let mut alphabet = Alphabet::default();
     let canvas = Canvas::from_tiling(facade, &mut alphabet)?;
     let mut affinity = Affinity::new(parameters.facing);
     affinity.add(&canvas, alphabet.len());
     let binary = parse(&canvas, &affinity.normalized(), &parameters)?;
-    let tree = NaryTree::from_binary(&binary);
+    let tree = joining.apply(&binary);
     Ok(split_grammar(&tree, &alphabet, &facade.name, &facade.unit))
 }

@@ -38,6 +38,10 @@
 //!   counts zero. [`Facing::Adjacent`] takes the asset on the other side of the edge itself.
 //! - *"Normalized"* (Eq. 8): each matrix is divided by its largest entry.
 //! - *Ties* go to horizontal lines, then to the lowest coordinate, so that equal layouts parse equal.
+//! - *N-ary splits of one facade's grammar* ([`baseline_grammar`]): all nested splits of one direction are joined first (Eq. 9)
+//!   and equal parts found then (Eq. 10), in the order of the text. So the order of lines in one direction is forgotten, and the
+//!   parameters decide only about parts that full lines split in both directions. [`Joining`] has two other readings, which
+//!   no table's column uses: equal parts first, or no joining at all.
 //! - *Counting rules*: split rules; an insert belongs to the rule that calls it. Eq. 11 counts
 //!   inserts too before inference, and absorbs them afterwards.
 //! - *Powersets*: every node of the binary tree, leaves included, counts for the set of operations
@@ -53,6 +57,7 @@ mod baseline;
 mod canvas;
 mod features;
 mod inference;
+mod joining;
 mod lines;
 mod model;
 mod model_file;
@@ -66,10 +71,11 @@ mod synthesis;
 
 pub use affinity::{Affinity, Coefficients};
 pub use alphabet::Alphabet;
-pub use baseline::{BaselineError, baseline_grammar};
+pub use baseline::{BaselineError, baseline_grammar, baseline_grammar_joining};
 pub use canvas::Canvas;
 pub use features::{AssetSet, Measure, Profile};
 pub use inference::{Inference, learn_affinity};
+pub use joining::Joining;
 pub use model::{FitError, Known, Model, ProfileError};
 pub use model_file::{MODEL_FORMAT, MODEL_VERSION, ModelFile, ModelFileError};
 pub use nary::{NaryNode, NaryTree};

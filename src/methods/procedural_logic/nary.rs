@@ -34,13 +34,19 @@ pub struct NaryTree {
 impl NaryTree {
     /// Rewrites nested binary splits of one direction as n-ary splits until none is left (Eq. 9).
     pub fn from_binary(tree: &BinaryTree) -> Self {
+        Self::joined(tree, |_| true)
+    }
+
+    /// As [`NaryTree::from_binary`], but only the nodes that `join` picks are joined with a split of the same direction
+    /// around them.
+    pub(super) fn joined(tree: &BinaryTree, join: impl Fn(usize) -> bool) -> Self {
         let mut nodes = vec![NaryNode::Insert(0)];
         let mut todo = vec![(0_usize, 0_usize)];
         while let Some((from, to)) = todo.pop() {
             nodes[to] = match tree.nodes[from] {
                 BinaryNode::Insert(label) => NaryNode::Insert(label),
                 BinaryNode::Split { axis, .. } => {
-                    let (sizes, parts) = collect(tree, axis, from);
+                    let (sizes, parts) = collect(tree, axis, from, &join);
                     let first = nodes.len();
                     nodes.resize(first + parts.len(), NaryNode::Insert(0));
                     todo.extend(parts.iter().enumerate().map(|(i, &part)| (part, first + i)));
@@ -56,6 +62,27 @@ impl NaryTree {
             width: tree.width,
             height: tree.height,
             nodes,
+        }
+    }
+
+    /// The binary tree as it stands, node by node.
+    pub(super) fn unjoined(tree: &BinaryTree) -> Self {
+        let node = |node: &BinaryNode| match *node {
+            BinaryNode::Insert(label) => NaryNode::Insert(label),
+            BinaryNode::Split {
+                axis,
+                sizes,
+                children,
+            } => NaryNode::Split {
+                axis,
+                sizes: sizes.to_vec(),
+                children: children.to_vec(),
+            },
+        };
+        Self {
+            width: tree.width,
+            height: tree.height,
+            nodes: tree.nodes.iter().map(node).collect(),
         }
     }
 
@@ -119,8 +146,13 @@ impl BinaryTree {
     }
 }
 
-/// The parts of the chain of splits along `axis` that starts at `root`, in order, with sizes.
-fn collect(tree: &BinaryTree, axis: Axis, root: usize) -> (Vec<f64>, Vec<usize>) {
+/// The parts of the chain of joined splits along `axis` that starts at `root`, in order, with sizes.
+fn collect(
+    tree: &BinaryTree,
+    axis: Axis,
+    root: usize,
+    join: &impl Fn(usize) -> bool,
+) -> (Vec<f64>, Vec<usize>) {
     let (mut out_sizes, mut parts) = (Vec::new(), Vec::new());
     let mut todo = vec![(root, 0.0)];
     while let Some((node, size)) = todo.pop() {
@@ -129,7 +161,7 @@ fn collect(tree: &BinaryTree, axis: Axis, root: usize) -> (Vec<f64>, Vec<usize>)
                 axis: a,
                 sizes,
                 children,
-            } if a == axis => {
+            } if a == axis && (node == root || join(node)) => {
                 todo.push((children[1] as usize, sizes[1]));
                 todo.push((children[0] as usize, sizes[0]));
             }

@@ -21,6 +21,30 @@ enum Content {
 /// Symbols are `Facade`, `NT1`, `NT2`, ... in order of derivation, with underscores added where a
 /// label bears the same name.
 pub fn split_grammar(tree: &NaryTree, alphabet: &Alphabet, name: &str, unit: &str) -> Grammar {
+    let Classes { class, example } = classes(tree);
+    let (start, rules) = write_rules(tree, &class, &example, alphabet);
+    Grammar {
+        unit: unit.to_owned(),
+        starts: vec![Start {
+            name: name.to_owned(),
+            symbol: start,
+            width: tree.width,
+            height: tree.height,
+        }],
+        rules,
+    }
+}
+
+/// Regions of identical content.
+pub(super) struct Classes {
+    /// Class of each node.
+    pub class: Vec<usize>,
+    /// A node of each class.
+    pub example: Vec<usize>,
+}
+
+/// Numbers regions of identical content: label, offset and size (bottom-up hash-consing).
+pub(super) fn classes(tree: &NaryTree) -> Classes {
     let tolerance = 1e-7 * tree.width.max(tree.height);
     let extents = tree.extents();
     let mut ids: FxHashMap<Content, usize> = FxHashMap::default();
@@ -48,17 +72,7 @@ pub fn split_grammar(tree: &NaryTree, alphabet: &Alphabet, name: &str, unit: &st
             example.len() - 1
         });
     }
-    let (start, rules) = write_rules(tree, &class, &example, alphabet);
-    Grammar {
-        unit: unit.to_owned(),
-        starts: vec![Start {
-            name: name.to_owned(),
-            symbol: start,
-            width: tree.width,
-            height: tree.height,
-        }],
-        rules,
-    }
+    Classes { class, example }
 }
 
 /// The start symbol and the rules in order of derivation.

@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::draft::{Draft, Part, leaf};
 use super::elements::{Break, Style, door, dormer, pilaster, shop};
-use super::theme::{Attic, Body, Ground, Rhythm, Theme};
+use super::theme::{Attic, Body, Ground, Theme};
 use crate::rng::Stream;
 
 /// What stands in one column of one floor.
@@ -141,16 +141,9 @@ impl Designer<'_> {
         let rhythm = rhythms[self.rng.random_range(0..rhythms.len())];
         let kinds = self.style.kinds();
         let first = self.rng.random_range(0..kinds);
-        let (n, last) = (columns as usize, columns as usize - 1);
+        let n = columns as usize;
         (0..n)
-            .map(|i| match rhythm {
-                Rhythm::Same => 0,
-                Rhythm::Alternate => i % 2,
-                Rhythm::Ends => usize::from(i == 0 || i == last),
-                Rhythm::Middle => usize::from(2 * i == last || 2 * i == last + 1),
-                Rhythm::Pairs => i / 2 % 2,
-                Rhythm::Mirror => i.min(last - i) % 3,
-            })
+            .map(|i| rhythm.kind(i, n))
             .map(|kind| ((first + kind) % kinds, None))
             .collect()
     }
@@ -348,7 +341,7 @@ impl Designer<'_> {
 }
 
 /// The period (1 or 2 columns) with which the columns start over, and how often it stands there.
-fn run(columns: &[Part]) -> (usize, u32) {
+pub fn run(columns: &[Part]) -> (usize, u32) {
     let times = |period: usize| {
         let mut n = 1;
         while columns.len() >= (n + 1) * period

@@ -87,6 +87,14 @@ impl Draft {
         }
     }
 
+    /// A period that stands `times` times along y.
+    pub fn repeat_up(&mut self, name: &str, period: Vec<Part>, times: u32) -> Part {
+        match times {
+            0 | 1 => self.stack(name, period),
+            _ => self.rule(name, Axis::Y, period, times),
+        }
+    }
+
     fn rule(&mut self, name: &str, axis: Axis, parts: Vec<Part>, times: u32) -> Part {
         let across = parts.first().map_or(0, |p| p.along(axis.other()));
         debug_assert!(

@@ -19,6 +19,21 @@ pub enum Rhythm {
     Mirror,
 }
 
+impl Rhythm {
+    /// Which kind stands at place `i` of `n`, from 0 for A.
+    pub fn kind(self, i: usize, n: usize) -> usize {
+        let last = n - 1;
+        match self {
+            Rhythm::Same => 0,
+            Rhythm::Alternate => i % 2,
+            Rhythm::Ends => usize::from(i == 0 || i == last),
+            Rhythm::Middle => usize::from(2 * i == last || 2 * i == last + 1),
+            Rhythm::Pairs => i / 2 % 2,
+            Rhythm::Mirror => i.min(last - i) % 3,
+        }
+    }
+}
+
 /// How the body is divided before its floors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Body {
