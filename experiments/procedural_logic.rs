@@ -2,6 +2,7 @@
 //! number of the text.
 
 mod compression;
+pub mod corruption;
 pub mod data;
 mod figure_3;
 mod figure_4;
@@ -14,6 +15,7 @@ pub mod outline;
 mod readings;
 mod retrieval_search;
 pub mod shipped;
+pub mod trivial;
 pub mod words;
 
 use super::{Artefact, Experiment};
