@@ -11,6 +11,7 @@ mod figure_6;
 mod frequent_rules;
 pub mod gold;
 mod lossless;
+pub mod noise;
 pub mod outline;
 mod readings;
 mod retrieval_search;
@@ -68,6 +69,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "frequent_rules",
         title: "the most frequent rules, in words (Sec. 5.5)",
         run: frequent_rules::run,
+    },
+    Artefact {
+        name: "noise",
+        title: "labels as a segmentation gives them: rules and retrieval against faults",
+        run: noise::run,
     },
     Artefact {
         name: "readings",

@@ -121,18 +121,38 @@ fn protocols(ctx: &mut Context, source: &Source, all: &[(&str, DMatrix<f64>)]) {
         ("as in the figure", "", figure, own),
         ("ties against us", "ties_against", against, own),
         ("every facade queries", "all_queries", missed, own),
-        ("every facade queries, ties against us", "all_queries_ties_against",
-            Protocol { ties: Ties::Against, ..missed }, own),
+        (
+            "every facade queries, ties against us",
+            "all_queries_ties_against",
+            Protocol {
+                ties: Ties::Against,
+                ..missed
+            },
+            own,
+        ),
         ("the query is ranked too", "query_included", included, own),
-        ("gold: floors and columns only", "gold_floors_columns", figure, &coarse),
+        (
+            "gold: floors and columns only",
+            "gold_floors_columns",
+            figure,
+            &coarse,
+        ),
     ];
     if !source.by_hand.is_empty() {
-        readings.push(("gold: all by hand, no doors", "gold_by_hand", figure, &source.by_hand));
+        readings.push((
+            "gold: all by hand, no doors",
+            "gold_by_hand",
+            figure,
+            &source.by_hand,
+        ));
     }
-    let mut table = Table::new(format!("Other readings of the protocol on {}", source.dataset))
-        .column("measure", Align::Left)
-        .column("protocol", Align::Left)
-        .numbers(["queries", "rank 1", "rank 2", "rank 5", "rank 20"]);
+    let mut table = Table::new(format!(
+        "Other readings of the protocol on {}",
+        source.dataset
+    ))
+    .column("measure", Align::Left)
+    .column("protocol", Align::Left)
+    .numbers(["queries", "rank 1", "rank 2", "rank 5", "rank 20"]);
     for (name, distances) in all {
         for (words, suffix, protocol, gold) in &readings {
             let identical = |a: usize, b: usize| gold[a].changes(&gold[b], Doors::Layout) == 0;
@@ -205,11 +225,7 @@ fn compare(ctx: &mut Context, curves: &[Curve]) {
     }
 }
 
-fn draw(
-    ctx: &mut Context,
-    source: &Source,
-    curves: &[Curve],
-) -> Result<()> {
+fn draw(ctx: &mut Context, source: &Source, curves: &[Curve]) -> Result<()> {
     let rank = Scale::new("rank k").range(1.0, RANKS as f64);
     let mut chart = Chart::new(
         format!("{}: identical facade within the first k", source.dataset),

@@ -227,7 +227,11 @@ impl Annotations {
                 let values = numbers(&path, 2 * index + 1, values)?;
                 if values.len() % 4 != 1 {
                     let cause = AnnotationError::Groups(values.len());
-                    return Err(Error::input(&path, format!("line {}", 2 * index + 2), cause));
+                    return Err(Error::input(
+                        &path,
+                        format!("line {}", 2 * index + 2),
+                        cause,
+                    ));
                 }
                 // Window top, window bottom, balcony bottom, running balcony bottom.
                 let groups = values[1..].chunks(4);

@@ -65,7 +65,11 @@ impl Structure {
     pub fn proportioned(&self, other: &Self) -> (Instance, f64) {
         let mut nodes = self.tree.nodes.clone();
         let mut aligned = 0_usize;
-        let mut todo = vec![(0_usize, Some(0_usize), [other.tree.width, other.tree.height])];
+        let mut todo = vec![(
+            0_usize,
+            Some(0_usize),
+            [other.tree.width, other.tree.height],
+        )];
         while let Some((own, donor, extent)) = todo.pop() {
             aligned += usize::from(donor.is_some());
             let NaryNode::Split {

@@ -134,7 +134,10 @@ fn strip_costs(view: &View, lines: &[f64], tolerance: f64) -> Vec<f64> {
                 if *cost == f64::INFINITY {
                     continue;
                 }
-                let core = misfit(&above[a * labels..][..labels], &below[b * labels..][..labels]);
+                let core = misfit(
+                    &above[a * labels..][..labels],
+                    &below[b * labels..][..labels],
+                );
                 let all = misfit(&at[a * labels..][..labels], &at[b * labels..][..labels]);
                 *cost += width * (core + NEAR * all);
             }

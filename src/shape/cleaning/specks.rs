@@ -58,16 +58,26 @@ fn heirs(grid: &LabelGrid, of_cell: &[u32], area: &[f64], smallest: f64) -> Vec<
         for i in 0..columns {
             let cell = j * columns + i;
             if i > 0 {
-                meet(of_cell[cell - 1], of_cell[cell], grid.ys[j + 1] - grid.ys[j]);
+                meet(
+                    of_cell[cell - 1],
+                    of_cell[cell],
+                    grid.ys[j + 1] - grid.ys[j],
+                );
             }
             if j > 0 {
-                meet(of_cell[cell - columns], of_cell[cell], grid.xs[i + 1] - grid.xs[i]);
+                meet(
+                    of_cell[cell - columns],
+                    of_cell[cell],
+                    grid.xs[i + 1] - grid.xs[i],
+                );
             }
         }
     }
     let longest = |known: &Vec<(u32, f64)>| {
         let first = known.first()?;
-        let best = known[1..].iter().fold(first, |a, b| if b.1 > a.1 { b } else { a });
+        let best = known[1..]
+            .iter()
+            .fold(first, |a, b| if b.1 > a.1 { b } else { a });
         Some(best.0)
     };
     borders.iter().map(longest).collect()
