@@ -12,6 +12,10 @@
 //! - *doors* from the labels: connected columns of pixels with a door. Where a door stands is told
 //!   in one of three ways, [`Doors`].
 //!
+//! Doors and running balconies are thus read off the very labels that the method compares. What the
+//! hand annotation says alone, with its own running balconies and without doors, is
+//! [`Annotations::by_hand`].
+//!
 //! The shipped layouts come without annotation: [`super::outline`] counts their floors and columns.
 
 use std::collections::BTreeMap;

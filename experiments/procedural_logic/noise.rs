@@ -202,12 +202,8 @@ pub fn outcome(source: &Source, grids: &[LabelGrid], other: &[LabelGrid]) -> Res
     let rules = model.inference.rules.len() as f64;
     let model = Model::fit(grids, Parameters::RETRIEVAL).map_err(Error::method)?;
     let profiles = model.profiles().map_err(Error::method)?;
-    let rates = |distances: &DMatrix<f64>| {
-        let rates = retrieve(distances, &source.architecture, Doors::Layout).rates;
-        [0, 1].map(|rank| rates.get(rank).copied().unwrap_or(0.0))
-    };
-    let powerset = rates(&Measure::Powerset.matrix(&profiles));
-    let counts = rates(&trivial::distances(grids));
+    let powerset = rates(source, &Measure::Powerset.matrix(&profiles));
+    let counts = rates(source, &trivial::distances(grids));
     let purity = match other.is_empty() {
         true => None,
         false => Some(separation(grids, other)?),
@@ -218,6 +214,12 @@ pub fn outcome(source: &Source, grids: &[LabelGrid], other: &[LabelGrid]) -> Res
         counts,
         purity,
     })
+}
+
+/// Rates at ranks 1 and 2 under the gold standard of the exact labels.
+pub fn rates(source: &Source, distances: &DMatrix<f64>) -> [f64; 2] {
+    let rates = retrieve(distances, &source.architecture, Doors::Layout).rates;
+    [0, 1].map(|rank| rates.get(rank).copied().unwrap_or(0.0))
 }
 
 /// Purity of two clusters of both sets, as in Fig. 3.
