@@ -83,7 +83,7 @@ fn faults_are_seeded_and_as_strong_as_they_say() {
 
 #[test]
 fn cleaning_takes_most_faults_away() {
-    for name in ["terrace_a", "townhouse_2", "hotel_1"] {
+    for name in ["terrace_a", "townhouse_2"] {
         let exact = image(name);
         let faulty = corrupted(std::slice::from_ref(&exact), &TARGET, 7);
         let clean = &cleaned(&faulty).expect("cleaned")[0];

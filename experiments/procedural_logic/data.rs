@@ -124,8 +124,8 @@ fn ecp(ctx: &mut Context) -> Result<Option<Source>> {
         .iter()
         .map(|grid| annotations.architecture(grid))
         .collect::<Result<_>>()?;
-    let by_hand = grids
-        .iter()
+    let annotated = grids.iter().filter(|_| annotations.has_balconies());
+    let by_hand = annotated
         .map(|grid| annotations.by_hand(&grid.name))
         .collect::<Result<_>>()?;
     let other = match ctx.real("facades/graz50/labels")? {

@@ -199,7 +199,7 @@ enum AnnotationError {
 }
 
 impl Annotations {
-    /// Reads the annotation files of `folder`: floor lines, window columns and balconies.
+    /// Reads the annotation files of `folder`: floor lines, window columns and, where there is one, balconies.
     ///
     /// # Errors
     /// [`Error::Io`], or [`Error::Input`] with the line that is wrong.
@@ -226,6 +226,9 @@ impl Annotations {
             }
         }
         let path = folder.join("floor_balcony_annotation.txt");
+        if !path.exists() {
+            return Ok(annotations);
+        }
         for (index, pair) in lines(&path)?.chunks(2).enumerate() {
             if let [name, values] = pair {
                 let values = numbers(&path, 2 * index + 1, values)?;
@@ -245,6 +248,11 @@ impl Annotations {
             }
         }
         Ok(annotations)
+    }
+
+    /// Whether balconies are annotated.
+    pub fn has_balconies(&self) -> bool {
+        !self.balconies.is_empty()
     }
 
     /// What the hand annotation alone says of a facade: floors, window columns and running balconies; it
