@@ -2,22 +2,22 @@ use super::*;
 use crate::rng::stream;
 use rand::RngExt;
 
-/// A wall of 80 x 60 pixels with two rows of four windows, whose sides waver by up to `noise`.
+/// A wall of 160 x 120 pixels with two rows of four windows, whose sides waver by up to `noise`.
 fn windows(noise: i64, seed: u64) -> LabelGrid {
     let mut rng = stream(seed, "windows", 0);
-    let mut cells = vec![0; 80 * 60];
-    for (left, bottom) in (0..8).map(|k| (6 + 19 * (k % 4), 8 + 26 * (k / 4))) {
+    let mut cells = vec![0; 160 * 120];
+    for (left, bottom) in (0..8).map(|k| (12 + 38 * (k % 4), 16 + 52 * (k / 4))) {
         let mut side = |place: i64| (place + rng.random_range(-noise..=noise)) as usize;
-        let (from, to) = (side(left), side(left + 12));
-        for y in side(bottom)..side(bottom + 18) {
-            cells[y * 80 + from..y * 80 + to].fill(1);
+        let (from, to) = (side(left), side(left + 24));
+        for y in side(bottom)..side(bottom + 36) {
+            cells[y * 160 + from..y * 160 + to].fill(1);
         }
     }
     LabelGrid {
         name: "windows".into(),
         unit: "px".into(),
-        xs: (0..=80).map(f64::from).collect(),
-        ys: (0..=60).map(f64::from).collect(),
+        xs: (0..=160).map(f64::from).collect(),
+        ys: (0..=120).map(f64::from).collect(),
         labels: vec!["wall".into(), "window".into()],
         cells,
     }
@@ -73,12 +73,12 @@ fn specks_vanish_and_nothing_else_changes() {
     let mut rng = stream(5, "specks", 0);
     for _ in 0..60 {
         // Inside a window or the wall, two pixels from any edge, so that a speck touches no other label.
-        let (x, y) = (rng.random_range(2..77), rng.random_range(2..57));
+        let (x, y) = (rng.random_range(2..157), rng.random_range(2..117));
         let around = (y - 2..=y + 3).flat_map(|j| (x - 2..=x + 3).map(move |i| (i, j)));
-        let mut around = around.filter(|&(i, j)| i < 80 && j < 60);
+        let mut around = around.filter(|&(i, j)| i < 160 && j < 120);
         if around.all(|(i, j)| specked.at(i, j) == specked.at(x, y)) {
             for j in y..=y + 1 {
-                specked.cells[j * 80 + x..=j * 80 + x + 1].fill(2);
+                specked.cells[j * 160 + x..=j * 160 + x + 1].fill(2);
             }
         }
     }
