@@ -2,6 +2,7 @@
 //! number of the text.
 
 mod compression;
+pub mod corruption;
 pub mod data;
 mod figure_3;
 mod figure_4;
@@ -10,10 +11,12 @@ mod figure_6;
 mod frequent_rules;
 pub mod gold;
 mod lossless;
+pub mod noise;
 pub mod outline;
 mod readings;
 mod retrieval_search;
 pub mod shipped;
+pub mod trivial;
 pub mod words;
 
 use super::{Artefact, Experiment};
@@ -66,6 +69,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "frequent_rules",
         title: "the most frequent rules, in words (Sec. 5.5)",
         run: frequent_rules::run,
+    },
+    Artefact {
+        name: "noise",
+        title: "labels as a segmentation gives them: rules and retrieval against faults",
+        run: noise::run,
     },
     Artefact {
         name: "readings",

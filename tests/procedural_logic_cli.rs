@@ -3,10 +3,13 @@
 use std::path::Path;
 
 use assert_cmd::Command;
-use edifice::experiments::{layouts, procedural_logic::shipped};
+use edifice::experiments::layouts;
+use edifice::experiments::procedural_logic::corruption::{Corruption, pixels};
+use edifice::experiments::procedural_logic::shipped;
 use edifice::grammar::derive;
 use edifice::io::{facade_json, grammar_json};
 use edifice::methods::procedural_logic::{Model, ModelFile, Parameters};
+use edifice::rng::stream;
 use edifice::shape::{Facade, LabelGrid, Rect, Region};
 
 fn edifice(folder: &Path, words: &[&str]) -> Command {
@@ -144,6 +147,134 @@ fn from_facades_to_new_facades() {
     assert_eq!(bytes("a"), bytes("b"));
     let drawn = facade_json::read(&at.join("a/virtual_2.facade.json")).expect("a facade");
     drawn.check_tiling().expect("a tiling");
+}
+
+#[test]
+fn noisy_labels_are_cleaned_when_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    std::fs::create_dir(at.join("noisy")).expect("a folder");
+    let faults = Corruption {
+        edges: 2,
+        specks: 0.01,
+        ..Corruption::default()
+    };
+    for grid in pictures(&["terrace_a", "shophouse_1"]) {
+        let image = pixels(&grid, grid.ys[grid.rows()] / 200.0);
+        let image = faults.apply(&image, &mut stream(3, &grid.name, 0));
+        let path = at.join("noisy").join(format!("{}.facade.json", grid.name));
+        facade_json::write(&layout(&image), &path).expect("written");
+    }
+    let rules = |option: &[&str]| {
+        let words = [&["logic", "fit", "noisy", "-o", "m.json", "--json"], option].concat();
+        let line = output(at, &words);
+        let fitted: serde_json::Value = serde_json::from_str(&line).expect("one JSON object");
+        fitted["rules"].as_u64().expect("a number")
+    };
+    let (given, zero, clean) = (rules(&[]), rules(&["--clean=0"]), rules(&["--clean=2"]));
+    assert_eq!(given, zero);
+    assert!(5 * clean < given, "{clean} rules cleaned, {given} as given");
+    // Without it the program says that it might help; with it, what it did.
+    let said = |words: &[&str]| {
+        let done = edifice(at, words).assert().success();
+        String::from_utf8_lossy(&done.get_output().stderr).into_owned()
+    };
+    assert!(said(&["logic", "fit", "noisy", "-o", "m.json"]).contains("--clean"));
+    let told = said(&["logic", "fit", "noisy", "-o", "m.json", "--clean"]);
+    assert!(
+        told.contains("cleaned 4 facades with tolerance 3"),
+        "{told}"
+    );
+    let wrong = ["logic", "fit", "noisy", "-o", "x", "--clean=-1"];
+    assert!(complaint(at, &wrong, 1).contains("--clean"));
+    assert!(!at.join("x").exists());
+
+    // A starting rule of one facade gives new ones, from labels with and without noise.
+    for option in [&[][..], &["--clean"]] {
+        let words = [&["logic", "fit", "noisy", "-o", "m.json"], option].concat();
+        output(at, &words);
+        let line = output(at, &["logic", "synthesize", "m.json", "-n", "2", "-o", "v"]);
+        assert!(line.contains("of similar structure"), "{line}");
+        let drawn = facade_json::read(&at.join("v/virtual_2.facade.json")).expect("a facade");
+        drawn.check_tiling().expect("a tiling");
+    }
+}
+
+#[test]
+fn ties_and_known_names_are_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let grids = pictures(&["terrace_a"]);
+    for copy in 1..=3 {
+        let mut facade = layout(&grids[0]);
+        facade.name = format!("copy_{copy}");
+        let path = at.join(format!("copy_{copy}.facade.json"));
+        facade_json::write(&facade, &path).expect("written");
+    }
+    let mut other = layout(&pictures(&["shophouse_1"])[0]);
+    other.name = "other".into();
+    facade_json::write(&other, &at.join("other.facade.json")).expect("written");
+    let line = output(at, &["logic", "compare", ".", "--query", "copy_1"]);
+    let words = "copy_1: copy_2 0.000 = copy_3 0.000, other ";
+    assert!(line.starts_with(words), "{line}");
+    let line = output(
+        at,
+        &["logic", "compare", ".", "--query", "copy_1", "--top", "1"],
+    );
+    let words = "copy_1: copy_2 0.000 (= 1 more at the same distance)\n";
+    assert_eq!(line, words);
+    let line = output(
+        at,
+        &[
+            "logic", "compare", ".", "--query", "other", "--top", "2", "--json",
+        ],
+    );
+    let ranked: serde_json::Value = serde_json::from_str(&line).expect("one JSON object");
+    assert_eq!(ranked["nearest"][1]["rank"], 1);
+    assert_eq!(ranked["tied_with_last"], 1);
+
+    output(at, &["logic", "fit", ".", "-o", "m.logic"]);
+    let words = [
+        "logic",
+        "fit",
+        "other.facade.json",
+        "--into",
+        "m.logic",
+        "-o",
+        "m.logic",
+    ];
+    let done = edifice(at, &words).assert().success();
+    let said = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
+    assert!(said.contains("already has a facade called other"), "{said}");
+}
+
+/// The example of the README tells two kinds of facades apart.
+#[test]
+fn the_example_of_clusters_has_two_kinds() {
+    let layouts = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar/layouts");
+    let mut words = vec!["logic".to_owned(), "cluster".to_owned()];
+    for entry in std::fs::read_dir(&layouts).expect("the shipped layouts") {
+        let name = entry.expect("an entry").file_name();
+        let name = name.to_string_lossy().into_owned();
+        let wanted = name.starts_with("terrace") || name.starts_with("hotel");
+        if wanted && name.ends_with(".facade.json") {
+            words.push(name);
+        }
+    }
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let clusters = output(&layouts, &words);
+    let of = |kind: &str| -> Vec<&str> {
+        let lines = clusters.lines().filter_map(|line| line.split_once('\t'));
+        let mut found: Vec<&str> = lines
+            .filter(|l| l.1.starts_with(kind))
+            .map(|l| l.0)
+            .collect();
+        found.dedup();
+        found
+    };
+    let (terraces, hotels) = (of("terrace"), of("hotel"));
+    assert_eq!((terraces.len(), hotels.len()), (1, 1), "{clusters}");
+    assert_ne!(terraces, hotels);
 }
 
 #[test]

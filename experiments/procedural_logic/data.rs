@@ -20,6 +20,8 @@ pub struct Source {
     pub grids: Vec<LabelGrid>,
     /// Their architecture, in the same order.
     pub architecture: Vec<Architecture>,
+    /// What the hand annotation alone says of it; empty where there is none.
+    pub by_hand: Vec<Architecture>,
     /// `shipped_blocks` or `graz50`.
     pub other_dataset: &'static str,
     /// Facades of another style; empty when the user has none.
@@ -56,6 +58,7 @@ pub fn sources(ctx: &mut Context) -> Result<Vec<Source>> {
         if ctx.budget() == Budget::Smoke {
             source.grids.truncate(24);
             source.architecture.truncate(24);
+            source.by_hand.truncate(24);
             source.other.truncate(8);
         }
         sources.push(source);
@@ -102,6 +105,7 @@ pub fn shipped_source(layouts: &[Facade]) -> Result<Source> {
         dataset: "shipped_houses",
         grids,
         architecture,
+        by_hand: Vec::new(),
         other_dataset: "shipped_blocks",
         other: blocks.into_iter().map(picture).collect::<Result<_>>()?,
     })
@@ -120,6 +124,10 @@ fn ecp(ctx: &mut Context) -> Result<Option<Source>> {
         .iter()
         .map(|grid| annotations.architecture(grid))
         .collect::<Result<_>>()?;
+    let annotated = grids.iter().filter(|_| annotations.has_balconies());
+    let by_hand = annotated
+        .map(|grid| annotations.by_hand(&grid.name))
+        .collect::<Result<_>>()?;
     let other = match ctx.real("facades/graz50/labels")? {
         Some(folder) => label_images(&folder)?,
         None => Vec::new(),
@@ -128,6 +136,7 @@ fn ecp(ctx: &mut Context) -> Result<Option<Source>> {
         dataset: "ecp2011",
         grids,
         architecture,
+        by_hand,
         other_dataset: "graz50",
         other,
     }))

@@ -2,13 +2,16 @@
 
 use super::data::{Source, sources};
 use super::gold::{Architecture, Doors};
-use super::{RANKS, row};
-use crate::cluster::{MatchCurve, Query, cumulative_match};
+use super::{RANKS, row, trivial};
+use crate::cluster::{MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve};
 use crate::experiments::Context;
 use crate::methods::procedural_logic::{Measure, Model, Parameters};
 use crate::report::{Align, Chart, Corner, Figure, Scale, Series, Table};
 use crate::{Error, Result};
 use nalgebra::DMatrix;
+
+/// A distance by name, its curve under the protocol of the figure, and its matrix.
+type Curve<'a> = (&'a str, MatchCurve, &'a DMatrix<f64>);
 
 /// A query whose expectation at rank 2 is below this counts as missed.
 const MISSED: f64 = 0.5;
@@ -23,14 +26,16 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             .column("doors compared by", Align::Left)
             .numbers(["queries", "rank 1", "rank 2", "rank 5", "rank 20"]);
         let mut curves = Vec::new();
-        for measure in Measure::ALL {
-            let distances = measure.matrix(&profiles);
+        let measures = Measure::ALL.map(|measure| (measure.name(), measure.matrix(&profiles)));
+        let counts = (trivial::NAME, trivial::distances(&source.grids));
+        let all: Vec<(&str, DMatrix<f64>)> = measures.into_iter().chain([counts]).collect();
+        for (name, distances) in &all {
             for doors in Doors::ALL {
-                let curve = retrieve(&distances, &source.architecture, doors);
-                observe(ctx, &source, measure.name(), doors, &curve);
-                table.row(line(measure.name(), doors, &curve));
+                let curve = retrieve(distances, &source.architecture, doors);
+                observe(ctx, &source, name, doors, &curve);
+                table.row(line(name, doors, &curve));
                 if doors == Doors::Layout {
-                    curves.push((measure, curve, distances.clone()));
+                    curves.push((*name, curve, distances));
                 }
             }
         }
@@ -47,12 +52,13 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             table.row(line("size-blind ceiling", doors, &curve));
         }
         ctx.table(&table);
+        protocols(ctx, &source, &all);
         if source.is_paper() {
             compare(ctx, &curves);
         }
         draw(ctx, &source, &curves)?;
-        for (measure, curve, distances) in &curves {
-            if *measure == Measure::Powerset {
+        for (name, curve, distances) in &curves {
+            if *name == Measure::Powerset.name() {
                 explain(ctx, &source, &model, curve, distances);
             }
         }
@@ -69,7 +75,15 @@ const NOTE: &str = "Each facade queries all others (it is not ranked itself); fo
     also ask where along the facade the door stands, which is a size, and Sec. 5.4 excludes sizes: the rows *size-blind \
     ceiling* show what any distance on structures alone can reach then (it ranks by the true number of changes, and \
     facades of the same starting rule first). *shipped_houses* holds every structure at five sizes: to find those \
-    at once shows that a distance is blind to sizes, not more.";
+    at once shows that a distance is blind to sizes, not more. \
+    *component_counts* is a trivial baseline: the L1 distance between the numbers of connected areas of each label, \
+    without a single split or rule. On exact labels it is as good as powersets, so these curves say nothing for split \
+    trees: a gold standard that counts floors, columns, doors and balconies is met by counting. Mind also that \
+    of the gold standard only floors and columns are annotated by hand; doors and running balconies are read \
+    off the very labels that are compared. The other readings of the protocol: *ties against us* puts \
+    identical facades last among equal distances; *every facade queries* counts the facades that no other \
+    equals as never found; *the query is ranked too* finds itself at distance 0 and is 100 % but for ties; *all by hand* \
+    takes running balconies from the annotation (`floor_balcony_annotation.txt`) and no doors.";
 
 /// The curve of a distance matrix under one reading of the gold standard.
 pub fn retrieve(
@@ -81,20 +95,100 @@ pub fn retrieve(
     cumulative_match(distances, identical, RANKS, Query::LeftOut)
 }
 
+/// The other readings of the protocol, for every distance: who is a query, how ties count, and what of
+/// the gold standard is annotated by hand.
+fn protocols(ctx: &mut Context, source: &Source, all: &[(&str, DMatrix<f64>)]) {
+    let figure = Protocol {
+        query: Query::LeftOut,
+        ties: Ties::Random,
+        unmatched: Unmatched::LeftOut,
+    };
+    let against = Protocol {
+        ties: Ties::Against,
+        ..figure
+    };
+    let missed = Protocol {
+        unmatched: Unmatched::Missed,
+        ..figure
+    };
+    let included = Protocol {
+        query: Query::Included,
+        ..figure
+    };
+    let own = &source.architecture;
+    let coarse: Vec<Architecture> = own.iter().map(Architecture::floors_and_columns).collect();
+    let mut readings = vec![
+        ("as in the figure", "", figure, own),
+        ("ties against us", "ties_against", against, own),
+        ("every facade queries", "all_queries", missed, own),
+        (
+            "every facade queries, ties against us",
+            "all_queries_ties_against",
+            Protocol {
+                ties: Ties::Against,
+                ..missed
+            },
+            own,
+        ),
+        ("the query is ranked too", "query_included", included, own),
+        (
+            "gold: floors and columns only",
+            "gold_floors_columns",
+            figure,
+            &coarse,
+        ),
+    ];
+    if !source.by_hand.is_empty() {
+        readings.push((
+            "gold: all by hand, no doors",
+            "gold_by_hand",
+            figure,
+            &source.by_hand,
+        ));
+    }
+    let mut table = Table::new(format!(
+        "Other readings of the protocol on {}",
+        source.dataset
+    ))
+    .column("measure", Align::Left)
+    .column("protocol", Align::Left)
+    .numbers(["queries", "rank 1", "rank 2", "rank 5", "rank 20"]);
+    for (name, distances) in all {
+        for (words, suffix, protocol, gold) in &readings {
+            let identical = |a: usize, b: usize| gold[a].changes(&gold[b], Doors::Layout) == 0;
+            let curve = match_curve(distances, identical, RANKS, *protocol);
+            table.row(cells(name, words, &curve));
+            if !suffix.is_empty() {
+                rates(ctx, source, &format!("{name}/{suffix}"), &curve);
+            }
+        }
+    }
+    ctx.table(&table);
+}
+
 fn observe(ctx: &mut Context, source: &Source, measure: &str, doors: Doors, curve: &MatchCurve) {
     let method = match doors {
         Doors::Layout => measure.to_owned(),
         other => format!("{measure}/doors_by_{}", other.name()),
     };
+    rates(ctx, source, &method, curve);
+}
+
+/// The rates of a curve, and its number of queries.
+fn rates(ctx: &mut Context, source: &Source, method: &str, curve: &MatchCurve) {
     for (index, &rate) in curve.rates.iter().enumerate() {
         let instance = format!("rank_{}", index + 1);
-        ctx.observe(row(source.dataset, &method, instance, "cmc", rate));
+        ctx.observe(row(source.dataset, method, instance, "cmc", rate));
     }
     let queries = curve.queries.len() as f64;
-    ctx.observe(row(source.dataset, &method, "all", "queries", queries));
+    ctx.observe(row(source.dataset, method, "all", "queries", queries));
 }
 
 fn line(measure: &str, doors: Doors, curve: &MatchCurve) -> Vec<String> {
+    cells(measure, doors.name(), curve)
+}
+
+fn cells(measure: &str, reading: &str, curve: &MatchCurve) -> Vec<String> {
     let rate = |rank: usize| {
         let rate = curve.rates.get(rank - 1);
         rate.map_or_else(String::new, |rate| format!("{:.1} %", 100.0 * rate))
@@ -102,7 +196,7 @@ fn line(measure: &str, doors: Doors, curve: &MatchCurve) -> Vec<String> {
     let queries = curve.queries.len().to_string();
     vec![
         measure.into(),
-        doors.name().into(),
+        reading.into(),
         queries,
         rate(1),
         rate(2),
@@ -111,27 +205,27 @@ fn line(measure: &str, doors: Doors, curve: &MatchCurve) -> Vec<String> {
     ]
 }
 
-fn compare(ctx: &mut Context, curves: &[(Measure, MatchCurve, DMatrix<f64>)]) {
-    let percent = |measure: Measure, rank: usize| {
-        let curve = curves.iter().find(|c| c.0 == measure);
+fn compare(ctx: &mut Context, curves: &[Curve]) {
+    let percent = |name: &str, rank: usize| {
+        let curve = curves.iter().find(|c| c.0 == name);
         let rate = curve.and_then(|c| c.1.rates.get(rank - 1)).copied();
         rate.map_or_else(|| "-".into(), |rate| format!("{:.1} %", 100.0 * rate))
     };
-    ctx.compare("powersets, rank 1", "87 %", percent(Measure::Powerset, 1));
-    ctx.compare("powersets, rank 2", "100 %", percent(Measure::Powerset, 2));
-    ctx.compare(
-        "common rules, rank 2",
-        "56 %",
-        percent(Measure::CommonRules, 2),
-    );
-    ctx.compare("all rules, rank 2", "", percent(Measure::AllRules, 2));
+    for (quantity, printed, measure, rank) in [
+        ("powersets, rank 1", "87 %", Measure::Powerset, 1),
+        ("powersets, rank 2", "100 %", Measure::Powerset, 2),
+        ("common rules, rank 2", "56 %", Measure::CommonRules, 2),
+        ("all rules, rank 2", "", Measure::AllRules, 2),
+    ] {
+        ctx.compare(quantity, printed, percent(measure.name(), rank));
+    }
+    for rank in [1, 2] {
+        let quantity = format!("trivial baseline (component counts), rank {rank}");
+        ctx.compare(quantity, "", percent(trivial::NAME, rank));
+    }
 }
 
-fn draw(
-    ctx: &mut Context,
-    source: &Source,
-    curves: &[(Measure, MatchCurve, DMatrix<f64>)],
-) -> Result<()> {
+fn draw(ctx: &mut Context, source: &Source, curves: &[Curve]) -> Result<()> {
     let rank = Scale::new("rank k").range(1.0, RANKS as f64);
     let mut chart = Chart::new(
         format!("{}: identical facade within the first k", source.dataset),
@@ -139,12 +233,12 @@ fn draw(
         Scale::new("rate").range(0.0, 1.02),
     )
     .legend(Corner::BottomRight);
-    for (measure, curve, _) in curves {
+    for (name, curve, _) in curves {
         let points = curve.rates.iter().enumerate();
         let points = points
             .map(|(index, &rate)| ((index + 1) as f64, rate))
             .collect();
-        chart = chart.series(Series::marked(measure.name(), points));
+        chart = chart.series(Series::marked(*name, points));
     }
     let figure = Figure::single(
         "Cumulative match characteristics of facade retrieval",

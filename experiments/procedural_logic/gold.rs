@@ -12,6 +12,10 @@
 //! - *doors* from the labels: connected columns of pixels with a door. Where a door stands is told
 //!   in one of three ways, [`Doors`].
 //!
+//! Doors and running balconies are thus read off the very labels that the method compares. What the
+//! hand annotation says alone, with its own running balconies and without doors, is
+//! [`Annotations::by_hand`].
+//!
 //! The shipped layouts come without annotation: [`super::outline`] counts their floors and columns.
 
 use std::collections::BTreeMap;
@@ -61,6 +65,16 @@ pub struct Architecture {
 }
 
 impl Architecture {
+    /// Floors and window columns alone.
+    pub fn floors_and_columns(&self) -> Self {
+        Self {
+            floors: self.floors,
+            columns: self.columns,
+            doors: Default::default(),
+            balconies: Vec::new(),
+        }
+    }
+
     /// Number of architectural changes between two facades; zero is "deemed identical".
     pub fn changes(&self, other: &Self, doors: Doors) -> usize {
         let (mine, theirs) = (&self.doors[doors as usize], &other.doors[doors as usize]);
@@ -163,7 +177,13 @@ fn nearest(values: impl Iterator<Item = f64>, to: f64) -> usize {
 pub struct Annotations {
     floor_lines: BTreeMap<String, Vec<f64>>,
     columns: BTreeMap<String, Vec<(f64, f64)>>,
+    /// Lower edges of running balconies, as fractions of the height from the top.
+    balconies: BTreeMap<String, Vec<f64>>,
 }
+
+/// A running balcony ends at least so far below the window's own balcony, as a fraction of the height:
+/// equal numbers say that there is none, and the annotation repeats a number to about 0.001.
+const RUNNING: f64 = 0.01;
 
 /// A line of an annotation file that is not what it should be.
 #[derive(Debug, thiserror::Error)]
@@ -172,12 +192,14 @@ enum AnnotationError {
     Number(String),
     #[error("an odd number of column sides")]
     Odd,
+    #[error("{0} numbers, expected one and then groups of four")]
+    Groups(usize),
     #[error("no annotation of facade {0}")]
     Missing(String),
 }
 
 impl Annotations {
-    /// Reads the two annotation files of `folder`.
+    /// Reads the annotation files of `folder`: floor lines, window columns and, where there is one, balconies.
     ///
     /// # Errors
     /// [`Error::Io`], or [`Error::Input`] with the line that is wrong.
@@ -203,7 +225,58 @@ impl Annotations {
                 annotations.columns.insert(stem(name), columns);
             }
         }
+        let path = folder.join("floor_balcony_annotation.txt");
+        if !path.exists() {
+            return Ok(annotations);
+        }
+        for (index, pair) in lines(&path)?.chunks(2).enumerate() {
+            if let [name, values] = pair {
+                let values = numbers(&path, 2 * index + 1, values)?;
+                if values.len() % 4 != 1 {
+                    let cause = AnnotationError::Groups(values.len());
+                    return Err(Error::input(
+                        &path,
+                        format!("line {}", 2 * index + 2),
+                        cause,
+                    ));
+                }
+                // Window top, window bottom, balcony bottom, running balcony bottom.
+                let groups = values[1..].chunks(4);
+                let running = groups.filter(|group| group[3] - group[2] >= RUNNING);
+                let bottoms = running.map(|group| group[3]).collect();
+                annotations.balconies.insert(stem(name), bottoms);
+            }
+        }
         Ok(annotations)
+    }
+
+    /// Whether balconies are annotated.
+    pub fn has_balconies(&self) -> bool {
+        !self.balconies.is_empty()
+    }
+
+    /// What the hand annotation alone says of a facade: floors, window columns and running balconies; it
+    /// has no doors.
+    ///
+    /// # Errors
+    /// [`Error::Method`] when the facade is not annotated.
+    pub fn by_hand(&self, name: &str) -> Result<Architecture> {
+        match (
+            self.floor_lines.get(name),
+            self.columns.get(name),
+            self.balconies.get(name),
+        ) {
+            (Some(floors), Some(columns), Some(balconies)) => Ok(Architecture {
+                floors: floors.len(),
+                columns: columns.len(),
+                doors: Default::default(),
+                balconies: balconies
+                    .iter()
+                    .map(|&bottom| nearest(floors.iter().copied(), bottom) + 1)
+                    .collect(),
+            }),
+            _ => Err(Error::method(AnnotationError::Missing(name.to_owned()))),
+        }
     }
 
     /// The architecture of an annotated facade.

@@ -10,4 +10,6 @@ mod retrieval;
 
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
 pub use chi_square::{Histogram, chi_square};
-pub use retrieval::{MatchCurve, Query, cumulative_match, purity};
+pub use retrieval::{
+    MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,
+};

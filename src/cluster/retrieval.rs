@@ -13,13 +13,42 @@ pub enum Query {
     Included,
 }
 
+/// The order of items at equal distance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ties {
+    /// Random: the rates are exact expectations over it.
+    Random,
+    /// Relevant items come last.
+    Against,
+}
+
+/// What happens to a query without any relevant item.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unmatched {
+    /// It is no query.
+    LeftOut,
+    /// It counts as never found.
+    Missed,
+}
+
+/// How a cumulative match characteristic is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Protocol {
+    /// Whether the query is ranked too.
+    pub query: Query,
+    /// The order of equal distances.
+    pub ties: Ties,
+    /// Queries without any relevant item.
+    pub unmatched: Unmatched,
+}
+
 /// A cumulative match characteristic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatchCurve {
     /// `rates[k - 1]`: mean over the queries of the expectation that a relevant item is among the
     /// first `k`, 0..=1, never falling.
     pub rates: Vec<f64>,
-    /// Each query that has a relevant item, with its own expectation per rank.
+    /// Each query that counts, with its own expectation per rank.
     pub queries: Vec<(usize, Vec<f64>)>,
 }
 
@@ -35,18 +64,39 @@ pub fn cumulative_match(
     ranks: usize,
     query: Query,
 ) -> MatchCurve {
+    let protocol = Protocol {
+        query,
+        ties: Ties::Random,
+        unmatched: Unmatched::LeftOut,
+    };
+    match_curve(distances, relevant, ranks, protocol)
+}
+
+/// As [`cumulative_match`], under any protocol.
+///
+/// Complexity: `O(n^2 (log n + ranks))`.
+pub fn match_curve(
+    distances: &DMatrix<f64>,
+    relevant: impl Fn(usize, usize) -> bool,
+    ranks: usize,
+    protocol: Protocol,
+) -> MatchCurve {
     let n = distances.nrows();
     let mut queries = Vec::new();
     for q in 0..n {
-        let candidates = (0..n).filter(|&item| query == Query::Included || item != q);
+        let ranked_too = |item: &usize| protocol.query == Query::Included || *item != q;
+        let candidates = (0..n).filter(ranked_too);
         let mut ranked: Vec<(f64, bool)> = candidates
             .map(|item| (distances[(q, item)], relevant(q, item)))
             .collect();
         if !ranked.iter().any(|item| item.1) {
+            if protocol.unmatched == Unmatched::Missed {
+                queries.push((q, vec![0.0; ranks]));
+            }
             continue;
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        queries.push((q, expected_matches(&ranked, ranks)));
+        queries.push((q, matches(&ranked, ranks, protocol.ties)));
     }
     let mean = |rank: usize| {
         let total: f64 = queries.iter().map(|query| query.1[rank]).sum();
@@ -60,8 +110,8 @@ pub fn cumulative_match(
     MatchCurve { rates, queries }
 }
 
-/// Expectation, per rank, that a relevant item was met, over random orders of equal distances.
-fn expected_matches(ranked: &[(f64, bool)], ranks: usize) -> Vec<f64> {
+/// Expectation, per rank, that a relevant item was met.
+fn matches(ranked: &[(f64, bool)], ranks: usize, ties: Ties) -> Vec<f64> {
     let mut found = Vec::with_capacity(ranks);
     let mut start = 0;
     while start < ranked.len() && found.len() < ranks {
@@ -72,7 +122,10 @@ fn expected_matches(ranked: &[(f64, bool)], ranks: usize) -> Vec<f64> {
         let mut none = 1.0;
         for m in 0..tied {
             let misses = (tied - relevant) as f64 - m as f64;
-            none *= (misses / (tied - m) as f64).max(0.0);
+            none *= match ties {
+                Ties::Random => (misses / (tied - m) as f64).max(0.0),
+                Ties::Against => f64::from(u8::from(misses > 0.0)),
+            };
             found.push(1.0 - none);
             if found.len() == ranks {
                 return found;
@@ -155,6 +208,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn protocols_differ_as_they_say() {
+        // Query 0: items 1 and 2 tie, 2 is relevant; query 3 has nothing relevant.
+        let rows = [
+            [0.0, 1.0, 1.0, 2.0],
+            [1.0, 0.0, 3.0, 2.0],
+            [1.0, 3.0, 0.0, 2.0],
+            [2.0, 2.0, 2.0, 0.0],
+        ];
+        let distances = DMatrix::from_fn(4, 4, |i, j| rows[i][j]);
+        let relevant = |a: usize, b: usize| a == b || (a, b) == (0, 2) || (a, b) == (2, 0);
+        let curve = |query, ties, unmatched| {
+            let protocol = Protocol {
+                query,
+                ties,
+                unmatched,
+            };
+            match_curve(&distances, relevant, 2, protocol)
+        };
+        let plain = curve(Query::LeftOut, Ties::Random, Unmatched::LeftOut);
+        assert_eq!(plain.queries, [(0, vec![0.5, 1.0]), (2, vec![1.0, 1.0])]);
+        let against = curve(Query::LeftOut, Ties::Against, Unmatched::LeftOut);
+        assert_eq!(against.queries[0].1, [0.0, 1.0]);
+        let all = curve(Query::LeftOut, Ties::Random, Unmatched::Missed);
+        assert_eq!((all.queries.len(), all.rates[1]), (4, 0.5));
+        let included = curve(Query::Included, Ties::Against, Unmatched::Missed);
+        assert_eq!(included.rates, [1.0, 1.0]);
     }
 
     #[test]

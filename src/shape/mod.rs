@@ -8,6 +8,7 @@
 mod building;
 mod building_error;
 mod building_plan;
+mod cleaning;
 mod components;
 mod cuts;
 mod decompose;
@@ -27,6 +28,7 @@ pub use building::{
 };
 pub use building_error::BuildingError;
 pub use building_plan::{PlanEdge, PlanUnion, Visibility, visibility};
+pub use cleaning::{ToleranceError, absorb_specks, clean, straighten};
 pub use components::{Component, components};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};

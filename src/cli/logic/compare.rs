@@ -13,7 +13,7 @@ use crate::cli::print;
 /// Options of `logic compare`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic compare labels/ --query monge_42 --top 5\n  edifice logic compare --model paris.logic.json new.png --query new\n  edifice logic compare labels/ -o distances.csv"
+    after_help = "Examples:\n  edifice logic compare labels/ --query monge_42 --top 5\n  edifice logic compare --model paris.logic.json new.png --query new\n  edifice logic compare labels/ -o distances.csv\n\n'=' joins facades at equal distance; what stands first of them means nothing."
 )]
 pub struct Args {
     #[command(flatten)]
@@ -63,27 +63,62 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Prints the nearest facades of one.
+/// Prints the nearest facades of one: facades at equal distance share a rank, and those that the list
+/// leaves out at its last distance are counted.
 fn rank(args: &Args, model: &Model, distances: &DMatrix<f64>, query: usize) -> Result<()> {
+    let distance = |i: usize| distances[(query, i)];
     let mut others: Vec<usize> = (0..model.facades.len()).filter(|&i| i != query).collect();
-    others.sort_by(|&a, &b| distances[(query, a)].total_cmp(&distances[(query, b)]));
-    others.truncate(args.top);
-    let name = &model.facades[query].name;
-    if args.json {
-        let nearest: Vec<_> = others
+    others.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    let ranks: Vec<usize> = others
+        .iter()
+        .map(|&i| {
+            1 + others
+                .partition_point(|&j| distance(j) < distance(i) && !equal(distance(j), distance(i)))
+        })
+        .collect();
+    let listed = others.len().min(args.top);
+    let beyond = match listed {
+        0 => 0,
+        listed => ranks[listed..]
             .iter()
-            .map(|&i| {
-                let distance = distances[(query, i)];
-                serde_json::json!({ "name": model.facades[i].name, "distance": distance })
+            .filter(|&&r| r == ranks[listed - 1])
+            .count(),
+    };
+    let name = &model.facades[query].name;
+    let nearest = others.iter().zip(&ranks).take(listed);
+    if args.json {
+        let nearest: Vec<_> = nearest
+            .map(|(&i, rank)| {
+                serde_json::json!({ "name": model.facades[i].name, "distance": distance(i), "rank": rank })
             })
             .collect();
-        return print::line(&serde_json::json!({ "query": name, "nearest": nearest }).to_string());
+        let line =
+            serde_json::json!({ "query": name, "nearest": nearest, "tied_with_last": beyond });
+        return print::line(&line.to_string());
     }
-    let nearest: Vec<String> = others
-        .iter()
-        .map(|&i| format!("{} {:.3}", model.facades[i].name, distances[(query, i)]))
-        .collect();
-    print::line(&format!("{name}: {}", nearest.join(", ")))
+    let mut text = String::new();
+    for (place, (&i, rank)) in nearest.enumerate() {
+        let tied = place > 0 && ranks[place - 1] == *rank;
+        let joint = match (place, tied) {
+            (0, _) => "",
+            (_, true) => " = ",
+            (_, false) => ", ",
+        };
+        text.push_str(&format!(
+            "{joint}{} {:.3}",
+            model.facades[i].name,
+            distance(i)
+        ));
+    }
+    if beyond > 0 {
+        text.push_str(&format!(" (= {beyond} more at the same distance)"));
+    }
+    print::line(&format!("{name}: {text}"))
+}
+
+/// Whether two distances are equal up to rounding.
+fn equal(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.max(b)
 }
 
 /// The matrix with the names of the facades.

@@ -1,17 +1,23 @@
 //! `edifice logic fit`.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 use edifice::methods::procedural_logic::{Model, Parameters, fewest_rules, search_axes};
+use edifice::shape::LabelGrid;
 use edifice::{Error, Result};
 
 use super::input::{Energy, Facades, read_model, write_model};
 use crate::cli::print;
 
+/// More rules per facade than this are a sign of noisy labels: exact ones of ECP2011 need less than one, of
+/// Graz2012 and the shipped layouts less than ten.
+const MANY_RULES: usize = 10;
+
 /// Options of `logic fit`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic fit labels/ -o paris.logic.json\n  edifice logic fit labels/ --search -o paris.logic.json\n  edifice logic fit new.png --into paris.logic.json -o paris.logic.json"
+    after_help = "Examples:\n  edifice logic fit labels/ -o paris.logic.json\n  edifice logic fit labels/ --search -o paris.logic.json\n  edifice logic fit segmented/ --clean -o paris.logic.json\n  edifice logic fit new.png --into paris.logic.json -o paris.logic.json"
 )]
 pub struct Args {
     #[command(flatten)]
@@ -38,6 +44,7 @@ pub fn run(args: &Args) -> Result<()> {
     let model = match &args.into {
         Some(path) => {
             let mut model = read_model(path)?;
+            tell_known(&model, &grids);
             model.add_all(&grids).map_err(Error::method)?;
             model
         }
@@ -56,6 +63,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
     };
     write_model(&model, &args.output)?;
+    hint(args, &model);
     let inference = &model.inference;
     let p = model.parameters;
     print::message(&format!(
@@ -83,4 +91,28 @@ pub fn run(args: &Args) -> Result<()> {
         inference.nary_splits,
         inference.rules.len()
     ))
+}
+
+/// Says which names the model already has: those facades are added once more.
+fn tell_known(model: &Model, grids: &[LabelGrid]) {
+    let names: HashSet<&str> = model.facades.iter().map(|f| f.name.as_str()).collect();
+    for grid in grids
+        .iter()
+        .filter(|grid| names.contains(grid.name.as_str()))
+    {
+        print::message(&format!(
+            "warning: the model already has a facade called {}; it is added once more",
+            grid.name
+        ));
+    }
+}
+
+/// Points to `--clean` when there are so many rules that the labels look noisy.
+fn hint(args: &Args, model: &Model) {
+    let (rules, facades) = (model.inference.rules.len(), model.facades.len());
+    if !args.facades.is_clean() && rules > MANY_RULES * facades {
+        print::message(&format!(
+            "{rules} rules for {facades} facades: if the labels come from a segmentation, --clean straightens them"
+        ));
+    }
 }

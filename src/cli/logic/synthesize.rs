@@ -47,7 +47,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let model = read_model(&args.model)?;
     let starts = starting_rules(&model);
-    let Some(&(start, examples)) = args.start.checked_sub(1).and_then(|k| starts.get(k)) else {
+    let Some(&(start, _)) = args.start.checked_sub(1).and_then(|k| starts.get(k)) else {
         let message = format!("the model has {} starting rules", starts.len());
         return Err(Error::option("--start", message));
     };
@@ -68,9 +68,15 @@ pub fn run(args: &Args) -> Result<()> {
         let path = folder.join(format!("{}.{}", facade.name, args.format));
         write_facade(&layout, &path)?;
     }
+    let similar = match style.similar {
+        0 => String::new(),
+        count => format!(" and {count} of similar structure"),
+    };
     print::line(&format!(
-        "{} facades from {examples} examples in {}",
+        "{} facades from {} example{}{similar} in {}",
         args.count,
+        style.examples,
+        if style.examples == 1 { "" } else { "s" },
         folder.display()
     ))
 }

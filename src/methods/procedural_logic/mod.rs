@@ -49,7 +49,11 @@
 //! - *Common rules*: the chi-square runs over the rules that both facades use, as the text says; over
 //!   the rules of either it retrieves far better ([`Measure::AllRules`]).
 //! - *Synthesis*: width and height join the parameter vector, so that mean, components and samples
-//!   all fill the facade; draws with a size that is not positive are thrown away.
+//!   all fill the facade; draws with a size that is not positive are thrown away. A starting rule that
+//!   one facade has borrows the proportions of the facades with the most similar structures
+//!   ([`Style::similar`]); the paper does not say what becomes of it.
+//! - *Labels with noise* (from a segmentation) are cleaned before the method sees them
+//!   ([`clean`](crate::shape::clean)), when asked: the method itself stays lossless.
 
 mod affinity;
 mod alphabet;
@@ -66,6 +70,7 @@ mod parameters;
 mod parse;
 mod rules;
 mod search;
+mod similar;
 mod split_grammar;
 mod synthesis;
 

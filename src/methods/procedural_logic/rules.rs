@@ -75,12 +75,7 @@ impl RuleSet {
                 }
             };
         }
-        Instance {
-            width: tree.width,
-            height: tree.height,
-            start: calls[0],
-            parameters: parameter_vector(tree),
-        }
+        tree.instance(calls[0])
     }
 
     /// The rules by number.
@@ -228,6 +223,18 @@ impl ParametricRule {
             let before = size - *mean;
             *mean += before / count;
             *deviation += before * (size - *mean);
+        }
+    }
+}
+
+impl NaryTree {
+    /// The tree as a call of `start`, the rule of its root.
+    pub(super) fn instance(&self, start: Call) -> Instance {
+        Instance {
+            width: self.width,
+            height: self.height,
+            start,
+            parameters: parameter_vector(self),
         }
     }
 }

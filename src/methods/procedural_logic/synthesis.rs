@@ -11,7 +11,11 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::model::{Known, Model};
-use super::rules::{Call, Instance};
+use super::rules::{Call, Instance, InstanceError};
+use super::similar::Structure;
+
+/// Facades of similar structure that a starting rule of one facade borrows from, at most.
+const NEIGHBOURS: usize = 10;
 
 /// A component whose variance is below this share of the largest one is numerical noise.
 const NEGLIGIBLE: f64 = 1e-12;
@@ -27,8 +31,11 @@ const DRAWS: usize = 1000;
 pub struct Style {
     /// The starting rule.
     pub start: Call,
-    /// Number of facades it was learned from.
+    /// Number of facades with this starting rule.
     pub examples: usize,
+    /// Number of facades with similar starting rules whose proportions were borrowed; 0 where two
+    /// facades or more have this one.
+    pub similar: usize,
     /// Width, height and parameters, averaged over the facades.
     pub mean: DVector<f64>,
     /// One column per principal component, scaled by its standard deviation.
@@ -40,12 +47,18 @@ pub struct Style {
 /// Why a starting rule gives no new facades.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StyleError {
-    /// Too few facades to see how the parameters vary.
-    #[error("{found} facades start with this rule, at least 2 are needed")]
+    /// Too few facades in the model to see how the parameters vary.
+    #[error("the model has {found} facades to learn from, at least 2 are needed")]
     TooFew {
         /// Facades found.
         found: usize,
     },
+    /// No facade of the model starts with the rule.
+    #[error("no facade of the model starts with this rule")]
+    NoExample,
+    /// A facade's call does not fit the rules.
+    #[error(transparent)]
+    Instance(#[from] InstanceError),
     /// A facade of the rule has another number of parameters.
     #[error("facade {name} has {found} parameters, the others {expected}")]
     Parameters {
@@ -67,19 +80,31 @@ pub enum StyleError {
 impl Style {
     /// Learns mean and principal components of the facades that start with `start`.
     ///
+    /// If that is a single one, the ten facades of most similar structure lend their proportions (their
+    /// size, and the share of each part that has a counterpart): mean and components are those of this
+    /// facade and of its structure at the proportions of the others.
+    ///
     /// Complexity: `O(n^2 p)` for `n` facades and `p` parameters: the components come from the
     /// `n x n` matrix of inner products, of which at most `n - 1` are not zero.
     ///
     /// # Errors
-    /// [`StyleError::TooFew`] for fewer than two facades, [`StyleError::Parameters`].
+    /// [`StyleError::TooFew`] for a model of fewer than two facades, [`StyleError::NoExample`],
+    /// [`StyleError::Parameters`], [`StyleError::Instance`].
     pub fn learn(model: &Model, start: Call) -> Result<Self, StyleError> {
         let is_example = |known: &&Known| known.instance.start == start;
         let examples: Vec<&Known> = model.facades.iter().filter(is_example).collect();
-        let count = examples.len();
-        if count < 2 {
-            return Err(StyleError::TooFew { found: count });
+        let first = examples.first().ok_or(StyleError::NoExample)?;
+        if model.facades.len() < 2 {
+            let found = model.facades.len();
+            return Err(StyleError::TooFew { found });
         }
-        let vectors: Vec<DVector<f64>> = examples.iter().map(|k| vector(&k.instance)).collect();
+        let borrowed = match examples.len() {
+            1 => borrow(model, &first.instance)?,
+            _ => Vec::new(),
+        };
+        let own = examples.iter().map(|known| &known.instance);
+        let vectors: Vec<DVector<f64>> = own.chain(&borrowed).map(vector).collect();
+        let count = vectors.len();
         let length = vectors[0].len();
         for (known, vector) in examples.iter().zip(&vectors) {
             if vector.len() != length {
@@ -95,10 +120,11 @@ impl Style {
         let centred = DMatrix::from_columns(&deviations) / ((count - 1) as f64).sqrt();
         Ok(Self {
             start,
-            examples: count,
+            examples: examples.len(),
+            similar: borrowed.len(),
             mean,
             components: scaled_components(&centred),
-            unit: examples[0].unit.clone(),
+            unit: first.unit.clone(),
         })
     }
 
@@ -141,6 +167,20 @@ impl Style {
             parameters: vector.iter().skip(2).copied().collect(),
         }
     }
+}
+
+/// The structure of a facade at the proportions of those most similar to it, the nearest first.
+fn borrow(model: &Model, own: &Instance) -> Result<Vec<Instance>, InstanceError> {
+    let rules = &model.inference.rules;
+    let structure = Structure::new(rules, own)?;
+    let others = model.facades.iter().map(|known| &known.instance);
+    let mut found: Vec<(Instance, f64)> = others
+        .filter(|instance| instance.start != own.start)
+        .map(|instance| Ok(structure.proportioned(&Structure::new(rules, instance)?)))
+        .collect::<Result<_, InstanceError>>()?;
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    found.truncate(NEIGHBOURS);
+    Ok(found.into_iter().map(|(instance, _)| instance).collect())
 }
 
 /// `(W, H, x)`.

@@ -36,9 +36,9 @@ fn solved(facades: &[Facade], operations: Operations, nodes: u64) -> (f64, f64) 
         nodes,
         ..BoundLimits::default()
     };
-    let (lower, _) = solve(&program, &mut incumbent, &limits);
+    let (lower, _) = solve(program, &mut incumbent, &limits);
     let mut types = Types::new(facades).unwrap();
-    let rules = incumbent.rules(&program, &mut types);
+    let rules = incumbent.rules(&mut types);
     let grammar = extract::grammar(&mut types, facades, &rules);
     let evaluation = evaluate(&grammar, facades, &costs).unwrap();
     assert!((evaluation.cost - incumbent.cost).abs() < 1e-9);
@@ -94,7 +94,9 @@ fn steps_only_raise_the_bound() {
     let bound_after = |steps| {
         // An incumbent out of reach, so that all steps are made.
         let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
-        Shares::new(&program).ascend(&mut incumbent, steps).bound
+        Shares::new(&program)
+            .ascend(&mut incumbent, steps, &mut { u64::MAX })
+            .bound
     };
     let bounds = [1, 10, 100].map(bound_after);
     assert!(bounds.is_sorted(), "{bounds:?}");
@@ -125,7 +127,7 @@ fn steps_climb_to_the_optimum_of_the_linear_program() {
         .unwrap();
         let optimum = linear_program::optimum(&program);
         let mut incumbent = Incumbent::new(f64::INFINITY, &costs, operations);
-        let found = Shares::new(&program).ascend(&mut incumbent, 2_000);
+        let found = Shares::new(&program).ascend(&mut incumbent, 2_000, &mut { u64::MAX });
         assert!(
             found.bound <= optimum + 1e-6,
             "{} above {optimum}",
@@ -188,7 +190,7 @@ fn shares_of_an_item_sum_to_its_cost() {
     .unwrap();
     let mut shares = Shares::new(&program);
     let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
-    shares.ascend(&mut incumbent, 50);
+    shares.ascend(&mut incumbent, 50, &mut { u64::MAX });
     for kind in &program.kinds {
         for (item, cost) in kind.costs.iter().enumerate() {
             let share = |purse| shares.shares[kind.first_share + purse * kind.costs.len() + item];
