@@ -4,8 +4,8 @@ use std::path::Path;
 
 use edifice::io::facade_json::parse_json;
 use edifice::io::{
-    LabelMap, building_csv, building_json, cmp_xml, facade_json, grammar_cga, grammar_json,
-    label_image, label_text,
+    LabelMap, building_csv, building_json, cmp_xml, coco, facade_json, grammar_cga, grammar_json,
+    label_image, label_text, labelme,
 };
 use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
@@ -23,6 +23,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
             building_json::parse_lines(bytes, path).is_ok() || one
         }
         "cmp_xml" => cmp_xml::parse(bytes, path).is_ok_and(|c| c.label_grid(30.0, 40.0).is_ok()),
+        "coco" => coco::parse(bytes, path, None).is_ok(),
         "facade_json" => facade_json::parse(bytes, path).is_ok(),
         "grammar_cga" => grammar_cga::parse(bytes, path).is_ok(),
         "grammar_json" => grammar_json::parse(bytes, path).is_ok(),
@@ -33,6 +34,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
             label_image::parse(bytes, path, None).is_ok() || numbers
         }
         "label_text" => label_text::parse(bytes, path, None).is_ok(),
+        "labelme" => labelme::parse(bytes, path).is_ok(),
         "logic_model" => {
             parse_json::<ModelFile>(bytes, path).is_ok_and(|file| Model::try_from(file).is_ok())
         }
@@ -63,5 +65,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 13);
+    assert_eq!(targets, 15);
 }

@@ -200,7 +200,7 @@ fn union_cost(grammars: &[Grammar], costs: &Costs) -> Result<f64> {
                     (terminal.label.clone(), place.map(whole))
                 });
                 let mut contents: Contents = written.collect();
-                contents.sort_by(|a, b| a.1.cmp(&b.1));
+                contents.sort_by_key(|content| content.1);
                 contents
             });
         }

@@ -32,8 +32,10 @@ const SMOKE: usize = 8;
 /// Strengths of each kind of fault.
 const STRENGTHS: usize = 4;
 
-/// The kinds of faults, by name, at a strength from 1 to 4.
-const KINDS: [(&str, fn(usize) -> Corruption); 6] = [
+/// A kind of faults: its name, and the faults at a strength from 1 to 4.
+type Kind = (&'static str, fn(usize) -> Corruption);
+
+const KINDS: [Kind; 6] = [
     ("edges", |k| Corruption {
         edges: k as i64,
         ..NONE

@@ -64,12 +64,11 @@ pub fn index(pages: &[Page]) -> String {
             }
             body { main {
                 h1 { "Edifice: report" }
-                p { "Every table and figure that was made, each beside what its paper printed. Pictures link to their vector form where it is small enough to ship." }
                 nav aria-label="Contents" { h2 { "Contents" } @for page in pages {
                     h3 { (page.paper) }
                     ul { @for s in &page.sections { li { a href=(format!("#{}-{}", page.slug, s.name)) { (s.heading) } } } }
                 } }
-                p { "Every table and figure that was made, each beside what its paper printed. Pictures link to their vector form." }
+                p { "Every table and figure that was made, each beside what its paper printed. Pictures link to their vector form where it is small enough to ship." }
                 @for page in pages {
                     h2 { (page.paper) }
                     p.made { a href=(format!("{}/run.json", page.slug)) { "run.json" } ": commands, seeds, settings, digests of the data" }

@@ -43,11 +43,21 @@
 //! Programming 39, 1987). From equal shares, subgradient steps of Polyak's length raise it: purses whose places use an
 //! item in the cheapest derivation pay more of it, the others less. The types of each cheapest derivation are in
 //! turn the set of non-terminals of a grammar, whose best rules are independent shortest paths. When `L` meets the
-//! cost of the cheapest such grammar, that one is optimal; where a gap stays, branch and bound decides which items
-//! rules have. On real facades there is hardly a gap. [`lower_bound`] takes more time for the same.
+//! cost of the cheapest such grammar, that one is optimal. After some steps, *variable fixing* takes out every place and item
+//! whose cheapest derivation costs more than the best grammar known, which leaves a small part of the program. Where a
+//! gap stays, branch and bound decides which types have rules, then which items these have: a type that has a rule
+//! pays for its operation and for its first and last successor whatever the shares. On real facades there is hardly a
+//! gap. [`lower_bound`] takes more time for the same.
 //!
 //! Bounded are all grammars whose symbols each derive regions of one type by splits, repeats, alternations and mirrored
-//! splits: those that [`infer`] searches. Grid splits are no paths, and have no bound.
+//! splits: those that [`infer`] searches. Grid splits are no paths; their bound is weaker ([`lower_bound`]). Layouts
+//! with millions of possible rules have only the bound that every label is written once.
+//!
+//! # When two lengths are equal
+//! Coordinates come in any unit, so that equal sizes differ in their last digits. Terminals whose extents agree to 1e-7 of
+//! the facade's longer side (of the smallest facade, where there are several) have one extent, and sums of such
+//! extents are equal when that follows from them: elementary intervals between lines are points of an integer lattice, found
+//! by elimination, and compared by residues (`regions/lengths.rs`). Costs do not depend on unit, origin or orientation.
 //!
 //! # Deviations and readings
 //! - *Reasonable rules* (Sec. 4.2: "a subset of rules that seem reasonable") are, along each axis:
@@ -80,13 +90,13 @@
 //!   runs as the text has). Neither is the default: the first leaves out rules that Eq. 4 minimizes over,
 //!   the second contradicts the text, and `best` would look better beside either.
 //! - These readings can be set ([`Readings`]); the report's `readings` shows what each does.
-//! - *Iterations* are walks. Of `best` they are a measure of work: for each, cost shares may look at 2,000 items;
+//! - *Iterations* are walks. Of `best` they are a measure of work: for each, the Lagrangian bound may look at 9,000 items;
 //!   for every eight there is one walk by shortest paths and one round of annealing. `best` stops once its
-//!   grammar is proven optimal. Where there are too many places for the work allowed, it makes all walks of
-//!   `paper` first. With grids allowed, cost shares look for a start without them, and prove nothing.
-//! - *Several facades* share the rules of the types that they have in common. Of them `best` first searches each alone,
-//!   then all together, from the union of what it found: the joint grammar never costs more than the separate
-//!   ones. Cost shares may do as much for each facade as for one.
+//!   grammar is proven optimal. Where there are too many places for the bound it makes walks of
+//!   `paper` first, fewer the larger the facade, and ends when a limit of memory is reached. With grids allowed, the
+//!   bound looks for a start without them.
+//! - *Costs* of operations and successors are 0 or from 0.001 to 1,000: sums beyond cannot be compared.
+//! - *repeatABA* may have one B: A B A.
 //! - *Bottom to top, left to right* orders types by the first region found with them.
 //! - *Baselines*: what is read into the methods of Table 2 stands in the report's `table_2` and `baseline_ranges`; the columns of
 //!   procedural logic (compression setting of its authors) and Bayesian grammar learning coincide on nearly all facades,

@@ -119,7 +119,7 @@ impl Structure {
         own: usize,
         other: &'a Self,
         donor: Option<usize>,
-    ) -> (Vec<Option<(usize, usize)>>, &'a [f64]) {
+    ) -> (Vec<Option<Partner>>, &'a [f64]) {
         let (mine, theirs) = match (
             &self.tree.nodes[own],
             donor.map(|donor| &other.tree.nodes[donor]),
@@ -154,6 +154,9 @@ impl Structure {
         (partners, sizes)
     }
 }
+
+/// A part that another is aligned with: its place among its siblings, and its node.
+type Partner = (usize, usize);
 
 /// The alignment in order of `n` items with `m` others of largest total score; items of score 0 never meet.
 fn align(n: usize, m: usize, score: impl Fn(usize, usize) -> u32) -> Vec<Option<usize>> {

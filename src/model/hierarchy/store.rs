@@ -72,6 +72,7 @@ impl Hierarchy {
         }
         check_schema(&stored.schema)?;
         check_structure(&stored.schema, &stored.structure)?;
+        stored.structure.order(&stored.schema.groups)?;
         check_sizes(&stored)?;
         let shape = Shape::new(&stored.schema, stored.structure)?;
         let mut linear = Vec::new();
