@@ -90,7 +90,7 @@ fn cheapest_way(parts: &[Content], operations: Operations, costs: &Costs) -> Opt
     let successors = |count: usize| costs.successor * count as f64;
     let mut ways = vec![costs.split + successors(n)];
     if operations.repeat {
-        for period in (1..n).filter(|period| n % period == 0) {
+        for period in (1..n).filter(|period| n.is_multiple_of(*period)) {
             if (period..n).all(|i| parts[i] == parts[i - period]) {
                 ways.push(costs.repeat + successors(period));
             }

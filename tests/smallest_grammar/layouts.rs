@@ -125,7 +125,7 @@ fn block(rng: &mut Stream, extent: [u32; 2], labels: u8, depth: u32) -> Content 
     };
     let parts = match rng.random_range(0..6) {
         0 | 1 => {
-            let divisors: Vec<u32> = (1..length).filter(|n| length % n == 0).collect();
+            let divisors: Vec<u32> = (1..length).filter(|n| length.is_multiple_of(*n)).collect();
             let size = divisors[rng.random_range(0..divisors.len())];
             vec![part(rng, size); (length / size) as usize]
         }

@@ -136,7 +136,7 @@ impl Builder<'_> {
                 let period = lines[k];
                 let first = between(0, period);
                 let equal = |i: u32| between(i * period, (i + 1) * period) == first;
-                if end % period == 0 && (1..end / period).all(equal) {
+                if end.is_multiple_of(period) && (1..end / period).all(equal) {
                     let nodes = self.path(content, axis, &lines[..=k], |_, _| true);
                     self.close(nodes[k], Way::Repeat(axis), self.costs.repeat);
                 }
@@ -153,7 +153,7 @@ impl Builder<'_> {
                     };
                     let times = (end - a) / period;
                     let last = between(times * period, end) == outer;
-                    if (end - a) % period == 0 && last && (1..times).all(equal) {
+                    if (end - a).is_multiple_of(period) && last && (1..times).all(equal) {
                         let middle = self.node();
                         let last = self.node();
                         self.write(content, axis, None, (0, a), middle);
