@@ -1,151 +1,144 @@
-//! Regularization along one axis; the program is stated in the parent module.
+//! Regularization along one axis: which lines and sizes become equal, and where the lines go.
 
 use super::RegularizeError;
-use super::differences::{Difference, Differences};
-use super::sizes::{Cluster, choose_sizes};
+use super::classes::Class;
+use super::differences::{Differences, SharedSize};
+use super::lattice::Lattice;
+use super::strips::Strips;
 use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as solve_qp};
 
-/// Parts of the tolerance that are told apart when the input is not in whole numbers.
-const FINENESS: f64 = 256.0;
+/// How much dearer it is to change the size of an element than one of the background.
+const ELEMENT: f64 = 8.0;
 
-/// A stretch of one area along a strip, between cut lines `from` and `to`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run {
-    /// Background and odd shapes are served after elements.
-    pub behind: bool,
-    /// Label number; only runs of one label become equal.
-    pub label: u16,
-    /// Cut line at its start.
-    pub from: usize,
-    /// Cut line at its end.
-    pub to: usize,
-    /// Thickness of the strips with this run, summed.
-    pub weight: f64,
+/// One axis of a layout; lengths are in units of the lattice.
+pub struct Axis<'a> {
+    /// Positions of the cut lines.
+    pub cuts: Vec<f64>,
+    /// Length of edge on each line.
+    pub weights: Vec<f64>,
+    /// What lies between the lines.
+    pub strips: Strips<'a>,
+    /// Sizes that are equal.
+    pub classes: Vec<Class>,
+    /// Longest way that a line may move.
+    pub reach: f64,
+    /// The lattice.
+    pub lattice: Lattice,
 }
 
-/// The areas of all cells, strip by strip.
-#[derive(Clone, Copy)]
-pub struct Strips<'a> {
-    /// Area of each cell.
-    pub cells: &'a [u32],
-    /// Whether each cell may vanish although its area does not continue beside it.
-    pub yields: &'a [bool],
-    /// Cells in a strip.
-    pub length: usize,
-    /// Label number of each area.
-    pub labels: &'a [u16],
-}
-
-impl<'a> Strips<'a> {
-    /// The strips.
-    pub fn rows(self) -> impl Iterator<Item = &'a [u32]> {
-        self.cells.chunks_exact(self.length)
-    }
-
-    /// Whether the cells between lines `first` and `last` can vanish: in each strip they continue what
-    /// lies before, then what lies behind; a `narrow` stretch between the two may vanish when all of it
-    /// yields and no two areas of one label come to touch.
-    fn can_vanish(self, first: usize, last: usize, narrow: impl Fn(usize, usize) -> bool) -> bool {
-        let yields = self.yields.chunks_exact(self.length);
-        self.rows().zip(yields).all(|(row, yields)| {
-            let before = first.checked_sub(1).map(|k| row[k]);
-            let behind = row.get(last).copied();
-            let from = (first..last)
-                .find(|&k| Some(row[k]) != before)
-                .unwrap_or(last);
-            let to = (from..last)
-                .rev()
-                .find(|&k| Some(row[k]) != behind)
-                .map_or(from, |k| k + 1);
-            let label = |area: u32| self.labels[area as usize];
-            let touch = |(a, b): (u32, u32)| a != b && label(a) == label(b);
-            from == to
-                || narrow(from, to)
-                    && yields[from..to].iter().all(|&y| y)
-                    && !before.zip(behind).is_some_and(touch)
-        })
-    }
-}
-
-/// New positions of all cut lines, in order; merged ones are equal.
-pub fn solve(
-    cuts: &[f64],
-    weights: &[f64],
-    runs: &[Run],
-    strips: Strips,
-    tolerance: f64,
-) -> Result<Vec<f64>, RegularizeError> {
-    let quantum = quantum(cuts, tolerance);
-    let groups = merge_lines(cuts, weights, strips, tolerance, quantum);
-    let Some(mut system) = groups.system() else {
-        // No room to move at all: the tolerance is below the quantum.
-        return Ok(cuts.to_vec());
-    };
-    let mut clusters = choose_sizes(
-        &groups.of_line,
-        &groups.center,
-        runs,
-        tolerance / quantum,
-        &mut system,
-    );
-
-    // Sizes: as the program would have them, rounded, where that stays feasible.
-    let (_, sizes) = groups.program(&clusters, true)?;
-    for (k, size) in sizes.into_iter().enumerate() {
-        let tried = size.round() as i64;
-        let old = std::mem::replace(&mut clusters[k].size, tried);
-        if tried != old {
-            match groups.system_with(&clusters) {
-                Some(better) => system = better,
-                None => clusters[k].size = old,
-            }
-        }
-    }
-    let (positions, _) = groups.program(&clusters, false)?;
-    let rounded = round_together(&positions);
-    let whole = match system.holds(&rounded, &groups.lower) {
-        true => rounded,
-        false => system.values().to_vec(),
-    };
-    // The total size is kept to the bit.
-    let end = groups.of_line[cuts.len() - 1];
-    let position = |&group: &usize| match group == end {
-        true => cuts[cuts.len() - 1],
-        false => whole[group] as f64 * quantum,
-    };
-    let moved = groups.of_line.iter().map(position).collect();
-    Ok(moved)
-}
-
-/// The unit of positions: one if the input is in whole numbers, else a fraction of the tolerance that
-/// divides the total size.
-fn quantum(cuts: &[f64], tolerance: f64) -> f64 {
-    let total = cuts[cuts.len() - 1];
-    if cuts.iter().all(|c| (c - c.round()).abs() <= 1e-9 * total) {
-        1.0
-    } else {
-        total / (total * FINENESS / tolerance).round().clamp(1.0, 1e12)
-    }
-}
-
-/// Cut lines, merged into groups that share a position; everything in quanta.
+/// Cut lines, merged into groups that share a position.
 struct Groups {
     /// Group of each line.
     of_line: Vec<usize>,
     /// Where the lines of each group want to be, on average, and how much.
     center: Vec<f64>,
     weight: Vec<f64>,
-    lower: Vec<i64>,
-    upper: Vec<i64>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
     /// Least distance of each group to the next.
-    gap: Vec<i64>,
+    gap: Vec<f64>,
 }
 
-impl Groups {
-    /// Groups of consecutive lines, given the first line of each.
-    fn new(firsts: &[usize], cuts: &[f64], weights: &[f64], tolerance: f64, quantum: f64) -> Self {
-        let ends = firsts[1..].iter().copied().chain([cuts.len()]);
-        let mut groups = Self {
+/// Classes of sizes that have become one.
+#[derive(Debug, Clone)]
+struct Cluster {
+    /// Their numbers.
+    classes: Vec<usize>,
+    /// Size that they should have.
+    wanted: f64,
+    /// Size that they have.
+    value: f64,
+}
+
+impl Axis<'_> {
+    /// New positions of all cut lines, in order, merged ones equal; `None` when no lines and no sizes
+    /// become equal that were not.
+    pub fn solve(&self) -> Result<Option<Vec<f64>>, RegularizeError> {
+        if self.lattice.whole && self.reach + 1e-6 < 1.0 {
+            return Ok(None);
+        }
+        let own = |(number, class): (usize, &Class)| Cluster {
+            classes: vec![number],
+            wanted: class.size,
+            value: class.size,
+        };
+        let mut clusters: Vec<Cluster> = self.classes.iter().enumerate().map(own).collect();
+        if std::env::var("DBG").is_ok() { let none = vec![None; self.cuts.len()]; let ok = self.settle(&self.groups(&none), &mut clusters.clone()); let spans: usize = self.classes.iter().filter(|c| c.spans.len()>1).count(); eprintln!("   start feasible {ok} lines {} classes {} shared {}", self.cuts.len(), self.classes.len(), spans); }
+        let groups = self.merge_lines(&mut clusters);
+        let before = clusters.len();
+        self.merge_sizes(&groups, &mut clusters);
+        if std::env::var("DBG").is_ok() { eprintln!("   groups {} of {} clusters {} of {}", groups.center.len(), self.cuts.len(), clusters.len(), before); }
+        if groups.center.len() == self.cuts.len() && clusters.len() == before {
+            return Ok(None);
+        }
+        let positions = self.place(&groups, &clusters)?;
+        let moved: Vec<f64> = groups.of_line.iter().map(|&g| positions[g]).collect();
+        Ok((moved != self.cuts).then_some(moved))
+    }
+
+    /// Merges lines that can meet. Leaders, those with most edge within reach, stay where they are as far
+    /// as possible; of the lines beside them, the nearest join first.
+    fn merge_lines(&self, clusters: &mut [Cluster]) -> Groups {
+        let cuts = &self.cuts;
+        let end = cuts.len() - 1;
+        let near = |a: usize, b: usize| (cuts[a] - cuts[b]).abs() <= self.reach + 1e-6;
+        let mut leads = vec![None; cuts.len()];
+        let mut open: Vec<usize> = (0..=end).collect();
+        while !open.is_empty() {
+            let score = |&leader: &usize| {
+                let around = open.iter().filter(|&&k| near(k, leader));
+                let sums = around.fold((0.0, 0.0), |(sum, far), &k| {
+                    let distance = (cuts[leader] - cuts[k]).abs();
+                    (sum + self.weights[k], far + self.weights[k] * distance)
+                });
+                // The ends of the layout stay where they are.
+                (leader == 0 || leader == end, sums)
+            };
+            let better = |a: &&usize, b: &&usize| {
+                let ((end_a, (sum_a, far_a)), (end_b, (sum_b, far_b))) = (score(a), score(b));
+                (end_b.cmp(&end_a))
+                    .then(sum_b.total_cmp(&sum_a))
+                    .then(far_a.total_cmp(&far_b))
+                    .then(a.cmp(b))
+            };
+            let Some(&leader) = open.iter().min_by(better) else {
+                break;
+            };
+            leads[leader] = Some(leader);
+            for side in [-1isize, 1] {
+                let mut at = leader;
+                while let Some(next) = at.checked_add_signed(side).filter(|&k| k <= end) {
+                    if leads[next].is_some() || !near(next, leader) {
+                        break;
+                    }
+                    leads[next] = Some(leader);
+                    if !self.meet(leader, &leads, clusters) {
+                        leads[next] = None;
+                        break;
+                    }
+                    at = next;
+                }
+            }
+            open.retain(|&k| leads[k].is_none());
+        }
+        self.groups(&leads)
+    }
+
+    /// Whether the lines that follow a leader can meet.
+    fn meet(&self, leader: usize, leads: &[Option<usize>], clusters: &mut [Cluster]) -> bool {
+        let cuts = &self.cuts;
+        let narrow = |from: usize, to: usize| cuts[to] - cuts[from] <= self.reach + 1e-6;
+        let mut mine = (0..cuts.len()).filter(|&k| leads[k] == Some(leader));
+        let first = mine.next().unwrap_or(leader);
+        let last = mine.next_back().unwrap_or(first);
+        self.strips.can_vanish(first, last, narrow) && self.settle(&self.groups(leads), clusters)
+    }
+
+    /// Groups of lines that follow one leader; others stand alone.
+    fn groups(&self, leads: &[Option<usize>]) -> Groups {
+        let (cuts, weights) = (&self.cuts, &self.weights);
+        let lead = |k: usize| leads[k].unwrap_or(k);
+        let mut groups = Groups {
             of_line: vec![0; cuts.len()],
             center: Vec::new(),
             weight: Vec::new(),
@@ -153,131 +146,241 @@ impl Groups {
             upper: Vec::new(),
             gap: Vec::new(),
         };
-        for (number, (first, end)) in firsts.iter().copied().zip(ends).enumerate() {
-            groups.of_line[first..end].fill(number);
+        let mut first = 0;
+        for end in 1..=cuts.len() {
+            if end < cuts.len() && lead(end) == lead(first) {
+                continue;
+            }
             let weight: f64 = weights[first..end].iter().sum();
-            let at = |k: usize| cuts[k] / quantum;
-            let moment: f64 = (first..end).map(|k| weights[k] * at(k)).sum();
-            let center = if weight > 0.0 {
-                moment / weight
-            } else {
-                at(first)
-            };
-            // A hair's breadth of rounding must not cost a whole quantum.
-            let reach = tolerance / quantum + 1e-9;
-            let (mut lower, mut upper) = (at(end - 1) - reach, at(first) + reach);
+            let (mut lower, mut upper) = (cuts[end - 1] - self.reach, cuts[first] + self.reach);
             if first == 0 || end == cuts.len() {
-                let fixed = if first == 0 { at(0) } else { at(end - 1) };
-                (lower, upper) = (fixed.round(), fixed.round());
+                let fixed = if first == 0 { cuts[0] } else { cuts[end - 1] };
+                (lower, upper) = (fixed, fixed);
             }
-            groups.center.push(center);
+            if self.lattice.whole {
+                // A hair's breadth of rounding must not cost a whole unit.
+                (lower, upper) = ((lower - 1e-6).ceil(), (upper + 1e-6).floor());
+            }
+            groups.of_line[first..end].fill(groups.center.len());
+            groups.center.push(cuts[lead(first)]);
             groups.weight.push(weight.max(1e-3));
-            groups.lower.push(lower.ceil() as i64);
-            groups.upper.push(upper.floor() as i64);
+            groups.lower.push(lower);
+            groups.upper.push(upper);
             if end < cuts.len() {
-                let distance = at(end) - at(end - 1);
-                groups.gap.push(((distance / 2.0).floor() as i64).max(1));
+                groups.gap.push(self.gap(cuts[end] - cuts[end - 1]));
             }
+            first = end;
         }
         groups
     }
 
-    /// The constraints of order and bounds; `None` when they leave no solution.
-    fn system(&self) -> Option<Differences> {
-        let mut system = Differences::new(self.lower.clone(), self.upper.clone())?;
-        let order: Vec<Difference> = (self.gap.iter().enumerate())
-            .map(|(k, &least)| Difference {
-                from: k,
-                to: k + 1,
-                least,
-            })
-            .collect();
-        system.add(&order).then_some(system)
+    /// Least distance that remains of one between lines: half, and out of reach if it was.
+    fn gap(&self, distance: f64) -> f64 {
+        let apart = self.reach.floor() + if self.lattice.whole { 1.0 } else { 0.01 };
+        let least = match distance > self.reach + 1e-6 {
+            true => (0.5 * distance).max(apart.min(distance)),
+            false => 0.5 * distance,
+        };
+        match self.lattice.whole {
+            true => least.floor().max(1.0),
+            false => least,
+        }
     }
 
-    fn system_with(&self, clusters: &[Cluster]) -> Option<Differences> {
-        let mut system = self.system()?;
-        let all: Vec<Difference> = clusters.iter().flat_map(Cluster::constraints).collect();
-        system.add(&all).then_some(system)
+    /// The constraints of groups and clusters.
+    fn system(&self, groups: &Groups, clusters: &[Cluster]) -> Differences {
+        let size = |cluster: &Cluster| {
+            let members = || cluster.classes.iter().map(|&c| &self.classes[c]);
+            let group = |&(from, to): &(usize, usize)| (groups.of_line[from], groups.of_line[to]);
+            let mut spans: Vec<(usize, usize)> = members()
+                .flat_map(|c| c.spans.iter().map(group))
+                .filter(|(from, to)| from != to)
+                .collect();
+            spans.sort_unstable();
+            spans.dedup();
+            if spans.len() < 2 {
+                // One alone may have any size.
+                spans.clear();
+            }
+            let least = members().map(|c| c.size).fold(f64::INFINITY, f64::min);
+            let most = members().map(|c| c.size).fold(0.0, f64::max);
+            let behind = members().all(|c| c.behind);
+            let unit = if self.lattice.whole { 1.0 } else { 0.5 * least };
+            SharedSize {
+                value: cluster.value,
+                wanted: cluster.wanted,
+                range: (
+                    (most - 2.0 * self.reach).floor().max(unit),
+                    (least + 2.0 * self.reach).ceil(),
+                ),
+                weight: if behind { 1.0 } else { ELEMENT },
+                spans,
+            }
+        };
+        Differences::new(
+            groups.lower.clone(),
+            groups.upper.clone(),
+            &groups.gap,
+            clusters.iter().map(size).collect(),
+            self.lattice.whole,
+            self.lattice.slack(),
+        )
     }
 
-    /// Solves the quadratic program, with the sizes of the clusters free or as they are. Returns
-    /// positions and sizes; where the solver stalls, the centres and the sizes as they are.
-    fn program(
-        &self,
-        clusters: &[Cluster],
-        free: bool,
-    ) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
-        let n = self.center.len();
-        let extra = if free { clusters.len() } else { 0 };
-        let mut program = QuadraticProgram::new(n + extra);
-        for k in 0..n {
-            program.pull(k, self.center[k], self.weight[k]);
-            program.lower[k] = self.lower[k] as f64;
-            program.upper[k] = self.upper[k] as f64;
+    /// Finds sizes for the clusters that leave a solution; whether there are any.
+    fn settle(&self, groups: &Groups, clusters: &mut [Cluster]) -> bool {
+        let mut system = self.system(groups, clusters);
+        if system.solve().is_none() {
+            return false;
         }
-        for (k, &gap) in self.gap.iter().enumerate() {
-            let row = Row::new([(k, 1.0), (k + 1, -1.0)], -gap as f64);
-            program.inequalities.push(row);
+        for (cluster, size) in clusters.iter_mut().zip(&system.sizes) {
+            cluster.value = size.value;
         }
-        for (c, cluster) in clusters.iter().enumerate() {
-            for &(from, to) in &cluster.members {
-                let ends = [(to, 1.0), (from, -1.0)];
-                program.equalities.push(if free {
-                    Row::new(ends.into_iter().chain([(n + c, -1.0)]), 0.0)
-                } else {
-                    Row::new(ends, cluster.size as f64)
-                });
+        true
+    }
+
+    /// Makes nearly equal sizes of one label equal. Leaders, those with most others within reach, keep
+    /// their size as far as possible.
+    fn merge_sizes(&self, groups: &Groups, clusters: &mut Vec<Cluster>) {
+        // Sizes that lines alone decide are what the lines have become.
+        for cluster in clusters.iter_mut() {
+            let class = &self.classes[cluster.classes[0]];
+            let (from, to) = class.spans[0];
+            let ends = (groups.of_line[from], groups.of_line[to]);
+            if class.spans.len() == 1 {
+                cluster.value = groups.center[ends.1] - groups.center[ends.0];
+                if self.lattice.whole {
+                    cluster.value = cluster.value.round();
+                }
+                cluster.wanted = cluster.value;
             }
         }
-        let mut x = solve_qp(&program, QpOptions::default())?;
-        let solved = matches!(x.outcome, QpOutcome::Converged | QpOutcome::AlmostConverged);
-        if solved && x.x.iter().all(|v| v.is_finite()) {
-            let sizes = x.x.split_off(n);
-            Ok((x.x, sizes))
-        } else {
-            let sizes = clusters.iter().map(|c| c.size as f64);
-            Ok((self.center.clone(), sizes.take(extra).collect()))
+        let mut kinds: Vec<(bool, u16)> =
+            self.classes.iter().map(|c| (c.behind, c.label)).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        for kind in kinds {
+            self.merge_kind(kind, groups, clusters);
         }
     }
-}
 
-/// Merges neighbouring lines, nearest first, that can meet without moving further than the tolerance.
-fn merge_lines(
-    cuts: &[f64],
-    weights: &[f64],
-    strips: Strips,
-    tolerance: f64,
-    quantum: f64,
-) -> Groups {
-    let mut firsts: Vec<usize> = (0..cuts.len()).collect();
-    let build = |firsts: &[usize]| Groups::new(firsts, cuts, weights, tolerance, quantum);
-    let last_of = |firsts: &[usize], g: usize| firsts.get(g + 1).map_or(cuts.len(), |&f| f) - 1;
-    // Boundaries between groups (by their line) that cannot go.
-    let mut fixed = vec![false; cuts.len()];
-    loop {
-        let spread = |g: usize| cuts[last_of(&firsts, g)] - cuts[firsts[g - 1]];
-        let candidates = (1..firsts.len()).filter(|&g| !fixed[firsts[g]]);
-        // The ends of the layout stay where they are; elsewhere both lines may move.
-        let at_an_end = |g: usize| firsts[g - 1] == 0 || last_of(&firsts, g) + 1 == cuts.len();
-        let reach = |g: usize| tolerance * if at_an_end(g) { 1.0 } else { 2.0 };
-        let near = candidates.filter(|&g| spread(g) <= reach(g));
-        let Some(g) = near.min_by(|&a, &b| spread(a).total_cmp(&spread(b))) else {
-            return build(&firsts);
-        };
-        let line = firsts.remove(g);
-        let (first, last) = (firsts[g - 1], last_of(&firsts, g - 1));
-        let narrow = |from: usize, to: usize| cuts[to] - cuts[from] <= tolerance;
-        if !strips.can_vanish(first, last, narrow) || build(&firsts).system().is_none() {
-            firsts.insert(g, line);
-            fixed[line] = true;
+    fn merge_kind(&self, kind: (bool, u16), groups: &Groups, clusters: &mut Vec<Cluster>) {
+        let class = |cluster: &Cluster| &self.classes[cluster.classes[0]];
+        let lead = |cluster: &Cluster| cluster.classes[0];
+        let weight = |cluster: &Cluster| class(cluster).weight;
+        let of_kind = |c: &&Cluster| (class(c).behind, class(c).label) == kind;
+        let mut open: Vec<usize> = clusters.iter().filter(of_kind).map(lead).collect();
+        while !open.is_empty() {
+            let known: Vec<Cluster> = (open.iter())
+                .filter_map(|&c| clusters.iter().find(|k| k.classes[0] == c).cloned())
+                .collect();
+            let near = |a: &Cluster, b: &Cluster| (a.value - b.value).abs() <= self.reach + 1e-6;
+            let score = |leader: &Cluster| {
+                let around = known.iter().filter(|other| near(leader, other));
+                around.fold((0.0, 0.0), |(sum, far), other| {
+                    let distance = (leader.value - other.value).abs();
+                    (sum + weight(other), far + weight(other) * distance)
+                })
+            };
+            let better = |a: &&Cluster, b: &&Cluster| {
+                let ((sum_a, far_a), (sum_b, far_b)) = (score(a), score(b));
+                sum_b
+                    .total_cmp(&sum_a)
+                    .then(far_a.total_cmp(&far_b))
+                    .then(a.value.total_cmp(&b.value))
+                    .then(a.classes[0].cmp(&b.classes[0]))
+            };
+            let Some(leader) = known.iter().min_by(better) else {
+                return;
+            };
+            let mut others: Vec<&Cluster> = (known.iter())
+                .filter(|other| near(leader, other) && lead(other) != lead(leader))
+                .collect();
+            others.sort_by(|a, b| {
+                let distance = |c: &Cluster| (c.value - leader.value).abs();
+                distance(a)
+                    .total_cmp(&distance(b))
+                    .then(weight(b).total_cmp(&weight(a)))
+            });
+            let joined = self.join(lead(leader), &others, groups, clusters);
+            open.retain(|c| *c != lead(leader) && !joined.contains(c));
         }
+    }
+
+    /// Joins to a leader as many as can be, all at once if possible. Returns those that joined.
+    fn join(
+        &self,
+        leader: usize,
+        others: &[&Cluster],
+        groups: &Groups,
+        clusters: &mut Vec<Cluster>,
+    ) -> Vec<usize> {
+        if others.is_empty() {
+            return Vec::new();
+        }
+        let mut trial: Vec<Cluster> = clusters.clone();
+        let gone: Vec<usize> = others.iter().map(|c| c.classes[0]).collect();
+        trial.retain(|c| !gone.contains(&c.classes[0]));
+        if let Some(first) = trial.iter_mut().find(|c| c.classes[0] == leader) {
+            first.classes.extend(others.iter().flat_map(|c| &c.classes));
+            first.value = first.wanted;
+        }
+        if self.settle(groups, &mut trial) {
+            *clusters = trial;
+            return gone;
+        }
+        if others.len() == 1 {
+            return Vec::new();
+        }
+        let (near, far) = others.split_at(others.len().div_ceil(2));
+        let mut joined = self.join(leader, near, groups, clusters);
+        joined.extend(self.join(leader, far, groups, clusters));
+        joined
+    }
+
+    /// Solves the quadratic program with the sizes of the clusters as they are.
+    fn place(&self, groups: &Groups, clusters: &[Cluster]) -> Result<Vec<f64>, RegularizeError> {
+        let system = self.system(groups, clusters);
+        let n = groups.center.len();
+        let mut program = QuadraticProgram::new(n);
+        for k in 0..n {
+            program.pull(k, groups.center[k], groups.weight[k]);
+            program.lower[k] = groups.lower[k];
+            program.upper[k] = groups.upper[k];
+        }
+        for (k, &gap) in groups.gap.iter().enumerate() {
+            let row = Row::new([(k, 1.0), (k + 1, -1.0)], -gap);
+            program.inequalities.push(row);
+        }
+        for size in &system.sizes {
+            for &(from, to) in &size.spans {
+                let row = Row::new([(to, 1.0), (from, -1.0)], size.value);
+                program.equalities.push(row);
+            }
+        }
+        let found = solve_qp(&program, QpOptions::default())?;
+        let solved = matches!(
+            found.outcome,
+            QpOutcome::Converged | QpOutcome::AlmostConverged
+        );
+        if solved && found.x.iter().all(|v| v.is_finite()) {
+            let positions = match self.lattice.whole {
+                true => round_together(&found.x),
+                false => found.x,
+            };
+            if system.holds(&positions) {
+                return Ok(positions);
+            }
+        }
+        // The solver stalled: any solution will do.
+        let least = system.least_solution();
+        Ok(least.unwrap_or_else(|_| groups.center.clone()))
     }
 }
 
 /// Rounds all numbers at one threshold, which keeps every whole bound on their differences. The
 /// threshold is laid where no fraction is near, lest the solver's last digit decides.
-fn round_together(values: &[f64]) -> Vec<i64> {
+pub fn round_together(values: &[f64]) -> Vec<f64> {
     let mut fractions: Vec<f64> = values.iter().map(|v| v - v.floor()).collect();
     fractions.extend([0.25, 0.75]);
     fractions.retain(|f| (0.25..=0.75).contains(f));
@@ -288,6 +391,6 @@ fn round_together(values: &[f64]) -> Vec<i64> {
     let threshold = widest.map_or(0.5, |pair| 0.5 * (pair[0] + pair[1]));
     values
         .iter()
-        .map(|v| (v + 1.0 - threshold).floor() as i64)
+        .map(|v| (v + 1.0 - threshold).floor())
         .collect()
 }
