@@ -6,6 +6,7 @@ use super::RegularizeError;
 use super::axis::Axis;
 use super::classes::{Extent, classes};
 use super::lattice::Lattice;
+use super::projection::Frozen;
 use super::resized;
 use super::strips::{Run, Strips};
 use crate::shape::{
@@ -147,13 +148,17 @@ impl<'a> Areas<'a> {
     ///
     /// # Errors
     /// [`RegularizeError::Qp`].
-    pub fn regularize(&self, reach: f64) -> Result<Option<Lines>, RegularizeError> {
+    pub fn regularize(
+        &self,
+        reach: f64,
+        frozen: &Frozen,
+    ) -> Result<Option<Lines>, RegularizeError> {
         let grid = self.grid;
         let lattice = Lattice::of(&grid.xs, &grid.ys);
         let (xs, ys) = (lattice.positions(&grid.xs), lattice.positions(&grid.ys));
         let (along_x, along_y) = classes(&self.extents, &xs, &ys, lattice.same());
         let ((cells, yields), turned) = self.both();
-        let axis = |cuts: &[f64], across: &[f64], strips: Strips, classes| {
+        let axis = |cuts: &[f64], across: &[f64], strips: Strips, classes, frozen: &[f64]| {
             let (_, weights) = self.runs(cuts, across, strips);
             let axis = Axis {
                 cuts: cuts.to_vec(),
@@ -161,13 +166,16 @@ impl<'a> Areas<'a> {
                 strips,
                 classes,
                 reach: lattice.units(reach),
+                frozen: (cuts.iter())
+                    .map(|&c| frozen.iter().any(|&f| (lattice.units(f) - c).abs() <= lattice.same()))
+                    .collect(),
                 lattice,
             };
             axis.solve()
         };
-        let new_xs = axis(&xs, &ys, self.strips(cells, yields, xs.len() - 1), along_x)?;
+        let new_xs = axis(&xs, &ys, self.strips(cells, yields, xs.len() - 1), along_x, &frozen[0])?;
         let turned_strips = self.strips(&turned.0, &turned.1, ys.len() - 1);
-        let new_ys = axis(&ys, &xs, turned_strips, along_y)?;
+        let new_ys = axis(&ys, &xs, turned_strips, along_y, &frozen[1])?;
         if new_xs.is_none() && new_ys.is_none() {
             return Ok(None);
         }

@@ -22,6 +22,8 @@ pub struct Axis<'a> {
     pub classes: Vec<Class>,
     /// Longest way that a line may move.
     pub reach: f64,
+    /// Lines that must not move.
+    pub frozen: Vec<bool>,
     /// The lattice.
     pub lattice: Lattice,
 }
@@ -86,8 +88,10 @@ impl Axis<'_> {
         let mut open: Vec<usize> = (0..=end).collect();
         while !open.is_empty() {
             let score = |&leader: &usize| {
-                let around = open.iter().filter(|&&k| near(k, leader));
-                let sums = around.fold((0.0, 0.0), |(sum, far), &k| {
+                let from = cuts.partition_point(|&c| c < cuts[leader] - self.reach - 1e-6);
+                let window = (from..=end).take_while(|&k| near(k, leader));
+                let around = window.filter(|&k| leads[k].is_none());
+                let sums = around.fold((0.0, 0.0), |(sum, far), k| {
                     let distance = (cuts[leader] - cuts[k]).abs();
                     (sum + self.weights[k], far + self.weights[k] * distance)
                 });
@@ -156,6 +160,9 @@ impl Axis<'_> {
             if first == 0 || end == cuts.len() {
                 let fixed = if first == 0 { cuts[0] } else { cuts[end - 1] };
                 (lower, upper) = (fixed, fixed);
+            }
+            if let Some(fixed) = (first..end).find(|&k| self.frozen[k]) {
+                (lower, upper) = (lower.max(cuts[fixed]), upper.min(cuts[fixed]));
             }
             if self.lattice.whole {
                 // A hair's breadth of rounding must not cost a whole unit.
@@ -269,12 +276,21 @@ impl Axis<'_> {
         let lead = |cluster: &Cluster| cluster.classes[0];
         let weight = |cluster: &Cluster| class(cluster).weight;
         let of_kind = |c: &&Cluster| (class(c).behind, class(c).label) == kind;
-        let mut open: Vec<usize> = clusters.iter().filter(of_kind).map(lead).collect();
+        let stays = |c: &&Cluster| {
+            let (from, to) = class(c).spans[0];
+            groups.of_line[from] != groups.of_line[to]
+        };
+        let members = clusters.iter().filter(of_kind).filter(stays);
+        let mut open: Vec<usize> = members.map(lead).collect();
         while !open.is_empty() {
             let known: Vec<Cluster> = (open.iter())
                 .filter_map(|&c| clusters.iter().find(|k| k.classes[0] == c).cloned())
                 .collect();
-            let near = |a: &Cluster, b: &Cluster| (a.value - b.value).abs() <= self.reach + 1e-6;
+            let near = |a: &Cluster, b: &Cluster| {
+                let within = |x: f64, y: f64| (x - y).abs() <= self.reach + 1e-6;
+                let across = class(a).across.zip(class(b).across);
+                within(a.value, b.value) && across.is_none_or(|(x, y)| within(x, y))
+            };
             let score = |leader: &Cluster| {
                 let around = known.iter().filter(|other| near(leader, other));
                 around.fold((0.0, 0.0), |(sum, far), other| {
@@ -326,6 +342,7 @@ impl Axis<'_> {
             first.value = first.wanted;
         }
         if self.settle(groups, &mut trial) {
+            if std::env::var("DBG").is_ok() { for o in others { let l=known_size(clusters, leader); if (o.value-l).abs()>1e-9 || o.classes.len()>1 { eprintln!("      join {:?} {} spans {} to {} : {}", (self.classes[o.classes[0]].behind, self.classes[o.classes[0]].label), o.value, o.classes.iter().map(|&c| self.classes[c].spans.len()).sum::<usize>(), l, trial.iter().find(|c| c.classes[0]==leader).unwrap().value); } } }
             *clusters = trial;
             return gone;
         }
@@ -394,3 +411,5 @@ pub fn round_together(values: &[f64]) -> Vec<f64> {
         .map(|v| (v + 1.0 - threshold).floor())
         .collect()
 }
+
+fn known_size(c: &[Cluster], leader: usize) -> f64 { c.iter().find(|c| c.classes[0]==leader).unwrap().value }

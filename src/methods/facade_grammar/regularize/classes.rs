@@ -13,6 +13,8 @@ pub struct Class {
     pub label: u16,
     /// The size, in units of the lattice.
     pub size: f64,
+    /// The size across, where only areas that are near in both become equal.
+    pub across: Option<f64>,
     /// Edge across, summed.
     pub weight: f64,
     /// Cut lines at both ends of each.
@@ -42,13 +44,16 @@ pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Cl
     let along = |across: bool| {
         let mut found: BTreeMap<(bool, u16, usize, Option<usize>), Class> = BTreeMap::new();
         for (k, extent) in extents.iter().enumerate() {
-            let (mine, other) = match across {
-                false => (widths[k], heights[k]),
-                true => (heights[k], widths[k]),
-            };
-            let (size, weight, span) = match across {
-                false => (width(extent), height(extent), (extent.span.left, extent.span.right)),
-                true => (height(extent), width(extent), (extent.span.bottom, extent.span.top)),
+            let s = extent.span;
+            let (mine, other, size, weight, span) = match across {
+                false => {
+                    let span = (s.left, s.right);
+                    (widths[k], heights[k], width(extent), height(extent), span)
+                }
+                true => {
+                    let span = (s.bottom, s.top);
+                    (heights[k], widths[k], height(extent), width(extent), span)
+                }
             };
             let key = (
                 extent.behind,
@@ -60,6 +65,7 @@ pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Cl
                 behind: extent.behind,
                 label: extent.label,
                 size,
+                across: (!extent.strict).then_some(weight),
                 weight: 0.0,
                 spans: Vec::new(),
             });

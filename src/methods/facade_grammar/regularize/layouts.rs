@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::RegularizeError;
 use super::areas::Areas;
 use super::counts;
-use super::projection::{Layout, Step};
+use super::projection::{Frozen, Layout, Step};
 use super::square::square;
 use crate::shape::{
     Facade, IndexedLayout, LabelGrid, LayoutError, Rect, Region, decompose, is_background,
@@ -43,9 +43,9 @@ impl Picture {
 }
 
 impl Layout for Picture {
-    fn step(&self, reach: f64) -> Result<Option<Step<Self>>, RegularizeError> {
+    fn step(&self, reach: f64, frozen: &Frozen) -> Result<Option<Step<Self>>, RegularizeError> {
         let (squared, nicks) = square(&self.grid, reach);
-        let moved = Areas::of_grid(&squared)?.regularize(reach)?;
+        let moved = Areas::of_grid(&squared)?.regularize(reach, frozen)?;
         if moved.is_none() && nicks.count == 0 {
             return Ok(None);
         }
@@ -126,9 +126,9 @@ impl Tiling {
 }
 
 impl Layout for Tiling {
-    fn step(&self, reach: f64) -> Result<Option<Step<Self>>, RegularizeError> {
+    fn step(&self, reach: f64, frozen: &Frozen) -> Result<Option<Step<Self>>, RegularizeError> {
         let areas = Areas::of_facade(&self.facade, &self.layout, &self.grid);
-        let Some((xs, ys)) = areas.regularize(reach)? else {
+        let Some((xs, ys)) = areas.regularize(reach, frozen)? else {
             return Ok(None);
         };
         Ok(Some(Step {
