@@ -65,11 +65,9 @@ impl Axis<'_> {
             value: class.size,
         };
         let mut clusters: Vec<Cluster> = self.classes.iter().enumerate().map(own).collect();
-        if std::env::var("DBG").is_ok() { let none = vec![None; self.cuts.len()]; let ok = self.settle(&self.groups(&none), &mut clusters.clone()); let spans: usize = self.classes.iter().filter(|c| c.spans.len()>1).count(); eprintln!("   start feasible {ok} lines {} classes {} shared {}", self.cuts.len(), self.classes.len(), spans); }
         let groups = self.merge_lines(&mut clusters);
         let before = clusters.len();
         self.merge_sizes(&groups, &mut clusters);
-        if std::env::var("DBG").is_ok() { eprintln!("   groups {} of {} clusters {} of {}", groups.center.len(), self.cuts.len(), clusters.len(), before); }
         if groups.center.len() == self.cuts.len() && clusters.len() == before {
             return Ok(None);
         }
@@ -342,7 +340,6 @@ impl Axis<'_> {
             first.value = first.wanted;
         }
         if self.settle(groups, &mut trial) {
-            if std::env::var("DBG").is_ok() { for o in others { let l=known_size(clusters, leader); if (o.value-l).abs()>1e-9 || o.classes.len()>1 { eprintln!("      join {:?} {} spans {} to {} : {}", (self.classes[o.classes[0]].behind, self.classes[o.classes[0]].label), o.value, o.classes.iter().map(|&c| self.classes[c].spans.len()).sum::<usize>(), l, trial.iter().find(|c| c.classes[0]==leader).unwrap().value); } } }
             *clusters = trial;
             return gone;
         }
@@ -411,5 +408,3 @@ pub fn round_together(values: &[f64]) -> Vec<f64> {
         .map(|v| (v + 1.0 - threshold).floor())
         .collect()
 }
-
-fn known_size(c: &[Cluster], leader: usize) -> f64 { c.iter().find(|c| c.classes[0]==leader).unwrap().value }

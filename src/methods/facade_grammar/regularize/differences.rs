@@ -12,7 +12,7 @@
 //! it finds is a solution, but it may miss one.
 
 /// Most changes of sizes in one repair.
-const MAX_CHANGES: usize = 16;
+const MAX_CHANGES: usize = 8;
 
 /// A size that all its spans have.
 #[derive(Debug, Clone, PartialEq)]

@@ -67,7 +67,6 @@ impl Layout for Picture {
             let now = made.areas.get(label).copied().unwrap_or(0);
             now == *count || is_background(label) && now > 0
         };
-        if std::env::var("DBG").is_ok() { eprintln!("     keeps: areas {} sizes {} tiling {} regions {} -> {}", self.areas.iter().all(elements), none_more(&self.sizes,&made.sizes), none_more(&self.tiling.0,&made.tiling.0), self.tiling.1, made.tiling.1); if !none_more(&self.tiling.0,&made.tiling.0) { eprintln!("{:?} {:?}", self.tiling.0, made.tiling.0);} }
         self.areas.iter().all(elements)
             && none_more(&self.sizes, &made.sizes)
             && none_more(&self.tiling.0, &made.tiling.0)

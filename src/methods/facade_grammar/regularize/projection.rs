@@ -3,9 +3,15 @@
 //! A *step* with reach `r` moves no line of its argument by more than `r`, and *frozen* lines not at all; it
 //! returns nothing when it finds nothing more to make equal. It measures from its argument, so that after
 //! one step another may well find more, and lines may go further in all than the tolerance `t`. Then they
-//! are frozen, and the steps begin anew. Let `Q_r(x)` be where they end: no line has moved further than
-//! `t`, and the last step found nothing. It is *admitted* if it also keeps what [`Layout::keeps`] names, and otherwise
-//! undefined. For reaches `t = r_0 > r_1 > ... > r_m`,
+//! are frozen, and the steps begin anew. Let `P_r(x, F)` be where they end when the lines `F` are frozen from the
+//! start: no line has moved further than `t`, and the last step found nothing. It is undefined when the
+//! result lacks something that [`Layout::keeps`] names. Where `y = P_r(x, F)` is not left alone by `P_r(., {})`, the lines
+//! that would move are added to `F`, until it is:
+//!
+//! ```text
+//! Q_r(x) = the first y = P_r(x, F) with P_r(y, {}) = y,  F growing from {}; undefined where P_r is
+//! ```
+//! So `Q_r(Q_r(x)) = Q_r(x)`. A smaller reach is for layouts where `Q` is undefined: for `t = r_0 > r_1 > ... > r_m`,
 //!
 //! ```text
 //! y is *stable at i*  when Q_i(y) = y, and no j < i has a Q_j(y) that differs from y and is stable at j
@@ -24,8 +30,8 @@ const REACHES: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.125];
 /// Most steps of one reach.
 const MAX_STEPS: usize = 12;
 
-/// Most times that lines are frozen.
-const MAX_FREEZES: usize = 12;
+/// Most times that more lines are frozen.
+const MAX_RESTARTS: usize = 12;
 
 /// A layout that steps can be taken from.
 pub trait Layout: Sized + Clone {
@@ -68,6 +74,8 @@ pub struct Made<L> {
     pub largest_move: f64,
     /// Areas that became rectangles.
     pub squared: usize,
+    /// Where lines along x and y were, and are.
+    tracks: [Vec<(f64, f64)>; 2],
 }
 
 /// Where steps lead to.
@@ -119,8 +127,37 @@ fn candidate<L: Layout>(
 ) -> Result<End<L>, RegularizeError> {
     let reach = REACHES[level] * tolerance;
     let mut frozen = Frozen::default();
-    for _ in 0..=MAX_FREEZES {
-        match walk(start, reach, tolerance, &frozen)? {
+    for _ in 0..=MAX_RESTARTS {
+        let made = match end(start, reach, tolerance, &mut frozen)? {
+            End::Made(made) => made,
+            other => return Ok(other),
+        };
+        match end(&made.layout, reach, tolerance, &mut Frozen::default())? {
+            End::Start => return Ok(End::Made(made)),
+            End::Nowhere => return Ok(End::Nowhere),
+            End::Made(next) => {
+                for axis in 0..2 {
+                    let restless = next.tracks[axis].iter().filter(|(from, to)| from != to);
+                    for (at, _) in restless {
+                        let here = made.tracks[axis].iter().filter(|(_, now)| now == at);
+                        frozen[axis].extend(here.map(|(from, _)| *from));
+                    }
+                }
+            }
+        }
+    }
+    Ok(End::Nowhere)
+}
+
+/// `P_reach(start, frozen)`; `frozen` grows by the lines that went too far.
+fn end<L: Layout>(
+    start: &L,
+    reach: f64,
+    tolerance: f64,
+    frozen: &mut Frozen,
+) -> Result<End<L>, RegularizeError> {
+    for _ in 0..=MAX_RESTARTS {
+        match walk(start, reach, tolerance, frozen)? {
             Walk::Ended(end) => return Ok(end),
             Walk::TooFar(lines) => {
                 for (frozen, lines) in frozen.iter_mut().zip(lines) {
@@ -153,18 +190,17 @@ fn walk<L: Layout>(
     let longer = start.lines().into_iter().flatten().copied();
     let hair = 1e-9 * longer.fold(0.0, f64::max);
     let pair = |lines: &[f64]| lines.iter().map(|&l| (l, l)).collect::<Vec<_>>();
-    let mut tracks = start.lines().map(pair);
     let mut made = Made {
         layout: start.clone(),
         largest_move: 0.0,
         squared: 0,
+        tracks: start.lines().map(pair),
     };
     let mut filled = 0.0;
     let mut next = Some(first);
     for _ in 0..MAX_STEPS {
         let Some(step) = next else {
             let kept = start.keeps(&made.layout) && made.largest_move <= tolerance + hair;
-            if std::env::var("DBG").is_ok() { eprintln!("END reach {reach} kept {kept} moved {}", made.largest_move); }
             return Ok(Walk::Ended(match kept {
                 true => End::Made(made),
                 false => End::Nowhere,
@@ -172,14 +208,15 @@ fn walk<L: Layout>(
         };
         filled += step.filled;
         let mut far = Frozen::default();
-        for ((tracks, moved), far) in tracks.iter_mut().zip(&step.moved).zip(&mut far) {
+        let mut longest = made.largest_move.max(filled);
+        for ((tracks, moved), far) in made.tracks.iter_mut().zip(&step.moved).zip(&mut far) {
             tracks.retain_mut(|(from, at)| {
                 let after = moved.partition_point(|m| m.0 < *at - 100.0 * hair);
                 let found = moved.get(after).filter(|m| m.0 <= *at + 100.0 * hair);
                 // A line that is no edge any more has no way to go.
                 let Some(&(_, to)) = found else { return false };
                 *at = to;
-                made.largest_move = made.largest_move.max((to - *from).abs());
+                longest = longest.max((to - *from).abs());
                 if (to - *from).abs() > tolerance + hair {
                     far.push(*from);
                 }
@@ -187,10 +224,9 @@ fn walk<L: Layout>(
             });
         }
         if far.iter().any(|lines| !lines.is_empty()) {
-            if std::env::var("DBG").is_ok() { eprintln!("FAR reach {reach} lines {}", far[0].len()+far[1].len()); }
             return Ok(Walk::TooFar(far));
         }
-        made.largest_move = made.largest_move.max(filled);
+        made.largest_move = longest;
         made.layout = step.layout;
         made.squared += step.squared;
         next = made.layout.step(reach, frozen)?;
