@@ -158,6 +158,10 @@ impl<'a> Areas<'a> {
         let (xs, ys) = (lattice.positions(&grid.xs), lattice.positions(&grid.ys));
         let (along_x, along_y) = classes(&self.extents, &xs, &ys, lattice.same());
         let ((cells, yields), turned) = self.both();
+        let is_in = |frozen: &[f64], line: f64| {
+            let after = frozen.partition_point(|&f| lattice.units(f) < line - lattice.same());
+            (frozen.get(after)).is_some_and(|&f| lattice.units(f) <= line + lattice.same())
+        };
         let axis = |cuts: &[f64], across: &[f64], strips: Strips, classes, frozen: &[f64]| {
             let (_, weights) = self.runs(cuts, across, strips);
             let axis = Axis {
@@ -167,7 +171,7 @@ impl<'a> Areas<'a> {
                 classes,
                 reach: lattice.units(reach),
                 frozen: (cuts.iter())
-                    .map(|&c| frozen.iter().any(|&f| (lattice.units(f) - c).abs() <= lattice.same()))
+                    .map(|&c| is_in(frozen, c))
                     .collect(),
                 lattice,
             };

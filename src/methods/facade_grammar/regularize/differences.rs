@@ -122,11 +122,6 @@ impl Differences {
     /// The least solution with the sizes as they are, or a chain of edges that leaves none.
     pub fn least_solution(&self) -> Result<Vec<f64>, Chain> {
         let n = self.lower.len();
-        let mut values = self.lower.clone();
-        let mut parent: Vec<Option<usize>> = vec![None; n];
-        let mut raises = vec![0usize; n];
-        let mut waiting = vec![true; n];
-        let mut queue: std::collections::VecDeque<usize> = (0..n).collect();
         if let Some(k) = (0..n).find(|&k| self.lower[k] > self.upper[k]) {
             let excess = self.lower[k] - self.upper[k];
             return Err(Chain {
@@ -134,27 +129,37 @@ impl Differences {
                 excess,
             });
         }
-        while let Some(from) = queue.pop_front() {
-            waiting[from] = false;
-            for &number in &self.out[from] {
-                let edge = &self.edges[number];
-                let needed = values[from] + self.least(edge);
-                if needed <= values[edge.to] + 1e-9 {
+        let mut values = self.lower.clone();
+        let mut parent: Vec<Option<usize>> = vec![None; n];
+        // Sweeps from left to right: most constraints point that way.
+        let mut changed = vec![true; n];
+        for _ in 0..=n {
+            let mut any = false;
+            for from in 0..n {
+                if !std::mem::replace(&mut changed[from], false) {
                     continue;
                 }
-                values[edge.to] = needed;
-                parent[edge.to] = Some(number);
-                raises[edge.to] += 1;
-                if needed > self.upper[edge.to] + 1e-9 || raises[edge.to] > n {
-                    return Err(self.chain(edge.to, &parent));
-                }
-                if !waiting[edge.to] {
-                    waiting[edge.to] = true;
-                    queue.push_back(edge.to);
+                any = true;
+                for &number in &self.out[from] {
+                    let edge = &self.edges[number];
+                    let needed = values[from] + self.least(edge);
+                    if needed <= values[edge.to] + 1e-9 {
+                        continue;
+                    }
+                    values[edge.to] = needed;
+                    parent[edge.to] = Some(number);
+                    changed[edge.to] = true;
+                    if needed > self.upper[edge.to] + 1e-9 {
+                        return Err(self.chain(edge.to, &parent));
+                    }
                 }
             }
+            if !any {
+                return Ok(values);
+            }
         }
-        Ok(values)
+        let raised = changed.iter().position(|&c| c).unwrap_or(0);
+        Err(self.chain(raised, &parent))
     }
 
     /// The chain that raised position `end` too far.

@@ -25,13 +25,13 @@
 use super::RegularizeError;
 
 /// Reaches that are tried, as parts of the tolerance.
-const REACHES: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.125];
+const REACHES: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Most steps of one reach.
 const MAX_STEPS: usize = 12;
 
 /// Most times that more lines are frozen.
-const MAX_RESTARTS: usize = 12;
+const MAX_RESTARTS: usize = 8;
 
 /// A layout that steps can be taken from.
 pub trait Layout: Sized + Clone {
@@ -127,7 +127,7 @@ fn candidate<L: Layout>(
 ) -> Result<End<L>, RegularizeError> {
     let reach = REACHES[level] * tolerance;
     let mut frozen = Frozen::default();
-    for _ in 0..=MAX_RESTARTS {
+    for restart in 0..=MAX_RESTARTS {
         let made = match end(start, reach, tolerance, &mut frozen)? {
             End::Made(made) => made,
             other => return Ok(other),
@@ -140,7 +140,8 @@ fn candidate<L: Layout>(
                     let restless = next.tracks[axis].iter().filter(|(from, to)| from != to);
                     for (at, _) in restless {
                         let here = made.tracks[axis].iter().filter(|(_, now)| now == at);
-                        frozen[axis].extend(here.map(|(from, _)| *from));
+                        let lines: Vec<f64> = here.map(|(from, _)| *from).collect();
+                        freeze(&mut frozen[axis], start.lines()[axis], &lines, restart);
                     }
                 }
             }
@@ -156,17 +157,31 @@ fn end<L: Layout>(
     tolerance: f64,
     frozen: &mut Frozen,
 ) -> Result<End<L>, RegularizeError> {
-    for _ in 0..=MAX_RESTARTS {
+    for restart in 0..=MAX_RESTARTS {
         match walk(start, reach, tolerance, frozen)? {
             Walk::Ended(end) => return Ok(end),
             Walk::TooFar(lines) => {
-                for (frozen, lines) in frozen.iter_mut().zip(lines) {
-                    frozen.extend(lines);
+                for ((frozen, all), lines) in frozen.iter_mut().zip(start.lines()).zip(lines) {
+                    freeze(frozen, all, &lines, restart);
                 }
             }
         }
     }
     Ok(End::Nowhere)
+}
+
+/// Adds lines to the frozen ones, and at each restart twice as many of those beside them, lest there are
+/// many restarts.
+fn freeze(frozen: &mut Vec<f64>, all: &[f64], lines: &[f64], restart: usize) {
+    let beside = (1 << restart) - 1;
+    for line in lines {
+        let at = all.partition_point(|l| l < line);
+        let from = at.saturating_sub(beside);
+        let to = (at + beside + 1).min(all.len());
+        frozen.extend(&all[from..to]);
+    }
+    frozen.sort_by(f64::total_cmp);
+    frozen.dedup();
 }
 
 /// How repeated steps end.
