@@ -52,6 +52,13 @@ struct Cluster {
     value: f64,
 }
 
+impl Cluster {
+    /// The class that it began with.
+    fn lead(&self) -> usize {
+        self.classes[0]
+    }
+}
+
 impl Axis<'_> {
     /// New positions of all cut lines, in order, merged ones equal; `None` when no lines and no sizes
     /// become equal that were not.
@@ -270,54 +277,59 @@ impl Axis<'_> {
     }
 
     fn merge_kind(&self, kind: (bool, u16), groups: &Groups, clusters: &mut Vec<Cluster>) {
-        let class = |cluster: &Cluster| &self.classes[cluster.classes[0]];
-        let lead = |cluster: &Cluster| cluster.classes[0];
-        let weight = |cluster: &Cluster| class(cluster).weight;
-        let of_kind = |c: &&Cluster| (class(c).behind, class(c).label) == kind;
-        let stays = |c: &&Cluster| {
-            let (from, to) = class(c).spans[0];
+        let stays = |class: &Class| {
+            let (from, to) = class.spans[0];
             groups.of_line[from] != groups.of_line[to]
         };
-        let members = clusters.iter().filter(of_kind).filter(stays);
-        let mut open: Vec<usize> = members.map(lead).collect();
+        let of_kind = |c: &&Cluster| {
+            let class = &self.classes[c.classes[0]];
+            (class.behind, class.label) == kind && stays(class)
+        };
+        let mut open: Vec<usize> = clusters.iter().filter(of_kind).map(Cluster::lead).collect();
         while !open.is_empty() {
-            let known: Vec<Cluster> = (open.iter())
-                .filter_map(|&c| clusters.iter().find(|k| k.classes[0] == c).cloned())
-                .collect();
-            let near = |a: &Cluster, b: &Cluster| {
+            let mut values = vec![0.0; self.classes.len()];
+            for cluster in clusters.iter() {
+                values[cluster.lead()] = cluster.value;
+            }
+            let near = |a: usize, b: usize| {
                 let within = |x: f64, y: f64| (x - y).abs() <= self.reach + 1e-6;
-                let across = class(a).across.zip(class(b).across);
-                within(a.value, b.value) && across.is_none_or(|(x, y)| within(x, y))
+                let across = self.classes[a].across.zip(self.classes[b].across);
+                within(values[a], values[b]) && across.is_none_or(|(x, y)| within(x, y))
             };
-            let score = |leader: &Cluster| {
-                let around = known.iter().filter(|other| near(leader, other));
-                around.fold((0.0, 0.0), |(sum, far), other| {
-                    let distance = (leader.value - other.value).abs();
-                    (sum + weight(other), far + weight(other) * distance)
-                })
+            let others = |leader: usize| {
+                let open = open.iter().copied();
+                open.filter(move |&other| other != leader && near(leader, other))
             };
-            let better = |a: &&Cluster, b: &&Cluster| {
-                let ((sum_a, far_a), (sum_b, far_b)) = (score(a), score(b));
+            // What is near nothing stays as it is.
+            let scored = open.iter().filter_map(|&leader| {
+                others(leader).next()?;
+                let own = (self.classes[leader].weight, 0.0);
+                let sums = others(leader).fold(own, |(sum, far), other| {
+                    let weight = self.classes[other].weight;
+                    (sum + weight, far + weight * (values[leader] - values[other]).abs())
+                });
+                Some((leader, sums))
+            });
+            let better = |a: &(usize, (f64, f64)), b: &(usize, (f64, f64))| {
+                let ((sum_a, far_a), (sum_b, far_b)) = (a.1, b.1);
                 sum_b
                     .total_cmp(&sum_a)
                     .then(far_a.total_cmp(&far_b))
-                    .then(a.value.total_cmp(&b.value))
-                    .then(a.classes[0].cmp(&b.classes[0]))
+                    .then(values[a.0].total_cmp(&values[b.0]))
+                    .then(a.0.cmp(&b.0))
             };
-            let Some(leader) = known.iter().min_by(better) else {
+            let Some((leader, _)) = scored.min_by(better) else {
                 return;
             };
-            let mut others: Vec<&Cluster> = (known.iter())
-                .filter(|other| near(leader, other) && lead(other) != lead(leader))
-                .collect();
-            others.sort_by(|a, b| {
-                let distance = |c: &Cluster| (c.value - leader.value).abs();
+            let mut around: Vec<usize> = others(leader).collect();
+            around.sort_by(|&a, &b| {
+                let distance = |c: usize| (values[c] - values[leader]).abs();
                 distance(a)
                     .total_cmp(&distance(b))
-                    .then(weight(b).total_cmp(&weight(a)))
+                    .then(self.classes[b].weight.total_cmp(&self.classes[a].weight))
             });
-            let joined = self.join(lead(leader), &others, groups, clusters);
-            open.retain(|c| *c != lead(leader) && !joined.contains(c));
+            let joined = self.join(leader, &around, groups, clusters);
+            open.retain(|c| *c != leader && !joined.contains(c));
         }
     }
 
@@ -325,23 +337,22 @@ impl Axis<'_> {
     fn join(
         &self,
         leader: usize,
-        others: &[&Cluster],
+        others: &[usize],
         groups: &Groups,
         clusters: &mut Vec<Cluster>,
     ) -> Vec<usize> {
         if others.is_empty() {
             return Vec::new();
         }
-        let mut trial: Vec<Cluster> = clusters.clone();
-        let gone: Vec<usize> = others.iter().map(|c| c.classes[0]).collect();
-        trial.retain(|c| !gone.contains(&c.classes[0]));
-        if let Some(first) = trial.iter_mut().find(|c| c.classes[0] == leader) {
-            first.classes.extend(others.iter().flat_map(|c| &c.classes));
+        let (gone, mut trial): (Vec<Cluster>, Vec<Cluster>) =
+            (clusters.iter().cloned()).partition(|c| others.contains(&c.lead()));
+        if let Some(first) = trial.iter_mut().find(|c| c.lead() == leader) {
+            first.classes.extend(gone.iter().flat_map(|c| &c.classes));
             first.value = first.wanted;
         }
         if self.settle(groups, &mut trial) {
             *clusters = trial;
-            return gone;
+            return others.to_vec();
         }
         if others.len() == 1 {
             return Vec::new();
