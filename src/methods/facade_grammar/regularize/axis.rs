@@ -121,7 +121,7 @@ impl Axis<'_> {
                         break;
                     }
                     leads[next] = Some(leader);
-                    if !self.meet(leader, &leads, clusters) {
+                    if !self.may_meet(leader, &leads) {
                         leads[next] = None;
                         break;
                     }
@@ -130,17 +130,52 @@ impl Axis<'_> {
             }
             open.retain(|&k| leads[k].is_none());
         }
-        self.groups(&leads)
+        let followers = |&k: &usize| leads[k].is_some_and(|leader| leader != k);
+        let mut wanted: Vec<usize> = (0..=end).filter(followers).collect();
+        // Away from the leader, so that each line that is refused refuses those beyond it.
+        wanted.sort_by_key(|&k| leads[k].map(|leader| (leader, leader.abs_diff(k))));
+        let wanted: Vec<(usize, usize)> =
+            (wanted.into_iter()).filter_map(|k| leads[k].map(|leader| (k, leader))).collect();
+        let mut taken = vec![None; cuts.len()];
+        self.follow(&wanted, &mut taken, clusters);
+        self.groups(&taken)
     }
 
-    /// Whether the lines that follow a leader can meet.
-    fn meet(&self, leader: usize, leads: &[Option<usize>], clusters: &mut [Cluster]) -> bool {
+    /// Lets lines follow their leaders, all at once if possible: ends of equal sizes can only meet
+    /// together.
+    fn follow(
+        &self,
+        wanted: &[(usize, usize)],
+        taken: &mut Vec<Option<usize>>,
+        clusters: &mut [Cluster],
+    ) {
+        let mut trial = taken.clone();
+        for &(line, leader) in wanted {
+            let toward = if line < leader { line + 1 } else { line - 1 };
+            if toward == leader || trial[toward] == Some(leader) {
+                (trial[line], trial[leader]) = (Some(leader), Some(leader));
+            }
+        }
+        if trial == *taken {
+            return;
+        }
+        if self.settle(&self.groups(&trial), clusters) {
+            *taken = trial;
+        } else if wanted.len() > 1 {
+            let (first, second) = wanted.split_at(wanted.len() / 2);
+            self.follow(first, taken, clusters);
+            self.follow(second, taken, clusters);
+        }
+    }
+
+    /// Whether nothing is lost between the lines that follow a leader.
+    fn may_meet(&self, leader: usize, leads: &[Option<usize>]) -> bool {
         let cuts = &self.cuts;
         let narrow = |from: usize, to: usize| cuts[to] - cuts[from] <= self.reach + 1e-6;
         let mut mine = (0..cuts.len()).filter(|&k| leads[k] == Some(leader));
         let first = mine.next().unwrap_or(leader);
         let last = mine.next_back().unwrap_or(first);
-        self.strips.can_vanish(first, last, narrow) && self.settle(&self.groups(leads), clusters)
+        self.strips.can_vanish(first, last, narrow)
     }
 
     /// Groups of lines that follow one leader; others stand alone.
