@@ -170,14 +170,18 @@ impl<'a> Areas<'a> {
                 strips,
                 classes,
                 reach: lattice.units(reach),
-                frozen: (cuts.iter())
-                    .map(|&c| is_in(frozen, c))
-                    .collect(),
+                frozen: (cuts.iter()).map(|&c| is_in(frozen, c)).collect(),
                 lattice,
             };
             axis.solve()
         };
-        let new_xs = axis(&xs, &ys, self.strips(cells, yields, xs.len() - 1), along_x, &frozen[0])?;
+        let new_xs = axis(
+            &xs,
+            &ys,
+            self.strips(cells, yields, xs.len() - 1),
+            along_x,
+            &frozen[0],
+        )?;
         let turned_strips = self.strips(&turned.0, &turned.1, ys.len() - 1);
         let new_ys = axis(&ys, &xs, turned_strips, along_y, &frozen[1])?;
         if new_xs.is_none() && new_ys.is_none() {

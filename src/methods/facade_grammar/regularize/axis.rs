@@ -134,8 +134,9 @@ impl Axis<'_> {
         let mut wanted: Vec<usize> = (0..=end).filter(followers).collect();
         // Away from the leader, so that each line that is refused refuses those beyond it.
         wanted.sort_by_key(|&k| leads[k].map(|leader| (leader, leader.abs_diff(k))));
-        let wanted: Vec<(usize, usize)> =
-            (wanted.into_iter()).filter_map(|k| leads[k].map(|leader| (k, leader))).collect();
+        let wanted: Vec<(usize, usize)> = (wanted.into_iter())
+            .filter_map(|k| leads[k].map(|leader| (k, leader)))
+            .collect();
         let mut taken = vec![None; cuts.len()];
         self.follow(&wanted, &mut taken, clusters);
         self.groups(&taken)
@@ -341,7 +342,10 @@ impl Axis<'_> {
                 let own = (self.classes[leader].weight, 0.0);
                 let sums = others(leader).fold(own, |(sum, far), other| {
                     let weight = self.classes[other].weight;
-                    (sum + weight, far + weight * (values[leader] - values[other]).abs())
+                    (
+                        sum + weight,
+                        far + weight * (values[leader] - values[other]).abs(),
+                    )
                 });
                 Some((leader, sums))
             });

@@ -212,10 +212,9 @@ impl Differences {
             let shorter = (size.value - value) * times > 1e-9;
             let possible = times != 0.0 && shorter;
             let share = moves / by;
-            let expense = size.weight
-                * (1.0 + (value - size.wanted).abs())
-                * f64::from(1 + changes[c])
-                / share;
+            let expense =
+                size.weight * (1.0 + (value - size.wanted).abs()) * f64::from(1 + changes[c])
+                    / share;
             possible.then_some((c, value, expense))
         };
         let options = count.iter().filter_map(change);

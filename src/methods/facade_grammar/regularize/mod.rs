@@ -1,31 +1,42 @@
 //! Regularization of layouts by quadratic programming (Wu et al. 2014, Sec. 3.3).
 //!
 //! Annotations are off by pixels, but a grammar can only share what is *equal*. Regularization moves
-//! edges so that repeated elements get equal sizes and nearly aligned edges get aligned.
+//! edges so that nearly equal elements get equal sizes and nearly aligned edges get aligned. It is a projection:
+//!
+//! - What is equal stays equal. Sizes of one label that are equal (those of elements along each axis,
+//!   those of the pieces of wall when they agree in both) are one variable, so that equal blocks stay
+//!   equal; edges on one line stay on one line.
+//! - Applied twice it changes nothing more, to the bit, whatever the tolerance; `projection` proves it.
+//! - No label, no element and no region of a tiling is lost, and no label has more sizes than before.
+//! - Tolerance 0 is the identity. No edge moves further than the tolerance; the total size stays.
+//! - It does not depend on the unit: coordinates are counted in steps of the coarsest lattice that
+//!   they all lie on, and move by whole steps of it. Where there is none, they are real numbers.
+//!   Coordinates that differ by 1e-7 of the longer side are equal.
+//!
+//! # One step
+//! Along x and along y, which nothing connects, positions solve the quadratic program
 //!
 //! ```text
 //! minimise    sum_k w_k (v_k - x_k)^2             x_k: cut coordinates, w_k: length of edge on them
-//! subject to  |v_k - x_k| <= tolerance            no edge moves further
+//! subject to  |v_k - x_k| <= reach                no edge moves further
 //!             v_0 = 0, v_n = W                    the total size is kept
 //!             v_(k+1) - v_k >= gap_k > 0          lines that do not merge keep their order
 //!             v_i = v_j                           nearly aligned edges, one line each
-//!             v_r - v_l = s_c                     nearly equal sizes of one label, one size each
+//!             v_r - v_l = s_c                     equal and nearly equal sizes, one size each
 //! ```
-//! once along x and once along y, which nothing connects. Which equalities hold is chosen first:
-//! neighbouring cut lines are merged, nearest first, when no edge moves further than the tolerance and
-//! nothing is lost between them but slivers no wider than the tolerance: of wall, and of elements that
-//! are no rectangles, beside the largest part of them that is one. So where a sill lies three pixels
-//! below one window and touches another, it comes to touch both; elements of one label never come to
-//! touch. Then sizes of one label that lie within twice the tolerance (a size has two ends) form a
-//! cluster, elements before walls, which is split into as large parts as can be when no placement can
-//! give it one size. Sizes and positions are whole numbers of a quantum (pixels when the input is in
-//! whole pixels): the program gives real sizes, which are rounded where that stays feasible; with sizes
-//! fixed, what remains are constraints on differences with whole right-hand sides, for which rounding a
-//! solution keeps every one of them. So equal sizes are equal exactly.
+//! Which equalities hold is chosen first, by clustering. *Leaders* are the lines (and then the sizes of one label)
+//! with most edge within reach of them; the others within reach follow, as long as the program stays
+//! feasible. So clusters end further apart than the reach, and a leader keeps its place. Nothing is lost between lines that
+//! merge but slivers no wider than the reach: of wall, and of elements that are no rectangles, beside the
+//! largest part of them that is one. In whole units, sizes are whole numbers, and what remains with sizes
+//! fixed are constraints on differences with whole right-hand sides, for which rounding a solution keeps
+//! every one of them. So equal sizes are equal exactly.
 //!
 //! # Deviations and readings
 //! - The paper only says that quadratic programming is used. The choice of equalities is ours.
-//! - Areas of a label picture that are rectangles but for nicks not deeper than the tolerance become
+//! - Whether an equality is feasible is told by a repair of the sizes (`differences`), which may miss a
+//!   solution: then two sizes stay apart that could have been one.
+//! - Areas of a label picture that are rectangles but for nicks not deeper than the reach become
 //!   rectangles first.
 //! - The weights w_k are ours: one misdrawn window should move to the others, not they to it.
 

@@ -37,7 +37,12 @@ impl<'a> Strips<'a> {
     /// Whether the cells between lines `first` and `last` can vanish: in each strip they continue what
     /// lies before, then what lies behind; a `narrow` stretch between the two may vanish when all of it
     /// yields and no two areas of one label come to touch.
-    pub fn can_vanish(self, first: usize, last: usize, narrow: impl Fn(usize, usize) -> bool) -> bool {
+    pub fn can_vanish(
+        self,
+        first: usize,
+        last: usize,
+        narrow: impl Fn(usize, usize) -> bool,
+    ) -> bool {
         let yields = self.yields.chunks_exact(self.length);
         self.rows().zip(yields).all(|(row, yields)| {
             let before = first.checked_sub(1).map(|k| row[k]);
