@@ -14,6 +14,7 @@ mod figure_9;
 mod likeness;
 mod optimality;
 mod published;
+mod projection;
 mod ratios;
 mod readings;
 mod regularization;
