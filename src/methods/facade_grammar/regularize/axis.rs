@@ -10,6 +10,9 @@ use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as sol
 /// How much dearer it is to change the size of an element than one of the background.
 const ELEMENT: f64 = 8.0;
 
+/// Most sizes that may turn out not to fit before no more are tried, for time on large layouts.
+const MAX_REFUSALS: usize = 60;
+
 /// One axis of a layout; lengths are in units of the lattice.
 pub struct Axis<'a> {
     /// Positions of the cut lines.
@@ -307,12 +310,19 @@ impl Axis<'_> {
             self.classes.iter().map(|c| (c.behind, c.label)).collect();
         kinds.sort_unstable();
         kinds.dedup();
+        let mut refusals = 0;
         for kind in kinds {
-            self.merge_kind(kind, groups, clusters);
+            self.merge_kind(kind, groups, clusters, &mut refusals);
         }
     }
 
-    fn merge_kind(&self, kind: (bool, u16), groups: &Groups, clusters: &mut Vec<Cluster>) {
+    fn merge_kind(
+        &self,
+        kind: (bool, u16),
+        groups: &Groups,
+        clusters: &mut Vec<Cluster>,
+        refusals: &mut usize,
+    ) {
         let stays = |class: &Class| {
             let (from, to) = class.spans[0];
             groups.of_line[from] != groups.of_line[to]
@@ -367,7 +377,7 @@ impl Axis<'_> {
                     .total_cmp(&distance(b))
                     .then(self.classes[b].weight.total_cmp(&self.classes[a].weight))
             });
-            let joined = self.join(leader, &around, groups, clusters);
+            let joined = self.join(leader, &around, groups, clusters, refusals);
             open.retain(|c| *c != leader && !joined.contains(c));
         }
     }
@@ -379,8 +389,9 @@ impl Axis<'_> {
         others: &[usize],
         groups: &Groups,
         clusters: &mut Vec<Cluster>,
+        refusals: &mut usize,
     ) -> Vec<usize> {
-        if others.is_empty() {
+        if others.is_empty() || *refusals == MAX_REFUSALS {
             return Vec::new();
         }
         let (gone, mut trial): (Vec<Cluster>, Vec<Cluster>) =
@@ -393,12 +404,13 @@ impl Axis<'_> {
             *clusters = trial;
             return others.to_vec();
         }
+        *refusals += 1;
         if others.len() == 1 {
             return Vec::new();
         }
         let (near, far) = others.split_at(others.len().div_ceil(2));
-        let mut joined = self.join(leader, near, groups, clusters);
-        joined.extend(self.join(leader, far, groups, clusters));
+        let mut joined = self.join(leader, near, groups, clusters, refusals);
+        joined.extend(self.join(leader, far, groups, clusters, refusals));
         joined
     }
 
