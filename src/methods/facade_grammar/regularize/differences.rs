@@ -240,3 +240,43 @@ pub struct Chain {
     /// How much room is lacking.
     excess: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Oracle: try all values of four positions between 0 and 5.
+        #[test]
+        fn the_least_solution_agrees_with_enumeration(
+            spans in prop::collection::vec((0usize..4, 0usize..4, 0i32..5), 1..5),
+            fixed in 0i32..6,
+        ) {
+            let size = |&(from, to, value): &(usize, usize, i32)| SharedSize {
+                value: value.into(),
+                wanted: value.into(),
+                range: (0.0, 5.0),
+                weight: 1.0,
+                spans: vec![(from, to)],
+            };
+            let sizes: Vec<SharedSize> = spans.iter().map(size).collect();
+            let last = f64::from(fixed);
+            let (lower, upper) = (vec![0.0, 0.0, 0.0, last], vec![5.0, 5.0, 5.0, last]);
+            let mut system = Differences::new(lower, upper, &[0.0; 3], sizes, true, 0.0);
+            let all = (0..6i32.pow(4)).map(|code| {
+                [code % 6, code / 6 % 6, code / 36 % 6, code / 216].map(f64::from)
+            });
+            let any = all.into_iter().any(|values| system.holds(&values));
+            let found = system.least_solution();
+            prop_assert_eq!(found.is_ok(), any);
+            if let Ok(values) = found {
+                prop_assert!(system.holds(&values));
+            }
+            // What the repair finds is a solution.
+            if let Some(values) = system.solve() {
+                prop_assert!(system.holds(&values));
+            }
+        }
+    }
+}
