@@ -16,7 +16,7 @@ use crate::shape::{
 pub struct Picture {
     /// The picture with as few cells as possible.
     pub grid: LabelGrid,
-    /// Distinct sizes of the areas of each label.
+    /// Distinct sizes of the areas of each label; of background labels, of the pieces in the tiling.
     pub sizes: BTreeMap<String, usize>,
     /// Areas of each label.
     areas: BTreeMap<String, usize>,
@@ -31,12 +31,17 @@ impl Picture {
     /// [`RegularizeError`] for a grid that is not valid.
     pub fn new(grid: &LabelGrid) -> Result<Self, RegularizeError> {
         let grid = grid.merged();
-        let (sizes, areas) = counts::of_areas(&grid);
+        let (mut sizes, areas) = counts::of_areas(&grid);
         let tiling = decompose(&grid)?.facade;
+        let pieces = counts::of_regions(&tiling);
+        // Of the background the pieces count: its areas are whatever elements leave between them.
+        for (label, count) in pieces.iter().filter(|(label, _)| is_background(label)) {
+            sizes.insert(label.clone(), *count);
+        }
         Ok(Self {
             sizes,
             areas,
-            tiling: (counts::of_regions(&tiling), tiling.regions.len()),
+            tiling: (pieces, tiling.regions.len()),
             grid,
         })
     }

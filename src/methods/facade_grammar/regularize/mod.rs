@@ -98,7 +98,8 @@ pub struct Report {
     pub squared: usize,
     /// Cut lines before and after, both axes together.
     pub lines: (usize, usize),
-    /// Distinct sizes (width and height) of the areas of each label, before and after.
+    /// Distinct sizes (width and height) of the areas of each label, before and after; of the background,
+    /// those of its pieces in the tiling.
     pub sizes: BTreeMap<String, (usize, usize)>,
 }
 

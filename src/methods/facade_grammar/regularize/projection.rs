@@ -25,13 +25,13 @@
 use super::RegularizeError;
 
 /// Reaches that are tried, as parts of the tolerance.
-const REACHES: [f64; 2] = [1.0, 0.5];
+const REACHES: [f64; 3] = [1.0, 0.7, 0.4];
 
 /// Most steps of one reach.
-const MAX_STEPS: usize = 6;
+const MAX_STEPS: usize = 20;
 
 /// Most times that more lines are frozen.
-const MAX_RESTARTS: usize = 2;
+const MAX_RESTARTS: usize = 5;
 
 /// A layout that steps can be taken from.
 pub trait Layout: Sized + Clone {
@@ -170,10 +170,10 @@ fn end<L: Layout>(
     Ok(End::Nowhere)
 }
 
-/// Adds lines to the frozen ones, and at each restart sixteen times as many of those beside them, lest there are
+/// Adds lines to the frozen ones, and at each restart four times as many of those beside them, lest there are
 /// many restarts.
 fn freeze(frozen: &mut Vec<f64>, all: &[f64], lines: &[f64], restart: usize) {
-    let beside = (1 << (4 * restart)) - 1;
+    let beside = (1 << (2 * restart)) - 1;
     for line in lines {
         let at = all.partition_point(|l| l < line);
         let from = at.saturating_sub(beside);
