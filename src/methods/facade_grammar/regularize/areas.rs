@@ -6,7 +6,7 @@ use super::RegularizeError;
 use super::axis::Axis;
 use super::classes::{Extent, classes};
 use super::lattice::Lattice;
-use super::projection::Frozen;
+use super::projection::Limits;
 use super::resized;
 use super::strips::{Run, Strips};
 use crate::shape::{
@@ -143,47 +143,45 @@ impl<'a> Areas<'a> {
         }
     }
 
-    /// New positions of the cut lines when annotations are off by at most `reach`: equal ones have
-    /// become one line. `None` when nothing becomes equal.
+    /// New positions of the cut lines within the limits: equal ones have become one
+    /// line. `None` when nothing becomes equal.
     ///
     /// # Errors
     /// [`RegularizeError::Qp`].
-    pub fn regularize(
-        &self,
-        reach: f64,
-        frozen: &Frozen,
-    ) -> Result<Option<Lines>, RegularizeError> {
+    pub fn regularize(&self, limits: &Limits) -> Result<Option<Lines>, RegularizeError> {
         let grid = self.grid;
         let lattice = Lattice::of(&grid.xs, &grid.ys);
         let (xs, ys) = (lattice.positions(&grid.xs), lattice.positions(&grid.ys));
         let (along_x, along_y) = classes(&self.extents, &xs, &ys, lattice.same());
         let ((cells, yields), turned) = self.both();
-        let is_in = |frozen: &[f64], line: f64| {
-            let after = frozen.partition_point(|&f| lattice.units(f) < line - lattice.same());
-            (frozen.get(after)).is_some_and(|&f| lattice.units(f) <= line + lattice.same())
+        let range = |ranges: &[(f64, [f64; 2])], line: f64| {
+            let at = |k: usize| lattice.units(ranges[k].0);
+            let after = (ranges.partition_point(|r| lattice.units(r.0) < line - lattice.same()))
+                .min(ranges.len() - 1);
+            debug_assert!((at(after) - line).abs() <= lattice.same());
+            ranges[after].1.map(|end| lattice.units(end))
         };
-        let axis = |cuts: &[f64], across: &[f64], strips: Strips, classes, frozen: &[f64]| {
+        let axis = |cuts: &[f64], across: &[f64], strips: Strips, classes, number: usize| {
+            if !limits.axes[number] {
+                return Ok(None);
+            }
             let (_, weights) = self.runs(cuts, across, strips);
+            let ranges = &limits.ranges[number];
             let axis = Axis {
                 cuts: cuts.to_vec(),
                 weights,
                 strips,
                 classes,
-                reach: lattice.units(reach),
-                frozen: (cuts.iter()).map(|&c| is_in(frozen, c)).collect(),
+                reach: lattice.units(limits.reach),
+                ranges: cuts.iter().map(|&c| range(ranges, c)).collect(),
                 lattice,
             };
             axis.solve()
         };
-        let new_xs = axis(
-            &xs,
-            &ys,
-            self.strips(cells, yields, xs.len() - 1),
-            along_x,
-            &frozen[0],
-        )?;
-        let turned_strips = self.strips(&turned.0, &turned.1, ys.len() - 1);
-        let new_ys = axis(&ys, &xs, turned_strips, along_y, &frozen[1])?;
+        let strips = self.strips(cells, yields, xs.len() - 1);
+        let new_xs = axis(&xs, &ys, strips, along_x, 0)?;
+        let strips = self.strips(&turned.0, &turned.1, ys.len() - 1);
+        let new_ys = axis(&ys, &xs, strips, along_y, 1)?;
         if new_xs.is_none() && new_ys.is_none() {
             return Ok(None);
         }

@@ -25,8 +25,8 @@ pub struct Axis<'a> {
     pub classes: Vec<Class>,
     /// Longest way that a line may move.
     pub reach: f64,
-    /// Lines that must not move.
-    pub frozen: Vec<bool>,
+    /// Where each line may be.
+    pub ranges: Vec<[f64; 2]>,
     /// The lattice.
     pub lattice: Lattice,
 }
@@ -200,13 +200,12 @@ impl Axis<'_> {
                 continue;
             }
             let weight: f64 = weights[first..end].iter().sum();
-            let (mut lower, mut upper) = (cuts[end - 1] - self.reach, cuts[first] + self.reach);
+            let ranges = &self.ranges[first..end];
+            let mut lower = ranges.iter().fold(cuts[end - 1] - self.reach, |l, r| l.max(r[0]));
+            let mut upper = ranges.iter().fold(cuts[first] + self.reach, |u, r| u.min(r[1]));
             if first == 0 || end == cuts.len() {
                 let fixed = if first == 0 { cuts[0] } else { cuts[end - 1] };
                 (lower, upper) = (fixed, fixed);
-            }
-            if let Some(fixed) = (first..end).find(|&k| self.frozen[k]) {
-                (lower, upper) = (lower.max(cuts[fixed]), upper.min(cuts[fixed]));
             }
             if self.lattice.whole {
                 // A hair's breadth of rounding must not cost a whole unit.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::RegularizeError;
 use super::areas::Areas;
 use super::counts;
-use super::projection::{Frozen, Layout, Step};
+use super::projection::{Layout, Limits, Step};
 use super::square::square;
 use crate::shape::{
     Facade, IndexedLayout, LabelGrid, LayoutError, Rect, Region, decompose, is_background,
@@ -48,9 +48,9 @@ impl Picture {
 }
 
 impl Layout for Picture {
-    fn step(&self, reach: f64, frozen: &Frozen) -> Result<Option<Step<Self>>, RegularizeError> {
-        let (squared, nicks) = square(&self.grid, reach);
-        let moved = Areas::of_grid(&squared)?.regularize(reach, frozen)?;
+    fn step(&self, limits: &Limits) -> Result<Option<Step<Self>>, RegularizeError> {
+        let (squared, nicks) = square(&self.grid, limits.depth);
+        let moved = Areas::of_grid(&squared)?.regularize(limits)?;
         if moved.is_none() && nicks.count == 0 {
             return Ok(None);
         }
@@ -76,6 +76,10 @@ impl Layout for Picture {
             && none_more(&self.sizes, &made.sizes)
             && none_more(&self.tiling.0, &made.tiling.0)
             && made.tiling.1 <= self.tiling.1
+    }
+
+    fn complexity(&self) -> usize {
+        self.tiling.0.values().sum::<usize>() + lines(&self.grid)
     }
 }
 
@@ -130,9 +134,9 @@ impl Tiling {
 }
 
 impl Layout for Tiling {
-    fn step(&self, reach: f64, frozen: &Frozen) -> Result<Option<Step<Self>>, RegularizeError> {
+    fn step(&self, limits: &Limits) -> Result<Option<Step<Self>>, RegularizeError> {
         let areas = Areas::of_facade(&self.facade, &self.layout, &self.grid);
-        let Some((xs, ys)) = areas.regularize(reach, frozen)? else {
+        let Some((xs, ys)) = areas.regularize(limits)? else {
             return Ok(None);
         };
         Ok(Some(Step {
@@ -149,6 +153,10 @@ impl Layout for Tiling {
 
     fn keeps(&self, made: &Self) -> bool {
         none_more(&self.sizes, &made.sizes)
+    }
+
+    fn complexity(&self) -> usize {
+        self.sizes.values().sum::<usize>() + lines(&self.grid)
     }
 }
 
