@@ -10,7 +10,7 @@ use super::projection::Limits;
 use super::resized;
 use super::strips::{Run, Strips};
 use crate::shape::{
-    Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose, is_background,
+    Component, Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose, is_background,
 };
 
 /// New positions of the cut lines along x and y.
@@ -49,8 +49,21 @@ impl<'a> Areas<'a> {
                 !(front(area.label) && area.is_rectangle())
             })
             .collect();
+        let size = |area: &Component| {
+            let b = area.bounds;
+            (grid.xs[b.right] - grid.xs[b.left]) * (grid.ys[b.top] - grid.ys[b.bottom])
+        };
+        // Of each label of the background, the largest area stays.
+        let mut kept: BTreeMap<u16, usize> = BTreeMap::new();
+        for (number, area) in areas.iter().enumerate().filter(|(_, a)| !front(a.label)) {
+            let largest = kept.entry(area.label).or_insert(number);
+            if size(area) > size(&areas[*largest]) {
+                *largest = number;
+            }
+        }
         for (number, area) in areas.iter().enumerate() {
-            if front(area.label) && !area.is_rectangle() {
+            let odd = front(area.label) && !area.is_rectangle();
+            if odd || kept.get(&area.label) == Some(&number) {
                 let body = body(grid, &of_cell, number as u32, area.bounds);
                 for j in body.bottom..body.top {
                     let row = j * grid.columns();
@@ -64,6 +77,7 @@ impl<'a> Areas<'a> {
                 behind: false,
                 label: area.label,
                 strict: true,
+                soft: false,
                 span: area.bounds,
             })
             .collect();
@@ -83,6 +97,7 @@ impl<'a> Areas<'a> {
                 behind: !front(label),
                 label,
                 strict: false,
+                soft: !front(label),
                 span,
             }
         }));
@@ -123,6 +138,7 @@ impl<'a> Areas<'a> {
             behind: !is_element[number],
             label: labels[number],
             strict: is_element[number],
+            soft: false,
             span,
         };
         Self {

@@ -11,7 +11,7 @@ use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as sol
 const ELEMENT: f64 = 8.0;
 
 /// Most sizes that may turn out not to fit before no more are tried, for time on large layouts.
-const MAX_REFUSALS: usize = 60;
+const MAX_REFUSALS: usize = 400;
 
 /// One axis of a layout; lengths are in units of the lattice.
 pub struct Axis<'a> {
@@ -337,7 +337,8 @@ impl Axis<'_> {
                 values[cluster.lead()] = cluster.value;
             }
             let near = |a: usize, b: usize| {
-                let within = |x: f64, y: f64| (x - y).abs() <= self.reach + 1e-6;
+                // A size has two ends.
+                let within = |x: f64, y: f64| (x - y).abs() <= 2.0 * self.reach + 1e-6;
                 let across = self.classes[a].across.zip(self.classes[b].across);
                 within(values[a], values[b]) && across.is_none_or(|(x, y)| within(x, y))
             };

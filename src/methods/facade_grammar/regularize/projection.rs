@@ -131,8 +131,10 @@ impl<L: Layout> Made<L> {
         for axes in [[true, true], [true, false], [false, true]] {
             limits.axes = axes;
             let Some(step) = self.layout.step(&limits)? else {
+                if std::env::var("DBG").is_ok() {eprintln!("none {axes:?} {}",self.layout.complexity());}
                 continue;
             };
+            if std::env::var("DBG").is_ok() {eprintln!("reach {reach} {axes:?} {} -> {} keeps {}",self.layout.complexity(),step.layout.complexity(),start.keeps(&step.layout));}
             if step.layout.complexity() < self.layout.complexity() && start.keeps(&step.layout) {
                 return Ok(Some(self.after(step)));
             }
