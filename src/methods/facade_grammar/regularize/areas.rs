@@ -77,7 +77,6 @@ impl<'a> Areas<'a> {
                 behind: false,
                 label: area.label,
                 strict: true,
-                soft: false,
                 span: area.bounds,
             })
             .collect();
@@ -97,7 +96,6 @@ impl<'a> Areas<'a> {
                 behind: !front(label),
                 label,
                 strict: false,
-                soft: !front(label),
                 span,
             }
         }));
@@ -138,7 +136,6 @@ impl<'a> Areas<'a> {
             behind: !is_element[number],
             label: labels[number],
             strict: is_element[number],
-            soft: false,
             span,
         };
         Self {

@@ -11,7 +11,7 @@ use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as sol
 const ELEMENT: f64 = 8.0;
 
 /// Most sizes that may turn out not to fit before no more are tried, for time on large layouts.
-const MAX_REFUSALS: usize = 400;
+const MAX_REFUSALS: usize = 60;
 
 /// One axis of a layout; lengths are in units of the lattice.
 pub struct Axis<'a> {
@@ -81,7 +81,9 @@ impl Axis<'_> {
         if groups.center.len() == self.cuts.len() && clusters.len() == before {
             return Ok(None);
         }
-        let positions = self.place(&groups, &clusters)?;
+        let Some(positions) = self.place(&groups, &clusters)? else {
+            return Ok(None);
+        };
         let moved: Vec<f64> = groups.of_line.iter().map(|&g| positions[g]).collect();
         Ok((moved != self.cuts).then_some(moved))
     }
@@ -281,7 +283,20 @@ impl Axis<'_> {
     fn settle(&self, groups: &Groups, clusters: &mut [Cluster]) -> bool {
         let mut system = self.system(groups, clusters);
         if system.solve().is_none() {
-            return false;
+            // Once more, from what the merged lines make of the sizes.
+            system = self.system(groups, clusters);
+            for size in &mut system.sizes {
+                let mut values: Vec<f64> = (size.spans.iter())
+                    .map(|&(from, to)| groups.center[to] - groups.center[from])
+                    .collect();
+                values.sort_by(f64::total_cmp);
+                if let Some(&middle) = values.get(values.len() / 2) {
+                    size.value = middle.max(size.range.0).min(size.range.1);
+                }
+            }
+            if system.solve().is_none() {
+                return false;
+            }
         }
         for (cluster, size) in clusters.iter_mut().zip(&system.sizes) {
             cluster.value = size.value;
@@ -414,8 +429,8 @@ impl Axis<'_> {
         joined
     }
 
-    /// Solves the quadratic program with the sizes of the clusters as they are.
-    fn place(&self, groups: &Groups, clusters: &[Cluster]) -> Result<Vec<f64>, RegularizeError> {
+    /// Solves the quadratic program with the sizes of the clusters as they are; `None` where it has no solution.
+    fn place(&self, groups: &Groups, clusters: &[Cluster]) -> Result<Option<Vec<f64>>, RegularizeError> {
         let system = self.system(groups, clusters);
         let n = groups.center.len();
         let mut program = QuadraticProgram::new(n);
@@ -445,12 +460,11 @@ impl Axis<'_> {
                 false => found.x,
             };
             if system.holds(&positions) {
-                return Ok(positions);
+                return Ok(Some(positions));
             }
         }
         // The solver stalled: any solution will do.
-        let least = system.least_solution();
-        Ok(least.unwrap_or_else(|_| groups.center.clone()))
+        Ok(system.least_solution().ok())
     }
 }
 

@@ -28,11 +28,9 @@ pub struct Extent {
     pub behind: bool,
     /// Label number.
     pub label: u16,
-    /// Whether its width binds all of its label with that width, and its height likewise; otherwise
-    /// only those that have both are bound.
+    /// Whether it may become equal along one axis to others that are not near across; otherwise only to those
+    /// that are near in both.
     pub strict: bool,
-    /// Whether it may become unequal to others.
-    pub soft: bool,
     /// Cut lines around it.
     pub span: Span,
 }
@@ -44,7 +42,7 @@ pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Cl
     let widths = levels(extents.iter().map(width).collect(), same);
     let heights = levels(extents.iter().map(height).collect(), same);
     let along = |across: bool| {
-        let mut found: BTreeMap<(bool, u16, usize, Option<usize>, usize), Class> = BTreeMap::new();
+        let mut found: BTreeMap<(bool, u16, usize, usize), Class> = BTreeMap::new();
         for (k, extent) in extents.iter().enumerate() {
             let s = extent.span;
             let (mine, other, size, weight, span) = match across {
@@ -61,8 +59,7 @@ pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Cl
                 extent.behind,
                 extent.label,
                 mine,
-                if std::env::var("BOTH").is_ok() {Some(other)} else {(!extent.strict).then_some(other)},
-                if extent.soft && std::env::var("SOFT").is_ok() { k } else { usize::MAX },
+                other,
             );
             let class = found.entry(key).or_insert_with(|| Class {
                 behind: extent.behind,

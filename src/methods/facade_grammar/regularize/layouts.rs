@@ -72,12 +72,6 @@ impl Layout for Picture {
             let now = made.areas.get(label).copied().unwrap_or(0);
             now == *count || is_background(label) && now > 0
         };
-        if std::env::var("DBG").is_ok() {
-        for e in &self.areas { if !elements(e) {eprintln!("  area {e:?} {:?}", made.areas.get(e.0));} }
-        for e in &made.sizes { if e.1 > self.sizes.get(e.0).unwrap_or(&0) {eprintln!("  size {e:?} {:?}", self.sizes.get(e.0));} }
-        for e in &made.tiling.0 { if e.1 > self.tiling.0.get(e.0).unwrap_or(&0) {eprintln!("  tiling {e:?} {:?}", self.tiling.0.get(e.0));} }
-        eprintln!("  pieces {} {}", self.tiling.1,made.tiling.1);
-        }
         self.areas.iter().all(elements)
             && none_more(&self.sizes, &made.sizes)
             && none_more(&self.tiling.0, &made.tiling.0)

@@ -1,12 +1,27 @@
 //! From a step that makes some sizes equal to a projection: applied twice it changes nothing more.
+//!
+//! A *step* with reach `r` moves no line of its argument by more than `r`, and leaves each within its range: not
+//! further than the tolerance `t` from where any line that it came from was at the start. It is taken when it
+//! makes the layout simpler (fewer distinct sizes and cut lines together) and keeps what [`Layout::keeps`] names,
+//! else one along x alone, or y alone, is tried.
+//!
+//! A layout is *regular* when the step of reach `t` from it saves less than a tenth of its sizes and lines, or is
+//! none: below ten of them, every one counts. With `W_r(x)` for where steps of reach `r` from `x` end,
+//!
+//! ```text
+//! R(x) = x if x is regular; else the first of W_t(x), W_0.6t(x), W_0.3t(x) that is; else x
+//! ```
+//! So `R(R(x)) = R(x)`: either `R(x) = x`, or `R(x)` is regular. Nothing here depends on what a step does, only
+//! that it is deterministic. A tenth is left because steps are heuristics: from where one ends, another that
+//! measures anew nearly always finds a little more.
 
 use super::RegularizeError;
 
 /// Reaches of the steps that are tried, as parts of the tolerance.
-const REACHES: [f64; 5] = [1.0, 0.75, 0.5, 0.35, 0.2];
+const REACHES: [f64; 3] = [1.0, 0.6, 0.3];
 
 /// Most steps of one reach.
-const MAX_STEPS: usize = 12;
+const MAX_STEPS: usize = 5;
 
 /// A layout that steps can be taken from.
 pub trait Layout: Sized + Clone {
@@ -76,24 +91,21 @@ pub fn project<L: Layout>(start: &L, tolerance: f64) -> Result<Option<Made<L>>, 
     if tolerance == 0.0 || is_regular(start, tolerance)? {
         return Ok(None);
     }
-    let mut best: Option<Made<L>> = None;
     for part in REACHES {
         let made = walk(start, part * tolerance, tolerance)?;
-        let least = best.as_ref().map_or(start.complexity(), |b| b.layout.complexity());
-        if made.layout.complexity() < least && is_regular(&made.layout, tolerance)? {
-            best = Some(made);
+        let simpler = made.layout.complexity() < start.complexity();
+        if simpler && is_regular(&made.layout, tolerance)? {
+            return Ok(Some(made));
         }
     }
-    Ok(best)
+    Ok(None)
 }
 
 /// Whether no step saves enough to be worth it.
 fn is_regular<L: Layout>(layout: &L, tolerance: f64) -> Result<bool, RegularizeError> {
     let made = Made::new(layout);
     let next = made.next(layout, tolerance, tolerance)?;
-    Ok(next.is_none_or(|next| {
-        10 * next.layout.complexity() > 9 * layout.complexity()
-    }))
+    Ok(next.is_none_or(|next| 10 * next.layout.complexity() > 9 * layout.complexity()))
 }
 
 /// Steps from `start` as long as each makes the layout simpler.
@@ -128,15 +140,17 @@ impl<L: Layout> Made<L> {
             ranges: [self.ranges(0, tolerance), self.ranges(1, tolerance)],
             axes: [true, true],
         };
+        let lines = self.layout.lines().into_iter().flatten().copied();
+        let hair = 1e-9 * lines.fold(0.0, f64::max);
         for axes in [[true, true], [true, false], [false, true]] {
             limits.axes = axes;
             let Some(step) = self.layout.step(&limits)? else {
-                if std::env::var("DBG").is_ok() {eprintln!("none {axes:?} {}",self.layout.complexity());}
                 continue;
             };
-            if std::env::var("DBG").is_ok() {eprintln!("reach {reach} {axes:?} {} -> {} keeps {}",self.layout.complexity(),step.layout.complexity(),start.keeps(&step.layout));}
-            if step.layout.complexity() < self.layout.complexity() && start.keeps(&step.layout) {
-                return Ok(Some(self.after(step)));
+            let next = self.after(step);
+            let simpler = next.layout.complexity() < self.layout.complexity();
+            if simpler && next.largest_move <= tolerance + hair && start.keeps(&next.layout) {
+                return Ok(Some(next));
             }
         }
         Ok(None)
