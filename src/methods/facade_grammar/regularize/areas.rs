@@ -10,7 +10,8 @@ use super::projection::Limits;
 use super::resized;
 use super::strips::{Run, Strips};
 use crate::shape::{
-    Component, Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose, is_background,
+    Component, Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose,
+    is_background,
 };
 
 /// New positions of the cut lines along x and y.

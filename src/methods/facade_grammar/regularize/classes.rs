@@ -55,12 +55,7 @@ pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Cl
                     (heights[k], widths[k], height(extent), width(extent), span)
                 }
             };
-            let key = (
-                extent.behind,
-                extent.label,
-                mine,
-                other,
-            );
+            let key = (extent.behind, extent.label, mine, other);
             let class = found.entry(key).or_insert_with(|| Class {
                 behind: extent.behind,
                 label: extent.label,

@@ -3,11 +3,11 @@
 //! Annotations are off by pixels, but a grammar can only share what is *equal*. Regularization moves
 //! edges so that nearly equal elements get equal sizes and nearly aligned edges get aligned. It is a projection:
 //!
-//! - What is equal stays equal. Sizes of one label that are equal (those of elements along each axis,
-//!   those of the pieces of wall when they agree in both) are one variable, so that equal blocks stay
-//!   equal; edges on one line stay on one line.
-//! - Applied twice it changes nothing more, to the bit, whatever the tolerance; `projection` proves it.
-//! - No label, no element and no region of a tiling is lost, and no label has more sizes than before.
+//! - What is equal stays equal. Areas of one label with equal widths and heights have one variable along each
+//!   axis, so that equal blocks stay equal; edges on one line stay on one line.
+//! - Applied twice it changes nothing more, to the bit, whatever the tolerance; `projection` proves it. Layouts that are
+//!   regular but for a tenth are left alone.
+//! - No label, no element and no region of a tiling is lost, and there are no more sizes in all than before.
 //! - Tolerance 0 is the identity. No edge moves further than the tolerance; the total size stays.
 //! - It does not depend on the unit: coordinates are counted in steps of the coarsest lattice that
 //!   they all lie on, and move by whole steps of it. Where there is none, they are real numbers.
@@ -26,7 +26,7 @@
 //! ```
 //! Which equalities hold is chosen first, by clustering. *Leaders* are the lines (and then the sizes of one label)
 //! with most edge within reach of them; the others within reach follow, as long as the program stays
-//! feasible. So clusters end further apart than the reach, and a leader keeps its place. Nothing is lost between lines that
+//! feasible: lines within the reach, sizes, which have two ends, within twice of it. Nothing is lost between lines that
 //! merge but slivers no wider than the reach: of wall, and of elements that are no rectangles, beside the
 //! largest part of them that is one. In whole units, sizes are whole numbers, and what remains with sizes
 //! fixed are constraints on differences with whole right-hand sides, for which rounding a solution keeps
@@ -45,8 +45,10 @@ mod axis;
 mod classes;
 mod counts;
 mod differences;
+mod equal;
 mod lattice;
 mod layouts;
+mod meeting;
 mod projection;
 mod resized;
 mod square;

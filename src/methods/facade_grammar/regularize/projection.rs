@@ -9,7 +9,7 @@
 //! none: below ten of them, every one counts. With `W_r(x)` for where steps of reach `r` from `x` end,
 //!
 //! ```text
-//! R(x) = x if x is regular; else the first of W_t(x), W_0.6t(x), W_0.3t(x) that is; else x
+//! R(x) = x if x is regular; else the first W_r(x) that is, r = t, 0.9 t, ..., 0.15 t; else x
 //! ```
 //! So `R(R(x)) = R(x)`: either `R(x) = x`, or `R(x)` is regular. Nothing here depends on what a step does, only
 //! that it is deterministic. A tenth is left because steps are heuristics: from where one ends, another that
@@ -18,10 +18,10 @@
 use super::RegularizeError;
 
 /// Reaches of the steps that are tried, as parts of the tolerance.
-const REACHES: [f64; 3] = [1.0, 0.6, 0.3];
+const REACHES: [f64; 8] = [1.0, 0.9, 0.75, 0.6, 0.5, 0.4, 0.3, 0.15];
 
 /// Most steps of one reach.
-const MAX_STEPS: usize = 5;
+const MAX_STEPS: usize = 12;
 
 /// A layout that steps can be taken from.
 pub trait Layout: Sized + Clone {
