@@ -65,9 +65,9 @@ fn check(grid: &LabelGrid, tolerance: f64) {
     assert_eq!(result.merged().labels, grid.merged().labels, "{place}");
     let (before, after) = (decompose(grid).unwrap(), decompose(&result).unwrap());
     assert!(sizes(&after.facade) <= sizes(&before.facade), "{place}");
-    for (label, (before, after)) in report.sizes {
-        assert!(after <= before, "{place}: {label} {before} -> {after}");
-    }
+    let sum = |of: fn(&(usize, usize)) -> usize| report.sizes.values().map(of).sum::<usize>();
+    assert!(sum(|s| s.1) <= sum(|s| s.0), "{place}");
+    assert!(report.largest_move <= tolerance, "{place}");
     let (again, _) = regularize_grid(&result, tolerance).unwrap();
     assert_eq!(again, result, "{place}");
 }
@@ -89,4 +89,25 @@ fn real_pictures_are_projected() {
             }
         }
     }
+}
+
+/// Guards the strength: most of the sizes of hand-made annotations differ by their noise alone.
+#[test]
+fn most_sizes_of_real_pictures_become_equal() {
+    let folder = "facades/graz50/labels";
+    let Some(data) = common::real_data(folder) else {
+        return;
+    };
+    let (mut sum_before, mut sum_after) = (0, 0);
+    for file in files(&data.join(folder), ".png").iter().step_by(3) {
+        let grid = read_label_grid(file, &Default::default()).unwrap();
+        let longer = grid.xs[grid.columns()].max(grid.ys[grid.rows()]);
+        let (result, _) = regularize_grid(&grid, (0.01 * longer).round()).unwrap();
+        sum_before += sizes(&decompose(&grid).unwrap().facade);
+        sum_after += sizes(&decompose(&result).unwrap().facade);
+    }
+    assert!(
+        4 * sum_after < sum_before,
+        "{sum_before} -> {sum_after} sizes"
+    );
 }
