@@ -113,7 +113,14 @@ fn walk<L: Layout>(start: &L, reach: f64, tolerance: f64) -> Result<Made<L>, Reg
     let mut made = Made::new(start);
     for _ in 0..MAX_STEPS {
         match made.next(start, reach, tolerance)? {
-            Some(next) => made = next,
+            Some(next) => {
+                let (before, after) = (made.layout.complexity(), next.layout.complexity());
+                made = next;
+                // What is left to save is not worth the time.
+                if 50 * (before - after) < before {
+                    break;
+                }
+            }
             None => break,
         }
     }
