@@ -17,6 +17,7 @@ mod joint_real;
 mod judge;
 mod likeness;
 mod optimality;
+mod projection;
 mod published;
 mod ratios;
 mod readings;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::data;
+use super::{data, projection};
 use crate::experiments::Context;
 use crate::io::{LabelMap, label_image};
 use crate::methods::facade_grammar::regularize::regularize_grid;
@@ -20,10 +20,12 @@ struct Effect {
     seconds: f64,
 }
 
-/// Distinct sizes of windows and cut lines before and after, by tolerance, on the ECP labels.
+/// What regularization keeps on every set; then distinct sizes of windows and cut lines before and after,
+/// by tolerance, on the ECP labels.
 pub fn run(ctx: &mut Context) -> Result<()> {
+    projection::table(ctx)?;
     let Some(folder) = ctx.real("facades/ecp2011/labels")? else {
-        ctx.skip("needs the labels of ECP2011 (--data)");
+        ctx.note("The second table needs the labels of ECP2011 (--data).");
         return Ok(());
     };
     let limit = ctx.budget().choose(2, usize::MAX, usize::MAX);

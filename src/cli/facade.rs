@@ -49,7 +49,7 @@ pub struct Convert {
     #[arg(long)]
     elements: bool,
     /// Make nearly equal sizes equal and nearly aligned edges aligned, moving no edge further than
-    /// this, in the unit of the facade.
+    /// this, in the unit of the facade. What is equal stays equal; applied again it changes nothing more.
     #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     regularize: Option<f64>,
 }

@@ -1,28 +1,21 @@
 //! Areas between cut lines, as both axes of the problem see them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::RegularizeError;
-use super::axis::{self, Run, Strips};
+use super::axis::Axis;
+use super::classes::{Extent, classes};
+use super::lattice::Lattice;
+use super::projection::Limits;
 use super::resized;
-use crate::shape::{Facade, IndexedLayout, LabelGrid, Span, components, is_background};
+use super::strips::{Run, Strips};
+use crate::shape::{
+    Component, Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose,
+    is_background,
+};
 
-/// Why edges may move, and how far, in the unit of the layout.
-#[derive(Debug, Clone, Copy)]
-pub enum Freedom {
-    /// Annotations are off by so much: lines merge, then sizes become equal.
-    Noise {
-        /// Longest move.
-        tolerance: f64,
-    },
-    /// The layout was resized: sizes become equal, then lines merge as far as sizes allow.
-    Resized {
-        /// Longest move that makes sizes equal.
-        reach: f64,
-        /// Longest further move that aligns edges.
-        tolerance: f64,
-    },
-}
+/// New positions of the cut lines along x and y.
+pub type Lines = (Vec<f64>, Vec<f64>);
 
 /// Areas on an irregular grid: connected areas of equal label, or regions of a tiling.
 pub struct Areas<'a> {
@@ -36,11 +29,16 @@ pub struct Areas<'a> {
     /// Whether a stretch of its area may vanish at a cell: background, and what odd elements have
     /// beside their [bodies](body).
     yields: Vec<bool>,
+    /// Rectangles whose sizes count.
+    extents: Vec<Extent>,
 }
 
 impl<'a> Areas<'a> {
     /// The connected areas of equal label.
-    pub fn of_grid(grid: &'a LabelGrid) -> Self {
+    ///
+    /// # Errors
+    /// [`GridError`] when the grid is not valid.
+    pub fn of_grid(grid: &'a LabelGrid) -> Result<Self, GridError> {
         let mut of_cell = vec![0; grid.cells.len()];
         let areas = components(grid, whole(grid), &mut of_cell);
         let behind: Vec<bool> = grid.labels.iter().map(|l| is_background(l)).collect();
@@ -52,8 +50,21 @@ impl<'a> Areas<'a> {
                 !(front(area.label) && area.is_rectangle())
             })
             .collect();
+        let size = |area: &Component| {
+            let b = area.bounds;
+            (grid.xs[b.right] - grid.xs[b.left]) * (grid.ys[b.top] - grid.ys[b.bottom])
+        };
+        // Of each label of the background, the largest area stays.
+        let mut kept: BTreeMap<u16, usize> = BTreeMap::new();
+        for (number, area) in areas.iter().enumerate().filter(|(_, a)| !front(a.label)) {
+            let largest = kept.entry(area.label).or_insert(number);
+            if size(area) > size(&areas[*largest]) {
+                *largest = number;
+            }
+        }
         for (number, area) in areas.iter().enumerate() {
-            if front(area.label) && !area.is_rectangle() {
+            let odd = front(area.label) && !area.is_rectangle();
+            if odd || kept.get(&area.label) == Some(&number) {
                 let body = body(grid, &of_cell, number as u32, area.bounds);
                 for j in body.bottom..body.top {
                     let row = j * grid.columns();
@@ -61,7 +72,42 @@ impl<'a> Areas<'a> {
                 }
             }
         }
-        Self {
+        let elements = areas.iter().filter(|area| front(area.label));
+        let mut extents: Vec<Extent> = elements
+            .map(|area| Extent {
+                behind: false,
+                label: area.label,
+                strict: true,
+                span: area.bounds,
+            })
+            .collect();
+        let tiling = decompose(grid)?.facade;
+        let layout = tiling.indexed()?;
+        let column = |at: usize| nearest(&grid.xs, layout.xs.values()[at]);
+        let row = |at: usize| nearest(&grid.ys, layout.ys.values()[at]);
+        extents.extend(layout.spans.iter().map(|s| {
+            let span = Span {
+                left: column(s.left),
+                right: column(s.right),
+                bottom: row(s.bottom),
+                top: row(s.top),
+            };
+            let label = grid.at(span.left, span.bottom);
+            Extent {
+                behind: !front(label),
+                label,
+                strict: false,
+                span,
+            }
+        }));
+        // Whole elements are there already.
+        let mut seen = Vec::new();
+        extents.retain(|e| {
+            let new = !seen.contains(&e.span);
+            seen.push(e.span);
+            new
+        });
+        Ok(Self {
             grid,
             yields,
             labels: areas.iter().map(|a| a.label).collect(),
@@ -70,7 +116,8 @@ impl<'a> Areas<'a> {
                 .map(|a| a.is_rectangle() && front(a.label))
                 .collect(),
             of_cell,
-        }
+            extents,
+        })
     }
 
     /// The regions of a tiling, of which `grid` is the picture.
@@ -85,12 +132,20 @@ impl<'a> Areas<'a> {
             labels.push(grid.at(span.left, span.bottom));
         }
         let front = facade.regions.iter().map(|r| !is_background(&r.label));
+        let is_element: Vec<bool> = front.collect();
+        let extent = |(number, &span): (usize, &Span)| Extent {
+            behind: !is_element[number],
+            label: labels[number],
+            strict: is_element[number],
+            span,
+        };
         Self {
             grid,
             yields: vec![false; of_cell.len()],
             of_cell,
+            extents: layout.spans.iter().enumerate().map(extent).collect(),
             labels,
-            is_element: front.collect(),
+            is_element,
         }
     }
 
@@ -102,19 +157,88 @@ impl<'a> Areas<'a> {
         }
     }
 
-    /// New positions of the cut lines along x and y; equal ones have become one line.
-    pub fn solve(&self, freedom: Freedom) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
+    /// New positions of the cut lines within the limits: equal ones have become one
+    /// line. `None` when nothing becomes equal.
+    ///
+    /// # Errors
+    /// [`RegularizeError::Qp`].
+    pub fn regularize(&self, limits: &Limits) -> Result<Option<Lines>, RegularizeError> {
         let grid = self.grid;
-        let (columns, rows) = (grid.columns(), grid.rows());
+        let lattice = Lattice::of(&grid.xs, &grid.ys);
+        let (xs, ys) = (lattice.positions(&grid.xs), lattice.positions(&grid.ys));
+        let (along_x, along_y) = classes(&self.extents, &xs, &ys, lattice.same());
+        let ((cells, yields), turned) = self.both();
+        let range = |ranges: &[(f64, [f64; 2])], line: f64| {
+            let at = |k: usize| lattice.units(ranges[k].0);
+            let after = (ranges.partition_point(|r| lattice.units(r.0) < line - lattice.same()))
+                .min(ranges.len() - 1);
+            debug_assert!((at(after) - line).abs() <= lattice.same());
+            ranges[after].1.map(|end| lattice.units(end))
+        };
+        let axis = |cuts: &[f64], across: &[f64], strips: Strips, classes, number: usize| {
+            if !limits.axes[number] {
+                return Ok(None);
+            }
+            let (_, weights) = self.runs(cuts, across, strips);
+            let ranges = &limits.ranges[number];
+            let axis = Axis {
+                cuts: cuts.to_vec(),
+                weights,
+                strips,
+                classes,
+                reach: lattice.units(limits.reach),
+                ranges: cuts.iter().map(|&c| range(ranges, c)).collect(),
+                lattice,
+            };
+            axis.solve()
+        };
+        let strips = self.strips(cells, yields, xs.len() - 1);
+        let new_xs = axis(&xs, &ys, strips, along_x, 0)?;
+        let strips = self.strips(&turned.0, &turned.1, ys.len() - 1);
+        let new_ys = axis(&ys, &xs, strips, along_y, 1)?;
+        if new_xs.is_none() && new_ys.is_none() {
+            return Ok(None);
+        }
+        let coordinates = |old: &[f64], units: &[f64], new: Option<Vec<f64>>| match new {
+            None => old.to_vec(),
+            Some(new) => (new.into_iter())
+                .map(|v| match units.binary_search_by(|u| u.total_cmp(&v)) {
+                    // What does not move keeps its last bit.
+                    Ok(same) => old[same],
+                    Err(_) => lattice.coordinate(v),
+                })
+                .collect(),
+        };
+        let moved = (
+            coordinates(&grid.xs, &xs, new_xs),
+            coordinates(&grid.ys, &ys, new_ys),
+        );
+        Ok(Some(moved))
+    }
+
+    /// New positions of the cut lines of a resized layout.
+    ///
+    /// # Errors
+    /// [`RegularizeError::Qp`].
+    pub fn align(&self, reach: f64, tolerance: f64) -> Result<Lines, RegularizeError> {
+        let (xs, ys) = (&self.grid.xs, &self.grid.ys);
+        let ((cells, yields), turned) = self.both();
+        let axis = |cuts: &[f64], across: &[f64], strips: Strips| {
+            let (runs, weights) = self.runs(cuts, across, strips);
+            resized::solve(cuts, &weights, &runs, reach, tolerance)
+        };
+        let new_xs = axis(xs, ys, self.strips(cells, yields, xs.len() - 1))?;
+        let new_ys = axis(ys, xs, self.strips(&turned.0, &turned.1, ys.len() - 1))?;
+        Ok((new_xs, new_ys))
+    }
+
+    /// Areas and what yields, row by row, and column by column.
+    #[allow(clippy::type_complexity)]
+    fn both(&self) -> ((&[u32], &[bool]), (Vec<u32>, Vec<bool>)) {
+        let (columns, rows) = (self.grid.columns(), self.grid.rows());
         let turned = (0..columns).flat_map(|i| (0..rows).map(move |j| j * columns + i));
-        let (cells, yields): (Vec<u32>, Vec<bool>) = turned
-            .map(|cell| (self.of_cell[cell], self.yields[cell]))
-            .unzip();
-        let along_x = self.strips(&self.of_cell, &self.yields, columns);
-        let along_y = self.strips(&cells, &yields, rows);
-        let xs = self.solve_axis(&grid.xs, &grid.ys, along_x, freedom)?;
-        let ys = self.solve_axis(&grid.ys, &grid.xs, along_y, freedom)?;
-        Ok((xs, ys))
+        let turned = turned.map(|cell| (self.of_cell[cell], self.yields[cell]));
+        ((&self.of_cell, &self.yields), turned.unzip())
     }
 
     fn strips<'b>(&'b self, cells: &'b [u32], yields: &'b [bool], length: usize) -> Strips<'b> {
@@ -126,14 +250,9 @@ impl<'a> Areas<'a> {
         }
     }
 
-    /// Along one axis: `cuts` run across `strips`, `across` bounds the strips.
-    fn solve_axis(
-        &self,
-        cuts: &[f64],
-        across: &[f64],
-        strips: Strips,
-        freedom: Freedom,
-    ) -> Result<Vec<f64>, RegularizeError> {
+    /// Along one axis: the runs between `cuts`, which run across `strips`, and the length of edge on each of
+    /// them; `across` bounds the strips.
+    fn runs(&self, cuts: &[f64], across: &[f64], strips: Strips) -> (Vec<Run>, Vec<f64>) {
         let mut runs: BTreeMap<(bool, u16, usize, usize), f64> = BTreeMap::new();
         let mut weights = vec![0.0; cuts.len()];
         for (strip, row) in strips.rows().enumerate() {
@@ -150,7 +269,7 @@ impl<'a> Areas<'a> {
                 from = to;
             }
         }
-        let runs: Vec<Run> = runs
+        let runs = runs
             .into_iter()
             .map(|((behind, label, from, to), weight)| Run {
                 behind,
@@ -158,14 +277,18 @@ impl<'a> Areas<'a> {
                 from,
                 to,
                 weight,
-            })
-            .collect();
-        match freedom {
-            Freedom::Noise { tolerance } => axis::solve(cuts, &weights, &runs, strips, tolerance),
-            Freedom::Resized { reach, tolerance } => {
-                resized::solve(cuts, &weights, &runs, reach, tolerance)
-            }
-        }
+            });
+        (runs.collect(), weights)
+    }
+}
+
+/// Index of the line nearest to a coordinate.
+fn nearest(cuts: &[f64], at: f64) -> usize {
+    let after = cuts.partition_point(|&c| c < at);
+    match after {
+        0 => 0,
+        k if k == cuts.len() || at - cuts[k - 1] <= cuts[k] - at => k - 1,
+        k => k,
     }
 }
 
@@ -207,57 +330,4 @@ fn whole(grid: &LabelGrid) -> Span {
         bottom: 0,
         top: grid.rows(),
     }
-}
-
-/// Counts distinct sizes under each label; sizes within a billionth of the facade are one.
-struct SizeCount {
-    unit: f64,
-    sizes: BTreeMap<String, BTreeSet<(i64, i64)>>,
-}
-
-impl SizeCount {
-    fn new(width: f64, height: f64) -> Self {
-        Self {
-            unit: 1e-9 * width.max(height),
-            sizes: BTreeMap::new(),
-        }
-    }
-
-    fn add(&mut self, label: &str, width: f64, height: f64) {
-        let round = |v: f64| (v / self.unit).round() as i64;
-        let size = (round(width), round(height));
-        self.sizes
-            .entry(label.to_string())
-            .or_default()
-            .insert(size);
-    }
-
-    fn counts(self) -> BTreeMap<String, usize> {
-        self.sizes
-            .into_iter()
-            .map(|(label, sizes)| (label, sizes.len()))
-            .collect()
-    }
-}
-
-/// Number of distinct sizes of the areas of each label; of those that are not rectangles, the sizes of
-/// the rectangles around them.
-pub fn sizes(grid: &LabelGrid) -> BTreeMap<String, usize> {
-    let mut count = SizeCount::new(grid.xs[grid.columns()], grid.ys[grid.rows()]);
-    for area in components(grid, whole(grid), &mut vec![0; grid.cells.len()]) {
-        let b = area.bounds;
-        let width = grid.xs[b.right] - grid.xs[b.left];
-        let height = grid.ys[b.top] - grid.ys[b.bottom];
-        count.add(&grid.labels[usize::from(area.label)], width, height);
-    }
-    count.counts()
-}
-
-/// Number of distinct sizes of the regions of each label.
-pub fn region_sizes(facade: &Facade) -> BTreeMap<String, usize> {
-    let mut count = SizeCount::new(facade.width, facade.height);
-    for region in &facade.regions {
-        count.add(&region.label, region.rect.width, region.rect.height);
-    }
-    count.counts()
 }

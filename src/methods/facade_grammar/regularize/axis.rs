@@ -1,283 +1,172 @@
-//! Regularization along one axis; the program is stated in the parent module.
+//! Regularization along one axis: which lines and sizes become equal, and where the lines go.
 
 use super::RegularizeError;
-use super::differences::{Difference, Differences};
-use super::sizes::{Cluster, choose_sizes};
+use super::classes::Class;
+use super::differences::{Differences, SharedSize};
+use super::equal::Cluster;
+use super::lattice::Lattice;
+use super::meeting::Groups;
+use super::strips::Strips;
 use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as solve_qp};
 
-/// Parts of the tolerance that are told apart when the input is not in whole numbers.
-const FINENESS: f64 = 256.0;
+/// How much dearer it is to change the size of an element than one of the background.
+const ELEMENT: f64 = 8.0;
 
-/// A stretch of one area along a strip, between cut lines `from` and `to`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run {
-    /// Background and odd shapes are served after elements.
-    pub behind: bool,
-    /// Label number; only runs of one label become equal.
-    pub label: u16,
-    /// Cut line at its start.
-    pub from: usize,
-    /// Cut line at its end.
-    pub to: usize,
-    /// Thickness of the strips with this run, summed.
-    pub weight: f64,
+/// One axis of a layout; lengths are in units of the lattice.
+pub struct Axis<'a> {
+    /// Positions of the cut lines.
+    pub cuts: Vec<f64>,
+    /// Length of edge on each line.
+    pub weights: Vec<f64>,
+    /// What lies between the lines.
+    pub strips: Strips<'a>,
+    /// Sizes that are equal.
+    pub classes: Vec<Class>,
+    /// Longest way that a line may move.
+    pub reach: f64,
+    /// Where each line may be.
+    pub ranges: Vec<[f64; 2]>,
+    /// The lattice.
+    pub lattice: Lattice,
 }
 
-/// The areas of all cells, strip by strip.
-#[derive(Clone, Copy)]
-pub struct Strips<'a> {
-    /// Area of each cell.
-    pub cells: &'a [u32],
-    /// Whether each cell may vanish although its area does not continue beside it.
-    pub yields: &'a [bool],
-    /// Cells in a strip.
-    pub length: usize,
-    /// Label number of each area.
-    pub labels: &'a [u16],
-}
-
-impl<'a> Strips<'a> {
-    /// The strips.
-    pub fn rows(self) -> impl Iterator<Item = &'a [u32]> {
-        self.cells.chunks_exact(self.length)
-    }
-
-    /// Whether the cells between lines `first` and `last` can vanish: in each strip they continue what
-    /// lies before, then what lies behind; a `narrow` stretch between the two may vanish when all of it
-    /// yields and no two areas of one label come to touch.
-    fn can_vanish(self, first: usize, last: usize, narrow: impl Fn(usize, usize) -> bool) -> bool {
-        let yields = self.yields.chunks_exact(self.length);
-        self.rows().zip(yields).all(|(row, yields)| {
-            let before = first.checked_sub(1).map(|k| row[k]);
-            let behind = row.get(last).copied();
-            let from = (first..last)
-                .find(|&k| Some(row[k]) != before)
-                .unwrap_or(last);
-            let to = (from..last)
-                .rev()
-                .find(|&k| Some(row[k]) != behind)
-                .map_or(from, |k| k + 1);
-            let label = |area: u32| self.labels[area as usize];
-            let touch = |(a, b): (u32, u32)| a != b && label(a) == label(b);
-            from == to
-                || narrow(from, to)
-                    && yields[from..to].iter().all(|&y| y)
-                    && !before.zip(behind).is_some_and(touch)
-        })
-    }
-}
-
-/// New positions of all cut lines, in order; merged ones are equal.
-pub fn solve(
-    cuts: &[f64],
-    weights: &[f64],
-    runs: &[Run],
-    strips: Strips,
-    tolerance: f64,
-) -> Result<Vec<f64>, RegularizeError> {
-    let quantum = quantum(cuts, tolerance);
-    let groups = merge_lines(cuts, weights, strips, tolerance, quantum);
-    let Some(mut system) = groups.system() else {
-        // No room to move at all: the tolerance is below the quantum.
-        return Ok(cuts.to_vec());
-    };
-    let mut clusters = choose_sizes(
-        &groups.of_line,
-        &groups.center,
-        runs,
-        tolerance / quantum,
-        &mut system,
-    );
-
-    // Sizes: as the program would have them, rounded, where that stays feasible.
-    let (_, sizes) = groups.program(&clusters, true)?;
-    for (k, size) in sizes.into_iter().enumerate() {
-        let tried = size.round() as i64;
-        let old = std::mem::replace(&mut clusters[k].size, tried);
-        if tried != old {
-            match groups.system_with(&clusters) {
-                Some(better) => system = better,
-                None => clusters[k].size = old,
-            }
+impl Axis<'_> {
+    /// New positions of all cut lines, in order, merged ones equal; `None` when no lines and no sizes
+    /// become equal that were not.
+    pub fn solve(&self) -> Result<Option<Vec<f64>>, RegularizeError> {
+        if self.lattice.whole && self.reach + 1e-6 < 1.0 {
+            return Ok(None);
         }
-    }
-    let (positions, _) = groups.program(&clusters, false)?;
-    let rounded = round_together(&positions);
-    let whole = match system.holds(&rounded, &groups.lower) {
-        true => rounded,
-        false => system.values().to_vec(),
-    };
-    // The total size is kept to the bit.
-    let end = groups.of_line[cuts.len() - 1];
-    let position = |&group: &usize| match group == end {
-        true => cuts[cuts.len() - 1],
-        false => whole[group] as f64 * quantum,
-    };
-    let moved = groups.of_line.iter().map(position).collect();
-    Ok(moved)
-}
-
-/// The unit of positions: one if the input is in whole numbers, else a fraction of the tolerance that
-/// divides the total size.
-fn quantum(cuts: &[f64], tolerance: f64) -> f64 {
-    let total = cuts[cuts.len() - 1];
-    if cuts.iter().all(|c| (c - c.round()).abs() <= 1e-9 * total) {
-        1.0
-    } else {
-        total / (total * FINENESS / tolerance).round().clamp(1.0, 1e12)
-    }
-}
-
-/// Cut lines, merged into groups that share a position; everything in quanta.
-struct Groups {
-    /// Group of each line.
-    of_line: Vec<usize>,
-    /// Where the lines of each group want to be, on average, and how much.
-    center: Vec<f64>,
-    weight: Vec<f64>,
-    lower: Vec<i64>,
-    upper: Vec<i64>,
-    /// Least distance of each group to the next.
-    gap: Vec<i64>,
-}
-
-impl Groups {
-    /// Groups of consecutive lines, given the first line of each.
-    fn new(firsts: &[usize], cuts: &[f64], weights: &[f64], tolerance: f64, quantum: f64) -> Self {
-        let ends = firsts[1..].iter().copied().chain([cuts.len()]);
-        let mut groups = Self {
-            of_line: vec![0; cuts.len()],
-            center: Vec::new(),
-            weight: Vec::new(),
-            lower: Vec::new(),
-            upper: Vec::new(),
-            gap: Vec::new(),
+        let own = |(number, class): (usize, &Class)| Cluster {
+            classes: vec![number],
+            wanted: class.size,
+            value: class.size,
         };
-        for (number, (first, end)) in firsts.iter().copied().zip(ends).enumerate() {
-            groups.of_line[first..end].fill(number);
-            let weight: f64 = weights[first..end].iter().sum();
-            let at = |k: usize| cuts[k] / quantum;
-            let moment: f64 = (first..end).map(|k| weights[k] * at(k)).sum();
-            let center = if weight > 0.0 {
-                moment / weight
-            } else {
-                at(first)
-            };
-            // A hair's breadth of rounding must not cost a whole quantum.
-            let reach = tolerance / quantum + 1e-9;
-            let (mut lower, mut upper) = (at(end - 1) - reach, at(first) + reach);
-            if first == 0 || end == cuts.len() {
-                let fixed = if first == 0 { at(0) } else { at(end - 1) };
-                (lower, upper) = (fixed.round(), fixed.round());
+        let mut clusters: Vec<Cluster> = self.classes.iter().enumerate().map(own).collect();
+        let groups = self.merge_lines(&mut clusters);
+        let before = clusters.len();
+        self.merge_sizes(&groups, &mut clusters);
+        if groups.center.len() == self.cuts.len() && clusters.len() == before {
+            return Ok(None);
+        }
+        let Some(positions) = self.place(&groups, &clusters)? else {
+            return Ok(None);
+        };
+        let moved: Vec<f64> = groups.of_line.iter().map(|&g| positions[g]).collect();
+        Ok((moved != self.cuts).then_some(moved))
+    }
+
+    /// The constraints of groups and clusters.
+    fn system(&self, groups: &Groups, clusters: &[Cluster]) -> Differences {
+        let size = |cluster: &Cluster| {
+            let members = || cluster.classes.iter().map(|&c| &self.classes[c]);
+            let group = |&(from, to): &(usize, usize)| (groups.of_line[from], groups.of_line[to]);
+            let mut spans: Vec<(usize, usize)> = members()
+                .flat_map(|c| c.spans.iter().map(group))
+                .filter(|(from, to)| from != to)
+                .collect();
+            spans.sort_unstable();
+            spans.dedup();
+            if spans.len() < 2 {
+                // One alone may have any size.
+                spans.clear();
             }
-            groups.center.push(center);
-            groups.weight.push(weight.max(1e-3));
-            groups.lower.push(lower.ceil() as i64);
-            groups.upper.push(upper.floor() as i64);
-            if end < cuts.len() {
-                let distance = at(end) - at(end - 1);
-                groups.gap.push(((distance / 2.0).floor() as i64).max(1));
+            let least = members().map(|c| c.size).fold(f64::INFINITY, f64::min);
+            let most = members().map(|c| c.size).fold(0.0, f64::max);
+            let behind = members().all(|c| c.behind);
+            let unit = if self.lattice.whole { 1.0 } else { 0.5 * least };
+            SharedSize {
+                value: cluster.value,
+                wanted: cluster.wanted,
+                range: (
+                    (most - 2.0 * self.reach).floor().max(unit),
+                    (least + 2.0 * self.reach).ceil(),
+                ),
+                weight: if behind { 1.0 } else { ELEMENT },
+                spans,
+            }
+        };
+        Differences::new(
+            groups.lower.clone(),
+            groups.upper.clone(),
+            &groups.gap,
+            clusters.iter().map(size).collect(),
+            self.lattice.whole,
+            self.lattice.slack(),
+        )
+    }
+
+    /// Finds sizes for the clusters that leave a solution; whether there are any.
+    pub fn settle(&self, groups: &Groups, clusters: &mut [Cluster]) -> bool {
+        let mut system = self.system(groups, clusters);
+        if system.solve().is_none() {
+            // Once more, from what the merged lines make of the sizes.
+            system = self.system(groups, clusters);
+            for size in &mut system.sizes {
+                let mut values: Vec<f64> = (size.spans.iter())
+                    .map(|&(from, to)| groups.center[to] - groups.center[from])
+                    .collect();
+                values.sort_by(f64::total_cmp);
+                if let Some(&middle) = values.get(values.len() / 2) {
+                    size.value = middle.max(size.range.0).min(size.range.1);
+                }
+            }
+            if system.solve().is_none() {
+                return false;
             }
         }
-        groups
+        for (cluster, size) in clusters.iter_mut().zip(&system.sizes) {
+            cluster.value = size.value;
+        }
+        true
     }
 
-    /// The constraints of order and bounds; `None` when they leave no solution.
-    fn system(&self) -> Option<Differences> {
-        let mut system = Differences::new(self.lower.clone(), self.upper.clone())?;
-        let order: Vec<Difference> = (self.gap.iter().enumerate())
-            .map(|(k, &least)| Difference {
-                from: k,
-                to: k + 1,
-                least,
-            })
-            .collect();
-        system.add(&order).then_some(system)
-    }
-
-    fn system_with(&self, clusters: &[Cluster]) -> Option<Differences> {
-        let mut system = self.system()?;
-        let all: Vec<Difference> = clusters.iter().flat_map(Cluster::constraints).collect();
-        system.add(&all).then_some(system)
-    }
-
-    /// Solves the quadratic program, with the sizes of the clusters free or as they are. Returns
-    /// positions and sizes; where the solver stalls, the centres and the sizes as they are.
-    fn program(
+    /// Solves the quadratic program with the sizes of the clusters as they are; `None` where it has no solution.
+    fn place(
         &self,
+        groups: &Groups,
         clusters: &[Cluster],
-        free: bool,
-    ) -> Result<(Vec<f64>, Vec<f64>), RegularizeError> {
-        let n = self.center.len();
-        let extra = if free { clusters.len() } else { 0 };
-        let mut program = QuadraticProgram::new(n + extra);
+    ) -> Result<Option<Vec<f64>>, RegularizeError> {
+        let system = self.system(groups, clusters);
+        let n = groups.center.len();
+        let mut program = QuadraticProgram::new(n);
         for k in 0..n {
-            program.pull(k, self.center[k], self.weight[k]);
-            program.lower[k] = self.lower[k] as f64;
-            program.upper[k] = self.upper[k] as f64;
+            program.pull(k, groups.center[k], groups.weight[k]);
+            program.lower[k] = groups.lower[k];
+            program.upper[k] = groups.upper[k];
         }
-        for (k, &gap) in self.gap.iter().enumerate() {
-            let row = Row::new([(k, 1.0), (k + 1, -1.0)], -gap as f64);
+        for (k, &gap) in groups.gap.iter().enumerate() {
+            let row = Row::new([(k, 1.0), (k + 1, -1.0)], -gap);
             program.inequalities.push(row);
         }
-        for (c, cluster) in clusters.iter().enumerate() {
-            for &(from, to) in &cluster.members {
-                let ends = [(to, 1.0), (from, -1.0)];
-                program.equalities.push(if free {
-                    Row::new(ends.into_iter().chain([(n + c, -1.0)]), 0.0)
-                } else {
-                    Row::new(ends, cluster.size as f64)
-                });
+        for size in &system.sizes {
+            for &(from, to) in &size.spans {
+                let row = Row::new([(to, 1.0), (from, -1.0)], size.value);
+                program.equalities.push(row);
             }
         }
-        let mut x = solve_qp(&program, QpOptions::default())?;
-        let solved = matches!(x.outcome, QpOutcome::Converged | QpOutcome::AlmostConverged);
-        if solved && x.x.iter().all(|v| v.is_finite()) {
-            let sizes = x.x.split_off(n);
-            Ok((x.x, sizes))
-        } else {
-            let sizes = clusters.iter().map(|c| c.size as f64);
-            Ok((self.center.clone(), sizes.take(extra).collect()))
+        let found = solve_qp(&program, QpOptions::default())?;
+        let solved = matches!(
+            found.outcome,
+            QpOutcome::Converged | QpOutcome::AlmostConverged
+        );
+        if solved && found.x.iter().all(|v| v.is_finite()) {
+            let positions = match self.lattice.whole {
+                true => round_together(&found.x),
+                false => found.x,
+            };
+            if system.holds(&positions) {
+                return Ok(Some(positions));
+            }
         }
-    }
-}
-
-/// Merges neighbouring lines, nearest first, that can meet without moving further than the tolerance.
-fn merge_lines(
-    cuts: &[f64],
-    weights: &[f64],
-    strips: Strips,
-    tolerance: f64,
-    quantum: f64,
-) -> Groups {
-    let mut firsts: Vec<usize> = (0..cuts.len()).collect();
-    let build = |firsts: &[usize]| Groups::new(firsts, cuts, weights, tolerance, quantum);
-    let last_of = |firsts: &[usize], g: usize| firsts.get(g + 1).map_or(cuts.len(), |&f| f) - 1;
-    // Boundaries between groups (by their line) that cannot go.
-    let mut fixed = vec![false; cuts.len()];
-    loop {
-        let spread = |g: usize| cuts[last_of(&firsts, g)] - cuts[firsts[g - 1]];
-        let candidates = (1..firsts.len()).filter(|&g| !fixed[firsts[g]]);
-        // The ends of the layout stay where they are; elsewhere both lines may move.
-        let at_an_end = |g: usize| firsts[g - 1] == 0 || last_of(&firsts, g) + 1 == cuts.len();
-        let reach = |g: usize| tolerance * if at_an_end(g) { 1.0 } else { 2.0 };
-        let near = candidates.filter(|&g| spread(g) <= reach(g));
-        let Some(g) = near.min_by(|&a, &b| spread(a).total_cmp(&spread(b))) else {
-            return build(&firsts);
-        };
-        let line = firsts.remove(g);
-        let (first, last) = (firsts[g - 1], last_of(&firsts, g - 1));
-        let narrow = |from: usize, to: usize| cuts[to] - cuts[from] <= tolerance;
-        if !strips.can_vanish(first, last, narrow) || build(&firsts).system().is_none() {
-            firsts.insert(g, line);
-            fixed[line] = true;
-        }
+        // The solver stalled: any solution will do.
+        Ok(system.least_solution().ok())
     }
 }
 
 /// Rounds all numbers at one threshold, which keeps every whole bound on their differences. The
 /// threshold is laid where no fraction is near, lest the solver's last digit decides.
-fn round_together(values: &[f64]) -> Vec<i64> {
+pub fn round_together(values: &[f64]) -> Vec<f64> {
     let mut fractions: Vec<f64> = values.iter().map(|v| v - v.floor()).collect();
     fractions.extend([0.25, 0.75]);
     fractions.retain(|f| (0.25..=0.75).contains(f));
@@ -288,6 +177,6 @@ fn round_together(values: &[f64]) -> Vec<i64> {
     let threshold = widest.map_or(0.5, |pair| 0.5 * (pair[0] + pair[1]));
     values
         .iter()
-        .map(|v| (v + 1.0 - threshold).floor() as i64)
+        .map(|v| (v + 1.0 - threshold).floor())
         .collect()
 }

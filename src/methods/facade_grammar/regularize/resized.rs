@@ -16,7 +16,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::RegularizeError;
-use super::axis::Run;
+use super::strips::Run;
 use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as solve_qp};
 
 /// Share of its derived size that every region keeps.

@@ -53,7 +53,19 @@ pub fn square(grid: &LabelGrid, tolerance: f64) -> (LabelGrid, Nicks) {
                 missing.push(cell);
             }
         }
-        if deepest <= tolerance {
+        // Filled nicks must not touch another area of the label.
+        let touches = |&cell: &usize| {
+            let (i, j) = (cell % columns, cell / columns);
+            let other = |i: usize, j: usize| {
+                let cell = j * columns + i;
+                grid.cells[cell] == area.label && area_of[cell] as usize != number
+            };
+            i > 0 && other(i - 1, j)
+                || j > 0 && other(i, j - 1)
+                || i + 1 < columns && other(i + 1, j)
+                || j + 1 < grid.rows() && other(i, j + 1)
+        };
+        if deepest <= tolerance && !missing.iter().any(touches) {
             for cell in missing {
                 grid.cells[cell] = area.label;
             }

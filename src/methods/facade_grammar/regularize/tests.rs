@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::shape::{decompose, splittable};
+use crate::shape::{Rect, Region, decompose, splittable};
 
 /// A wall with windows given as (x, y, width, height), in whole pixels.
 fn wall(width: usize, height: usize, windows: &[(usize, usize, usize, usize)]) -> LabelGrid {
@@ -153,10 +153,52 @@ fn metres_work_like_pixels() {
 #[test]
 fn bad_tolerances_are_refused() {
     let grid = wall(3, 3, &[]);
-    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+    for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let error = regularize_grid(&grid, tolerance).unwrap_err();
         assert!(matches!(error, RegularizeError::Tolerance(_)));
     }
+}
+
+/// Distinct sizes of regions.
+fn sizes_of(facade: &Facade) -> usize {
+    counts::of_regions(facade).values().sum()
+}
+
+/// Whether regions that had one label and one size still have one size.
+fn stays_equal(before: &Facade, after: &Facade) -> bool {
+    let same = 1e-7 * before.width.max(before.height);
+    let equal = |f: &Facade, i: usize, j: usize| {
+        let (a, b) = (&f.regions[i], &f.regions[j]);
+        a.label == b.label
+            && (a.rect.width - b.rect.width).abs() <= same
+            && (a.rect.height - b.rect.height).abs() <= same
+    };
+    let n = before.regions.len();
+    (0..n).all(|i| (0..i).all(|j| !equal(before, i, j) || equal(after, i, j)))
+}
+
+fn scaled_by(facade: &Facade, factor: f64) -> Facade {
+    let region = |r: &Region| Region {
+        label: r.label.clone(),
+        rect: Rect::new(
+            factor * r.rect.x,
+            factor * r.rect.y,
+            factor * r.rect.width,
+            factor * r.rect.height,
+        ),
+    };
+    let regions = facade.regions.iter().map(region).collect();
+    let (width, height) = (factor * facade.width, factor * facade.height);
+    Facade::new("s", "in", width, height, regions).unwrap()
+}
+
+#[test]
+fn tolerance_0_is_the_identity() {
+    let grid = wall(30, 10, &[(5, 2, 5, 5), (11, 2, 5, 5), (17, 2, 6, 5)]);
+    assert_eq!(regularize_grid(&grid, 0.0).unwrap().0, grid);
+    let facade = decompose(&grid).unwrap().facade;
+    let (same, report) = regularize_facade(&facade, 0.0).unwrap();
+    assert_eq!((same, report.largest_move), (facade, 0.0));
 }
 
 /// Number of connected areas of windows.
@@ -181,9 +223,12 @@ proptest! {
         prop_assert!(result.xs.iter().chain(&result.ys).all(|v| v.fract() == 0.0));
         let tiling = decompose(&result).unwrap().facade;
         prop_assert_eq!(splittable(&tiling), Ok(()));
-        // Elements neither vanish nor touch others of their label.
-        let (squared, _) = square::square(&grid, tolerance);
-        prop_assert!(windows_of(&result) >= windows_of(&squared));
+        // Elements neither vanish nor touch others of their label, and no label is lost.
+        prop_assert_eq!(windows_of(&result), windows_of(&grid));
+        prop_assert_eq!(result.merged().labels, grid.merged().labels);
+        prop_assert!(sizes_of(&tiling) <= sizes_of(&decompose(&grid).unwrap().facade));
+        // Applied twice it changes nothing more.
+        prop_assert_eq!(&regularize_grid(&result, tolerance).unwrap().0, &result);
 
         let facade = decompose(&grid).unwrap().facade;
         let (moved, report) = regularize_facade(&facade, tolerance).unwrap();
@@ -191,6 +236,18 @@ proptest! {
         prop_assert_eq!(splittable(&moved), Ok(()));
         prop_assert_eq!(moved.regions.len(), facade.regions.len());
         prop_assert!(report.largest_move <= tolerance + 1e-9);
+        prop_assert!(stays_equal(&facade, &moved));
+        prop_assert_eq!(&regularize_facade(&moved, tolerance).unwrap().0, &moved);
+
+        // The same in other units, off every decimal grid.
+        let scaled = scaled_by(&facade, 1.0 / 2.54);
+        let (other, _) = regularize_facade(&scaled, tolerance / 2.54).unwrap();
+        let expected = scaled_by(&moved, 1.0 / 2.54);
+        for (a, b) in other.regions.iter().zip(&expected.regions) {
+            prop_assert!((a.rect.x - b.rect.x).abs() < 1e-6 && (a.rect.width - b.rect.width).abs() < 1e-6);
+            prop_assert!((a.rect.y - b.rect.y).abs() < 1e-6 && (a.rect.height - b.rect.height).abs() < 1e-6);
+        }
+        prop_assert_eq!(&regularize_facade(&other, tolerance / 2.54).unwrap().0, &other);
     }
 }
 
