@@ -119,8 +119,8 @@ impl Figure {
 }
 
 /// Longest SVG that a report holds, in bytes: layouts of thousands of rectangles make megabytes of
-/// text that no browser shows well.
-pub const MOST_SVG_BYTES: usize = 200_000;
+/// text that no browser shows well, and the repository stays small.
+pub const MOST_SVG_BYTES: usize = 30_000;
 
 /// Writes `<name>.svg` and `<name>.png` into a folder.
 ///

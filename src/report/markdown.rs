@@ -32,6 +32,9 @@ pub fn html(text: &str, place: Place) -> Markup {
     }
 }
 
+/// Rows of a table that the index shows; the rest stand in the artefact's own page.
+const MOST_ROWS: usize = 40;
+
 fn table(block: &str, place: Place) -> Markup {
     let cells = |line: &str| -> Vec<String> {
         let line = line.trim().trim_start_matches('|').trim_end_matches('|');
@@ -40,6 +43,7 @@ fn table(block: &str, place: Place) -> Markup {
             .map(|c| c.trim().replace('\u{1}', "|"))
             .collect()
     };
+    let page = place.files.iter().find(|file| file.ends_with(".md"));
     let mut lines = block.lines();
     let head = cells(lines.next().unwrap_or_default());
     let right: Vec<bool> = cells(lines.next().unwrap_or_default())
@@ -56,10 +60,14 @@ fn table(block: &str, place: Place) -> Markup {
     html! {
         div.scroll { table {
             thead { tr { @for (i, cell) in head.iter().enumerate() { th class=(class(i)) { (inline(cell, place)) } } } }
-            tbody { @for line in lines {
+            tbody { @for line in lines.by_ref().take(MOST_ROWS) {
                 tr { @for (i, cell) in cells(line).iter().enumerate() { td class=(class(i)) { (inline(cell, place)) } } }
             } }
         } }
+        @let left = lines.count();
+        @if left > 0 {
+            p.made { (left) " more rows" @if let Some(page) = page { " in " a href=(format!("{}/{page}", place.folder)) { (page) } } }
+        }
     }
 }
 
@@ -150,5 +158,21 @@ mod tests {
         );
         assert!(page.contains("1 &lt; 2, see <a href=\"facade_grammar/t.csv\">csv</a> and <code>code</code> [1] 2*3!"), "{page}");
         assert!(!page.contains("Title"));
+    }
+
+    #[test]
+    fn long_tables_are_cut_and_say_so() {
+        let rows = "| 1 |\n".repeat(MOST_ROWS + 3);
+        let files = ["t.md".to_string()];
+        let place = Place {
+            folder: "x",
+            files: &files,
+        };
+        let page = html(&format!("| a |\n| --- |\n{rows}"), place).into_string();
+        assert_eq!(page.matches("<td").count(), MOST_ROWS);
+        assert!(
+            page.contains("3 more rows in <a href=\"x/t.md\">t.md</a>"),
+            "{page}"
+        );
     }
 }
