@@ -155,7 +155,7 @@ fn trace(
     infer_observed(std::slice::from_ref(facade), &settings, observer).map_err(Error::method)?;
     let mut points = points.borrow().clone();
     let (since, made, best) = &*last.borrow();
-    if made % every > 0 {
+    if !made.is_multiple_of(every) {
         // A run that ended early, with the proof that nothing is cheaper.
         points.push(Point {
             iteration: *made,
@@ -186,7 +186,7 @@ fn curves(
             .fold((f64::INFINITY, 0.0_f64), |(l, h), &c| (l.min(c), h.max(c)));
         line.push((x, mean(&costs)));
         band.push((x, range.0, range.1));
-        if traces[0][i].iteration % every == 0 {
+        if traces[0][i].iteration.is_multiple_of(every) {
             times.push((x, mean(&paces)));
         }
     }
