@@ -57,7 +57,8 @@
 //! Coordinates come in any unit, so that equal sizes differ in their last digits. Terminals whose extents agree to 1e-7 of
 //! the facade's longer side (of the smallest facade, where there are several) have one extent, and sums of such
 //! extents are equal when that follows from them: elementary intervals between lines are points of an integer lattice, found
-//! by elimination, and compared by residues (`regions/lengths.rs`). Costs do not depend on unit, origin or orientation.
+//! by elimination, and compared by residues (`regions/lengths.rs`). What is
+//! proven does not depend on unit, origin or orientation; where a gap stays, the search may end elsewhere.
 //!
 //! # Deviations and readings
 //! - *Reasonable rules* (Sec. 4.2: "a subset of rules that seem reasonable") are, along each axis:
@@ -83,7 +84,7 @@
 //!   importance sampling, which protection serves most, costs 45.8 on facade (i) (printed 45.9).
 //!   Protection is an extension in the text; it is on unless switched off.
 //! - *So read, the text does better than it prints*: facade (i) costs 39.2 from every seed, where Table 1
-//!   has 40.3 to 43.3, and on the real facades of the report no grammar is more than 1.3 % cheaper on average
+//!   has 40.3 to 43.3, and on the real facades of the report no grammar is more than 0.8 % cheaper on average
 //!   (proven, Table 1 of the report). Two departures come nearer to the printed numbers:
 //!   exploitation from the rules tried before (42.2 on average with one rule of each type, 41.3 with 64),
 //!   and protected regions drawn once for a run ([`Protect::Run`]: 42.5, and as large a difference between
