@@ -5,7 +5,9 @@
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
 //! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
+//! | [`density`] | mixtures, smoothed histograms, kernels, conditional densities | EM, counting |
 //! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
+//! | [`log_linear`] | the same for a user's features and negative sampler | contrastive divergence |
 //!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
 //! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
@@ -14,6 +16,7 @@
 
 pub(crate) mod chunks;
 pub mod conjugate;
+pub mod density;
 pub mod em;
 mod error;
 pub mod factor_graph;
@@ -21,6 +24,7 @@ pub mod gmm;
 pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
+pub mod log_linear;
 pub mod network;
 mod table;
 

@@ -4,4 +4,5 @@ pub mod completion;
 pub mod layout;
 pub mod measure;
 pub mod partial;
+pub mod score;
 pub mod task;

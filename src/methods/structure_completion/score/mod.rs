@@ -1,0 +1,271 @@
+//! The statistical model of grid layouts (Sec. 4): ten scoring functions and their factor graph.
+//!
+//! Elements become [`Grid`]s ([`grid`]). Each grid has four unary functions, each pair of grids two
+//! binary ones, and the facade four global ones ([`Term`]); a feature `f_k` is the sum of function k over
+//! all grids or pairs (Eq. 16), and the score is `w · f`, the log of Eq. 15 without its partition function:
+//!
+//! ```text
+//! as  ln p(height / width), a density per class            ed  ln pH(width / dH) + ln pV(height / dV)
+//! gr  ln pH(σH / grid width) + ln pV(σV / grid height)      gc  ln p(elements / (rows columns))
+//! gp  ln P(pattern of two interleaved grids)               ga  ln pH(acH | gapH) + ln pV(acV | gapV)
+//! ec  ln(1 - (#GCS - 1) / #OE)                             gv  ln p(area of the grids' boxes / area of the facade)
+//! fb  ln pH(left) + ln pH(right) + ln pV(below) + ln pV(above), border over mean element size
+//! fs  ln p(symmetric area | position of the doors)
+//! ```
+//!
+//! # Deviations and readings
+//! - Equations 1 to 11 define ten functions; two are called f_gc. Coverage is `gv` here and has its own weight.
+//! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is
+//!   taken relative to its maximum, so that every function is at most 0, and is at least [`LEAST`].
+//! - A grid: one class, sizes linked by ratios up to e^0.3, lines split at 0.35 of the size. Its mean size stands for
+//!   "an element e". Spacings are centre to centre, between neighbours in a row or column.
+//!   With one line `ed` and `gr` are left out, with one spacing `gr`.
+//! - Eq. 8 is ln 0 for facades of one coherence set of one type; one set scores 0 here.
+//! - Patterns count along both axes, for grids that share a line across; half a count for unseen ones.
+//! - Alignment is a smoothed histogram for each of four ranges of the gap; symmetry likewise given the doors.
+//! - Symmetry is about the facade's vertical axis. All four borders count. Symmetric images are sought
+//!   in the same grid.
+//!
+//! Complexity: n log n for n elements, and m² for m grids.
+
+mod compatibility;
+mod explain;
+mod global;
+pub mod grid;
+mod pair;
+mod state;
+mod train;
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use self::compatibility::Compatibility;
+use self::grid::{Grid, clusters};
+use self::pair::Pattern;
+use super::layout::{Class, Element};
+use crate::model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram};
+pub use explain::Line;
+pub use state::{Change, Scored};
+
+/// Least value of the logarithm of one relative density.
+pub const LEAST: f64 = -30.0;
+
+/// The scoring functions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Term {
+    /// Element aspect ratio (Eq. 1).
+    Aspect,
+    /// Element spacing (Eq. 2).
+    Spacing,
+    /// Grid regularity (Eq. 3).
+    Regularity,
+    /// Grid completeness (Eq. 4).
+    Completeness,
+    /// Pattern of interleaved grids (Eq. 5).
+    Pattern,
+    /// Grid alignment (Eq. 6).
+    Alignment,
+    /// Element compatibility (Eq. 8).
+    Compatibility,
+    /// Grid coverage (Eq. 9).
+    Coverage,
+    /// Facade border (Eq. 10).
+    Border,
+    /// Facade symmetry (Eq. 11).
+    Symmetry,
+}
+
+/// Number of scoring functions.
+pub const TERMS: usize = 10;
+
+impl Term {
+    /// All, in the order of features and weights.
+    pub const ALL: [Term; TERMS] = [
+        Term::Aspect,
+        Term::Spacing,
+        Term::Regularity,
+        Term::Completeness,
+        Term::Pattern,
+        Term::Alignment,
+        Term::Compatibility,
+        Term::Coverage,
+        Term::Border,
+        Term::Symmetry,
+    ];
+
+    /// Its name in tables and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Term::Aspect => "aspect",
+            Term::Spacing => "spacing",
+            Term::Regularity => "regularity",
+            Term::Completeness => "completeness",
+            Term::Pattern => "pattern",
+            Term::Alignment => "alignment",
+            Term::Compatibility => "compatibility",
+            Term::Coverage => "coverage",
+            Term::Border => "border",
+            Term::Symmetry => "symmetry",
+        }
+    }
+}
+
+/// The densities of the scoring functions and their weights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ScoreModel {
+    aspect: [ScalarMixture; 4],
+    spacing: [ScalarMixture; 2],
+    regularity: [ScalarMixture; 2],
+    completeness: ScalarMixture,
+    /// Log probability of each seen pattern relative to the most frequent one, and of others.
+    patterns: (Vec<(Pattern, f64)>, f64),
+    alignment: [Conditional<SmoothHistogram>; 2],
+    compatibility: Compatibility,
+    coverage: ScalarMixture,
+    border: [ScalarMixture; 2],
+    symmetry: Conditional<SmoothHistogram>,
+    /// w, in the order of [`Term::ALL`].
+    pub weights: [f64; TERMS],
+}
+
+/// Grids of a layout and what each function makes of them.
+#[derive(Debug, Clone)]
+pub struct Evaluation {
+    /// The grids.
+    pub grids: Vec<Arc<Grid>>,
+    /// The unary functions of each grid.
+    unary: Vec<[f64; 4]>,
+    /// The binary functions of each pair of grids (i, j), i < j, row by row.
+    pairs: Vec<[f64; 2]>,
+    /// f, in the order of [`Term::ALL`].
+    pub features: [f64; TERMS],
+}
+
+fn floored(log: f64) -> f64 {
+    // The least also stands for what is not a number.
+    if log > LEAST { log } else { LEAST }
+}
+
+fn relative(density: &impl LogDensity, x: f64) -> f64 {
+    floored(density.relative(&[x]))
+}
+
+impl ScoreModel {
+    /// `w · f`.
+    pub fn score(&self, features: &[f64; TERMS]) -> f64 {
+        self.weights.iter().zip(features).map(|(w, f)| w * f).sum()
+    }
+
+    /// Extracts the grids of a layout and computes all functions.
+    pub fn evaluate(&self, facade: [f64; 2], elements: &[Element]) -> Evaluation {
+        let grids = grids(facade[0], elements);
+        self.evaluate_grids(facade, grids, |_| None, |_, _| None)
+    }
+
+    /// All functions of grids, those excepted that are known: unary ones of grid i, binary ones of grids i, j.
+    fn evaluate_grids(
+        &self,
+        facade: [f64; 2],
+        grids: Vec<Arc<Grid>>,
+        known_unary: impl Fn(usize) -> Option<[f64; 4]>,
+        known_pair: impl Fn(usize, usize) -> Option<[f64; 2]>,
+    ) -> Evaluation {
+        let mut features = [0.0; TERMS];
+        let unary: Vec<[f64; 4]> = (grids.iter().enumerate())
+            .map(|(i, g)| known_unary(i).unwrap_or_else(|| self.unary(g)))
+            .collect();
+        let mut pairs = Vec::with_capacity(grids.len() * grids.len() / 2);
+        for i in 0..grids.len() {
+            for j in i + 1..grids.len() {
+                let known = known_pair(i, j);
+                pairs.push(known.unwrap_or_else(|| self.binary(&grids[i], &grids[j], facade)));
+            }
+        }
+        for values in &unary {
+            (0..4).for_each(|k| features[k] += values[k]);
+        }
+        for values in &pairs {
+            (0..2).for_each(|k| features[4 + k] += values[k]);
+        }
+        features[6..].copy_from_slice(&self.global(&grids, facade));
+        Evaluation {
+            grids,
+            unary,
+            pairs,
+            features,
+        }
+    }
+
+    /// Equations 1 to 4.
+    fn unary(&self, grid: &Grid) -> [f64; 4] {
+        let per_axis = |f: &dyn Fn(usize) -> Option<f64>| (0..2).filter_map(f).sum::<f64>();
+        [
+            relative(
+                &self.aspect[grid.class.index()],
+                grid.size[1] / grid.size[0],
+            ),
+            per_axis(&|axis| {
+                let ratio = grid.size[axis] / grid.spacing[axis]?;
+                Some(relative(&self.spacing[axis], ratio))
+            }),
+            per_axis(&|axis| {
+                let ratio = grid.deviation[axis]? / grid.extent(axis);
+                Some(relative(&self.regularity[axis], ratio))
+            }),
+            relative(&self.completeness, grid.completeness()),
+        ]
+    }
+
+    /// Equations 5 and 6.
+    fn binary(&self, a: &Grid, b: &Grid, facade: [f64; 2]) -> [f64; 2] {
+        let mut values = [0.0; 2];
+        for axis in 0..2 {
+            if let Some(pattern) = pair::pattern(a, b, axis) {
+                values[0] += self.pattern(pattern);
+            }
+            if let Some((gap, share)) = pair::alignment(a, b, axis, facade) {
+                values[1] += relative(self.alignment[axis].given(gap), share);
+            }
+        }
+        values
+    }
+
+    fn pattern(&self, pattern: Pattern) -> f64 {
+        let (known, unseen) = &self.patterns;
+        let found = known.iter().find(|(p, _)| *p == pattern);
+        floored(found.map_or(*unseen, |(_, log)| *log))
+    }
+
+    /// Equations 8 to 11.
+    fn global(&self, grids: &[Arc<Grid>], facade: [f64; 2]) -> [f64; 4] {
+        if grids.is_empty() {
+            return [LEAST; 4];
+        }
+        let (sets, types) = self.compatibility.cover(grids, facade[0] * facade[1]);
+        let borders = global::borders(grids, facade);
+        let border = (0..4).map(|side| relative(&self.border[side / 2], borders[side]));
+        let (area, door) = global::symmetry(grids, facade);
+        [
+            (1.0 - (sets as f64 - 1.0) / types as f64).ln(),
+            relative(&self.coverage, global::coverage(grids, facade)),
+            border.sum(),
+            relative(self.symmetry.given(door), area),
+        ]
+    }
+}
+
+/// The grids of a layout in a facade of so much width, class by class.
+pub fn grids(width: f64, elements: &[Element]) -> Vec<Arc<Grid>> {
+    let mut all = Vec::new();
+    for class in Class::ALL {
+        let of_class: Vec<u32> = (0..elements.len() as u32)
+            .filter(|&i| elements[i as usize].class == class)
+            .collect();
+        for members in clusters(elements, &of_class) {
+            all.push(Arc::new(Grid::new(elements, members, class, width)));
+        }
+    }
+    all
+}
