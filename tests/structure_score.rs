@@ -1,7 +1,7 @@
 //! The score of a layout: changed one element at a time, in other units, mirrored, reordered.
 
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
-use edifice::methods::structure_completion::score::{Change, ScoreModel, Scored, Term};
+use edifice::methods::structure_completion::score::{Change, ScoreModel, Scored, Term, Training};
 use edifice::rng::{Stream, stream};
 use edifice::shape::Rect;
 use rand::RngExt;
@@ -48,7 +48,11 @@ fn layout(index: u64) -> Layout {
 }
 
 fn model() -> ScoreModel {
-    let mut model = ScoreModel::train(&(0..40).map(layout).collect::<Vec<_>>(), 1).unwrap();
+    let mut model = ScoreModel::train(
+        &(0..40).map(layout).collect::<Vec<_>>(),
+        &Training::default(),
+    )
+    .unwrap();
     for (k, weight) in model.weights.iter_mut().enumerate() {
         *weight = 0.3 + 0.17 * k as f64;
     }
@@ -120,12 +124,12 @@ fn nothing_is_a_layout_too() {
     assert_eq!(scored.apply(Change::Remove(0)), scored.score());
     let whole = scored.apply(Change::Add(layout(0).elements[0]));
     assert!(whole > -1e3 && whole.is_finite());
-    assert!(ScoreModel::train(&[], 1).is_err());
+    assert!(ScoreModel::train(&[], &Training::default()).is_err());
     // One facade, and one with a single element, are databases.
     for count in [1, 100] {
         let mut one = layout(1);
         one.elements.truncate(count);
-        let model = ScoreModel::train(&[one.clone()], 1).unwrap();
+        let model = ScoreModel::train(&[one.clone()], &Training::default()).unwrap();
         let score = model.score(&model.evaluate(facade(&one), &one.elements).features);
         assert!(score > -3.0, "its own facade is typical: {score}");
     }
@@ -134,7 +138,7 @@ fn nothing_is_a_layout_too() {
 #[test]
 fn units_order_and_mirroring_change_nothing() {
     let layouts: Vec<Layout> = (0..40).map(layout).collect();
-    let model = ScoreModel::train(&layouts, 1).unwrap();
+    let model = ScoreModel::train(&layouts, &Training::default()).unwrap();
     let scaled = |layout: &Layout, c: f64| {
         let mut layout = layout.clone();
         layout.width *= c;
@@ -146,7 +150,7 @@ fn units_order_and_mirroring_change_nothing() {
         layout
     };
     let many: Vec<Layout> = layouts.iter().map(|l| scaled(l, 256.0)).collect();
-    let in_other_unit = ScoreModel::train(&many, 1).unwrap();
+    let in_other_unit = ScoreModel::train(&many, &Training::default()).unwrap();
     let mut rng = stream(2, "order", 0);
     for index in 200..230 {
         let layout = layout(index);

@@ -1,8 +1,10 @@
 //! Structure completion (Fan, Musialski, Liu, Wonka 2014, *Structure Completion for Facade Layouts*).
 
+pub mod annealing;
 pub mod completion;
 pub mod layout;
 pub mod measure;
 pub mod partial;
+pub mod policy;
 pub mod score;
 pub mod task;

@@ -2,13 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{LogDensity, check_values, moments};
+use super::{LogDensity, check_values};
 use crate::model::ModelError;
 use crate::model::gmm::{Criterion, Points, Settings, select};
 use crate::model::linalg::LN_2PI;
 
 /// Components beyond which none are tried.
-const MOST: usize = 5;
+const MOST: usize = 4;
+/// Groups that values are pooled into.
+const GROUPS: usize = 256;
 /// Least standard deviation of a component, in standard deviations of the data.
 const LEAST: f64 = 0.02;
 
@@ -48,25 +50,53 @@ impl ScalarMixture {
         .try_into()
     }
 
-    /// Fits 1 to 5 components by EM and keeps the number of least description length (Rissanen 1983).
+    /// Fits 1 to 4 components by EM and keeps the number of least description length (Rissanen 1983).
     /// The data are brought to mean 0 and deviation 1 before; no deviation gets below
-    /// `max(floor, 0.02 deviations of the data)`, so that equal values are no singularity.
+    /// `max(floor, 0.02 deviations of the data)`, so that equal values are no singularity. More than 256 values
+    /// are pooled into as many groups of neighbours.
     ///
     /// # Errors
     /// [`ModelError::Empty`], [`ModelError::NotFinite`], a floor that is not positive where the data
     /// have no spread.
     pub fn fit(values: &[f64], floor: f64, seed: u64) -> Result<Self, ModelError> {
-        check_values(values)?;
-        let (mean, spread) = moments(values.iter().copied());
+        let weighted: Vec<(f64, f64)> = values.iter().map(|v| (*v, 1.0)).collect();
+        Self::fit_weighted(&weighted, floor, seed)
+    }
+
+    /// As [`ScalarMixture::fit`], from pairs of a value and its weight, a positive number.
+    ///
+    /// # Errors
+    /// As [`ScalarMixture::fit`].
+    pub fn fit_weighted(pairs: &[(f64, f64)], floor: f64, seed: u64) -> Result<Self, ModelError> {
+        let values: Vec<f64> = pairs.iter().map(|p| p.0).collect();
+        check_values(&values)?;
+        let total: f64 = pairs.iter().map(|p| p.1).sum();
+        let mean = pairs.iter().map(|(v, w)| v * w).sum::<f64>() / total;
+        let square = pairs
+            .iter()
+            .map(|(v, w)| (v - mean).powi(2) * w)
+            .sum::<f64>();
+        let spread = (square / total).sqrt();
         if spread <= floor {
             return Self::new(vec![1.0], vec![mean], vec![floor]);
         }
-        let unit: Vec<f64> = values.iter().map(|v| (v - mean) / spread).collect();
+        let mut sorted: Vec<(f64, f64)> = pairs.to_vec();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let groups = sorted.chunks(sorted.len().div_ceil(GROUPS));
+        let groups = groups.map(|group| {
+            let weight: f64 = group.iter().map(|p| p.1).sum();
+            let sum: f64 = group.iter().map(|(v, w)| v * w).sum();
+            (
+                (sum / weight - mean) / spread,
+                weight * pairs.len() as f64 / total,
+            )
+        });
+        let (unit, weights): (Vec<f64>, Vec<f64>) = groups.unzip();
         let settings = Settings {
-            restarts: 3,
+            restarts: 2,
             ..Settings::default()
         };
-        let points = Points::new(1, &unit)?;
+        let points = Points::new(1, &unit)?.weighted(&weights)?;
         let selected = select(&points, MOST, Criterion::Mdl, &settings, seed)?;
         let mixture = &selected.fitted.mixture;
         let k = 0..mixture.components();

@@ -10,17 +10,20 @@
 //! A density has the unit 1/x. What is learned does not depend on the unit of x: from data times c,
 //! each density gives `log p(c x) - log c` per dimension. A score that adds log densities therefore
 //! uses [`LogDensity::relative`], the log density less its maximum, which has no unit at all and is at
-//! most 0, so that further terms never pay for themselves.
+//! most 0, so that further terms never pay for themselves. [`Typical`] takes the log density of a typical value of the
+//! data in place of the maximum.
 
 mod conditional;
 mod histogram;
 mod kernel;
 mod mixture;
+mod typical;
 
 pub use conditional::Conditional;
 pub use histogram::SmoothHistogram;
 pub use kernel::KernelDensity;
 pub use mixture::ScalarMixture;
+pub use typical::Typical;
 
 use super::ModelError;
 use super::gmm::Mixture;

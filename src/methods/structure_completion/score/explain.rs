@@ -31,7 +31,8 @@ impl ScoreModel {
     pub fn explain(&self, evaluation: &Evaluation, facade: [f64; 2]) -> Vec<Line> {
         let lines = Term::ALL.into_iter().enumerate().map(|(k, term)| {
             let (least, culprit) = match k {
-                0..4 => self.worst_grid(evaluation, k),
+                0..4 => self.worst_grid(evaluation, k, facade),
+                8 => self.worst_grid(evaluation, 4, facade),
                 4..6 => worst_pair(evaluation, facade, k - 4),
                 _ => (
                     evaluation.features[k],
@@ -49,7 +50,7 @@ impl ScoreModel {
         lines.collect()
     }
 
-    fn worst_grid(&self, evaluation: &Evaluation, k: usize) -> (f64, String) {
+    fn worst_grid(&self, evaluation: &Evaluation, k: usize, facade: [f64; 2]) -> (f64, String) {
         let values = evaluation.unary.iter().map(|u| u[k]).enumerate();
         let Some((i, least)) = values.min_by(|a, b| a.1.total_cmp(&b.1)) else {
             return (0.0, "no grids".into());
@@ -69,7 +70,19 @@ impl ScoreModel {
                 "deviation / extent {}",
                 axes(&|a| g.deviation[a].map(|d| d / g.extent(a)))
             ),
-            _ => format!("{:.3} of its cells filled", g.completeness()),
+            3 => format!("{:.3} of its cells filled", g.completeness()),
+            _ => {
+                let worst = |axis: usize| {
+                    let ends = g.ends[axis].iter();
+                    let far = ends.map(|[low, high]| low.max(facade[axis] - high));
+                    far.fold(0.0, f64::max) / g.size[axis]
+                };
+                format!(
+                    "border up to {:.2} of its size at the sides, {:.2} above or below",
+                    worst(0),
+                    worst(1)
+                )
+            }
         };
         (least, format!("{}: {what}", named(g)))
     }
@@ -88,12 +101,6 @@ impl ScoreModel {
                 format!(
                     "grids cover {:.3} of the facade",
                     global::coverage(grids, facade)
-                )
-            }
-            Term::Border => {
-                let [left, right, below, above] = global::borders(grids, facade);
-                format!(
-                    "border in element sizes: left {left:.2}, right {right:.2}, below {below:.2}, above {above:.2}"
                 )
             }
             _ => {

@@ -1,4 +1,4 @@
-//! What a facade is as a whole (Sec. 4.3): coverage, border, symmetry, door position.
+//! What a facade is as a whole (Sec. 4.3): coverage, symmetry, door position.
 
 use std::sync::Arc;
 
@@ -23,29 +23,6 @@ pub fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {
         area += length * (strip[1] - strip[0]);
     }
     area / (facade[0] * facade[1])
-}
-
-/// Width of the border left, right, below and above, over the mean element size along that axis (Eq. 10).
-pub fn borders(grids: &[Arc<Grid>], facade: [f64; 2]) -> [f64; 4] {
-    let count: usize = grids.iter().map(|g| g.members.len()).sum();
-    let mean = |axis: usize| {
-        let sizes = grids.iter().map(|g| g.size[axis] * g.members.len() as f64);
-        sizes.sum::<f64>() / count.max(1) as f64
-    };
-    let low = |axis: usize| {
-        grids
-            .iter()
-            .map(|g| g.low[axis])
-            .fold(f64::INFINITY, f64::min)
-    };
-    let high = |axis: usize| (grids.iter().map(|g| g.high[axis])).fold(0.0, f64::max);
-    let (width, height) = (mean(0), mean(1));
-    [
-        low(0) / width,
-        (facade[0] - high(0)) / width,
-        low(1) / height,
-        (facade[1] - high(1)) / height,
-    ]
 }
 
 /// Share of the elements' area that has a mirror image, and the mean position of the doors from left (0)

@@ -28,8 +28,11 @@ pub struct Grid {
     pub cells: usize,
     /// Mean spacing of neighbours in a row and in a column, centre to centre.
     pub spacing: [Option<f64>; 2],
-    /// Standard deviation of these spacings, from two of them on.
+    /// Root of the variance of these spacings plus that of the elements about their lines; none for a
+    /// single element.
     pub deviation: [Option<f64>; 2],
+    /// Lower and upper end of each row along x, and of each column along y.
+    pub ends: [Vec<[f64; 2]>; 2],
     /// Area of its elements.
     pub area: f64,
     /// Area of those that have a mirror image about the vertical axis of the facade.
@@ -114,6 +117,7 @@ impl Grid {
             cells: 0,
             spacing: [None; 2],
             deviation: [None; 2],
+            ends: [Vec::new(), Vec::new()],
             area: 0.0,
             symmetric: 0.0,
         };
@@ -133,6 +137,24 @@ impl Grid {
         let (rows, row) = lines(&at[1], grid.size[1]);
         (grid.spacing[0], grid.deviation[0]) = spacings(&at[0], &column, &row, &columns);
         (grid.spacing[1], grid.deviation[1]) = spacings(&at[1], &row, &column, &rows);
+        if members.len() > 1 {
+            for (axis, (line, lines)) in [(&column, &columns), (&row, &rows)].iter().enumerate() {
+                let off = |i: usize| (at[axis][i] - lines[line[i] as usize]).powi(2);
+                let scatter = (0..members.len()).map(off).sum::<f64>() / n;
+                let spacing = grid.deviation[axis].unwrap_or(0.0);
+                grid.deviation[axis] = Some((spacing * spacing + scatter).sqrt());
+            }
+        }
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        grid.ends = [vec![none; rows.len()], vec![none; columns.len()]];
+        for (i, &member) in members.iter().enumerate() {
+            let r = &elements[member as usize].rect;
+            let spans = [(row[i], r.x, r.right()), (column[i], r.y, r.top())];
+            for (axis, (line, low, high)) in spans.into_iter().enumerate() {
+                let end = &mut grid.ends[axis][line as usize];
+                *end = [end[0].min(low), end[1].max(high)];
+            }
+        }
         let mut cells: Vec<(u32, u32)> = row.iter().copied().zip(column.iter().copied()).collect();
         cells.sort_unstable();
         let mirrored = mirrors(&columns, width, MIRROR * grid.size[0]);

@@ -15,8 +15,9 @@
 //!
 //! # Deviations and readings
 //! - Equations 1 to 11 define ten functions; two are called f_gc. Coverage is `gv` here and has its own weight.
-//! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is
-//!   taken relative to its maximum, so that every function is at most 0, and is at least [`LEAST`].
+//! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is taken relative to
+//!   that of a typical value of the database (the median, [`Training::typical`]), and is at most 0 and at
+//!   least [`LEAST`]: no function pays for grids that are more regular than real ones.
 //! - A grid: one class, sizes linked by ratios up to e^0.3, lines split at 0.35 of the size. Its mean size stands for
 //!   "an element e". Spacings are centre to centre, between neighbours in a row or column.
 //!   With one line `ed` and `gr` are left out, with one spacing `gr`.
@@ -32,6 +33,7 @@ mod compatibility;
 mod explain;
 mod global;
 pub mod grid;
+mod learn;
 mod pair;
 mod state;
 mod train;
@@ -44,9 +46,11 @@ use self::compatibility::Compatibility;
 use self::grid::{Grid, clusters};
 use self::pair::Pattern;
 use super::layout::{Class, Element};
-use crate::model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram};
+use crate::model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
 pub use explain::Line;
+pub use learn::{Sampler, Sites, learn_weights};
 pub use state::{Change, Scored};
+pub use train::Training;
 
 /// Least value of the logarithm of one relative density.
 pub const LEAST: f64 = -30.0;
@@ -77,6 +81,8 @@ pub enum Term {
     Symmetry,
 }
 
+/// Functions that are computed grid by grid.
+const UNARY: usize = 5;
 /// Number of scoring functions.
 pub const TERMS: usize = 10;
 
@@ -112,20 +118,25 @@ impl Term {
     }
 }
 
+/// Density of a ratio.
+type Ratio = Typical<ScalarMixture>;
+/// Density of a share, given a value.
+type Share = Conditional<Typical<SmoothHistogram>>;
+
 /// The densities of the scoring functions and their weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScoreModel {
-    aspect: [ScalarMixture; 4],
-    spacing: [ScalarMixture; 2],
-    regularity: [ScalarMixture; 2],
-    completeness: ScalarMixture,
+    aspect: [Ratio; 4],
+    spacing: [Ratio; 2],
+    regularity: [Ratio; 2],
+    completeness: Ratio,
     /// Log probability of each seen pattern relative to the most frequent one, and of others.
     patterns: (Vec<(Pattern, f64)>, f64),
-    alignment: [Conditional<SmoothHistogram>; 2],
+    alignment: [Share; 2],
     compatibility: Compatibility,
-    coverage: ScalarMixture,
-    border: [ScalarMixture; 2],
-    symmetry: Conditional<SmoothHistogram>,
+    coverage: Ratio,
+    border: [Ratio; 2],
+    symmetry: Share,
     /// w, in the order of [`Term::ALL`].
     pub weights: [f64; TERMS],
 }
@@ -135,12 +146,16 @@ pub struct ScoreModel {
 pub struct Evaluation {
     /// The grids.
     pub grids: Vec<Arc<Grid>>,
-    /// The unary functions of each grid.
-    unary: Vec<[f64; 4]>,
+    /// The unary functions of each grid, its border last.
+    unary: Vec<[f64; UNARY]>,
     /// The binary functions of each pair of grids (i, j), i < j, row by row.
     pairs: Vec<[f64; 2]>,
     /// f, in the order of [`Term::ALL`].
     pub features: [f64; TERMS],
+}
+
+fn dot(weights: &[f64; TERMS], features: &[f64; TERMS]) -> f64 {
+    weights.iter().zip(features).map(|(w, f)| w * f).sum()
 }
 
 fn floored(log: f64) -> f64 {
@@ -155,7 +170,7 @@ fn relative(density: &impl LogDensity, x: f64) -> f64 {
 impl ScoreModel {
     /// `w · f`.
     pub fn score(&self, features: &[f64; TERMS]) -> f64 {
-        self.weights.iter().zip(features).map(|(w, f)| w * f).sum()
+        dot(&self.weights, features)
     }
 
     /// Extracts the grids of a layout and computes all functions.
@@ -169,12 +184,12 @@ impl ScoreModel {
         &self,
         facade: [f64; 2],
         grids: Vec<Arc<Grid>>,
-        known_unary: impl Fn(usize) -> Option<[f64; 4]>,
+        known_unary: impl Fn(usize) -> Option<[f64; UNARY]>,
         known_pair: impl Fn(usize, usize) -> Option<[f64; 2]>,
     ) -> Evaluation {
         let mut features = [0.0; TERMS];
-        let unary: Vec<[f64; 4]> = (grids.iter().enumerate())
-            .map(|(i, g)| known_unary(i).unwrap_or_else(|| self.unary(g)))
+        let unary: Vec<[f64; UNARY]> = (grids.iter().enumerate())
+            .map(|(i, g)| known_unary(i).unwrap_or_else(|| self.unary(g, facade)))
             .collect();
         let mut pairs = Vec::with_capacity(grids.len() * grids.len() / 2);
         for i in 0..grids.len() {
@@ -183,13 +198,28 @@ impl ScoreModel {
                 pairs.push(known.unwrap_or_else(|| self.binary(&grids[i], &grids[j], facade)));
             }
         }
-        for values in &unary {
-            (0..4).for_each(|k| features[k] += values[k]);
+        // Means over elements: a grid counts by its elements, a pair by those of both grids.
+        let count = |i: usize| grids[i].members.len() as f64;
+        let total: f64 = (0..grids.len()).map(count).sum();
+        for (i, values) in unary.iter().enumerate() {
+            (0..4).for_each(|k| features[k] += values[k] * count(i) / total);
+            features[Term::Border as usize] += values[4] * count(i) / total;
         }
-        for values in &pairs {
-            (0..2).for_each(|k| features[4 + k] += values[k]);
+        // Each grid is in m - 1 pairs.
+        let of_pairs = total * (grids.len() as f64 - 1.0);
+        let indices = (0..grids.len()).flat_map(|i| (i + 1..grids.len()).map(move |j| (i, j)));
+        for (values, (i, j)) in pairs.iter().zip(indices) {
+            let share = (count(i) + count(j)) / of_pairs;
+            (0..2).for_each(|k| features[4 + k] += values[k] * share);
         }
-        features[6..].copy_from_slice(&self.global(&grids, facade));
+        if grids.is_empty() {
+            features[6..].fill(LEAST);
+        } else {
+            let [compatibility, coverage, symmetry] = self.global(&grids, facade);
+            features[Term::Compatibility as usize] = compatibility;
+            features[Term::Coverage as usize] = coverage;
+            features[Term::Symmetry as usize] = symmetry;
+        }
         Evaluation {
             grids,
             unary,
@@ -198,8 +228,8 @@ impl ScoreModel {
         }
     }
 
-    /// Equations 1 to 4.
-    fn unary(&self, grid: &Grid) -> [f64; 4] {
+    /// Equations 1 to 4 and 10.
+    fn unary(&self, grid: &Grid, facade: [f64; 2]) -> [f64; UNARY] {
         let per_axis = |f: &dyn Fn(usize) -> Option<f64>| (0..2).filter_map(f).sum::<f64>();
         [
             relative(
@@ -215,7 +245,19 @@ impl ScoreModel {
                 Some(relative(&self.regularity[axis], ratio))
             }),
             relative(&self.completeness, grid.completeness()),
+            (0..2).map(|axis| self.borders(grid, axis, facade)).sum(),
         ]
+    }
+
+    /// Mean of the two border functions over the grid's rows (axis 0) or columns (axis 1).
+    fn borders(&self, grid: &Grid, axis: usize, facade: [f64; 2]) -> f64 {
+        let ends = grid.ends[axis].iter();
+        let both = ends.map(|&[low, high]| {
+            let far = facade[axis] - high;
+            relative(&self.border[axis], low / grid.size[axis])
+                + relative(&self.border[axis], far / grid.size[axis])
+        });
+        both.sum::<f64>() / grid.ends[axis].len() as f64
     }
 
     /// Equations 5 and 6.
@@ -238,19 +280,13 @@ impl ScoreModel {
         floored(found.map_or(*unseen, |(_, log)| *log))
     }
 
-    /// Equations 8 to 11.
-    fn global(&self, grids: &[Arc<Grid>], facade: [f64; 2]) -> [f64; 4] {
-        if grids.is_empty() {
-            return [LEAST; 4];
-        }
+    /// Equations 8, 9 and 11; of at least one grid.
+    fn global(&self, grids: &[Arc<Grid>], facade: [f64; 2]) -> [f64; 3] {
         let (sets, types) = self.compatibility.cover(grids, facade[0] * facade[1]);
-        let borders = global::borders(grids, facade);
-        let border = (0..4).map(|side| relative(&self.border[side / 2], borders[side]));
         let (area, door) = global::symmetry(grids, facade);
         [
             (1.0 - (sets as f64 - 1.0) / types as f64).ln(),
             relative(&self.coverage, global::coverage(grids, facade)),
-            border.sum(),
             relative(self.symmetry.given(door), area),
         ]
     }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::grid::{Grid, clusters};
-use super::{Evaluation, ScoreModel, TERMS};
+use super::{Evaluation, ScoreModel, TERMS, dot};
 use crate::methods::structure_completion::layout::{Class, Element};
 
 /// A change of one element.
@@ -24,6 +24,7 @@ pub enum Change {
 #[derive(Debug, Clone)]
 pub struct Scored<'a> {
     model: &'a ScoreModel,
+    weights: [f64; TERMS],
     facade: [f64; 2],
     elements: Vec<Element>,
     now: Evaluation,
@@ -46,10 +47,21 @@ enum Undo {
 impl<'a> Scored<'a> {
     /// Evaluates a layout.
     pub fn new(model: &'a ScoreModel, facade: [f64; 2], elements: Vec<Element>) -> Self {
+        Self::weighted(model, model.weights, facade, elements)
+    }
+
+    /// Evaluates a layout with other weights than the model's.
+    pub fn weighted(
+        model: &'a ScoreModel,
+        weights: [f64; TERMS],
+        facade: [f64; 2],
+        elements: Vec<Element>,
+    ) -> Self {
         let now = model.evaluate(facade, &elements);
-        let score = model.score(&now.features);
+        let score = dot(&weights, &now.features);
         Self {
             model,
+            weights,
             facade,
             elements,
             now,
@@ -87,7 +99,7 @@ impl<'a> Scored<'a> {
         let now = self.regroup(classes, touched);
         let before = std::mem::replace(&mut self.now, now);
         self.before = Some((undo, before, self.score));
-        self.score = self.model.score(&self.now.features);
+        self.score = dot(&self.weights, &self.now.features);
         self.score
     }
 
