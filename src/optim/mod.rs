@@ -4,6 +4,9 @@
 //! - [`annealing`]: Metropolis simulated annealing on a landscape that changes in place.
 //! - [`grid`]: exhaustive search over a grid of values.
 //! - [`qp`]: convex quadratic programming, the mathematics being Clarabel's.
+//!
+//! Each returns a [`Run`]: the best solution, its cost, why the run ended ([`Outcome`]) and every
+//! iteration. The problem is borrowed. A seed names all randomness of a run.
 
 pub mod adp;
 pub mod annealing;
@@ -12,4 +15,4 @@ pub mod qp;
 pub mod qp_problem;
 mod run;
 
-pub use run::Step;
+pub use run::{Outcome, Run, Step};

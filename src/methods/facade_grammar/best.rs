@@ -77,7 +77,7 @@ impl Search<'_> {
         for (value, learnt) in values.iter_mut().zip(learnt) {
             *value = value.min(learnt);
         }
-        let members = Members::new(
+        let mut members = Members::new(
             Rc::clone(&self.types),
             router(),
             Rc::clone(&self.exploration),
@@ -85,8 +85,8 @@ impl Search<'_> {
             &start,
         );
         let annealing = Annealing::new(COOLING, share, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
-        let (rules, ..) = annealing.run(members, later(steps + share, observer))?;
-        Ok((rules, lower))
+        let run = annealing.run(&mut members, later(steps + share, observer))?;
+        Ok((run.best, lower))
     }
 
     /// The Lagrangian bound from the rules of a known grammar, with work in proportion to the iterations and facades; `None`

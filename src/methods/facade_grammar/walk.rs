@@ -133,7 +133,7 @@ impl Explore {
 }
 
 impl Heuristic<Inference> for Explore {
-    fn start_walk<R: Rng>(&mut self, _: &Inference, rng: &mut R) {
+    fn start_walk<R: Rng>(&mut self, _: &mut Inference, rng: &mut R) {
         let mut exploration = self.exploration.borrow_mut();
         let protection = exploration.protection();
         match self.protect {
@@ -145,7 +145,7 @@ impl Heuristic<Inference> for Explore {
         self.drawn = true;
     }
 
-    fn sample<R: Rng>(&mut self, _: &Inference, state: &Derivation, rng: &mut R) -> AddRule {
+    fn sample<R: Rng>(&mut self, _: &mut Inference, state: &Derivation, rng: &mut R) -> AddRule {
         let id = state.next();
         let choice = self
             .exploration
@@ -159,11 +159,11 @@ impl Heuristic<Inference> for Explore {
 pub(crate) struct NothingKnown;
 
 impl Approximation<Inference> for NothingKnown {
-    fn best(&mut self, _: &Inference, _: &Derivation) -> Option<AddRule> {
+    fn best(&mut self, _: &mut Inference, _: &Derivation) -> Option<AddRule> {
         None
     }
 
-    fn learn(&mut self, _: &Inference, _: &[AddRule], _: &[f64]) {}
+    fn learn(&mut self, _: &mut Inference, _: &[AddRule], _: &[f64]) {}
 }
 
 /// The approximation of the `best` configuration: over all rules, by shortest paths, with the
@@ -226,7 +226,7 @@ impl ShortestRoutes {
 }
 
 impl Approximation<Inference> for ShortestRoutes {
-    fn best(&mut self, process: &Inference, state: &Derivation) -> Option<AddRule> {
+    fn best(&mut self, process: &mut Inference, state: &Derivation) -> Option<AddRule> {
         let id = state.next();
         let types = &mut process.types.borrow_mut();
         self.extend(types);
@@ -245,7 +245,7 @@ impl Approximation<Inference> for ShortestRoutes {
         })
     }
 
-    fn learn(&mut self, process: &Inference, walk: &[AddRule], costs: &[f64]) {
+    fn learn(&mut self, process: &mut Inference, walk: &[AddRule], costs: &[f64]) {
         self.extend(&process.types.borrow());
         for (action, value) in walk.iter().zip(self.closures.costs(walk, costs)) {
             let known = &mut self.values[action.id as usize];
