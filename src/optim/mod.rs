@@ -1,9 +1,10 @@
-//! Generic optimizers, all `impl Solver` run by argmin's `Executor`: no models, no buildings.
+//! Generic optimizers, run by argmin's `Executor` where they iterate: no models, no buildings.
 //!
 //! - [`adp`]: approximate dynamic programming with exploration and exploitation.
 //! - [`annealing`]: Metropolis simulated annealing on a landscape that changes in place.
 //! - [`grid`]: exhaustive search over a grid of values.
 //! - [`qp`]: convex quadratic programming, the mathematics being Clarabel's.
+//! - [`projection`]: onto one equality and bounds, exactly.
 //!
 //! Each returns a [`Run`]: the best solution, its cost, why the run ended ([`Outcome`]) and every
 //! iteration. The problem is borrowed. A seed names all randomness of a run.
@@ -11,6 +12,7 @@
 pub mod adp;
 pub mod annealing;
 pub mod grid;
+pub mod projection;
 pub mod qp;
 pub mod qp_problem;
 mod run;
