@@ -24,11 +24,13 @@ pub mod experiments;
 pub mod file;
 pub mod grammar;
 pub mod io;
+pub mod layout;
 pub mod methods;
 pub mod model;
 pub mod optim;
 pub mod report;
 pub mod rng;
+pub mod scene;
 pub mod shape;
 
 pub use error::{Error, Result};

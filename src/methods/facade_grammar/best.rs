@@ -2,13 +2,14 @@
 
 use std::rc::Rc;
 
+use super::adp::search::Search;
+use super::adp::walk::ShortestPathRules;
+use super::annealing::NonterminalSet;
 use super::bound::{labels_once, saved_by_grids};
-use super::choice::Router;
 use super::infer::{InferError, Settings};
-use super::members::Members;
-use super::search::Search;
-use super::shares::{BoundLimits, Incumbent, NOISE, Program, solve};
-use super::walk::{AddRule, ShortestRoutes};
+use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
+use super::rules::RulePricer;
+use crate::methods::facade_grammar::rules::AddRule;
 use crate::optim::Step;
 use crate::optim::adp::Epsilon;
 use crate::optim::annealing::{Annealing, Cooling};
@@ -60,26 +61,26 @@ impl Search<'_> {
             let start = self.cheapest([first].into_iter().chain(union));
             return Ok((start, lower));
         }
-        let router = || Router::new(self.settings.costs, self.settings.operations);
+        let pricer = || RulePricer::new(self.settings.costs, self.settings.operations);
         let share = share(iterations);
-        let (by_routes, routes) = self.walks(
+        let (by_paths, paths) = self.walks(
             self.explore(readings.protection.anew()),
-            ShortestRoutes::new(router()),
+            ShortestPathRules::new(pricer()),
             Epsilon::default(),
             share,
             later(steps, observer.clone()),
         )?;
-        let start = self.cheapest([first, by_routes].into_iter().chain(union));
+        let start = self.cheapest([first, by_paths].into_iter().chain(union));
         if full() {
             return Ok((start, lower));
         }
-        let mut values = routes.into_values();
+        let mut values = paths.into_values();
         for (value, learnt) in values.iter_mut().zip(learnt) {
             *value = value.min(learnt);
         }
-        let members = Members::new(
+        let members = NonterminalSet::new(
             Rc::clone(&self.types),
-            router(),
+            pricer(),
             Rc::clone(&self.exploration),
             values,
             &start,
@@ -120,7 +121,7 @@ impl Search<'_> {
             Some(rules) if incumbent.cost >= cost => rules.to_vec(),
             _ => incumbent.rules(&mut self.types.borrow_mut()),
         };
-        let lower = incumbent.attainable(lower);
+        let lower = incumbent.round_up(lower);
         Some(Bounded {
             rules,
             cost: incumbent.cost,
@@ -138,10 +139,10 @@ impl Search<'_> {
     /// One rule at least, unless every facade is a terminal, and every label of a facade that is none written once.
     fn labels_once(&self) -> f64 {
         let types = &self.fresh;
-        let compound = types.roots.iter().zip(types.sheets.iter());
+        let compound = types.roots.iter().zip(types.layouts.iter());
         let compound = compound.filter(|(root, _)| !types.is_terminal(**root));
         let mut labels: Vec<u32> = compound
-            .flat_map(|(_, sheet)| sheet.terminals.iter().map(|(_, label)| *label))
+            .flat_map(|(_, layout)| layout.terminals.iter().map(|(_, label)| *label))
             .collect();
         labels.sort_unstable();
         labels.dedup();
@@ -154,7 +155,7 @@ impl Search<'_> {
     /// Eq. 1.
     fn cost(&self, rules: &[AddRule]) -> f64 {
         let costs = &self.settings.costs;
-        rules.iter().map(|r| r.choice.cost(costs)).sum()
+        rules.iter().map(|r| r.candidate.cost(costs)).sum()
     }
 
     /// The cheapest of what was found and of what the deterministic baselines find; of several, the first.
