@@ -13,7 +13,7 @@ const WALLS: &[(&str, &[&str])] = &[
     ("report", &["error", "rng", "file"]),
     ("shape", &["error", "rng"]),
     ("scene", &["error", "rng", "shape"]),
-    ("layout", &["error", "rng", "shape", "optim"]),
+    ("layout", &["error", "rng", "shape", "optim", "grammar"]),
     ("grammar", &["error", "rng", "shape"]),
     ("io", &["error", "file", "grammar", "shape", "scene"]),
     (

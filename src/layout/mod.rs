@@ -1,3 +1,4 @@
-//! Layouts made regular, for every method that reads annotated or resized facades.
+//! Layouts made regular: annotated ones, and those derived at another size.
 
 pub mod regularize;
+pub mod resize;

@@ -28,7 +28,6 @@
 //! | `baselines/` | importance sampling, greedy, Bayesian, symmetry |
 //! | `best.rs`, `joint_start.rs` | the default method, and where it starts with several facades |
 //! | `bound.rs` | [`lower_bound`] |
-//! | `resize/` | derivation at another size (Sec. 5) |
 //! | `city/` | a city of stochastic variations (Sec. 6.2) |
 //!
 //! # Lagrangian bound
@@ -133,7 +132,6 @@ mod joint_start;
 mod lagrangian;
 mod operations;
 mod regions;
-mod resize;
 mod rules;
 
 pub use adp::readings::{Exploit, Protect, Readings};
@@ -141,5 +139,3 @@ pub use bound::{Bound, Weakness, lower_bound};
 pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer, infer_observed};
 pub use lagrangian::BoundLimits;
 pub use operations::{Operations, UnknownOperation};
-pub use resize::terminals::kinds;
-pub use resize::{ALIGN_REACH, ALIGN_TOLERANCE, AlignError, Aligned, align};

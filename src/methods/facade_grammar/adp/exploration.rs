@@ -137,7 +137,7 @@ impl Exploration {
         Some(self.feasible_rule(types, id, &list, &left, position?))
     }
 
-    /// The rules of a feasible for Eq. 4.
+    /// The feasible candidates with their costs, for Eq. 4.
     fn priced(
         &self,
         types: &mut Types,
@@ -215,7 +215,7 @@ impl Exploration {
         (list, open)
     }
 
-    /// The rule at a position of the list, without the blocked lines, made once for a feasible.
+    /// The rule at a position of the list, without the blocked lines, made once for each set of blocked lines.
     fn feasible_rule(
         &mut self,
         types: &mut Types,

@@ -153,17 +153,16 @@ impl FeasibleCandidates {
     }
 }
 
-/// Numbers that a generation of cache may hold, eight bytes each.
+/// Numbers that a generation of the cache may hold, eight bytes each.
 const HELD: usize = 4_000_000;
-/// Of these, what a feasible takes beside its rules' weights, and what a rule takes, about.
+/// Of these, what a list takes beside its rules' weights, and what a rule takes, about.
 const PER_LIST: usize = 24;
 const PER_RULE: usize = 24;
 
 /// By type and blocked lines.
 type Generation = FxHashMap<Box<[u64]>, Rc<FeasibleCandidates>>;
 
-/// The cache met lately: when a generation is full, a new one begins, which takes over what is
-/// asked for again, and the one before goes.
+/// Two-generation cache: on overflow the old generation is dropped; hits are promoted.
 #[derive(Debug, Default)]
 pub(crate) struct FeasibleCache {
     young: Generation,
@@ -191,7 +190,7 @@ impl FeasibleCache {
         self.insert(self.key.as_slice().into(), Rc::clone(feasible));
     }
 
-    /// Keeps a rule that was drawn from a feasible. Rules of open lists count too, though they never go.
+    /// Keeps a rule that was drawn from a list. Rules of lists without blocked lines count too, though they are never dropped.
     pub fn keep_rule(
         &mut self,
         feasible: &FeasibleCandidates,
@@ -205,7 +204,7 @@ impl FeasibleCache {
             .insert(position, Rc::clone(rule));
     }
 
-    /// Keeps the rules of a feasible for Eq. 4.
+    /// Keeps the priced candidates of a list for Eq. 4.
     pub fn keep_priced<'a>(
         &mut self,
         feasible: &'a FeasibleCandidates,

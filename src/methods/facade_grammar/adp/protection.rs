@@ -69,8 +69,7 @@ impl Protection {
         }
     }
 
-    /// As [`Protection::draw`] without an end: every region is drawn once, so that no other would fit
-    /// between those kept. `layouts` gives the columns and rows of each layout.
+    /// Samples regions without replacement until the protected set is maximal: no other would fit between those kept. `layouts` gives the columns and rows of each layout.
     pub fn draw_all<R: Rng>(&mut self, layouts: &[(usize, usize)], rng: &mut R) {
         self.restart();
         // The order of draws without replacement: least exponential variates of these rates first.

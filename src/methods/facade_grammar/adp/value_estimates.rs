@@ -1,4 +1,4 @@
-//! What a walk says of `V(R)` (Sec. 4.5).
+//! Estimates of `V(R)` from one completed walk (Sec. 4.5).
 
 use crate::methods::facade_grammar::regions::TypeId;
 use crate::methods::facade_grammar::rules::AddRule;

@@ -180,7 +180,7 @@ impl ShortestPathRules {
         self.values
     }
 
-    /// What a type is thought to cost before it was ever split: a rule with all its terminals.
+    /// Initial estimate of a type's cost, before it was ever split: a rule with all its terminals.
     fn guess(types: &Types, id: TypeId, costs: &Costs) -> f64 {
         if types.is_terminal(id) {
             0.0

@@ -9,7 +9,7 @@ use crate::methods::facade_grammar::regions::TypeId;
 use crate::methods::facade_grammar::rules::AddRule;
 use crate::optim::annealing::Landscape;
 
-/// A move calls in at most this many types.
+/// Maximum number of types that a move adds.
 const GROWTH: usize = 24;
 
 impl NonterminalSet {

@@ -19,7 +19,7 @@ pub(crate) struct NonterminalSet {
     pub(super) types: SharedTypes,
     pub(super) pricer: RulePricer,
     pub(super) exploration: Rc<RefCell<Exploration>>,
-    /// What a type that is no member is thought to cost.
+    /// Estimated cost of types that are no members.
     pub(super) values: Vec<f64>,
     pub(super) rules: Vec<Option<Ruled>>,
     /// 0 for terminals and members, infinite for other types.
@@ -33,7 +33,7 @@ pub(crate) struct NonterminalSet {
     pub(super) total: f64,
     pub(super) log: Vec<(TypeId, Option<Ruled>)>,
     pub(super) orphans: Vec<TypeId>,
-    /// NonterminalSet called in by one move at most, so that a move stays a small change.
+    /// Maximum number of types that one move may add, so that a move stays a small change.
     pub(super) growth: usize,
 }
 
@@ -236,7 +236,7 @@ impl NonterminalSet {
         true
     }
 
-    /// The cheapest rule when types outside the set may be called in at their learnt value.
+    /// The cheapest rule when types outside the set may be added at their estimated cost.
     pub(super) fn cheapest_with_newcomers(
         &mut self,
         id: TypeId,

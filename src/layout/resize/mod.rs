@@ -1,6 +1,8 @@
 //! Derivation at another size with aligned edges and equal terminals (Wu et al. 2014, Sec. 5, Fig. 12).
 
-pub(super) mod terminals;
+mod terminals;
+
+pub use terminals::terminal_classes;
 
 use std::collections::BTreeSet;
 
@@ -9,7 +11,6 @@ use rustc_hash::FxHashMap;
 use crate::grammar::Derivation;
 use crate::layout::regularize::{RegularizeError, align_resized};
 use crate::shape::{Axis, Facade, Rect, is_background};
-use terminals::kinds;
 
 /// How far an edge may move so that equal terminals stay equal, as a part of the facade's longer side.
 pub const ALIGN_REACH: f64 = 0.25;
@@ -52,7 +53,7 @@ pub enum AlignError {
 /// [`AlignError`].
 pub fn align(own: &Derivation, resized: &Derivation) -> Result<Aligned, AlignError> {
     let facade = &resized.facade;
-    let kinds = kinds(own, resized);
+    let kinds = terminal_classes(own, resized);
     let numbers: Option<Vec<u16>> = kinds.iter().map(|&kind| u16::try_from(kind).ok()).collect();
     let numbers = numbers.ok_or_else(|| AlignError::TooManyKinds {
         count: kinds.iter().max().map_or(0, |most| most + 1),
