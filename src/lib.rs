@@ -37,12 +37,14 @@ pub mod file;
 pub mod grammar;
 #[cfg(feature = "io")]
 pub mod io;
+pub mod layout;
 pub mod methods;
 pub mod model;
 pub mod optim;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod rng;
+pub mod scene;
 pub mod shape;
 
 pub use error::{Error, Result};

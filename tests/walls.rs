@@ -12,19 +12,21 @@ const WALLS: &[(&str, &[&str])] = &[
     ("cluster", &["error", "rng"]),
     ("report", &["error", "rng", "file"]),
     ("shape", &["error", "rng"]),
+    ("scene", &["error", "rng", "shape"]),
+    ("layout", &["error", "rng", "shape", "optim", "grammar"]),
     ("grammar", &["error", "rng", "shape"]),
-    ("io", &["error", "file", "grammar", "shape"]),
+    ("io", &["error", "file", "grammar", "shape", "scene"]),
     (
         "methods",
         &[
-            "error", "rng", "model", "optim", "cluster", "grammar", "shape",
+            "error", "rng", "model", "optim", "cluster", "grammar", "shape", "scene", "layout",
         ],
     ),
     (
         "experiments",
         &[
             "error", "rng", "file", "grammar", "io", "methods", "report", "shape", "model",
-            "optim", "cluster",
+            "optim", "cluster", "scene", "layout",
         ],
     ),
 ];

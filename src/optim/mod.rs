@@ -2,6 +2,7 @@
 //!
 //! - [`adp`]: approximate dynamic programming with exploration and exploitation.
 //! - [`annealing`]: Metropolis simulated annealing on a landscape that changes in place.
+//! - [`genetic`]: a genetic algorithm on genomes of any kind, ranked and elitist.
 //! - [`grid`]: exhaustive search over a grid of values.
 //! - [`qp`]: convex quadratic programming, the mathematics being Clarabel's.
 //! - [`projection`]: onto one equality and bounds, exactly.
@@ -11,6 +12,7 @@
 
 pub mod adp;
 pub mod annealing;
+pub mod genetic;
 pub mod grid;
 pub mod projection;
 pub mod qp;
