@@ -1,7 +1,9 @@
 //! Structure completion (Fan, Musialski, Liu, Wonka 2014, *Structure Completion for Facade Layouts*).
 
+pub mod best;
 pub mod completion;
 pub mod layout;
 pub mod measure;
+pub mod model;
 pub mod partial;
 pub mod task;
