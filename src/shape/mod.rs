@@ -17,7 +17,6 @@ mod elements;
 mod facade;
 mod label_grid;
 mod rect;
-pub mod scene;
 mod splittable;
 #[cfg(test)]
 mod tests;
