@@ -1,5 +1,6 @@
 //! Candidate elements: every distinct element of the pool, how much of the pool supports it, and its features.
 
+use super::fill::typical_gap;
 use super::pool::{Draw, Origin};
 use super::scene::{Scene, of};
 use crate::methods::structure_completion::completion::Reason;
@@ -9,7 +10,7 @@ use crate::methods::structure_completion::layout::{Class, Element};
 /// Elements of the pool this alike are one candidate.
 const SAME: f64 = 0.8;
 /// Number of features of a candidate.
-pub const FEATURES: usize = 30;
+pub const FEATURES: usize = 43;
 
 /// A candidate element.
 #[derive(Debug, Clone)]
@@ -214,6 +215,8 @@ struct Context<'a> {
     per_window: [f64; 4],
     hidden: f64,
     masked: f64,
+    /// Typical distance of rows.
+    gap: f64,
 }
 
 impl<'a> Context<'a> {
@@ -230,6 +233,7 @@ impl<'a> Context<'a> {
             per_window,
             hidden: hidden.unwrap_or(1.0),
             masked: f64::from(u8::from(hidden.is_some())),
+            gap: typical_gap(&scene.rows).unwrap_or(1.8 * scene.size.1),
         }
     }
 
@@ -248,6 +252,10 @@ impl<'a> Context<'a> {
         let nearest_in_row = in_row.clone().map(|c| (c.0 - x).abs() / r.width).fold(20.0, f64::min);
         let nearest_in_column =
             in_column.clone().map(|c| (c.1 - y).abs() / r.height).fold(20.0, f64::min);
+        let (columns, rows) = (scene.columns.len().max(1) as f64, scene.rows.len().max(1) as f64);
+        let (row_share, column_share) =
+            (in_row.clone().count() as f64 / columns, in_column.clone().count() as f64 / rows);
+        let lowest = scene.rows.first().map_or(height / 2.0, |l| l.at);
         let windows_beside = of(&scene.elements, Class::Window).filter(|w| w.rect.overlap(&r) > 0.0);
         let mean = candidate.support[..5].iter().sum::<f64>() / 5.0;
         let mut features = candidate.support.to_vec();
@@ -276,6 +284,19 @@ impl<'a> Context<'a> {
             windows_beside.count() as f64,
             r.y / r.height,
             scene.columns.len() as f64,
+            scene.rows.len() as f64,
+            row_share,
+            column_share,
+            row_share * column_share / scene.seen.max(0.05),
+            (lowest - y) / self.gap,
+            lowest / self.gap,
+            self.per_window[Class::Door.index()],
+            self.per_window[Class::Balcony.index()],
+            self.per_window[Class::Shop.index()],
+            scene.size.0 / scene.size.1,
+            scene.size.0 / width,
+            scene.size.1 / height,
+            candidate.support.iter().copied().fold(0.0, f64::max),
         ]);
         debug_assert_eq!(features.len(), FEATURES);
         features

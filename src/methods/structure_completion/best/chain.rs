@@ -13,7 +13,7 @@
 //! The state of the chain is (position, previous gap). Backward sums give the normaliser, forward draws are exact and
 //! independent, maxima in place of sums give the most probable lines. O(bins * gaps^2).
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 
 use super::density::Spacing;
 

@@ -10,6 +10,11 @@ use crate::shape::Rect;
 /// Share of cells of a line that hold a window, before any is seen.
 const OCCUPANCY: f64 = 0.9;
 
+/// Probability that a seen shop stands on another column too.
+const SHOPS: f64 = 0.5;
+/// Probability that a seen door stands on another column too.
+const DOORS: f64 = 0.1;
+
 /// Windows, and the balconies that go with them, in the cells that are not known.
 ///
 /// A cell holds a window with the share of windows in the known cells of its row and of its column (with two
@@ -39,15 +44,44 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
             if cell.balcony.is_none()
                 && let Some(balcony) = lattice.balcony(r, c, window, rng)
             {
-                let element = Element::new(Class::Balcony, balcony);
-                let taken = scene.elements.iter().chain(&added).any(|e| e.excludes(&element));
-                if !taken && scene.partial.allows(&element) {
-                    added.push(element);
-                }
+                add(scene, Element::new(Class::Balcony, balcony), &mut added);
             }
         }
     }
+    for (class, share) in [(Class::Shop, SHOPS), (Class::Door, DOORS)] {
+        for element in of(&scene.elements, class) {
+            repeat(scene, element, columns, share, rng, &mut added);
+        }
+    }
     added
+}
+
+/// Adds an element where it is allowed and free.
+fn add(scene: &Scene, element: Element, added: &mut Vec<Element>) {
+    let taken = scene.elements.iter().chain(added.iter()).any(|e| e.excludes(&element));
+    if !taken && scene.partial.allows(&element) {
+        added.push(element);
+    }
+}
+
+/// Repeats an element of the ground floor on other columns, at the same offset, each with probability `share`.
+fn repeat<R: Rng>(
+    scene: &Scene,
+    element: &Element,
+    columns: &[Line],
+    share: f64,
+    rng: &mut R,
+    added: &mut Vec<Element>,
+) {
+    let x = element.rect.centre().0;
+    let near = columns.iter().min_by(|a, b| (a.at - x).abs().total_cmp(&(b.at - x).abs()));
+    let Some(own) = near else { return };
+    for column in columns.iter().filter(|c| c.at != own.at) {
+        if rng.random::<f64>() < share {
+            let rect = Rect { x: element.rect.x + column.at - own.at, ..element.rect };
+            add(scene, Element::new(element.class, rect), added);
+        }
+    }
 }
 
 /// What is observed in a cell.
