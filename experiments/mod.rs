@@ -34,6 +34,7 @@ mod picture;
 pub mod building_exteriors;
 pub mod facade_grammar;
 pub mod procedural_logic;
+pub mod structure_completion;
 
 use std::process::ExitCode;
 

@@ -249,9 +249,7 @@ fn gains(sums: &[(f64, f64)], cuts: usize, ridge: f64) -> Vec<f64> {
     let value = |g: f64, h: f64| g * g / (h + ridge);
     let mut gains = vec![0.0; cuts];
     for leaf in sums.chunks(BINS) {
-        let (g, h) = leaf
-            .iter()
-            .fold((0.0, 0.0), |(g, h), s| (g + s.0, h + s.1));
+        let (g, h) = leaf.iter().fold((0.0, 0.0), |(g, h), s| (g + s.0, h + s.1));
         let (mut gl, mut hl) = (0.0, 0.0);
         for (gain, sum) in gains.iter_mut().zip(leaf) {
             gl += sum.0;
@@ -285,13 +283,20 @@ mod tests {
         for _ in 0..20_000 {
             let row: Vec<f64> = (0..3).map(|_| rng.random::<f64>()).collect();
             // An exclusive or, which no sum of functions of one feature can say.
-            let p = if (row[0] > 0.5) != (row[1] > 0.3) { 0.9 } else { 0.2 };
+            let p = if (row[0] > 0.5) != (row[1] > 0.3) {
+                0.9
+            } else {
+                0.2
+            };
             targets.push(f64::from(u8::from(rng.random::<f64>() < p)));
             truth.push(p);
             rows.push(row);
         }
         let learnt = Boosting::learn(&rows, &targets, Settings::default()).unwrap();
-        let errors = rows.iter().zip(&truth).map(|(r, p)| (learnt.probability(r) - p).abs());
+        let errors = rows
+            .iter()
+            .zip(&truth)
+            .map(|(r, p)| (learnt.probability(r) - p).abs());
         let mean = errors.sum::<f64>() / rows.len() as f64;
         assert!(mean < 0.04, "{mean}");
         learnt.check(3).unwrap();
@@ -301,7 +306,10 @@ mod tests {
     #[test]
     fn bad_rows_are_named() {
         let settings = Settings::default();
-        assert_eq!(Boosting::learn(&[], &[], settings), Err(BoostingError::Empty));
+        assert_eq!(
+            Boosting::learn(&[], &[], settings),
+            Err(BoostingError::Empty)
+        );
         let rows = [vec![1.0], vec![1.0, 2.0]];
         let length = Boosting::learn(&rows, &[0.0, 1.0], settings);
         assert!(matches!(length, Err(BoostingError::Length { row: 1, .. })));

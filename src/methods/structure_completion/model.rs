@@ -3,9 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::best::density::Spacing;
+use super::best::learn::learn;
 use super::layout::lines::{Line, lines, median};
 use super::layout::{Class, Layout};
-use crate::model::boosting::Boosting;
+use super::model_file::ModelFileError;
+use crate::model::boosting::{Boosting, BoostingError};
 use crate::shape::{Axis, Rect};
 
 /// A whole layout of the database, with its lattice.
@@ -51,6 +53,17 @@ pub struct Model {
     pub elements: Option<Boosting>,
 }
 
+/// Why nothing can be learnt.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TrainError {
+    /// No layout has a window.
+    #[error("none of the layouts has a window: nothing to learn from")]
+    Empty,
+    /// The element probabilities.
+    #[error("element probabilities: {0}")]
+    Elements(#[from] BoostingError),
+}
+
 /// The parts of a model that a file holds.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Stored {
@@ -63,6 +76,21 @@ pub(super) struct Stored {
 }
 
 impl Model {
+    /// Learns everything from a database of whole layouts; those without windows are left out.
+    ///
+    /// # Errors
+    /// [`TrainError`] without any window.
+    pub fn train(layouts: Vec<Layout>, seed: u64) -> Result<Self, TrainError> {
+        let mut model = Self::of_spacing(layouts);
+        match model.examples.len() {
+            0 => return Err(TrainError::Empty),
+            // Nothing to learn from what the rest of the database says of one facade.
+            1 => {}
+            _ => model.elements = Some(learn(&model, seed)?),
+        }
+        Ok(model)
+    }
+
     /// Learns the spacing of lines; element probabilities are not learnt yet.
     pub fn of_spacing(layouts: Vec<Layout>) -> Self {
         let examples: Vec<Example> = layouts.into_iter().filter_map(Example::new).collect();
@@ -94,4 +122,14 @@ impl Model {
             median(high).unwrap_or(0.1) * height,
         )
     }
+}
+
+/// The model that ships with the project, learnt from the shipped layouts by `edifice facade train`.
+///
+/// # Errors
+/// [`ModelFileError`]; a test keeps it readable.
+pub fn shipped_model() -> Result<Model, ModelFileError> {
+    Model::from_json(include_str!(
+        "../../../datasets/structure_completion/default.completion.json"
+    ))
 }

@@ -82,14 +82,16 @@ impl Candidates {
                 support[candidate][origin] += draw.weight * share;
             }
         }
-        let all = elements.iter().zip(support).zip(&reasons).map(|((element, support), reason)| {
-            Candidate {
+        let all = elements
+            .iter()
+            .zip(support)
+            .zip(&reasons)
+            .map(|((element, support), reason)| Candidate {
                 element: *element,
                 support,
                 reason: *reason,
                 features: Vec::new(),
-            }
-        });
+            });
         let mut candidates = Self {
             all: all.collect(),
             of_draw,
@@ -109,9 +111,12 @@ impl Candidates {
                 // The strongest candidate that cannot stand beside it, unless it is much the same.
                 let rivals = index.near(&candidate.element).into_iter().filter(|&other| {
                     let other = &self.all[other].element;
-                    other.excludes(&candidate.element) && other.rect.iou(&candidate.element.rect) < 0.5
+                    other.excludes(&candidate.element)
+                        && other.rect.iou(&candidate.element.rect) < 0.5
                 });
-                let rival = rivals.map(|other| total(&self.all[other])).fold(0.0, f64::max);
+                let rival = rivals
+                    .map(|other| total(&self.all[other]))
+                    .fold(0.0, f64::max);
                 context.features(candidate, rival)
             })
             .collect();
@@ -136,7 +141,10 @@ pub fn supported(
             best[other] = best[other].max(share);
         }
     }
-    touched.into_iter().map(|c| (c, std::mem::take(&mut best[c]))).collect()
+    touched
+        .into_iter()
+        .map(|c| (c, std::mem::take(&mut best[c])))
+        .collect()
 }
 
 /// Elements by the place of their centre.
@@ -195,7 +203,10 @@ impl Index {
         let (dx, dy) = match self.is_large(element) {
             true => {
                 let across = (element.rect.width / self.cell.0 / 2.0) as usize + 2;
-                (across, (element.rect.height / self.cell.1 / 2.0) as usize + 2)
+                (
+                    across,
+                    (element.rect.height / self.cell.1 / 2.0) as usize + 2,
+                )
             }
             false => (1, 1),
         };
@@ -225,9 +236,11 @@ impl<'a> Context<'a> {
         let per_window =
             Class::ALL.map(|class| of(&scene.elements, class).count() as f64 / windows);
         let facade = scene.partial.width * scene.partial.height;
-        let hidden = scene.partial.unknown.as_ref().map(|unknown| {
-            unknown.iter().map(|r| r.area()).sum::<f64>() / facade
-        });
+        let hidden = scene
+            .partial
+            .unknown
+            .as_ref()
+            .map(|unknown| unknown.iter().map(|r| r.area()).sum::<f64>() / facade);
         Self {
             scene,
             per_window,
@@ -246,17 +259,30 @@ impl<'a> Context<'a> {
             nearest(&scene.columns, x, scene.size.0),
             nearest(&scene.rows, y, scene.size.1),
         );
-        let same: Vec<(f64, f64)> = of(&scene.elements, class).map(|e| e.rect.centre()).collect();
+        let same: Vec<(f64, f64)> = of(&scene.elements, class)
+            .map(|e| e.rect.centre())
+            .collect();
         let in_row = same.iter().filter(|c| (c.1 - y).abs() < 0.35 * r.height);
         let in_column = same.iter().filter(|c| (c.0 - x).abs() < 0.35 * r.width);
-        let nearest_in_row = in_row.clone().map(|c| (c.0 - x).abs() / r.width).fold(20.0, f64::min);
-        let nearest_in_column =
-            in_column.clone().map(|c| (c.1 - y).abs() / r.height).fold(20.0, f64::min);
-        let (columns, rows) = (scene.columns.len().max(1) as f64, scene.rows.len().max(1) as f64);
-        let (row_share, column_share) =
-            (in_row.clone().count() as f64 / columns, in_column.clone().count() as f64 / rows);
+        let nearest_in_row = in_row
+            .clone()
+            .map(|c| (c.0 - x).abs() / r.width)
+            .fold(20.0, f64::min);
+        let nearest_in_column = in_column
+            .clone()
+            .map(|c| (c.1 - y).abs() / r.height)
+            .fold(20.0, f64::min);
+        let (columns, rows) = (
+            scene.columns.len().max(1) as f64,
+            scene.rows.len().max(1) as f64,
+        );
+        let (row_share, column_share) = (
+            in_row.clone().count() as f64 / columns,
+            in_column.clone().count() as f64 / rows,
+        );
         let lowest = scene.rows.first().map_or(height / 2.0, |l| l.at);
-        let windows_beside = of(&scene.elements, Class::Window).filter(|w| w.rect.overlap(&r) > 0.0);
+        let windows_beside =
+            of(&scene.elements, Class::Window).filter(|w| w.rect.overlap(&r) > 0.0);
         let mean = candidate.support[..5].iter().sum::<f64>() / 5.0;
         let mut features = candidate.support.to_vec();
         features.extend([
@@ -305,7 +331,9 @@ impl<'a> Context<'a> {
 
 /// Distance to the nearest line in units of `size`, at most 5, and the number of elements on it.
 fn nearest(lines: &[Line], at: f64, size: f64) -> (f64, f64) {
-    let near = lines.iter().min_by(|a, b| (a.at - at).abs().total_cmp(&(b.at - at).abs()));
+    let near = lines
+        .iter()
+        .min_by(|a, b| (a.at - at).abs().total_cmp(&(b.at - at).abs()));
     near.map_or((5.0, 0.0), |line| {
         (((line.at - at).abs() / size).min(5.0), line.count as f64)
     })

@@ -239,7 +239,11 @@ impl<'a> Chain<'a> {
     fn choose<R: Rng>(&self, weights: &[f64], rng: &mut R) -> usize {
         if self.most {
             let best = |best: usize, index: usize| {
-                if weights[index] > weights[best] { index } else { best }
+                if weights[index] > weights[best] {
+                    index
+                } else {
+                    best
+                }
             };
             return (0..weights.len()).fold(0, best);
         }
@@ -306,7 +310,11 @@ pub fn log_weight(problem: &LineProblem, spacing: &Spacing, lines: &[usize]) -> 
         let gap = gaps[index - 1] as f64;
         let open: Vec<usize> = (least..=most).filter(|g| line + g < problem.bins).collect();
         let left = problem.bins as f64 - centre(line);
-        let end = if open.is_empty() { 1.0 } else { spacing.ending.at(left / gap) };
+        let end = if open.is_empty() {
+            1.0
+        } else {
+            spacing.ending.at(left / gap)
+        };
         let share = |g: usize| spacing.ratio.at(g as f64 / gap) / g as f64;
         log += match gaps.get(index) {
             None => end.ln(),

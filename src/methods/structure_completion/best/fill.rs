@@ -33,7 +33,11 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
                     let rect = Rect::new(column.at - wide / 2.0, row.at - high / 2.0, wide, high);
                     let element = Element::new(Class::Window, rect);
                     let share = lattice.share(r, c, |cell| cell.window.is_some());
-                    let taken = scene.elements.iter().chain(&added).any(|e| e.excludes(&element));
+                    let taken = scene
+                        .elements
+                        .iter()
+                        .chain(&added)
+                        .any(|e| e.excludes(&element));
                     if taken || !scene.partial.allows(&element) || rng.random::<f64>() > share {
                         continue;
                     }
@@ -58,7 +62,11 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
 
 /// Adds an element where it is allowed and free.
 fn add(scene: &Scene, element: Element, added: &mut Vec<Element>) {
-    let taken = scene.elements.iter().chain(added.iter()).any(|e| e.excludes(&element));
+    let taken = scene
+        .elements
+        .iter()
+        .chain(added.iter())
+        .any(|e| e.excludes(&element));
     if !taken && scene.partial.allows(&element) {
         added.push(element);
     }
@@ -74,11 +82,16 @@ fn repeat<R: Rng>(
     added: &mut Vec<Element>,
 ) {
     let x = element.rect.centre().0;
-    let near = columns.iter().min_by(|a, b| (a.at - x).abs().total_cmp(&(b.at - x).abs()));
+    let near = columns
+        .iter()
+        .min_by(|a, b| (a.at - x).abs().total_cmp(&(b.at - x).abs()));
     let Some(own) = near else { return };
     for column in columns.iter().filter(|c| c.at != own.at) {
         if rng.random::<f64>() < share {
-            let rect = Rect { x: element.rect.x + column.at - own.at, ..element.rect };
+            let rect = Rect {
+                x: element.rect.x + column.at - own.at,
+                ..element.rect
+            };
             add(scene, Element::new(element.class, rect), added);
         }
     }
@@ -101,8 +114,8 @@ struct Lattice {
 /// The line nearest to a coordinate, within 0.6 of its extent.
 fn nearest(lines: &[Line], at: f64) -> Option<usize> {
     let distance = |line: &Line| (line.at - at).abs();
-    let index = (0..lines.len())
-        .min_by(|&a, &b| distance(&lines[a]).total_cmp(&distance(&lines[b])))?;
+    let index =
+        (0..lines.len()).min_by(|&a, &b| distance(&lines[a]).total_cmp(&distance(&lines[b])))?;
     (distance(&lines[index]) < 0.6 * lines[index].size).then_some(index)
 }
 
@@ -188,7 +201,11 @@ impl Lattice {
             ((_, row), (_, column)) => 0.75 * row + 0.25 * column,
         };
         // Where elements are hidden one by one, a window may be seen without its balcony.
-        let share = if self.masked { share } else { (1.6 * share).min(0.98) };
+        let share = if self.masked {
+            share
+        } else {
+            (1.6 * share).min(0.98)
+        };
         if share <= 0.0 || rng.random::<f64>() > share {
             return None;
         }
@@ -199,10 +216,16 @@ impl Lattice {
             });
             with.min_by_key(|(distance, ..)| *distance)
         };
-        let found = nearest(self.row(r).collect(), c).or_else(|| nearest(self.column(c).collect(), r));
+        let found =
+            nearest(self.row(r).collect(), c).or_else(|| nearest(self.column(c).collect(), r));
         let (_, from, balcony) = found?;
         let (dx, dy) = (balcony.x - from.x, balcony.y - from.y);
-        Some(Rect::new(window.x + dx, window.y + dy, balcony.width, balcony.height))
+        Some(Rect::new(
+            window.x + dx,
+            window.y + dy,
+            balcony.width,
+            balcony.height,
+        ))
     }
 }
 

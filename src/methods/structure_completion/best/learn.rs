@@ -34,7 +34,10 @@ pub fn twins(layouts: &[Layout]) -> Vec<usize> {
         .into_par_iter()
         .map(|a| {
             let alike = |b: &usize| {
-                let (few, many) = (scaled[a].len().min(scaled[*b].len()), scaled[a].len().max(scaled[*b].len()));
+                let (few, many) = (
+                    scaled[a].len().min(scaled[*b].len()),
+                    scaled[a].len().max(scaled[*b].len()),
+                );
                 // The most that F1 could be.
                 2.0 * few as f64 >= TWINS * (few + many) as f64
                     && agreement(&scaled[a], &scaled[*b], 0.5).f1 >= TWINS
@@ -46,14 +49,23 @@ pub fn twins(layouts: &[Layout]) -> Vec<usize> {
     for (a, others) in alike.into_iter().enumerate() {
         for b in others {
             let (from, to) = (group[a].max(group[b]), group[a].min(group[b]));
-            group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+            group
+                .iter_mut()
+                .filter(|g| **g == from)
+                .for_each(|g| *g = to);
         }
     }
     group
 }
 
 /// Features and truth of all candidates of one layout with a part hidden.
-fn rows(model: &Model, index: usize, without: &[usize], task: Task, seed: u64) -> (Vec<Vec<f64>>, Vec<f64>) {
+fn rows(
+    model: &Model,
+    index: usize,
+    without: &[usize],
+    task: Task,
+    seed: u64,
+) -> (Vec<Vec<f64>>, Vec<f64>) {
     let layout = &model.examples[index].layout;
     let stream_index = (index * Task::ALL.len() + task as usize) as u64;
     let mut rng = stream(seed, "structure completion: learning", stream_index);
@@ -68,7 +80,10 @@ fn rows(model: &Model, index: usize, without: &[usize], task: Task, seed: u64) -
         f64::from(u8::from(found))
     };
     let targets = candidates.all.iter().map(truth).collect();
-    (candidates.all.into_iter().map(|c| c.features).collect(), targets)
+    (
+        candidates.all.into_iter().map(|c| c.features).collect(),
+        targets,
+    )
 }
 
 /// Learns element probabilities: every layout of the database is completed with each part hidden, from the rest of

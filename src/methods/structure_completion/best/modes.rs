@@ -38,11 +38,25 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         .iter()
         .map(|c| match &model.elements {
             Some(learnt) => learnt.probability(&c.features),
-            None => c.support.iter().zip(SHARES).map(|(s, share)| s * share).sum(),
+            None => c
+                .support
+                .iter()
+                .zip(SHARES)
+                .map(|(s, share)| s * share)
+                .sum(),
         })
         .collect();
-    let windows = |draw: &Draw| draw.added.iter().filter(|(e, _)| e.class == Class::Window).count();
-    let answer_windows = draws.iter().zip(&weights).map(|(d, w)| (windows(d), *w)).collect();
+    let windows = |draw: &Draw| {
+        draw.added
+            .iter()
+            .filter(|(e, _)| e.class == Class::Window)
+            .count()
+    };
+    let answer_windows = draws
+        .iter()
+        .zip(&weights)
+        .map(|(d, w)| (windows(d), *w))
+        .collect();
     let all: Vec<usize> = (0..draws.len()).collect();
     let expected = expected(&draws, &weights, &all);
     let (chosen, score) = select(&candidates, &probability, expected);
@@ -59,8 +73,15 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
             .zip(&probability)
             .map(|(own, p)| OWN * own + (1.0 - OWN) * p)
             .collect();
-        let (chosen, score) = select(&candidates, &mixed, self::expected(&draws, &weights, members));
-        if seen.iter().any(|(other, _)| alike(&candidates, other, &chosen)) {
+        let (chosen, score) = select(
+            &candidates,
+            &mixed,
+            self::expected(&draws, &weights, members),
+        );
+        if seen
+            .iter()
+            .any(|(other, _)| alike(&candidates, other, &chosen))
+        {
             continue;
         }
         let mut next = completion(&candidates, &probability, &chosen, score);
@@ -80,23 +101,38 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
 fn weights(draws: &[Draw]) -> Vec<f64> {
     let present = |o: &Origin| draws.iter().any(|d| d.origin == *o);
     let shares = Origin::ALL.iter().zip(SHARES);
-    let total: f64 = shares.filter(|(o, _)| present(o)).map(|(_, share)| share).sum();
-    draws.iter().map(|d| d.weight * SHARES[d.origin as usize] / total).collect()
+    let total: f64 = shares
+        .filter(|(o, _)| present(o))
+        .map(|(_, share)| share)
+        .sum();
+    draws
+        .iter()
+        .map(|d| d.weight * SHARES[d.origin as usize] / total)
+        .collect()
 }
 
 /// Mean number of added elements.
 fn expected(draws: &[Draw], weights: &[f64], members: &[usize]) -> f64 {
     let total: f64 = members.iter().map(|&m| weights[m]).sum();
-    let sum: f64 = members.iter().map(|&m| weights[m] * draws[m].added.len() as f64).sum();
+    let sum: f64 = members
+        .iter()
+        .map(|&m| weights[m] * draws[m].added.len() as f64)
+        .sum();
     if total > 0.0 { sum / total } else { 0.0 }
 }
 
 /// Layouts of the pool by the size of their lattice and whether they are mirrored, with their mass, largest first.
 fn modes(draws: &[Draw], weights: &[f64]) -> Vec<(Vec<usize>, f64)> {
     let mut groups: BTreeMap<(usize, usize, bool), (Vec<usize>, f64)> = BTreeMap::new();
-    for (index, draw) in draws.iter().enumerate().filter(|(_, d)| d.origin.is_whole()) {
+    for (index, draw) in draws
+        .iter()
+        .enumerate()
+        .filter(|(_, d)| d.origin.is_whole())
+    {
         let mirrored = matches!(draw.origin, Origin::Mirrored | Origin::MirroredBelow);
-        let group = groups.entry((draw.lattice.0, draw.lattice.1, mirrored)).or_default();
+        let group = groups
+            .entry((draw.lattice.0, draw.lattice.1, mirrored))
+            .or_default();
         group.0.push(index);
         group.1 += weights[index];
     }
@@ -127,13 +163,22 @@ fn support_of(
 /// Whether two choices show much the same: nine tenths of each have a like one in the other.
 fn alike(candidates: &Candidates, a: &[usize], b: &[usize]) -> bool {
     let covered = |a: &[usize], b: &[usize]| {
-        let like = |&&c: &&usize| candidates.alike[c].iter().any(|(o, s)| *s > 0.5 && b.contains(o));
+        let like = |&&c: &&usize| {
+            candidates.alike[c]
+                .iter()
+                .any(|(o, s)| *s > 0.5 && b.contains(o))
+        };
         a.iter().filter(like).count() as f64 >= 0.9 * a.len() as f64
     };
     covered(a, b) && covered(b, a)
 }
 
-fn completion(candidates: &Candidates, probability: &[f64], chosen: &[usize], score: f64) -> Completion {
+fn completion(
+    candidates: &Candidates,
+    probability: &[f64],
+    chosen: &[usize],
+    score: f64,
+) -> Completion {
     let added = chosen.iter().map(|&c| Completed {
         element: candidates.all[c].element,
         probability: probability[c],

@@ -71,7 +71,12 @@ pub struct Draw {
 }
 
 /// Makes the pool; database facades in `without` are left out.
-pub fn pool(partial: &PartialLayout, model: &Model, without: &[usize], rng: &mut Stream) -> Vec<Draw> {
+pub fn pool(
+    partial: &PartialLayout,
+    model: &Model,
+    without: &[usize],
+    rng: &mut Stream,
+) -> Vec<Draw> {
     let examples: Vec<(usize, &Example)> = (model.examples.iter().enumerate())
         .filter(|(index, _)| !without.contains(index))
         .collect();
@@ -84,11 +89,25 @@ pub fn pool(partial: &PartialLayout, model: &Model, without: &[usize], rng: &mut
     let mut rows = rows.iter().cycle();
     let mut next_rows = || rows.next().cloned().unwrap_or_default();
     for invented in plain {
-        draws.push(whole(&scene, invented, &next_rows(), None, Origin::Chain, rng));
+        draws.push(whole(
+            &scene,
+            invented,
+            &next_rows(),
+            None,
+            Origin::Chain,
+            rng,
+        ));
     }
     for invented in lower {
         let below = Some(&examples[..]);
-        draws.push(whole(&scene, invented, &next_rows(), below, Origin::Below, rng));
+        draws.push(whole(
+            &scene,
+            invented,
+            &next_rows(),
+            below,
+            Origin::Below,
+            rng,
+        ));
     }
     if !scene.elements.is_empty() {
         for (axis, count) in sampled_axes(&scene, &model.columns, DRAWS, rng) {
@@ -104,9 +123,16 @@ pub fn pool(partial: &PartialLayout, model: &Model, without: &[usize], rng: &mut
                 added: images.clone(),
                 lattice: (mirrored.columns.len(), mirrored.rows.len()),
             });
-            for (k, invented) in column_draws(&mirrored, &model.columns, 2 * count, rng).iter().enumerate() {
+            for (k, invented) in column_draws(&mirrored, &model.columns, 2 * count, rng)
+                .iter()
+                .enumerate()
+            {
                 let below = (k % 2 == 1).then_some(&examples[..]);
-                let origin = if k % 2 == 1 { Origin::MirroredBelow } else { Origin::Mirrored };
+                let origin = if k % 2 == 1 {
+                    Origin::MirroredBelow
+                } else {
+                    Origin::Mirrored
+                };
                 let mut draw = whole(&mirrored, invented, &next_rows(), below, origin, rng);
                 draw.added.extend(images.iter().copied());
                 draws.push(draw);
@@ -115,7 +141,11 @@ pub fn pool(partial: &PartialLayout, model: &Model, without: &[usize], rng: &mut
     }
     draws.extend(warped(&scene, &examples));
     for origin in Origin::ALL {
-        let total: f64 = draws.iter().filter(|d| d.origin == origin).map(|d| d.weight).sum();
+        let total: f64 = draws
+            .iter()
+            .filter(|d| d.origin == origin)
+            .map(|d| d.weight)
+            .sum();
         for draw in draws.iter_mut().filter(|d| d.origin == origin) {
             draw.weight /= total;
         }
@@ -124,7 +154,12 @@ pub fn pool(partial: &PartialLayout, model: &Model, without: &[usize], rng: &mut
 }
 
 /// Axes with the number of draws for each.
-fn sampled_axes<R: Rng>(scene: &Scene, spacing: &Spacing, count: usize, rng: &mut R) -> Vec<(f64, usize)> {
+fn sampled_axes<R: Rng>(
+    scene: &Scene,
+    spacing: &Spacing,
+    count: usize,
+    rng: &mut R,
+) -> Vec<(f64, usize)> {
     let axes = symmetry::axes(scene, spacing);
     let weights: Vec<f64> = axes.iter().map(|a| a.1).collect();
     let mut counts = vec![0; axes.len()];
@@ -195,14 +230,23 @@ fn warped(scene: &Scene, examples: &[(usize, &Example)]) -> Vec<Draw> {
     let draw = |(warped, lattice): (transfer::Warped, (usize, usize))| Draw {
         origin: Origin::Warped,
         weight: (warped.log_weight - top).exp(),
-        added: warped.elements.iter().map(|e| (*e, Reason::Database)).collect(),
+        added: warped
+            .elements
+            .iter()
+            .map(|e| (*e, Reason::Database))
+            .collect(),
         lattice,
     };
     found.into_iter().map(draw).collect()
 }
 
 /// Positions of invented columns.
-fn column_draws<R: Rng>(scene: &Scene, spacing: &Spacing, count: usize, rng: &mut R) -> Vec<Vec<f64>> {
+fn column_draws<R: Rng>(
+    scene: &Scene,
+    spacing: &Spacing,
+    count: usize,
+    rng: &mut R,
+) -> Vec<Vec<f64>> {
     draws(scene, Axis::X, spacing, count, rng)
 }
 
@@ -229,7 +273,9 @@ fn draws<R: Rng>(
         if axis == Axis::X { at } else { length - at }
     };
     let invented = |lines: Vec<usize>| {
-        let new = lines.into_iter().filter(|b| problem.observed.binary_search(b).is_err());
+        let new = lines
+            .into_iter()
+            .filter(|b| problem.observed.binary_search(b).is_err());
         new.map(position).collect()
     };
     drawn.into_iter().map(invented).collect()
@@ -238,7 +284,9 @@ fn draws<R: Rng>(
 /// The lines of a scene along an axis as a problem of the chain, and the length of a bin. Rows run down.
 pub fn line_problem(scene: &Scene, axis: Axis) -> (LineProblem, f64) {
     let (length, size) = (scene.length(axis), scene.extent(axis));
-    let bins = (length / size * BINS_PER_SIZE).ceil().clamp(8.0, MOST_BINS as f64) as usize;
+    let bins = (length / size * BINS_PER_SIZE)
+        .ceil()
+        .clamp(8.0, MOST_BINS as f64) as usize;
     let bin = length / bins as f64;
     let along = |at: f64| if axis == Axis::X { at } else { length - at };
     let mut observed: Vec<usize> = (scene.lines(axis).iter())

@@ -43,7 +43,11 @@ impl<'a> Scene<'a> {
             .collect();
         let (columns, _) = lines(&across, Axis::X);
         let cells = (columns.len() * rows.len()) as f64;
-        let seen = if cells > 0.0 { windows.len() as f64 / cells } else { 0.0 };
+        let seen = if cells > 0.0 {
+            windows.len() as f64 / cells
+        } else {
+            0.0
+        };
         Self {
             partial,
             elements,

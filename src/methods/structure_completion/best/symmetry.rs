@@ -46,7 +46,8 @@ pub fn additions(scene: &Scene, axis: f64) -> Vec<Element> {
     for element in &scene.elements {
         let image = mirrored(element, axis);
         let same = |other: &Element| {
-            other.excludes(&image) || (other.class == image.class && other.rect.iou(&image.rect) > 0.3)
+            other.excludes(&image)
+                || (other.class == image.class && other.rect.iou(&image.rect) > 0.3)
         };
         let taken = scene.elements.iter().chain(&added).any(same);
         if scene.partial.allows(&image) && !taken {
@@ -91,7 +92,11 @@ fn of_elements(scene: &Scene, axis: f64) -> f64 {
         let image = mirrored(element, axis);
         let (x, y) = image.rect.centre();
         let own = |e: &&Element| e.class == element.class;
-        let best = scene.elements.iter().filter(own).map(|e| e.rect.iou(&image.rect));
+        let best = scene
+            .elements
+            .iter()
+            .filter(own)
+            .map(|e| e.rect.iou(&image.rect));
         let best = best.fold(0.0, f64::max);
         log += match (masked, best) {
             (_, iou) if iou > 0.3 => 0.5 * iou,

@@ -69,9 +69,15 @@ struct Warp(Vec<(f64, f64)>);
 impl Warp {
     fn at(&self, x: f64) -> f64 {
         let pairs = &self.0;
-        let k = pairs.partition_point(|p| p.0 <= x).clamp(1, pairs.len() - 1);
+        let k = pairs
+            .partition_point(|p| p.0 <= x)
+            .clamp(1, pairs.len() - 1);
         let (a, b) = (pairs[k - 1], pairs[k]);
-        let slope = if b.0 > a.0 { (b.1 - a.1) / (b.0 - a.0) } else { 1.0 };
+        let slope = if b.0 > a.0 {
+            (b.1 - a.1) / (b.0 - a.0)
+        } else {
+            1.0
+        };
         a.1 + (x - a.0) * slope
     }
 
@@ -108,7 +114,11 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
         _ => (q as f64 / (n - 1) as f64 * (own - 1) as f64).round() as usize,
     };
     let pairs: Vec<(f64, f64)> = if n == own {
-        columns.iter().zip(&e.columns).map(|(q, d)| (d.at, q.at)).collect()
+        columns
+            .iter()
+            .zip(&e.columns)
+            .map(|(q, d)| (d.at, q.at))
+            .collect()
     } else {
         vec![
             (e.columns[0].at, columns[0].at),
@@ -124,7 +134,9 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
             continue;
         }
         // Height above the ground scales with the space, offset from a row of windows with the windows.
-        let base = e.rows[..row].iter().find(|l| (l.at - y).abs() < 1.2 * l.size);
+        let base = e.rows[..row]
+            .iter()
+            .find(|l| (l.at - y).abs() < 1.2 * l.size);
         let high = r.height * sy;
         let ground = r.y < 0.5 * r.height;
         let (bottom, high) = match (element.class, base) {
@@ -138,14 +150,21 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
         let narrow = r.width < 2.0 * e.size.0;
         match (element.class, column) {
             (Class::Window | Class::Balcony | Class::Shop, Some(d)) if narrow => {
-                for (q, line) in columns.iter().enumerate().filter(|(q, _)| counterpart(*q) == d) {
+                for (q, line) in columns
+                    .iter()
+                    .enumerate()
+                    .filter(|(q, _)| counterpart(*q) == d)
+                {
                     // A line's own width holds for windows on it.
                     let wide = match element.class {
                         Class::Window => r.width * line.size / e.columns[counterpart(q)].size,
                         _ => r.width * sx,
                     };
                     let x = line.at + (x - e.columns[d].at) * sx - wide / 2.0;
-                    found.push(Element::new(element.class, Rect::new(x, bottom, wide, high)));
+                    found.push(Element::new(
+                        element.class,
+                        Rect::new(x, bottom, wide, high),
+                    ));
                 }
             }
             _ if narrow => {
@@ -154,11 +173,17 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
                     at = snapped(columns, at);
                 }
                 let wide = r.width * sx;
-                found.push(Element::new(element.class, Rect::new(at - wide / 2.0, bottom, wide, high)));
+                found.push(Element::new(
+                    element.class,
+                    Rect::new(at - wide / 2.0, bottom, wide, high),
+                ));
             }
             _ => {
                 let (left, right) = (across.at(r.x), across.at(r.right()));
-                found.push(Element::new(element.class, Rect::new(left, bottom, right - left, high)));
+                found.push(Element::new(
+                    element.class,
+                    Rect::new(left, bottom, right - left, high),
+                ));
             }
         }
     }
@@ -168,7 +193,9 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
 /// The nearest line's position.
 fn snapped(lines: &[Line], at: f64) -> f64 {
     let positions = lines.iter().map(|l| l.at);
-    positions.min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs())).unwrap_or(at)
+    positions
+        .min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs()))
+        .unwrap_or(at)
 }
 
 /// A whole facade of the database, warped so that its lines lie on the seen ones.
@@ -196,7 +223,11 @@ pub fn warp(scene: &Scene, e: &Example) -> Option<Warped> {
         let rect = if r.width < 2.5 * e.size.0 {
             let wide = r.width * sx;
             let (x, ground) = (across.at(x), r.y < 0.02 * e.layout.height);
-            let high = if ground { up.at(r.top()) } else { r.height * sy };
+            let high = if ground {
+                up.at(r.top())
+            } else {
+                r.height * sy
+            };
             let y = if ground { r.y } else { up.at(y) - high / 2.0 };
             Rect::new(x - wide / 2.0, y, wide, high)
         } else {
@@ -209,7 +240,11 @@ pub fn warp(scene: &Scene, e: &Example) -> Option<Warped> {
     let mapped: Vec<Element> = e.layout.elements.iter().map(map).collect();
     // Agreement on what is known: observed elements found, and invented ones on known wall.
     let near = |a: &Element, b: &Element| a.class == b.class && a.rect.iou(&b.rect) > 0.4;
-    let found = scene.elements.iter().filter(|o| mapped.iter().any(|m| near(o, m))).count();
+    let found = scene
+        .elements
+        .iter()
+        .filter(|o| mapped.iter().any(|m| near(o, m)))
+        .count();
     let wrong = mapped.iter().filter(|m| {
         let (x, y) = m.rect.centre();
         !scene.partial.is_unknown(x, y) && !scene.elements.iter().any(|o| near(o, m))
@@ -217,7 +252,10 @@ pub fn warp(scene: &Scene, e: &Example) -> Option<Warped> {
     let agreement =
         2.0 * found as f64 / (found + scene.elements.len() + wrong.count()).max(1) as f64;
     Some(Warped {
-        elements: mapped.into_iter().filter(|m| scene.partial.allows(m)).collect(),
+        elements: mapped
+            .into_iter()
+            .filter(|m| scene.partial.allows(m))
+            .collect(),
         log_weight: 8.0 * agreement - x_cost - y_cost,
     })
 }
