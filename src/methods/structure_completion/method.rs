@@ -58,7 +58,9 @@ impl Method {
 
     /// The method that a command names.
     pub fn of_option(option: &str) -> Option<Self> {
-        Method::ALL.into_iter().find(|method| method.option() == option)
+        Method::ALL
+            .into_iter()
+            .find(|method| method.option() == option)
     }
 }
 
