@@ -45,6 +45,7 @@ pub const ALL: &[&Experiment] = &[
     &building_exteriors::EXPERIMENT,
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
+    &structure_completion::EXPERIMENT,
 ];
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.

@@ -184,7 +184,7 @@ fn whole<R: Rng>(
     let mut invented = rows.to_vec();
     let mut count = None;
     if let (Some(examples), Some(last)) = (database, scene.rows.first()) {
-        let choices = transfer::below(scene, columns.len(), examples);
+        let choices = transfer::below(scene, &columns, examples);
         let weights: Vec<f64> = choices.iter().map(|b| b.weight).collect();
         if !choices.is_empty() {
             let choice = choices[categorical(&weights, rng)];

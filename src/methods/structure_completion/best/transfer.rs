@@ -18,42 +18,87 @@ pub struct Below {
     pub weight: f64,
 }
 
-/// Number of balconies for each window.
-fn balconies(elements: &[Element]) -> f64 {
-    let windows = of(elements, Class::Window).count().max(1);
-    (of(elements, Class::Balcony).count() as f64 / windows as f64).min(2.0)
+/// What is compared between the surroundings of two rows.
+struct Style {
+    balconies: f64,
+    wide: f64,
+    columns: f64,
+    aspect: f64,
+    /// Window width in units of the typical column gap.
+    density: f64,
+}
+
+impl Style {
+    fn new(elements: &[Element], columns: &[Line], size: (f64, f64), width: f64) -> Self {
+        let windows = of(elements, Class::Window).count().max(1) as f64;
+        let balconies: Vec<&Element> = of(elements, Class::Balcony).collect();
+        let wide = balconies
+            .iter()
+            .filter(|b| b.rect.width > 0.4 * width)
+            .count();
+        let gap = typical_gap(columns).unwrap_or(2.0 * size.0);
+        Self {
+            balconies: (balconies.len() as f64 / windows).min(2.0),
+            wide: wide.min(2) as f64,
+            columns: columns.len().max(1) as f64,
+            aspect: size.0 / size.1,
+            density: size.0 / gap,
+        }
+    }
+}
+
+/// The gap above a row, or the typical one.
+fn gap_above(rows: &[Line], row: usize, height: f64) -> f64 {
+    let next = rows.get(row + 1).map(|above| above.at - rows[row].at);
+    next.or_else(|| typical_gap(rows)).unwrap_or(1.8 * height)
+}
+
+fn env(k: usize, d: f64) -> f64 {
+    use std::sync::OnceLock;
+    static W: OnceLock<Vec<f64>> = OnceLock::new();
+    let w = W.get_or_init(|| {
+        std::env::var("TW")
+            .map(|s| s.split(',').map(|x| x.parse().unwrap()).collect())
+            .unwrap_or_default()
+    });
+    w.get(k).copied().unwrap_or(d)
 }
 
 /// Rows of the database by how alike their surroundings are to those of the lowest seen row: space below and window
-/// height in units of the gap above, number of columns, balconies, shape of windows.
-pub fn below(scene: &Scene, columns: usize, examples: &[(usize, &Example)]) -> Vec<Below> {
+/// height in units of the gap above, that gap in units of the next, columns, balconies, shape of windows.
+pub fn below(scene: &Scene, columns: &[Line], examples: &[(usize, &Example)]) -> Vec<Below> {
     let Some(last) = scene.rows.first() else {
         return Vec::new();
     };
-    let gap_above = |rows: &[Line], row: usize| {
-        let next = rows.get(row + 1).map(|above| above.at - rows[row].at);
-        next.or_else(|| typical_gap(rows))
-    };
-    let gap = gap_above(&scene.rows, 0).unwrap_or(1.8 * scene.size.1);
-    let density = balconies(&scene.elements);
+    let gap = gap_above(&scene.rows, 0, scene.size.1);
+    let own = Style::new(&scene.elements, columns, scene.size, scene.partial.width);
+    let log = |a: f64, b: f64| (a.max(1e-6) / b.max(1e-6)).ln();
     let mut rows = Vec::new();
     for &(index, e) in examples {
+        let other = Style::new(&e.layout.elements, &e.columns, e.size, e.layout.width);
+        let style = [
+            log(own.columns, other.columns) / env(0, 0.35),
+            (own.balconies - other.balconies) / env(1, 0.25),
+            (own.wide - other.wide) / env(2, 1.0),
+            log(own.aspect, other.aspect) / env(3, 0.25),
+            log(own.density, other.density) / env(4, 0.4),
+        ];
+        let style: f64 = style.iter().map(|t| t * t).sum();
         for row in 0..e.rows.len() {
-            let own = gap_above(&e.rows, row).unwrap_or(1.8 * e.size.1);
-            let log = |a: f64, b: f64| (a.max(1e-6) / b.max(1e-6)).ln();
+            let other = gap_above(&e.rows, row, e.size.1);
+            let next = gap_above(&e.rows, row + 1, e.size.1);
             let terms = [
-                log(last.at / gap, e.rows[row].at / own) / 0.12,
-                log(last.size / gap, e.rows[row].size / own) / 0.2,
-                log(columns.max(1) as f64, e.columns.len() as f64) / 0.35,
-                (density - balconies(&e.layout.elements)) / 0.25,
-                log(scene.size.0 / scene.size.1, e.size.0 / e.size.1) / 0.25,
+                log(last.at / gap, e.rows[row].at / other) / env(5, 0.12),
+                log(last.size / gap, e.rows[row].size / other) / env(6, 0.2),
+                log(gap_above(&scene.rows, 1, scene.size.1) / gap, next / other) / env(7, 0.3),
+                (scene.rows.len() as f64 - (e.rows.len() - row) as f64) / env(8, 3.0),
             ];
-            let distance: f64 = terms.iter().map(|t| t * t).sum();
+            let distance = style + terms.iter().map(|t| t * t).sum::<f64>();
             rows.push((index, row, distance));
         }
     }
     let least = rows.iter().map(|r| r.2).fold(f64::INFINITY, f64::min);
-    let weight = |distance: f64| (-(distance - least) / 3.0).exp();
+    let weight = |distance: f64| (-(distance - least) / env(9, 3.0)).exp();
     let total: f64 = rows.iter().map(|r| weight(r.2)).sum();
     let kept = rows.into_iter().map(|(example, row, distance)| Below {
         example,
