@@ -34,6 +34,7 @@ mod picture;
 pub mod building_exteriors;
 pub mod facade_grammar;
 pub mod procedural_logic;
+pub mod structure_completion;
 
 use std::process::ExitCode;
 
@@ -44,6 +45,7 @@ pub const ALL: &[&Experiment] = &[
     &building_exteriors::EXPERIMENT,
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
+    &structure_completion::EXPERIMENT,
 ];
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.

@@ -6,6 +6,8 @@
 //! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
 //! | [`density`] | mixtures, smoothed histograms, kernels, conditional densities | EM, counting |
+//! | [`boosting`] | probabilities from features by oblivious trees | gradient boosting |
+//! | [`low_rank`] | matrix completion | soft-impute |
 //! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
 //! | [`log_linear`] | the same for a user's features and negative sampler | contrastive divergence |
 //!
@@ -14,6 +16,7 @@
 //! in log space, natural logarithms. Hidden variables and missing values are summed or integrated
 //! out, never imputed.
 
+pub mod boosting;
 pub(crate) mod chunks;
 pub mod conjugate;
 pub mod density;
@@ -25,6 +28,7 @@ pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
 pub mod log_linear;
+pub mod low_rank;
 pub mod network;
 mod table;
 

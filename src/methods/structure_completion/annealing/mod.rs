@@ -7,11 +7,14 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
+use super::completion::{Completion, Reason};
 use super::layout::Element;
+use super::model::Model;
 use super::partial::PartialLayout;
-use super::policy::Scene;
+use super::policy::{Scene, added, paper_model};
 use super::score::{Change, Scored};
 use crate::optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
+use crate::rng::Stream;
 use crate::shape::Rect;
 
 /// Standard deviation of a move, in sizes of the element.
@@ -117,7 +120,7 @@ pub fn anneal(
     seed: u64,
 ) -> Result<(Vec<Element>, f64), AnnealingError> {
     let scored = Scored::new(&scene.model.score, scene.facade, partial.observed.clone());
-    let landscape = Completions {
+    let mut landscape = Completions {
         scene,
         partial,
         scored,
@@ -125,6 +128,16 @@ pub fn anneal(
     };
     let rounds = settings.evaluations.div_ceil(100);
     let annealing = Annealing::new(settings.cooling, rounds, 100, seed)?;
-    let (added, cost, _) = annealing.run(landscape, |_| {})?;
-    Ok((added, -cost))
+    let run = annealing.run(&mut landscape, |_| {})?;
+    Ok((run.best, -run.cost))
+}
+
+/// The completion by simulated annealing with 100,000 evaluations; without a database nothing is added.
+pub fn complete(partial: &PartialLayout, model: &Model, rng: &mut Stream) -> Vec<Completion> {
+    let found = paper_model(model).and_then(|paper| {
+        let scene = Scene::new(&paper, partial);
+        anneal(&scene, partial, &Settings::default(), rng.random()).ok()
+    });
+    let (elements, score) = found.unwrap_or_default();
+    vec![added(elements, Reason::Annealing, score, 1.0)]
 }

@@ -38,8 +38,16 @@ pub use optimize::{Budget, Found, optimize};
 pub use process::{Growth, rollouts};
 pub use scene::Scene;
 
+use std::borrow::Cow;
+
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
+
+use super::completion::{Completed, Completion, Reason};
+use super::layout::Element;
+use super::model::Model;
+use super::partial::PartialLayout;
+use crate::rng::Stream;
 
 /// Consecutive failed actions that end a candidate.
 pub const FAILURES: usize = 40;
@@ -117,5 +125,52 @@ impl Policy {
         } else {
             2
         }
+    }
+}
+
+/// The paper's part of a model. One that was not learnt is learnt from the model's layouts as far as it is
+/// quick: densities, with weights of 1 and no initial policies.
+pub fn paper_model(model: &Model) -> Option<Cow<'_, PaperModel>> {
+    match &model.paper {
+        Some(paper) => Some(Cow::Borrowed(paper)),
+        None => {
+            let paper = PaperModel::of_densities(&model.layouts(), 0);
+            paper.ok().map(Cow::Owned)
+        }
+    }
+}
+
+/// Completions by the paper's method, 10,000 candidates, the best `count` of different score; the mass of each
+/// is the share of candidates that have its score. Without a database nothing is added.
+pub fn complete(
+    partial: &PartialLayout,
+    model: &Model,
+    count: usize,
+    rng: &mut Stream,
+) -> Vec<Completion> {
+    let found = paper_model(model).and_then(|paper| {
+        let scene = Scene::new(&paper, partial);
+        optimize(&scene, &Budget::PAPER, count.max(1), rng.random()).ok()
+    });
+    let Some(found) = found else {
+        return vec![added(Vec::new(), Reason::Policy, 0.0, 1.0)];
+    };
+    let share = |times: usize| times as f64 / found.made as f64;
+    let candidates = found.candidates.into_iter();
+    let completions = candidates.map(|c| added(c.added, Reason::Policy, c.score, share(c.times)));
+    completions.collect()
+}
+
+/// A completion without probabilities.
+pub(super) fn added(elements: Vec<Element>, reason: Reason, score: f64, mass: f64) -> Completion {
+    let completed = elements.into_iter().map(|element| Completed {
+        element,
+        probability: 1.0,
+        reason,
+    });
+    Completion {
+        added: completed.collect(),
+        score,
+        mass,
     }
 }

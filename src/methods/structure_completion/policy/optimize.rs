@@ -143,7 +143,7 @@ pub fn optimize(
         mutation: 0.8,
         ..Settings::default()
     };
-    let search = Search {
+    let mut search = Search {
         scene,
         draws: budget.draws,
         keep,
@@ -152,10 +152,10 @@ pub fn optimize(
         rng: stream(seed, "candidates", 0),
     };
     let genetic = Genetic::new(settings, scene.model.policies.clone(), seed)?;
-    let (evolved, search) = genetic.run(search, |_| {})?;
+    let (run, _) = genetic.run(&mut search, |_| {})?;
     Ok(Found {
         candidates: search.best,
-        policy: evolved.best,
+        policy: run.best,
         made: search.made,
     })
 }

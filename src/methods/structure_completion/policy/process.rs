@@ -65,7 +65,7 @@ impl Process for Growth<'_> {
 }
 
 impl Heuristic<Growth<'_>> for Policy {
-    fn sample<R: Rng>(&mut self, process: &Growth<'_>, state: &Walk, rng: &mut R) -> Step {
+    fn sample<R: Rng>(&mut self, process: &mut Growth<'_>, state: &Walk, rng: &mut R) -> Step {
         Step(next(process.0, &state.growing, self, rng))
     }
 }
@@ -79,7 +79,7 @@ struct Rollouts {
 }
 
 impl Approximation<Growth<'_>> for Rollouts {
-    fn best(&mut self, process: &Growth<'_>, state: &Walk) -> Option<Step> {
+    fn best(&mut self, process: &mut Growth<'_>, state: &Walk) -> Option<Step> {
         let mut best: Option<(f64, Step)> = None;
         for _ in 0..self.actions {
             let step = self.policy.sample(process, state, &mut self.rng);
@@ -102,7 +102,7 @@ impl Approximation<Growth<'_>> for Rollouts {
     }
 
     /// Rollouts start anew in every state.
-    fn learn(&mut self, _: &Growth<'_>, _: &[Step], _: &[f64]) {}
+    fn learn(&mut self, _: &mut Growth<'_>, _: &[Step], _: &[f64]) {}
 }
 
 /// Completes by `iterations` walks of approximate dynamic programming, which explore by the policy and exploit
@@ -123,8 +123,8 @@ pub fn rollouts(
         rng: stream(seed, "rollouts", 0),
     };
     let adp = Adp::new(policy, approximation, Epsilon::default(), iterations, seed);
-    let walk = adp.run(Growth(scene))?;
-    let items = walk.actions.iter().filter_map(|step| step.0.as_ref());
+    let run = adp.run(&mut Growth(scene), |_| {})?;
+    let items = run.best.iter().filter_map(|step| step.0.as_ref());
     let added = items.filter(|i| !i.empty).map(|i| i.element);
-    Ok((added.collect(), -walk.cost))
+    Ok((added.collect(), -run.cost))
 }
