@@ -9,6 +9,7 @@ use super::fill::{fill, lines_at};
 use super::scene::Scene;
 use super::symmetry;
 use super::transfer;
+use crate::methods::structure_completion::baselines::lattice;
 use crate::methods::structure_completion::completion::Reason;
 use crate::methods::structure_completion::layout::Element;
 use crate::methods::structure_completion::model::{Example, Model};
@@ -38,22 +39,25 @@ pub enum Origin {
     Warped,
     /// Mirror images alone.
     Mirror,
+    /// The lattice of each class, continued at its typical gap.
+    Lattice,
 }
 
 impl Origin {
     /// All origins.
-    pub const ALL: [Origin; 6] = [
+    pub const ALL: [Origin; 7] = [
         Origin::Chain,
         Origin::Mirrored,
         Origin::Below,
         Origin::MirroredBelow,
         Origin::Warped,
         Origin::Mirror,
+        Origin::Lattice,
     ];
 
     /// Whether a layout of this origin is a draw of a whole completion.
     pub fn is_whole(self) -> bool {
-        self != Origin::Mirror
+        !matches!(self, Origin::Mirror | Origin::Lattice)
     }
 }
 
@@ -140,6 +144,13 @@ pub fn pool(
         }
     }
     draws.extend(warped(&scene, &examples));
+    let open = lattice(partial, false);
+    draws.push(Draw {
+        origin: Origin::Lattice,
+        weight: 1.0,
+        added: open.added.iter().map(|a| (a.element, a.reason)).collect(),
+        lattice: (scene.columns.len(), scene.rows.len()),
+    });
     for origin in Origin::ALL {
         let total: f64 = draws
             .iter()

@@ -53,16 +53,14 @@ fn gap_above(rows: &[Line], row: usize, height: f64) -> f64 {
     next.or_else(|| typical_gap(rows)).unwrap_or(1.8 * height)
 }
 
-fn env(k: usize, d: f64) -> f64 {
-    use std::sync::OnceLock;
-    static W: OnceLock<Vec<f64>> = OnceLock::new();
-    let w = W.get_or_init(|| {
-        std::env::var("TW")
-            .map(|s| s.split(',').map(|x| x.parse().unwrap()).collect())
-            .unwrap_or_default()
-    });
-    w.get(k).copied().unwrap_or(d)
-}
+/// Differences that count as one: logarithm of the number of columns, balconies for a window, wide balconies,
+/// logarithms of a window's aspect and of its width in units of the column gap.
+const STYLE: [f64; 5] = [0.35, 0.25, 1.0, 0.25, 0.4];
+/// Differences that count as one: logarithms of the space below, of the window height and of the next gap, in units of
+/// the gap above; rows above.
+const PLACE: [f64; 4] = [0.06, 0.1, 0.3, 3.0];
+/// Squared distance at which a weight falls to 1 / e.
+const FALL: f64 = 1.2;
 
 /// Rows of the database by how alike their surroundings are to those of the lowest seen row: space below and window
 /// height in units of the gap above, that gap in units of the next, columns, balconies, shape of windows.
@@ -77,28 +75,28 @@ pub fn below(scene: &Scene, columns: &[Line], examples: &[(usize, &Example)]) ->
     for &(index, e) in examples {
         let other = Style::new(&e.layout.elements, &e.columns, e.size, e.layout.width);
         let style = [
-            log(own.columns, other.columns) / env(0, 0.35),
-            (own.balconies - other.balconies) / env(1, 0.25),
-            (own.wide - other.wide) / env(2, 1.0),
-            log(own.aspect, other.aspect) / env(3, 0.25),
-            log(own.density, other.density) / env(4, 0.4),
+            log(own.columns, other.columns) / STYLE[0],
+            (own.balconies - other.balconies) / STYLE[1],
+            (own.wide - other.wide) / STYLE[2],
+            log(own.aspect, other.aspect) / STYLE[3],
+            log(own.density, other.density) / STYLE[4],
         ];
         let style: f64 = style.iter().map(|t| t * t).sum();
         for row in 0..e.rows.len() {
             let other = gap_above(&e.rows, row, e.size.1);
             let next = gap_above(&e.rows, row + 1, e.size.1);
             let terms = [
-                log(last.at / gap, e.rows[row].at / other) / env(5, 0.12),
-                log(last.size / gap, e.rows[row].size / other) / env(6, 0.2),
-                log(gap_above(&scene.rows, 1, scene.size.1) / gap, next / other) / env(7, 0.3),
-                (scene.rows.len() as f64 - (e.rows.len() - row) as f64) / env(8, 3.0),
+                log(last.at / gap, e.rows[row].at / other) / PLACE[0],
+                log(last.size / gap, e.rows[row].size / other) / PLACE[1],
+                log(gap_above(&scene.rows, 1, scene.size.1) / gap, next / other) / PLACE[2],
+                (scene.rows.len() as f64 - (e.rows.len() - row) as f64) / PLACE[3],
             ];
             let distance = style + terms.iter().map(|t| t * t).sum::<f64>();
             rows.push((index, row, distance));
         }
     }
     let least = rows.iter().map(|r| r.2).fold(f64::INFINITY, f64::min);
-    let weight = |distance: f64| (-(distance - least) / env(9, 3.0)).exp();
+    let weight = |distance: f64| (-(distance - least) / FALL).exp();
     let total: f64 = rows.iter().map(|r| weight(r.2)).sum();
     let kept = rows.into_iter().map(|(example, row, distance)| Below {
         example,
