@@ -1,7 +1,5 @@
 //! Structure completion: what holds for every method and every input.
 
-use edifice::experiments::{layouts, structure_completion::data};
-use edifice::io::{Source, facade_json};
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
 use edifice::methods::structure_completion::measure::agreement;
 use edifice::methods::structure_completion::method::{Method, complete};
@@ -12,14 +10,10 @@ use edifice::rng::stream;
 use edifice::shape::Rect;
 use rand::RngExt;
 
+/// The layouts that ship, as the shipped model holds them.
 fn shipped() -> Vec<Layout> {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar");
-    let paths = layouts::made(&folder).expect("layouts ship");
-    let read = |path: &std::path::PathBuf| {
-        let facade = facade_json::read(path).expect("a layout");
-        data::elements(Source::Layout(facade), path).expect("its elements")
-    };
-    paths.iter().map(read).collect()
+    let model = shipped_model().expect("the shipped model");
+    model.examples.into_iter().map(|e| e.layout).collect()
 }
 
 /// A lattice of windows.
@@ -257,4 +251,30 @@ fn labels_are_told_by_their_beginning() {
     ] {
         assert_eq!(Class::of_label(label), class, "{label}");
     }
+}
+
+#[test]
+fn changed_model_files_are_errors_or_models_that_complete() {
+    let text = Model::train(vec![grid(4, 3)], 0)
+        .expect("one facade")
+        .to_json();
+    let (partial, _) = Task::R50.hide(&grid(4, 3), &mut stream(1, "mask", 0));
+    let mut rng = stream(9, "changes", 0);
+    let mut read = 0;
+    for case in 0..400 {
+        let mut bytes = text.clone().into_bytes();
+        // Layouts stand first; tables of spacings are long.
+        let place = rng.random_range(0..900.min(bytes.len()));
+        bytes[place] = b"0123456789-.e,\"[]{}"[rng.random_range(0..19)];
+        let text = String::from_utf8(bytes).expect("text");
+        if let Ok(model) = Model::from_json(&text) {
+            read += 1;
+            check(&partial, Method::Best, &model, &format!("change {case}"));
+            assert_eq!(
+                Model::from_json(&model.to_json()).expect("its own text"),
+                model
+            );
+        }
+    }
+    assert!(read > 20, "{read}");
 }

@@ -40,12 +40,11 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         .iter()
         .map(|c| match &model.elements {
             Some(learnt) => learnt.probability(&c.features),
-            None => c
-                .support
-                .iter()
-                .zip(SHARES)
+            // The shares sum to 1, up to rounding.
+            None => (c.support.iter().zip(SHARES))
                 .map(|(s, share)| s * share)
-                .sum(),
+                .sum::<f64>()
+                .min(1.0),
         })
         .collect();
     let windows = |draw: &Draw| {
