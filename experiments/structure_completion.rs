@@ -10,6 +10,7 @@ mod folds;
 mod optimality;
 mod picture;
 mod plausibility;
+mod results;
 mod timing;
 
 use super::{Artefact, Experiment};

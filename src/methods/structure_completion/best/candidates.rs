@@ -10,7 +10,7 @@ use crate::methods::structure_completion::layout::{Class, Element};
 /// Elements of the pool this alike are one candidate.
 const SAME: f64 = 0.8;
 /// Number of features of a candidate.
-pub const FEATURES: usize = 43;
+pub const FEATURES: usize = 44;
 
 /// A candidate element.
 #[derive(Debug, Clone)]

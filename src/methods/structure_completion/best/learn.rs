@@ -110,5 +110,11 @@ pub fn learn(model: &Model, seed: u64) -> Result<Boosting, BoostingError> {
         features.extend(rows);
         targets.extend(truth);
     }
-    Boosting::learn(&features, &targets, Settings::default())
+    let settings = Settings {
+        trees: 100,
+        levels: 6,
+        rate: 0.12,
+        ..Settings::default()
+    };
+    Boosting::learn(&features, &targets, settings)
 }

@@ -13,7 +13,9 @@ use crate::methods::structure_completion::partial::PartialLayout;
 use crate::rng::Stream;
 
 /// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`].
-const SHARES: [f64; 6] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0];
+const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];
+/// Least probability of a door that is added because there is none.
+const LEAST_DOOR: f64 = 0.08;
 /// Share of a mode's own support in the probabilities that choose its elements.
 const OWN: f64 = 0.6;
 
@@ -38,12 +40,11 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         .iter()
         .map(|c| match &model.elements {
             Some(learnt) => learnt.probability(&c.features),
-            None => c
-                .support
-                .iter()
-                .zip(SHARES)
+            // The shares sum to 1, up to rounding.
+            None => (c.support.iter().zip(SHARES))
                 .map(|(s, share)| s * share)
-                .sum(),
+                .sum::<f64>()
+                .min(1.0),
         })
         .collect();
     let windows = |draw: &Draw| {
@@ -59,7 +60,8 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         .collect();
     let all: Vec<usize> = (0..draws.len()).collect();
     let expected = expected(&draws, &weights, &all);
-    let (chosen, score) = select(&candidates, &probability, expected);
+    let (mut chosen, score) = select(&candidates, &probability, expected);
+    chosen.extend(door(&scene, &candidates, &probability, &chosen));
     let modes = modes(&draws, &weights);
     let mut completions = vec![completion(&candidates, &probability, &chosen, score)];
     let mut seen = vec![(chosen, modes.first().map_or(1.0, |m| m.1))];
@@ -95,6 +97,29 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         completions,
         windows: answer_windows,
     }
+}
+
+/// The most probable door, where there is none yet: a facade without a door is not plausible, though no single place of
+/// it may be probable enough to be chosen for the expected score.
+fn door(
+    scene: &Scene,
+    candidates: &Candidates,
+    probability: &[f64],
+    chosen: &[usize],
+) -> Option<usize> {
+    let is_door = |c: &usize| candidates.all[*c].element.class == Class::Door;
+    if chosen.iter().any(|c| is_door(c)) || scene.elements.iter().any(|e| e.class == Class::Door) {
+        return None;
+    }
+    let free = |c: &usize| {
+        let element = &candidates.all[*c].element;
+        !chosen
+            .iter()
+            .any(|o| candidates.all[*o].element.excludes(element))
+    };
+    let doors = (0..probability.len()).filter(is_door).filter(free);
+    let best = doors.max_by(|&a, &b| probability[a].total_cmp(&probability[b]).then(b.cmp(&a)))?;
+    (probability[best] > LEAST_DOOR).then_some(best)
 }
 
 /// Weight of each layout in the whole pool.

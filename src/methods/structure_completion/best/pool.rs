@@ -9,6 +9,7 @@ use super::fill::{fill, lines_at};
 use super::scene::Scene;
 use super::symmetry;
 use super::transfer;
+use crate::methods::structure_completion::baselines::lattice;
 use crate::methods::structure_completion::completion::Reason;
 use crate::methods::structure_completion::layout::Element;
 use crate::methods::structure_completion::model::{Example, Model};
@@ -38,22 +39,25 @@ pub enum Origin {
     Warped,
     /// Mirror images alone.
     Mirror,
+    /// The lattice of each class, continued at its typical gap.
+    Lattice,
 }
 
 impl Origin {
     /// All origins.
-    pub const ALL: [Origin; 6] = [
+    pub const ALL: [Origin; 7] = [
         Origin::Chain,
         Origin::Mirrored,
         Origin::Below,
         Origin::MirroredBelow,
         Origin::Warped,
         Origin::Mirror,
+        Origin::Lattice,
     ];
 
     /// Whether a layout of this origin is a draw of a whole completion.
     pub fn is_whole(self) -> bool {
-        self != Origin::Mirror
+        !matches!(self, Origin::Mirror | Origin::Lattice)
     }
 }
 
@@ -70,6 +74,12 @@ pub struct Draw {
     pub lattice: (usize, usize),
 }
 
+/// The database, and how its rows compare with the lowest seen one.
+struct Database<'a> {
+    examples: &'a [(usize, &'a Example)],
+    rows: transfer::Surroundings,
+}
+
 /// Makes the pool; database facades in `without` are left out.
 pub fn pool(
     partial: &PartialLayout,
@@ -82,6 +92,10 @@ pub fn pool(
         .collect();
     let fallback = model.window_size(partial.width, partial.height);
     let scene = Scene::new(partial, partial.observed.clone(), fallback);
+    let database = Database {
+        rows: transfer::Surroundings::new(&scene, &examples),
+        examples: &examples,
+    };
     let mut draws = Vec::new();
     let rows = row_draws(&scene, &model.rows, 4 * DRAWS, rng);
     let columns = column_draws(&scene, &model.columns, 2 * DRAWS, rng);
@@ -99,7 +113,7 @@ pub fn pool(
         ));
     }
     for invented in lower {
-        let below = Some(&examples[..]);
+        let below = Some(&database);
         draws.push(whole(
             &scene,
             invented,
@@ -127,7 +141,7 @@ pub fn pool(
                 .iter()
                 .enumerate()
             {
-                let below = (k % 2 == 1).then_some(&examples[..]);
+                let below = (k % 2 == 1).then_some(&database);
                 let origin = if k % 2 == 1 {
                     Origin::MirroredBelow
                 } else {
@@ -140,6 +154,13 @@ pub fn pool(
         }
     }
     draws.extend(warped(&scene, &examples));
+    let open = lattice(partial, false);
+    draws.push(Draw {
+        origin: Origin::Lattice,
+        weight: 1.0,
+        added: open.added.iter().map(|a| (a.element, a.reason)).collect(),
+        lattice: (scene.columns.len(), scene.rows.len()),
+    });
     for origin in Origin::ALL {
         let total: f64 = draws
             .iter()
@@ -175,7 +196,7 @@ fn whole<R: Rng>(
     scene: &Scene,
     columns: &[f64],
     rows: &[f64],
-    database: Option<&[(usize, &Example)]>,
+    database: Option<&Database>,
     origin: Origin,
     rng: &mut R,
 ) -> Draw {
@@ -183,17 +204,15 @@ fn whole<R: Rng>(
     let mut transferred = Vec::new();
     let mut invented = rows.to_vec();
     let mut count = None;
-    if let (Some(examples), Some(last)) = (database, scene.rows.first()) {
-        let choices = transfer::below(scene, &columns, examples);
+    if let (Some(database), Some(last)) = (database, scene.rows.first()) {
+        let choices = database.rows.choices(&columns, scene.size.0);
         let weights: Vec<f64> = choices.iter().map(|b| b.weight).collect();
         if !choices.is_empty() {
             let choice = choices[categorical(&weights, rng)];
-            let example = examples.iter().find(|(index, _)| *index == choice.example);
-            if let Some((_, example)) = example {
-                transferred = transfer::below_elements(scene, &columns, example, choice.row);
-                invented.retain(|&y| y > last.at);
-                count = Some(choice.row);
-            }
+            let example = database.examples[choice.example].1;
+            transferred = transfer::below_elements(scene, &columns, example, choice.row);
+            invented.retain(|&y| y > last.at);
+            count = Some(choice.row);
         }
     }
     let rows = lines_at(&scene.rows, &invented, scene.size.1);

@@ -10,11 +10,11 @@ use crate::shape::Rect;
 /// A row of a database facade that may correspond to the lowest seen row.
 #[derive(Debug, Clone, Copy)]
 pub struct Below {
-    /// Index of the example.
+    /// Position of the example in the database.
     pub example: usize,
     /// Index of its row.
     pub row: usize,
-    /// Weight; those of all rows sum to 1.
+    /// Weight among the rows.
     pub weight: f64,
 }
 
@@ -53,59 +53,88 @@ fn gap_above(rows: &[Line], row: usize, height: f64) -> f64 {
     next.or_else(|| typical_gap(rows)).unwrap_or(1.8 * height)
 }
 
-fn env(k: usize, d: f64) -> f64 {
-    use std::sync::OnceLock;
-    static W: OnceLock<Vec<f64>> = OnceLock::new();
-    let w = W.get_or_init(|| {
-        std::env::var("TW")
-            .map(|s| s.split(',').map(|x| x.parse().unwrap()).collect())
-            .unwrap_or_default()
-    });
-    w.get(k).copied().unwrap_or(d)
+/// Differences that count as one: logarithm of the number of columns, balconies for a window, wide balconies,
+/// logarithms of a window's aspect and of its width in units of the column gap.
+const STYLE: [f64; 5] = [0.35, 0.25, 1.0, 0.25, 0.4];
+/// Differences that count as one: logarithms of the space below, of the window height and of the next gap, in units of
+/// the gap above; rows above.
+const PLACE: [f64; 4] = [0.06, 0.1, 0.3, 3.0];
+/// Squared distance at which a weight falls to 1 / e.
+const FALL: f64 = 1.2;
+
+/// The rows of a database compared with the lowest seen row of a scene: space below and window height in units of the
+/// gap above, that gap in units of the next, balconies, shape of windows.
+pub struct Surroundings {
+    /// Position of the example, its row, squared distance without what depends on columns.
+    rows: Vec<(usize, usize, f64)>,
+    /// Logarithms of the number of columns and of the density of each example.
+    columns: Vec<(f64, f64)>,
 }
 
-/// Rows of the database by how alike their surroundings are to those of the lowest seen row: space below and window
-/// height in units of the gap above, that gap in units of the next, columns, balconies, shape of windows.
-pub fn below(scene: &Scene, columns: &[Line], examples: &[(usize, &Example)]) -> Vec<Below> {
-    let Some(last) = scene.rows.first() else {
-        return Vec::new();
-    };
-    let gap = gap_above(&scene.rows, 0, scene.size.1);
-    let own = Style::new(&scene.elements, columns, scene.size, scene.partial.width);
-    let log = |a: f64, b: f64| (a.max(1e-6) / b.max(1e-6)).ln();
-    let mut rows = Vec::new();
-    for &(index, e) in examples {
-        let other = Style::new(&e.layout.elements, &e.columns, e.size, e.layout.width);
-        let style = [
-            log(own.columns, other.columns) / env(0, 0.35),
-            (own.balconies - other.balconies) / env(1, 0.25),
-            (own.wide - other.wide) / env(2, 1.0),
-            log(own.aspect, other.aspect) / env(3, 0.25),
-            log(own.density, other.density) / env(4, 0.4),
-        ];
-        let style: f64 = style.iter().map(|t| t * t).sum();
-        for row in 0..e.rows.len() {
-            let other = gap_above(&e.rows, row, e.size.1);
-            let next = gap_above(&e.rows, row + 1, e.size.1);
-            let terms = [
-                log(last.at / gap, e.rows[row].at / other) / env(5, 0.12),
-                log(last.size / gap, e.rows[row].size / other) / env(6, 0.2),
-                log(gap_above(&scene.rows, 1, scene.size.1) / gap, next / other) / env(7, 0.3),
-                (scene.rows.len() as f64 - (e.rows.len() - row) as f64) / env(8, 3.0),
+impl Surroundings {
+    /// Compares the rows; none without an observed row.
+    pub fn new(scene: &Scene, examples: &[(usize, &Example)]) -> Self {
+        let own = Style::new(
+            &scene.elements,
+            &scene.columns,
+            scene.size,
+            scene.partial.width,
+        );
+        let log = |a: f64, b: f64| (a.max(1e-6) / b.max(1e-6)).ln();
+        let (mut rows, mut columns) = (Vec::new(), Vec::new());
+        for (position, (_, e)) in examples.iter().enumerate() {
+            let other = Style::new(&e.layout.elements, &e.columns, e.size, e.layout.width);
+            columns.push((other.columns.ln(), other.density.ln()));
+            let Some(last) = scene.rows.first() else {
+                continue;
+            };
+            let gap = gap_above(&scene.rows, 0, scene.size.1);
+            let style = [
+                (own.balconies - other.balconies) / STYLE[1],
+                (own.wide - other.wide) / STYLE[2],
+                log(own.aspect, other.aspect) / STYLE[3],
             ];
-            let distance = style + terms.iter().map(|t| t * t).sum::<f64>();
-            rows.push((index, row, distance));
+            let style: f64 = style.iter().map(|t| t * t).sum();
+            for row in 0..e.rows.len() {
+                let other = gap_above(&e.rows, row, e.size.1);
+                let next = gap_above(&e.rows, row + 1, e.size.1);
+                let terms = [
+                    log(last.at / gap, e.rows[row].at / other) / PLACE[0],
+                    log(last.size / gap, e.rows[row].size / other) / PLACE[1],
+                    log(gap_above(&scene.rows, 1, scene.size.1) / gap, next / other) / PLACE[2],
+                    (scene.rows.len() as f64 - (e.rows.len() - row) as f64) / PLACE[3],
+                ];
+                let distance = style + terms.iter().map(|t| t * t).sum::<f64>();
+                rows.push((position, row, distance));
+            }
         }
+        Self { rows, columns }
     }
-    let least = rows.iter().map(|r| r.2).fold(f64::INFINITY, f64::min);
-    let weight = |distance: f64| (-(distance - least) / env(9, 3.0)).exp();
-    let total: f64 = rows.iter().map(|r| weight(r.2)).sum();
-    let kept = rows.into_iter().map(|(example, row, distance)| Below {
-        example,
-        row,
-        weight: weight(distance) / total,
-    });
-    kept.filter(|b| b.weight > 1e-4).collect()
+
+    /// Rows with their weights for these columns of the scene.
+    pub fn choices(&self, columns: &[Line], width: f64) -> Vec<Below> {
+        let gap = typical_gap(columns).unwrap_or(2.0 * width);
+        let own = ((columns.len().max(1) as f64).ln(), (width / gap).ln());
+        let of_columns: Vec<f64> = (self.columns.iter())
+            .map(|other| {
+                let count = (own.0 - other.0) / STYLE[0];
+                let density = (own.1 - other.1) / STYLE[4];
+                count * count + density * density
+            })
+            .collect();
+        let distance = |row: &(usize, usize, f64)| row.2 + of_columns[row.0];
+        let least = self.rows.iter().map(distance).fold(f64::INFINITY, f64::min);
+        let near = self
+            .rows
+            .iter()
+            .filter(|row| distance(row) - least < 9.0 * FALL);
+        near.map(|row| Below {
+            example: row.0,
+            row: row.1,
+            weight: (-(distance(row) - least) / FALL).exp(),
+        })
+        .collect()
+    }
 }
 
 /// A piecewise linear map through pairs of coordinates, increasing in both.
