@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use edifice::file::{read_bytes, write_atomic};
-use edifice::io::facade_json::parse_json;
+use edifice::io::json::parse_json;
 use edifice::methods::procedural_logic::{MODEL_FORMAT, Model, ModelFile};
 use edifice::model::ModelError;
 use edifice::model::network::{FORMAT, Network};
