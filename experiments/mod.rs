@@ -30,12 +30,15 @@
 mod frame;
 pub mod layouts;
 mod picture;
+pub mod sweep;
 
 pub mod building_exteriors;
 pub mod facade_grammar;
 pub mod procedural_logic;
 
 use std::process::ExitCode;
+
+use sweep::Study;
 
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
 
@@ -45,6 +48,11 @@ pub const ALL: &[&Experiment] = &[
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
 ];
+
+/// Every method that sweeps can run.
+pub fn studies() -> Vec<Study> {
+    vec![facade_grammar::study::infer()]
+}
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.
 pub fn main(experiment: &'static Experiment) -> ExitCode {
