@@ -29,6 +29,7 @@
 
 mod frame;
 pub mod layouts;
+pub mod peers;
 mod picture;
 pub mod sweep;
 

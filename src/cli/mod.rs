@@ -47,6 +47,11 @@ enum Command {
     Reproduce(reproduce::Args),
 }
 
+/// Kinds of models that `model show` knows besides Bayesian networks.
+const MODELS: &[model::Shown] = &[
+    logic::LOGIC, // one line each
+];
+
 /// Parses the arguments and runs the command.
 pub fn run() -> ExitCode {
     let outcome = match Cli::parse().command {

@@ -22,7 +22,7 @@ use rand::RngExt;
 use rayon::prelude::*;
 
 use super::error::ModelError;
-use super::linalg::log_sum_exp;
+use super::linalg::{categorical_of_logs, log_sum_exp};
 use crate::rng::{Stream, stream};
 
 /// A model family: features of a state, and a way to move between states.
@@ -198,13 +198,7 @@ impl Chain for Gibbs {
                         .sum()
                 })
                 .collect();
-            let total = log_sum_exp(&logs);
-            let mut at = rng.random::<f64>();
-            let drawn = logs.iter().position(|l| {
-                at -= (l - total).exp();
-                at < 0.0
-            });
-            state[v] = drawn.unwrap_or(logs.len() - 1);
+            state[v] = categorical_of_logs(&logs, rng);
         }
     }
 }

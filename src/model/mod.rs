@@ -17,11 +17,14 @@ pub mod conjugate;
 pub mod em;
 mod error;
 pub mod factor_graph;
+pub(crate) mod gaussian;
 pub mod gmm;
+pub(crate) mod graph;
 pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
 pub mod network;
+pub(crate) mod standardize;
 mod table;
 
 pub use error::ModelError;

@@ -68,15 +68,14 @@ mod structure;
 
 use std::ops::RangeInclusive;
 
+pub use super::conjugate::Priors;
 use super::em::Stopping;
 use super::error::ModelError;
+pub use super::standardize::Constant;
 use super::table::Table;
 pub use draw::Draws;
-pub(crate) use draw::gaussian;
-pub use params::Priors;
 pub use query::Hierarchy;
-pub use schema::{Constant, Group};
-pub(crate) use structure::order;
+pub use schema::Group;
 
 /// Which of the paper's models to learn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -4,10 +4,10 @@
 
 use rand::{Rng, RngExt};
 
-use super::super::conjugate::Linear;
+use super::super::conjugate::{Linear, Priors};
 use super::super::em::{Fit, Stopping, restarts};
 use super::super::error::ModelError;
-use super::super::hierarchy::Priors;
+use super::super::standardize::{Constant, moments};
 use super::super::table::{Cell, Table};
 use super::evidence::Known;
 use super::expect::Problem;
@@ -139,25 +139,11 @@ impl Network {
                         _ => None,
                     })
                     .collect();
-                if seen.is_empty() {
-                    return Err(ModelError::AllMissing { column: name });
-                }
-                let mean = seen.iter().sum::<f64>() / seen.len() as f64;
-                let spread = seen.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
-                if spread <= 1e-12 * mean.abs() || spread < f64::MIN_POSITIVE {
-                    return Err(ModelError::Constant {
-                        column: name,
-                        value: seen[0].to_string(),
-                    });
-                }
-                let variance = seen
-                    .iter()
-                    .map(|v| ((v - mean) / spread).powi(2))
-                    .sum::<f64>();
-                scales[c] = (mean, spread * (variance / seen.len() as f64).sqrt());
+                let (mean, deviation) = moments(&name, &seen, Constant::Refuse)?;
+                scales[c] = (mean, deviation);
                 for (r, row) in rows.iter_mut().enumerate() {
                     if let Cell::Real(v) = column.cell(r) {
-                        row.real[c] = (v - mean) / scales[c].1;
+                        row.real[c] = (v - mean) / deviation;
                     }
                 }
             }

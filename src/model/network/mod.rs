@@ -43,7 +43,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::conjugate::Linear;
 use super::error::ModelError;
-use super::hierarchy::order;
+use super::graph::order;
 use check::check;
 pub use evidence::Evidence;
 pub use learn::{LearnSettings, Trained};
