@@ -127,6 +127,43 @@ mod tests {
         }
     }
 
+    /// SciPy 1.17.1, `scipy.stats.friedmanchisquare`, without and with ties.
+    #[test]
+    fn as_scipy_says() {
+        let rows = |grid: Option<f64>| -> Vec<Vec<f64>> {
+            let row = |seed: u64| {
+                let mut x = seed;
+                let next = |_| {
+                    x = (1_103_515_245 * x + 12_345) % (1 << 31);
+                    let value = x as f64 / f64::from(1u32 << 31) - 0.45;
+                    grid.map_or(value, |grid| (value * grid).round_ties_even() / grid)
+                };
+                (0..4).map(next).collect()
+            };
+            (100..130).map(row).collect()
+        };
+        let exact = ranks(&rows(None)).unwrap();
+        assert!(
+            (exact.p - 0.0003568663041609603).abs() < 1e-12,
+            "{}",
+            exact.p
+        );
+        let tied = ranks(&rows(Some(4.0))).unwrap();
+        assert!((tied.p - 0.004477600368337768).abs() < 1e-12, "{}", tied.p);
+        // scikit-posthocs 0.17.1, `posthoc_nemenyi_friedman`: p below 0.05 for arm 2 with 0, 1 and 3 alone.
+        let differ = |a: usize, b: usize| (exact.means[a] - exact.means[b]).abs() > exact.critical;
+        for (a, b, expected) in [
+            (0, 1, false),
+            (0, 2, true),
+            (0, 3, false),
+            (1, 2, true),
+            (1, 3, false),
+            (2, 3, true),
+        ] {
+            assert_eq!(differ(a, b), expected, "{a} {b}");
+        }
+    }
+
     #[test]
     fn ranks_of_a_clear_order() {
         let values: Vec<Vec<f64>> = (0..20)
