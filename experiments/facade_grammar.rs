@@ -26,6 +26,7 @@ mod regularization;
 mod room;
 mod runs;
 mod speed;
+pub mod study;
 mod table_1;
 mod table_2;
 mod table_3;
