@@ -12,6 +12,7 @@ const OWN: &[(&str, &str)] = &[
     ("facade_grammar", "examples/make_layouts.rs"),
     ("procedural_logic", "src/cli/logic"),
     ("building_exteriors", "src/cli/building"),
+    ("structure_completion", "src/cli/facade/"),
 ];
 
 /// Lists of methods: what is dropped with a method are single lines.

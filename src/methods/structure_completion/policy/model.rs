@@ -63,7 +63,7 @@ impl PaperModel {
     /// Settings of the contrastive divergence that [`PaperModel::train`] uses.
     pub fn weight_settings() -> Settings {
         Settings {
-            rounds: 80,
+            rounds: 60,
             moves: 1,
             persistent: false,
             rate: 0.3,

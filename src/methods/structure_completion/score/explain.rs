@@ -11,7 +11,7 @@ pub struct Line {
     pub term: Term,
     /// Its weight w.
     pub weight: f64,
-    /// Its feature f: the sum over all grids or pairs.
+    /// Its feature f: the mean over all grids or pairs.
     pub feature: f64,
     /// The least of its values over grids, pairs or the facade.
     pub least: f64,

@@ -180,7 +180,7 @@ fn from_prior(differences: &[f64]) -> [f64; TERMS] {
 /// the sum of the log densities.
 ///
 /// # Errors
-/// As [`learn`](crate::model::factor_graph::learn).
+/// As [`fit`](crate::model::factor_graph::fit).
 pub fn learn_weights(
     model: &ScoreModel,
     data: &[Sites],

@@ -1,8 +1,8 @@
 //! The statistical model of grid layouts (Sec. 4): ten scoring functions and their factor graph.
 //!
-//! Elements become [`Grid`]s ([`grid`]). Each grid has four unary functions, each pair of grids two
-//! binary ones, and the facade four global ones ([`Term`]); a feature `f_k` is the sum of function k over
-//! all grids or pairs (Eq. 16), and the score is `w · f`, the log of Eq. 15 without its partition function:
+//! Elements become [`Grid`]s ([`grid`]). Each grid has unary functions, each pair of grids two
+//! binary ones, and the facade global ones ([`Term`]); a feature `f_k` is the mean of function k over
+//! all grids or pairs, and the score is `w · f`, the log of Eq. 15 without its partition function:
 //!
 //! ```text
 //! as  ln p(height / width), a density per class            ed  ln pH(width / dH) + ln pV(height / dV)
@@ -18,14 +18,20 @@
 //! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is taken relative to
 //!   that of a typical value of the database (the median, [`Training::typical`]), and is at most 0 and at
 //!   least [`LEAST`]: no function pays for grids that are more regular than real ones.
+//! - Eq. 16 sums a function over all grids. The partition function then depends on the number of grids, and layouts
+//!   with other grids cannot be compared: a facade would gain by losing a grid. Here a feature is the mean over
+//!   grids (pairs), each counted by its elements; the densities are learnt with the same weights.
 //! - A grid: one class, sizes linked by ratios up to e^0.3, lines split at 0.35 of the size. Its mean size stands for
 //!   "an element e". Spacings are centre to centre, between neighbours in a row or column.
 //!   With one line `ed` and `gr` are left out, with one spacing `gr`.
 //! - Eq. 8 is ln 0 for facades of one coherence set of one type; one set scores 0 here.
 //! - Patterns count along both axes, for grids that share a line across; half a count for unseen ones.
 //! - Alignment is a smoothed histogram for each of four ranges of the gap; symmetry likewise given the doors.
-//! - Symmetry is about the facade's vertical axis. All four borders count. Symmetric images are sought
-//!   in the same grid.
+//! - Symmetry is about the facade's vertical axis; mirror images are sought in the same grid.
+//! - Borders: the distances of both ends of each row and column of a grid from the facade's boundary, over the
+//!   grid's mean size; a mean over rows and columns. (With the border of the whole facade, one element at each
+//!   side would do.)
+//! - The deviation of a grid adds that of the elements about their lines to that of the spacings.
 //!
 //! Complexity: n log n for n elements, and m² for m grids.
 
