@@ -185,7 +185,7 @@ fn each_term_names_its_culprit() {
     assert!(
         lines
             .iter()
-            .all(|l| !l.culprit.is_empty() && l.least >= l.feature - 1e-9)
+            .all(|l| !l.culprit.is_empty() && l.least <= l.feature + 1e-9)
     );
     // A window taken out of the middle makes its grid the culprit of incompleteness.
     let mut holed = layout.clone();

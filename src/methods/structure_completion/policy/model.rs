@@ -17,7 +17,9 @@ use crate::rng::stream;
 
 /// Facades that weights are learnt from, and facades that policies are learnt on.
 const WEIGHT_FACADES: usize = 100;
-const POLICY_FACADES: usize = 20;
+const POLICY_FACADES: usize = 12;
+/// Larger facades are left out of these two where there are smaller ones.
+const LARGEST: usize = 150;
 /// Policies that each optimization starts from (Sec. 5.2).
 const POLICIES: usize = 10;
 /// Labels with sizes, and ratios of spacing to size, that are kept.
@@ -50,6 +52,9 @@ impl PaperModel {
     pub fn train(layouts: &[Layout], seed: u64) -> Result<Self, ModelError> {
         let mut model = Self::of_densities(layouts, seed)?;
         let mut chosen: Vec<&Layout> = layouts.iter().filter(|l| !l.elements.is_empty()).collect();
+        if chosen.iter().any(|l| l.elements.len() <= LARGEST) {
+            chosen.retain(|l| l.elements.len() <= LARGEST);
+        }
         chosen.shuffle(&mut stream(seed, "database", 0));
         let states: Vec<Sites> = (chosen.iter().take(WEIGHT_FACADES).enumerate())
             .map(|(i, l)| Sites::of_layout(l, &mut stream(seed, "sites", i as u64)))

@@ -25,11 +25,11 @@ impl Budget {
         generations: 110,
         draws: 10,
     };
-    /// 500 candidates, to learn initial policies.
+    /// 192 candidates, to learn initial policies.
     pub const SMALL: Self = Self {
         population: 10,
-        generations: 10,
-        draws: 5,
+        generations: 6,
+        draws: 3,
     };
 
     /// Candidates in all.
