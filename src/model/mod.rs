@@ -5,6 +5,8 @@
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
 //! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
+//! | [`boosting`] | probabilities from features by oblivious trees | gradient boosting |
+//! | [`low_rank`] | matrix completion | soft-impute |
 //! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
 //!
 //! One verb for one idea: *fit* estimates parameters of a given structure, *learn* structure and
@@ -18,6 +20,7 @@
 //! in log space, natural logarithms. Hidden variables and missing values are summed or integrated
 //! out, never imputed.
 
+pub mod boosting;
 pub(crate) mod chunks;
 pub mod conjugate;
 pub mod em;
@@ -29,6 +32,7 @@ pub(crate) mod graph;
 pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
+pub mod low_rank;
 pub mod network;
 pub(crate) mod standardize;
 mod table;
