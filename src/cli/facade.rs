@@ -6,6 +6,7 @@ mod input;
 mod mask;
 mod overview;
 mod partial;
+mod score;
 mod train;
 
 use std::path::{Path, PathBuf};
@@ -48,6 +49,8 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
         after_help = "Example:\n  edifice facade hide monge_42.png --task side50 --seed 1 -o partial.facade.json"
     )]
     Hide(hide::Args),
+    /// Score a facade by the statistical model of Fan et al. 2014, term by term.
+    Score(score::Args),
 }
 
 /// Options of `facade convert`.
@@ -76,6 +79,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Train(args) => train::run(&args),
         Command::Complete(args) => complete::run(&args),
         Command::Hide(args) => hide::run(&args),
+        Command::Score(args) => score::run(&args),
     }
 }
 

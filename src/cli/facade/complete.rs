@@ -149,7 +149,7 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn read_model(path: &Path) -> Result<Model> {
+pub(super) fn read_model(path: &Path) -> Result<Model> {
     let bytes = read_bytes(path)?;
     let text = String::from_utf8(bytes).map_err(|e| Error::content(path, e))?;
     Model::from_json(&text).map_err(|e| Error::content(path, e))

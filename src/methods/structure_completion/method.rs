@@ -1,10 +1,12 @@
 //! The table of methods.
 
+use super::annealing;
 use super::baselines;
 use super::best::modes;
 use super::completion::Completion;
 use super::model::Model;
 use super::partial::PartialLayout;
+use super::policy;
 use crate::rng::Stream;
 
 /// A way to complete a layout.
@@ -12,6 +14,10 @@ use crate::rng::Stream;
 pub enum Method {
     /// Elements by expected F1 from exact draws, symmetry and transfer.
     Best,
+    /// The paper's own: policies optimized by a genetic algorithm (Sec. 5).
+    Paper,
+    /// Simulated annealing on the paper's score (Fig. 14).
+    Annealing,
     /// Low-rank completion of the matrix of cells (Fig. 19).
     LowRank,
     /// The observed lattice continued, gaps filled.
@@ -26,8 +32,10 @@ pub enum Method {
 
 impl Method {
     /// All methods.
-    pub const ALL: [Method; 6] = [
+    pub const ALL: [Method; 8] = [
         Method::Best,
+        Method::Paper,
+        Method::Annealing,
         Method::LowRank,
         Method::Lattice,
         Method::LatticeOpen,
@@ -48,6 +56,8 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Method::Best => "best",
+            Method::Paper => "paper",
+            Method::Annealing => "annealing",
             Method::LowRank => "low_rank",
             Method::Lattice => "lattice",
             Method::LatticeOpen => "lattice_open",
@@ -76,6 +86,8 @@ pub fn complete(
 ) -> Vec<Completion> {
     match method {
         Method::Best => modes::complete(partial, model, count, rng).completions,
+        Method::Paper => policy::complete(partial, model, count, rng),
+        Method::Annealing => annealing::complete(partial, model, rng),
         Method::LowRank => vec![baselines::low_rank(partial)],
         Method::Lattice => vec![baselines::lattice(partial, true)],
         Method::LatticeOpen => vec![baselines::lattice(partial, false)],

@@ -36,6 +36,7 @@
 //! - Facades in scope ([`layout::scope`]): at least 8 windows, half of the cells of their lattice occupied, 70 % of the windows with
 //!   another one in their row and column.
 
+pub mod annealing;
 pub mod baselines;
 pub mod best;
 pub mod completion;
@@ -45,4 +46,6 @@ pub mod method;
 pub mod model;
 pub mod model_file;
 pub mod partial;
+pub mod policy;
+pub mod score;
 pub mod task;

@@ -7,6 +7,8 @@ use super::best::learn::learn;
 use super::layout::lines::{Line, lines, median};
 use super::layout::{Class, Layout};
 use super::model_file::ModelFileError;
+use super::policy::PaperModel;
+use crate::model::ModelError;
 use crate::model::boosting::{Boosting, BoostingError};
 use crate::shape::{Axis, Rect};
 
@@ -51,6 +53,8 @@ pub struct Model {
     pub rows: Spacing,
     /// Probability that a candidate element is true, given its features; `None` before it is learnt.
     pub elements: Option<Boosting>,
+    /// What the paper's own method learns; `None` before it is learnt.
+    pub paper: Option<PaperModel>,
 }
 
 /// Why nothing can be learnt.
@@ -62,6 +66,9 @@ pub enum TrainError {
     /// The element probabilities.
     #[error("element probabilities: {0}")]
     Elements(#[from] BoostingError),
+    /// The scoring functions, their weights or the policies.
+    #[error("scoring functions: {0}")]
+    Score(#[from] ModelError),
 }
 
 /// The parts of a model that a file holds.
@@ -73,6 +80,8 @@ pub(super) struct Stored {
     pub columns: Spacing,
     pub rows: Spacing,
     pub elements: Option<Boosting>,
+    #[serde(default)]
+    pub paper: Option<PaperModel>,
 }
 
 impl Model {
@@ -88,6 +97,7 @@ impl Model {
             1 => {}
             _ => model.elements = Some(learn(&model, seed)?),
         }
+        model.paper = Some(PaperModel::train(&model.layouts(), seed)?);
         Ok(model)
     }
 
@@ -109,8 +119,14 @@ impl Model {
             columns: Spacing::learn(&columns),
             rows: Spacing::learn(&rows),
             elements: None,
+            paper: None,
             examples,
         }
+    }
+
+    /// The layouts of the database.
+    pub fn layouts(&self) -> Vec<Layout> {
+        self.examples.iter().map(|e| e.layout.clone()).collect()
     }
 
     /// Typical width and height of a window on a facade of this size.

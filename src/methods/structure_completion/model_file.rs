@@ -44,6 +44,9 @@ pub enum ModelFileError {
     /// Trees that do not fit the features.
     #[error("elements: {0}")]
     Elements(#[from] crate::model::boosting::BoostingError),
+    /// Scoring functions or policies out of range.
+    #[error("paper: {0}")]
+    Paper(#[from] crate::model::ModelError),
     /// No layout with windows.
     #[error("no layout has a window")]
     Empty,
@@ -55,10 +58,11 @@ impl Model {
         let stored = Stored {
             format: FORMAT.into(),
             version: VERSION,
-            layouts: self.examples.iter().map(|e| e.layout.clone()).collect(),
+            layouts: self.layouts(),
             columns: self.columns.clone(),
             rows: self.rows.clone(),
             elements: self.elements.clone(),
+            paper: self.paper.clone(),
         };
         // All numbers are finite and all keys are text.
         serde_json::to_string(&stored).unwrap_or_default() + "\n"
@@ -106,6 +110,9 @@ impl Model {
         if let Some(elements) = &stored.elements {
             elements.check(FEATURES)?;
         }
+        if let Some(paper) = &stored.paper {
+            paper.check()?;
+        }
         let examples: Vec<Example> = stored
             .layouts
             .into_iter()
@@ -119,6 +126,7 @@ impl Model {
             columns: stored.columns,
             rows: stored.rows,
             elements: stored.elements,
+            paper: stored.paper,
         })
     }
 }
