@@ -12,6 +12,8 @@ use crate::methods::structure_completion::task::Task;
 use crate::model::boosting::{Boosting, BoostingError, Settings};
 use crate::rng::stream;
 
+/// Most candidates that are learnt from; of more, every second, third, ... is.
+const MOST_ROWS: usize = 120_000;
 /// Layouts that agree this well, scaled to one outline, show one building.
 const TWINS: f64 = 0.7;
 
@@ -105,11 +107,12 @@ pub fn learn(model: &Model, seed: u64) -> Result<Boosting, BoostingError> {
             rows(model, index, &without, task, seed)
         })
         .collect();
-    let (mut features, mut targets) = (Vec::new(), Vec::new());
-    for (rows, truth) in parts {
-        features.extend(rows);
-        targets.extend(truth);
-    }
+    let total: usize = parts.iter().map(|p| p.1.len()).sum();
+    let every = total.div_ceil(MOST_ROWS).max(1);
+    let rows = parts
+        .into_iter()
+        .flat_map(|(rows, truth)| rows.into_iter().zip(truth));
+    let (features, targets): (Vec<Vec<f64>>, Vec<f64>) = rows.step_by(every).unzip();
     let settings = Settings {
         trees: 100,
         levels: 6,

@@ -108,7 +108,7 @@ fn door(
     chosen: &[usize],
 ) -> Option<usize> {
     let is_door = |c: &usize| candidates.all[*c].element.class == Class::Door;
-    if chosen.iter().any(|c| is_door(c)) || scene.elements.iter().any(|e| e.class == Class::Door) {
+    if chosen.iter().any(is_door) || scene.elements.iter().any(|e| e.class == Class::Door) {
         return None;
     }
     let free = |c: &usize| {
