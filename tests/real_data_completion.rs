@@ -29,12 +29,14 @@ fn the_default_method_is_above_every_baseline_on_paris_facades() {
     let known = known.into_iter().step_by(3).map(|(_, l)| l).collect();
     let model = Model::train(known, 1).expect("learnt");
     for task in Task::ALL {
-        let mut mean = Method::ALL.map(|_| 0.0);
+        let methods = Method::ALL.into_iter().filter(|m| !m.is_slow());
+        let methods: Vec<Method> = methods.collect();
+        let mut mean = vec![0.0; methods.len()];
         for (k, layout) in test.iter().step_by(2) {
             let (partial, hidden) = task.hide(layout, &mut stream(2, "mask", *k as u64));
-            for (mean, method) in mean.iter_mut().zip(Method::ALL) {
+            for (mean, method) in mean.iter_mut().zip(&methods) {
                 let done = complete(
-                    method,
+                    *method,
                     &partial,
                     &model,
                     1,

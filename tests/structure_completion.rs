@@ -16,6 +16,11 @@ fn shipped() -> Vec<Layout> {
     model.examples.into_iter().map(|e| e.layout).collect()
 }
 
+/// The methods that take milliseconds.
+fn quick() -> impl Iterator<Item = Method> {
+    Method::ALL.into_iter().filter(|m| !m.is_slow())
+}
+
 /// A lattice of windows.
 fn grid(columns: usize, rows: usize) -> Layout {
     let mut elements = Vec::new();
@@ -68,7 +73,7 @@ fn completions_respect_what_is_known() {
             partial
                 .forbidden
                 .push(Rect::new(x, 0.0, layout.width / 5.0, layout.height / 2.0));
-            for method in Method::ALL {
+            for method in quick() {
                 check(
                     &partial,
                     method,
@@ -117,9 +122,18 @@ fn random_and_degenerate_inputs_are_completed() {
                 .retain(|e| !half.contains(e.rect.centre().0, e.rect.centre().1));
             partial.unknown = Some(vec![half]);
         }
-        for method in Method::ALL {
+        for method in quick() {
             check(&partial, method, &model, &format!("random {case}"));
         }
+    }
+}
+
+#[test]
+fn slow_methods_respect_what_is_known() {
+    let model = shipped_model().expect("the shipped model");
+    let (partial, _) = Task::Side50.hide(&grid(4, 3), &mut stream(3, "grid", 0));
+    for method in Method::ALL.into_iter().filter(|m| m.is_slow()) {
+        check(&partial, method, &model, method.name());
     }
 }
 

@@ -43,6 +43,11 @@ impl Method {
         Method::Nearest,
     ];
 
+    /// Whether it searches for seconds rather than milliseconds.
+    pub fn is_slow(self) -> bool {
+        matches!(self, Method::Paper | Method::Annealing)
+    }
+
     /// Its name in commands.
     pub fn option(self) -> &'static str {
         match self {
