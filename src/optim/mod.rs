@@ -8,6 +8,7 @@
 pub mod adp;
 pub mod annealing;
 pub mod grid;
+pub mod least_squares;
 pub mod qp;
 pub mod qp_problem;
 mod run;

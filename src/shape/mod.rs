@@ -27,7 +27,7 @@ pub use building::{
     Side, Special,
 };
 pub use building_error::BuildingError;
-pub use building_plan::{PlanEdge, PlanUnion, Visibility, visibility};
+pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
 pub use cleaning::{ToleranceError, absorb_specks, clean, straighten};
 pub use components::{Component, components};
 pub use cuts::Cuts;

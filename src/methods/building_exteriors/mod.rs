@@ -10,6 +10,8 @@ pub mod baseline;
 pub mod compare;
 pub mod data;
 pub mod given;
+pub mod house;
+pub mod mass;
 pub mod model_file;
 pub mod network;
 pub mod schema;

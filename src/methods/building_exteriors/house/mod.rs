@@ -1,0 +1,5 @@
+//! Houses from attributes.
+
+mod database;
+
+pub use database::{Database, DatabaseError};
