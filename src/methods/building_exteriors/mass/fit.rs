@@ -1,6 +1,6 @@
 //! Lines of a scheme moved until the measured attributes are the wanted ones.
 
-use super::scheme::{Line, Scheme};
+use super::scheme::{Block, Line, Scheme};
 use super::target::MassTarget;
 use super::{MASS, max_z};
 use crate::methods::building_exteriors::attributes::mass_attributes;
@@ -22,6 +22,8 @@ const LIMITS: Limits = Limits {
 /// A fitted scheme, its lines on whole millimetres.
 pub(super) struct Fitted {
     pub building: Building,
+    /// Its general boxes.
+    pub blocks: Vec<Block>,
     pub max_z: f64,
     pub evaluations: u64,
 }
@@ -93,6 +95,7 @@ fn once(scheme: &Scheme, target: &MassTarget, deviations: &[f64]) -> (Vec<f64>, 
     let fitted = Fitted {
         max_z: max_z(&measured, &target.wanted[..MASS], deviations),
         building,
+        blocks: scheme.blocks(&x, target.floor_height),
         evaluations: evaluations + 1,
     };
     (x, fitted)

@@ -165,6 +165,21 @@ impl Scheme {
         }
     }
 
+    /// The general boxes with the variables at `x`, to start anew from.
+    pub fn blocks(&self, x: &[f64], floor_height: f64) -> Vec<Block> {
+        let general = self.boxes.iter().filter(|b| b.style == BoxStyle::Main);
+        let blocks = general.map(|b| Block {
+            edges: [0, 1].map(|axis| {
+                let [p, q] = b.lines[axis].map(|line| self.at(axis, line, x));
+                [p.min(q), p.max(q)]
+            }),
+            floors: ((b.height / floor_height).round() as usize).max(1),
+            roof: b.roof,
+            frozen: false,
+        });
+        blocks.collect()
+    }
+
     /// Signed extents of the general boxes.
     pub fn thicknesses<'a>(&'a self, x: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let general = self.boxes.iter().filter(|b| b.style == BoxStyle::Main);

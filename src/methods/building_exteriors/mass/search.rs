@@ -28,7 +28,7 @@ impl Default for Search {
     fn default() -> Self {
         Self {
             donors: 8,
-            rounds: 60,
+            rounds: 100,
             enough: 0.008,
             leave_out: None,
         }
@@ -58,6 +58,8 @@ pub struct MassError {
 
 /// Random arrangements looked at for one that is fitted.
 const GLANCES: usize = 30;
+/// Rounds of wholly random arrangements at first.
+const OPENING: usize = 8;
 
 /// Finds boxes with the wanted attributes.
 ///
@@ -70,50 +72,63 @@ pub fn search(
     options: &Search,
     rng: &mut impl Rng,
 ) -> Result<MassModel, MassError> {
-    let mut best: Option<MassModel> = None;
-    let mut evaluations = 0;
     let deviations = &database.deviations[..MASS];
-    let mut done = |fitted: Fitted, donor: Option<usize>, best: &mut Option<MassModel>| {
-        evaluations += fitted.evaluations;
-        let better = best.as_ref().is_none_or(|b| fitted.max_z < b.max_z);
-        if better && is_sound(&fitted.building) && has_boxes(&fitted.building) {
-            *best = Some(MassModel {
-                building: fitted.building,
-                max_z: fitted.max_z,
-                evaluations: 0,
-                donor,
-            });
-        }
-        let max_z = best.as_ref().map_or(f64::INFINITY, |b| b.max_z);
-        (max_z <= options.enough, evaluations)
-    };
-    let mut total = 0;
-    let mut found = false;
+    let mut found = Found::default();
     for (index, mirrored) in nearest(target, database, options) {
         let (mut blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         replace(&mut blocks, frozen);
         let scheme = Scheme::new(&blocks, roofs, target);
-        let fitted = fit(&scheme, target, deviations, options.enough);
-        (found, total) = done(fitted, Some(index), &mut best);
-        if found {
+        found.add(fit(&scheme, target, deviations, options.enough), Some(index));
+        if found.max_z() <= options.enough {
             break;
         }
     }
-    let mut round = 0;
-    while !found && round < options.rounds {
-        round += 1;
-        let Some(scheme) = random_scheme(target, frozen, deviations, rng) else {
-            continue;
-        };
-        let fitted = fit(&scheme, target, deviations, options.enough);
-        (found, total) = done(fitted, None, &mut best);
-        total += GLANCES as u64;
+    for round in 0..options.rounds {
+        if found.max_z() <= options.enough {
+            break;
+        }
+        // Every other round changes the best arrangement so far, once there have been a few to choose from.
+        let near = (round >= OPENING && round % 2 == 1).then(|| found.nearest.clone()).flatten();
+        found.evaluations += GLANCES as u64;
+        if let Some(scheme) = random_scheme(target, near.as_deref(), frozen, deviations, rng) {
+            found.add(fit(&scheme, target, deviations, options.enough), None);
+        }
     }
-    let best = best.ok_or(MassError { evaluations: total })?;
+    let evaluations = found.evaluations;
+    let best = found.best.ok_or(MassError { evaluations })?;
     Ok(MassModel {
-        evaluations: total,
+        evaluations,
         ..best
     })
+}
+
+/// The best so far.
+#[derive(Default)]
+struct Found {
+    best: Option<MassModel>,
+    evaluations: u64,
+    /// General boxes of the best.
+    nearest: Option<Vec<Block>>,
+}
+
+impl Found {
+    fn max_z(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.max_z)
+    }
+
+    fn add(&mut self, fitted: Fitted, donor: Option<usize>) {
+        self.evaluations += fitted.evaluations;
+        if fitted.max_z >= self.max_z() || !(is_sound(&fitted.building) && has_boxes(&fitted.building)) {
+            return;
+        }
+        self.nearest = Some(fitted.blocks);
+        self.best = Some(MassModel {
+            building: fitted.building,
+            max_z: fitted.max_z,
+            evaluations: 0,
+            donor,
+        });
+    }
 }
 
 /// Several different mass models of one target: each plan at least `apart` (1 - IoU) from the others.
@@ -156,7 +171,7 @@ pub fn variations(
         if found.len() == count {
             break;
         }
-        if let Some(scheme) = random_scheme(target, &[], deviations, rng) {
+        if let Some(scheme) = random_scheme(target, None, &[], deviations, rng) {
             keep(fit(&scheme, target, deviations, 0.05), None, &mut found);
         }
     }
@@ -175,13 +190,17 @@ fn iou(a: &Building, b: &Building) -> f64 {
 /// The best of a few random arrangements, at a glance.
 fn random_scheme(
     target: &MassTarget,
+    near: Option<&[Block]>,
     frozen: &[Block],
     deviations: &[f64],
     rng: &mut impl Rng,
 ) -> Option<Scheme> {
     let mut best: Option<(f64, Scheme)> = None;
     for _ in 0..GLANCES {
-        let mut blocks = random::blocks(target, None, rng);
+        let mut blocks = match near {
+            Some(blocks) => random::changed(blocks, target, rng),
+            None => random::blocks(target, None, rng),
+        };
         replace(&mut blocks, frozen);
         let scheme = Scheme::new(&blocks, [PLAIN; 3], target);
         let building = scheme.building(&scheme.start, target.floor_height);
