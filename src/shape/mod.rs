@@ -16,6 +16,7 @@ mod elements;
 mod facade;
 mod label_grid;
 mod rect;
+pub mod solid;
 pub mod scene;
 mod splittable;
 #[cfg(test)]
