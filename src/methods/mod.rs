@@ -3,3 +3,4 @@
 pub mod building_exteriors;
 pub mod facade_grammar;
 pub mod procedural_logic;
+pub mod structure_completion;

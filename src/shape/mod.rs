@@ -5,6 +5,7 @@
 //! - [`Building`]: boxes, roofs and facade pieces (Fan and Wonka 2016, Sec. 4.1).
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
+mod annotated;
 mod building;
 mod building_error;
 mod building_plan;
@@ -17,12 +18,12 @@ mod facade;
 mod label_grid;
 mod rect;
 pub mod solid;
-pub mod scene;
 mod splittable;
 #[cfg(test)]
 mod tests;
 mod tiling;
 
+pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{
     BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof, RoofStyle,
     Side, Special,

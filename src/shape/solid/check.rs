@@ -56,6 +56,45 @@ pub enum SurfaceError {
 }
 
 impl Surface {
+    /// The surface without its enclosed hollows (shells of negative volume), and their volume: corners under eaves
+    /// that nothing reaches are solid.
+    #[must_use]
+    pub fn filled(self) -> (Self, f64) {
+        let mut owner: FxHashMap<(u32, u32), usize> = FxHashMap::default();
+        for (k, (t, _)) in self.triangles.iter().enumerate() {
+            for i in 0..3 {
+                owner.insert((t[i], t[(i + 1) % 3]), k);
+            }
+        }
+        let mut parent: Vec<usize> = (0..self.triangles.len()).collect();
+        for (&(v, w), &k) in &owner {
+            if let Some(&other) = owner.get(&(w, v)) {
+                let (a, b) = (root(&mut parent, k), root(&mut parent, other));
+                parent[a.max(b)] = a.min(b);
+            }
+        }
+        let mut volumes: FxHashMap<usize, f64> = FxHashMap::default();
+        let shells: Vec<usize> = (0..parent.len()).map(|k| root(&mut parent, k)).collect();
+        for ((t, _), shell) in self.triangles.iter().zip(&shells) {
+            let corners = t.map(|v| self.positions[v as usize]);
+            *volumes.entry(*shell).or_default() += tetrahedron(corners, self.positions[0]);
+        }
+        let mut hollow = 0.0;
+        let mut kept: Vec<usize> = volumes.keys().copied().collect();
+        kept.sort_unstable();
+        for shell in &kept {
+            hollow += (-volumes[shell]).max(0.0);
+        }
+        let triangles = self.triangles.iter().zip(&shells);
+        let triangles = triangles.filter(|(_, shell)| volumes[shell] > 0.0);
+        let triangles = triangles.map(|(t, _)| *t).collect();
+        let surface = Self {
+            positions: self.positions,
+            triangles,
+        };
+        (surface, hollow)
+    }
+
     /// Checks that each directed edge occurs once and its twin once, corners being told apart by their
     /// coordinates, and measures the surface.
     ///
@@ -90,10 +129,7 @@ impl Surface {
                     return Err(SurfaceError::Twice { at: corners[i] });
                 }
             }
-            let [a, b, c] = corners.map(|p| [0, 1, 2].map(|i| p[i] - middle[i]));
-            volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
-                + a[2] * (b[0] * c[1] - b[1] * c[0]))
-                / 6.0;
+            volume += tetrahedron(corners, middle);
         }
         let mut parent: Vec<usize> = (0..self.triangles.len()).collect();
         let mut shells = parent.len();
@@ -113,6 +149,15 @@ impl Surface {
             volume,
         })
     }
+}
+
+/// Signed volume between a triangle and a point.
+fn tetrahedron(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
+    let [a, b, c] = corners.map(|p| [0, 1, 2].map(|i| p[i] - point[i]));
+    (a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0]))
+        / 6.0
 }
 
 fn root(parent: &mut [usize], mut k: usize) -> usize {

@@ -80,8 +80,49 @@ impl Faces {
         crossings % 2 == 1
     }
 
-    /// Cuts an opening into its wall; `false` when no face of the wall has room for it. Returns the volume
-    /// taken away, negative for what stands out.
+    /// The heights between which a stretch of a wall is bare, around height `z`; `None` where it is not bare there.
+    pub fn free_band(&self, wall: &Wall, span: [f64; 2], z: f64) -> Option<[f64; 2]> {
+        let key = FaceKey::Wall(wall.line());
+        let own = self.faces.iter().filter(|f| f.key == key && f.finish == Finish::Wall);
+        own.filter_map(|face| self.band(face, wall, span, z)).next()
+    }
+
+    fn band(&self, face: &Face, wall: &Wall, [u0, u1]: [f64; 2], z: f64) -> Option<[f64; 2]> {
+        let (mut band, mut inside) = ([f64::NEG_INFINITY, f64::INFINITY], 0);
+        let middle = (u0 + u1) / 2.0;
+        for edge in &face.edges {
+            let [p, q] = edge.map(|v| {
+                let p = self.positions[v as usize];
+                [p[1 - wall.axis], p[2]]
+            });
+            // Edges above the middle of the stretch: an odd number when it is inside.
+            if (p[0] > middle) != (q[0] > middle) {
+                let t = (middle - p[0]) / (q[0] - p[0]);
+                inside += usize::from(p[1] + t * (q[1] - p[1]) > z);
+            }
+            let (p, q) = if p[0] <= q[0] { (p, q) } else { (q, p) };
+            if q[0] <= u0 - CLEAR || p[0] >= u1 + CLEAR {
+                continue;
+            }
+            let at = |u: f64| match q[0] - p[0] {
+                d if d < 1e-9 => None,
+                d => Some(p[1] + (u.clamp(p[0], q[0]) - p[0]) / d * (q[1] - p[1])),
+            };
+            let ends = [at(u0 - CLEAR).unwrap_or(p[1]), at(u1 + CLEAR).unwrap_or(q[1])];
+            let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            if high <= z {
+                band[0] = band[0].max(high);
+            } else if low >= z {
+                band[1] = band[1].min(low);
+            } else {
+                return None;
+            }
+        }
+        (inside % 2 == 1).then_some(band)
+    }
+
+    /// Cuts an opening into its wall and returns the volume taken away, negative for what stands out; `None`
+    /// when no face of the wall has room for it.
     pub fn cut(&mut self, opening: &Opening) -> Option<f64> {
         let wall = &opening.wall;
         let face = self.around(wall, &opening.panel.mouth)?;

@@ -1,5 +1,13 @@
-//! Houses from attributes.
+//! Houses: a building with its attributes as one closed surface (Sec. 6.1), and the database it takes from.
 
 mod database;
+pub mod model;
+pub mod roofs;
+pub mod scene;
+pub mod solids;
+pub mod walls;
+pub mod windows;
 
 pub use database::{Database, DatabaseError};
+pub use model::{Model, model};
+pub use roofs::Joining;
