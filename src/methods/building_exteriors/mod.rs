@@ -9,6 +9,7 @@ pub mod attributes;
 pub mod baseline;
 pub mod compare;
 pub mod data;
+pub mod facade;
 pub mod given;
 pub mod house;
 pub mod mass;

@@ -4,7 +4,10 @@
 //! [`super::render`]. Every pixel sends four rays; each hit asks for the sun and for a few directions of the
 //! sky, spread by a fixed sequence, so that the same scene gives the same bytes.
 
+mod framing;
 mod tree;
+
+pub use framing::framing;
 
 use rayon::prelude::*;
 
@@ -99,7 +102,7 @@ fn light(tree: &Tree, colours: &[V], from: V, ray: V, turn: f32) -> V {
     };
     let seen = [shade(0), shade(1), shade(2)];
     // The ground fades into the horizon.
-    let far = ground.map_or(0.0, |t| 1.0 - (-t / 160.0).exp());
+    let far = ground.map_or(0.0, |t| 1.0 - (-t / 900.0).exp());
     let haze = sky([ray[0], 0.02, ray[2]]);
     [0, 1, 2].map(|i| seen[i] * (1.0 - far) + haze[i] * far)
 }

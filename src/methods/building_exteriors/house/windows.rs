@@ -64,11 +64,11 @@ fn panes(style: ElementStyle, rect: Span) -> Vec<Panel> {
         ElementStyle::Sash => (1, &[0.5, 0.5]),
         ElementStyle::Sliding => (2, &[1.0]),
         ElementStyle::Casement => (2, &[0.68, 0.32]),
-        ElementStyle::Bay => (3, &[0.68, 0.32]),
+        ElementStyle::Bay => (2, &[0.7, 0.3]),
         ElementStyle::Fixed | ElementStyle::Door => (1, &[1.0]),
     };
     let size = [0, 1].map(|a| rect[a][1] - rect[a][0]);
-    let bar = BAR.min(0.08 * size[0]).min(0.08 * size[1]);
+    let bar = BAR.min(0.06 * size[0]).min(0.06 * size[1]);
     let mut panes = Vec::new();
     let width = (size[0] - bar) / columns as f64;
     let mut z = rect[1][0] + bar;
