@@ -28,6 +28,7 @@
 pub mod anneal;
 mod fit;
 pub mod random;
+pub mod repair;
 mod scheme;
 mod search;
 pub mod target;
