@@ -37,6 +37,7 @@ pub mod procedural_logic;
 
 use std::process::ExitCode;
 
+pub use frame::datasets::shipped_bytes;
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
 
 /// Every paper's experiment, in the order of the report.

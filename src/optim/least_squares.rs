@@ -159,11 +159,7 @@ impl<R: Residuals> Solver<Sum<R>, LmState> for LevenbergMarquardt {
 
 impl LevenbergMarquardt {
     /// `J'J` and `J'r` at `x`.
-    fn linearize(
-        &mut self,
-        function: &impl Residuals,
-        x: &[f64],
-    ) -> (DMatrix<f64>, DVector<f64>) {
+    fn linearize(&mut self, function: &impl Residuals, x: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let (m, n) = (self.residuals.len(), x.len());
         let mut jacobian = DMatrix::zeros(m, n);
         let (mut moved, mut out) = (x.to_vec(), Vec::with_capacity(m));
@@ -182,12 +178,7 @@ impl LevenbergMarquardt {
     }
 
     /// The damped step from `x`, no variable changing by more than allowed.
-    fn step(
-        &self,
-        normal: &DMatrix<f64>,
-        gradient: &DVector<f64>,
-        x: &[f64],
-    ) -> Option<Vec<f64>> {
+    fn step(&self, normal: &DMatrix<f64>, gradient: &DVector<f64>, x: &[f64]) -> Option<Vec<f64>> {
         let mut damped = normal.clone();
         for k in 0..x.len() {
             damped[(k, k)] += self.damping * (1.0 + normal[(k, k)]);

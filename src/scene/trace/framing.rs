@@ -16,7 +16,11 @@ pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
     for group in &scene.groups {
         for instance in &group.instances {
             let mesh = &scene.meshes[instance.mesh];
-            corners.extend(mesh.positions.iter().map(|p| group.place(instance.place(*p))));
+            corners.extend(
+                mesh.positions
+                    .iter()
+                    .map(|p| group.place(instance.place(*p))),
+            );
         }
     }
     let forward = unit(direction);
@@ -24,7 +28,9 @@ pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
     let up = cross(right, forward);
     let extent = |axis: V| {
         let along = corners.iter().map(|p| dot(*p, axis));
-        let (low, high) = along.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = along.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        });
         if low <= high { (low, high) } else { (0.0, 1.0) }
     };
     let slope = (ANGLE.to_radians() / 2.0).tan();
@@ -42,8 +48,12 @@ pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
         };
         back = corners.iter().map(least).fold(1.0, f32::max);
         let seen = |axis: V, centre: f32| {
-            let each = corners.iter().map(|p| (dot(*p, axis) - centre) / (dot(*p, forward) + back).max(0.1));
-            let (low, high) = each.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let each = corners
+                .iter()
+                .map(|p| (dot(*p, axis) - centre) / (dot(*p, forward) + back).max(0.1));
+            let (low, high) = each.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
             if low <= high { (low + high) / 2.0 } else { 0.0 }
         };
         x += seen(right, x) * back;

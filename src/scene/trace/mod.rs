@@ -109,7 +109,11 @@ fn light(tree: &Tree, colours: &[V], from: V, ray: V, turn: f32) -> V {
 
 /// Share of the sky that a point sees, from cosine-weighted directions.
 fn openness(tree: &Tree, point: V, normal: V, turn: f32) -> f32 {
-    let side = if normal[1].abs() < 0.9 { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] };
+    let side = if normal[1].abs() < 0.9 {
+        [0.0, 1.0, 0.0]
+    } else {
+        [1.0, 0.0, 0.0]
+    };
     let across = unit(cross(side, normal));
     let along = cross(normal, across);
     let mut open = 0.0;

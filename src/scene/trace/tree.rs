@@ -50,7 +50,10 @@ impl Tree {
             }
             out
         };
-        let (low, high) = (fold(f32::INFINITY, f32::min), fold(f32::NEG_INFINITY, f32::max));
+        let (low, high) = (
+            fold(f32::INFINITY, f32::min),
+            fold(f32::NEG_INFINITY, f32::max),
+        );
         let index = self.nodes.len();
         self.nodes.push(Node {
             low,

@@ -46,7 +46,12 @@ fn frame(prisms: &[Prism]) -> Option<Polygon> {
     let (y0, y1) = (ys.clone().min()? - margin, ys.max()? + margin);
     let corner = |x, y| Point::new(x, y, 1);
     Some(Polygon {
-        vertices: vec![corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)],
+        vertices: vec![
+            corner(x0, y0),
+            corner(x1, y0),
+            corner(x1, y1),
+            corner(x0, y1),
+        ],
         lines: vec![
             Line::new(0, 1, -y0),
             Line::new(1, 0, -x1),

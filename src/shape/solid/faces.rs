@@ -78,7 +78,11 @@ pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &Plan) -> Faces {
                 finish,
                 ring,
             };
-            pieces.push(flat(top, FaceKey::Top(*upper), finish_of_top(prisms, cell, upper)));
+            pieces.push(flat(
+                top,
+                FaceKey::Top(*upper),
+                finish_of_top(prisms, cell, upper),
+            ));
             let finish = finish_of_bottom(prisms, cell, lower);
             pieces.push(flat(bottom, FaceKey::Bottom(*lower), finish));
         }
@@ -88,11 +92,22 @@ pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &Plan) -> Faces {
             let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
             let other = plan.left.get(&(b, a)).map(|&o| &cells[o as usize]);
             let edge = Edge { a, b, line: *line };
-            walls(prisms, &cells[k], other, edge, plan, &mut vertices, &mut pieces);
+            walls(
+                prisms,
+                &cells[k],
+                other,
+                edge,
+                plan,
+                &mut vertices,
+                &mut pieces,
+            );
         }
     }
     vertices.sort();
-    let pieces = pieces.into_iter().map(|p| vertices.split_upright(p)).collect();
+    let pieces = pieces
+        .into_iter()
+        .map(|p| vertices.split_upright(p))
+        .collect();
     simplified(merged(pieces), vertices.positions)
 }
 
@@ -305,7 +320,13 @@ fn simplified(mut faces: Vec<Face>, positions: Vec<[f64; 3]>) -> Faces {
         };
         // One face passes from a to b, the other back.
         let straight = a.1 == out[1].1 && b.1 == out[0].1;
-        if straight && collinear(positions[a.1 as usize], positions[v], positions[b.1 as usize]) {
+        if straight
+            && collinear(
+                positions[a.1 as usize],
+                positions[v],
+                positions[b.1 as usize],
+            )
+        {
             dropped.insert(v as u32);
         }
     }

@@ -152,7 +152,9 @@ fn section(columns: &[Column], segments: &[Segment], x: f64) -> f64 {
             continue;
         }
         stack.clear();
-        let over = columns.iter().filter(|c| c.region.iter().all(|h| at(h, x, y) > 0.0));
+        let over = columns
+            .iter()
+            .filter(|c| c.region.iter().all(|h| at(h, x, y) > 0.0));
         stack.extend(over.map(|c| (at(&c.lower, x, y), at(&c.upper, x, y))));
         stack.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut length, mut top) = (0.0, f64::NEG_INFINITY);

@@ -83,7 +83,10 @@ impl Faces {
     /// The heights between which a stretch of a wall is bare, around height `z`; `None` where it is not bare there.
     pub fn free_band(&self, wall: &Wall, span: [f64; 2], z: f64) -> Option<[f64; 2]> {
         let key = FaceKey::Wall(wall.line());
-        let own = self.faces.iter().filter(|f| f.key == key && f.finish == Finish::Wall);
+        let own = self
+            .faces
+            .iter()
+            .filter(|f| f.key == key && f.finish == Finish::Wall);
         own.filter_map(|face| self.band(face, wall, span, z)).next()
     }
 
@@ -108,7 +111,10 @@ impl Faces {
                 d if d < 1e-9 => None,
                 d => Some(p[1] + (u.clamp(p[0], q[0]) - p[0]) / d * (q[1] - p[1])),
             };
-            let ends = [at(u0 - CLEAR).unwrap_or(p[1]), at(u1 + CLEAR).unwrap_or(q[1])];
+            let ends = [
+                at(u0 - CLEAR).unwrap_or(p[1]),
+                at(u1 + CLEAR).unwrap_or(q[1]),
+            ];
             let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
             if high <= z {
                 band[0] = band[0].max(high);
@@ -134,7 +140,11 @@ impl Faces {
     /// Vertices of a rectangle, counterclockwise seen from outside.
     fn corners(&mut self, wall: &Wall, span: &Span, depth: f64) -> [u32; 4] {
         let [[u0, u1], [z0, z1]] = *span;
-        let (u0, u1) = if wall.runs_right() { (u0, u1) } else { (u1, u0) };
+        let (u0, u1) = if wall.runs_right() {
+            (u0, u1)
+        } else {
+            (u1, u0)
+        };
         let outwards = if wall.positive { 1.0 } else { -1.0 };
         [(u0, z0), (u1, z0), (u1, z1), (u0, z1)].map(|(u, z)| {
             let mut p = [0.0, 0.0, z];

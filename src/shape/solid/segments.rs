@@ -23,7 +23,13 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
     let mut points = Points::default();
     let corners: Vec<Vec<u32>> = cells
         .iter()
-        .map(|c| c.polygon.vertices.iter().map(|v| points.index(*v)).collect())
+        .map(|c| {
+            c.polygon
+                .vertices
+                .iter()
+                .map(|v| points.index(*v))
+                .collect()
+        })
         .collect();
     let mut by_line: FxHashMap<Line, OnLine> = FxHashMap::default();
     for cell in cells {
@@ -72,9 +78,8 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
 
 /// Points strictly between the ends where a plane of one cell crosses one of the other.
 fn crossings(a: &Cell, b: &Cell, line: &Line, ends: &[Point; 2]) -> Vec<Point> {
-    let planes = |c: &Cell| -> Vec<Plane> {
-        c.intervals.iter().flat_map(|(l, u)| [*l, *u]).collect()
-    };
+    let planes =
+        |c: &Cell| -> Vec<Plane> { c.intervals.iter().flat_map(|(l, u)| [*l, *u]).collect() };
     let mut found = Vec::new();
     for p in planes(a) {
         for q in planes(b) {

@@ -40,7 +40,10 @@ pub(super) fn choices(
     let mut found: Vec<Choice> = Vec::new();
     for mask in 0..1_u32 << free.len() {
         let chosen = |k: usize| mask >> k & 1 == 1;
-        let sum: f64 = (0..free.len()).filter(|&k| chosen(k)).map(|k| area(&strips[free[k]])).sum();
+        let sum: f64 = (0..free.len())
+            .filter(|&k| chosen(k))
+            .map(|k| area(&strips[free[k]]))
+            .sum();
         let mut asymmetric = vec![false; strips.len()];
         for k in (0..free.len()).filter(|&k| chosen(k)) {
             asymmetric[free[k]] = true;

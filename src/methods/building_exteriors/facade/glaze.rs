@@ -55,7 +55,10 @@ pub(super) fn glaze(
             });
             let mut own = openings(walls, strip, room, plan, spacing);
             let door = plan.door && room.piece.floor == 0 && !has_door;
-            if let Some(k) = door.then(|| door_place(walls, strip, room, plan, &own)).flatten() {
+            if let Some(k) = door
+                .then(|| door_place(walls, strip, room, plan, &own))
+                .flatten()
+            {
                 has_door = true;
                 own[k].style = ElementStyle::Door;
             }
@@ -83,7 +86,9 @@ pub(super) fn glaze(
         let [width, height] = slot.size(low);
         let y = match slot.style {
             ElementStyle::Door => 0.0,
-            _ => (EYE - height / 2.0).min(slot.free[1] - height).max(slot.free[0]),
+            _ => (EYE - height / 2.0)
+                .min(slot.free[1] - height)
+                .max(slot.free[0]),
         };
         pieces[slot.piece].elements.push(FacadeElement {
             style: slot.style,
@@ -108,7 +113,10 @@ fn openings(walls: &Walls, strip: &Strip, room: &Room, plan: &Plan, spacing: f64
         walls.free(room, [at - width / 2.0, at + width / 2.0])
     };
     let slim = SLIMMEST.min(widest);
-    let bare: Vec<bool> = places.iter().map(|(c, _)| free(*c, slim).is_some()).collect();
+    let bare: Vec<bool> = places
+        .iter()
+        .map(|(c, _)| free(*c, slim).is_some())
+        .collect();
     let kept: Vec<f64> = (0..places.len())
         .filter(|&k| bare[k] && (!plan.symmetric || bare[places.len() - 1 - k]))
         .map(|k| places[k].0)
@@ -211,8 +219,12 @@ impl Slot {
             return DOOR;
         }
         [
-            (WINDOW[0] * scale).min(self.widest).max(SLIMMEST.min(self.widest)),
-            (WINDOW[1] * scale).min(TALLEST).min(self.free[1] - self.free[0]),
+            (WINDOW[0] * scale)
+                .min(self.widest)
+                .max(SLIMMEST.min(self.widest)),
+            (WINDOW[1] * scale)
+                .min(TALLEST)
+                .min(self.free[1] - self.free[0]),
         ]
     }
 }

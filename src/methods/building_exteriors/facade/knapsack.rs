@@ -35,7 +35,11 @@ pub fn widths(suggested: &[f64], lower: &[f64], upper: &[f64], total: f64) -> Op
     // Between two stops the sum is linear.
     let (a, b) = (stops[k - 1], stops[k]);
     let (below, above) = (sum(a), sum(b));
-    let share = if above > below { (total - below) / (above - below) } else { 0.0 };
+    let share = if above > below {
+        (total - below) / (above - below)
+    } else {
+        0.0
+    };
     Some(at(a + share * (b - a)))
 }
 
@@ -61,12 +65,18 @@ mod tests {
             for (i, w) in suggested.iter().enumerate() {
                 program.pull(i, *w, 1.0);
             }
-            program.equalities.push(Row::new((0..n).map(|i| (i, 1.0)), total));
+            program
+                .equalities
+                .push(Row::new((0..n).map(|i| (i, 1.0)), total));
             program.lower.copy_from_slice(&lower);
             program.upper.copy_from_slice(&upper);
             let oracle = solve(&program, QpOptions::default()).unwrap();
             for (w, x) in found.iter().zip(&oracle.x) {
-                assert!((w - x).abs() < 1e-5, "case {case}: {found:?}, {:?}", oracle.x);
+                assert!(
+                    (w - x).abs() < 1e-5,
+                    "case {case}: {found:?}, {:?}",
+                    oracle.x
+                );
             }
         }
     }
@@ -75,6 +85,9 @@ mod tests {
     fn a_sum_out_of_reach_is_refused() {
         assert_eq!(widths(&[1.0], &[0.5], &[1.5], 2.0), None);
         assert_eq!(widths(&[1.0], &[1.5], &[0.5], 1.0), None);
-        assert_eq!(widths(&[1.0, 1.0], &[0.5; 2], &[1.5; 2], 3.0), Some(vec![1.5, 1.5]));
+        assert_eq!(
+            widths(&[1.0, 1.0], &[0.5; 2], &[1.5; 2], 3.0),
+            Some(vec![1.5, 1.5])
+        );
     }
 }

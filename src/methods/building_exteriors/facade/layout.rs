@@ -63,7 +63,9 @@ pub fn furnish(
             cuts: target.cuts,
             evaluations: 0,
         };
-        let door = (side == Side::Front).then(|| door_strip(building, &walls)).flatten();
+        let door = (side == Side::Front)
+            .then(|| door_strip(building, &walls))
+            .flatten();
         let (pieces, z) = search.run(door);
         out.evaluations += search.evaluations;
         out.max_z = out.max_z.max(z);
@@ -77,7 +79,11 @@ pub fn furnish(
 fn shared(styles: &[ElementStyle], side: usize) -> Vec<ElementStyle> {
     let mut own: Vec<ElementStyle> = styles.first().copied().into_iter().collect();
     for (k, style) in styles.iter().enumerate().skip(1) {
-        let home = if *style == ElementStyle::Bay { 0 } else { [0, 1, 3, 2, 1][k] };
+        let home = if *style == ElementStyle::Bay {
+            0
+        } else {
+            [0, 1, 3, 2, 1][k]
+        };
         if home == side {
             own.push(*style);
         }
@@ -98,7 +104,10 @@ fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle]) {
         let Some(most) = most.filter(|s| count(*s) > 1) else {
             continue;
         };
-        let last = pieces.iter_mut().rev().find(|p| windows(p) && shows(p, most));
+        let last = pieces
+            .iter_mut()
+            .rev()
+            .find(|p| windows(p) && shows(p, most));
         for e in last.into_iter().flat_map(|p| &mut p.elements) {
             if e.style == most {
                 e.style = *style;
@@ -121,7 +130,11 @@ fn door_strip(building: &Building, walls: &Walls) -> Option<usize> {
         let middle = (strip.start + strip.end) / 2.0;
         let ground = strip.rooms.iter().find(|r| r.piece.floor == 0);
         strip.width() >= 1.3
-            && ground.is_some_and(|r| walls.free(r, [middle - 0.5, middle + 0.5]).is_some_and(|f| f[1] > 2.15))
+            && ground.is_some_and(|r| {
+                walls
+                    .free(r, [middle - 0.5, middle + 0.5])
+                    .is_some_and(|f| f[1] > 2.15)
+            })
     };
     let fitting: Vec<usize> = (0..strips.len()).filter(fits).collect();
     let under = fitting
@@ -152,7 +165,11 @@ impl SideSearch<'_> {
     /// The pieces nearest to the wanted attributes, and their distance.
     fn run(&mut self, door: Option<usize>) -> (Vec<FacadePiece>, f64) {
         let mut best: Option<(Vec<FacadePiece>, f64, f64)> = None;
-        let total: f64 = self.strips.iter().map(|s| s.width() * s.rooms.len() as f64).sum();
+        let total: f64 = self
+            .strips
+            .iter()
+            .map(|s| s.width() * s.rooms.len() as f64)
+            .sum();
         let wanted = (1.0 - self.wanted[1]) * total;
         let enough = 0.01 * self.deviations[1] * total;
         for spacing in SPACINGS {
@@ -165,7 +182,10 @@ impl SideSearch<'_> {
                     let ratio = self.wanted[0];
                     let pieces = glaze(self.walls, &strips, &plans, ratio, spacing);
                     let (z, sum) = self.distance(&pieces);
-                    if best.as_ref().is_none_or(|(_, least, all)| (z, sum) < (*least - 1e-9, *all)) {
+                    if best
+                        .as_ref()
+                        .is_none_or(|(_, least, all)| (z, sum) < (*least - 1e-9, *all))
+                    {
                         best = Some((pieces, z, sum));
                     }
                     if z <= ENOUGH {
@@ -245,7 +265,12 @@ impl SideSearch<'_> {
             .iter()
             .enumerate()
             .map(|(k, s)| {
-                let floors: Vec<usize> = s.rooms.iter().filter(|r| !r.taken).map(|r| r.piece.floor).collect();
+                let floors: Vec<usize> = s
+                    .rooms
+                    .iter()
+                    .filter(|r| !r.taken)
+                    .map(|r| r.piece.floor)
+                    .collect();
                 let above = |a: &usize| floors.iter().filter(|b| *b > a).count();
                 (k, floors.iter().map(above).sum())
             })
@@ -255,8 +280,15 @@ impl SideSearch<'_> {
         let total: usize = pairs.iter().map(|p| p.1).sum();
         let mut ranked: Vec<(f64, u32)> = (0..1_u32 << pairs.len())
             .map(|mask| {
-                let out: usize = (0..pairs.len()).filter(|k| mask >> k & 1 == 1).map(|k| pairs[k].1).sum();
-                let share = if total == 0 { 0.0 } else { 1.0 - out as f64 / total as f64 };
+                let out: usize = (0..pairs.len())
+                    .filter(|k| mask >> k & 1 == 1)
+                    .map(|k| pairs[k].1)
+                    .sum();
+                let share = if total == 0 {
+                    0.0
+                } else {
+                    1.0 - out as f64 / total as f64
+                };
                 ((share - self.wanted[2]).abs(), mask)
             })
             .collect();

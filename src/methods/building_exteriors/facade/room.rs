@@ -76,7 +76,10 @@ impl<'a> Walls<'a> {
         let base = room.piece.floor as f64 * self.floor_height;
         let span = [span[0] - CLEAR, span[1] + CLEAR];
         let band = self.shell.free_band(&room.piece.wall(), span, base + EYE)?;
-        let ends = [band[0].max(base) - base + CLEAR, band[1].min(base + self.floor_height) - base - CLEAR];
+        let ends = [
+            band[0].max(base) - base + CLEAR,
+            band[1].min(base + self.floor_height) - base - CLEAR,
+        ];
         (ends[1] - ends[0] > 0.3).then_some(ends)
     }
 }

@@ -3,10 +3,10 @@
 use rand::Rng;
 use serde::Serialize;
 
+use super::Database;
 use super::model::{Model, model};
 use super::roofs::Joining;
 use super::solids::prisms;
-use super::Database;
 use crate::methods::building_exteriors::attributes::{AttributeError, attributes};
 use crate::methods::building_exteriors::facade::{FacadeTarget, furnish};
 use crate::methods::building_exteriors::mass::repair::{Change, Contradiction, check, repair};
@@ -110,7 +110,7 @@ pub fn generate(
     if given.iter().all(|g| *g) {
         check(&row)?;
     }
-    let repaired = repair(&mut row, given);
+    let repaired = repair(&mut row, given, &database.deviations);
     let target = MassTarget::new(std::array::from_fn(|c| row[c]));
     let mass = search(&target, &[], database, &options.search, rng)?;
     finish(name, wanted, &row, repaired, mass, database, options)
@@ -135,7 +135,11 @@ pub fn finish(
     building.unit = "m".into();
     roof(&mut building.boxes, [flag(39), flag(40), flag(41)]);
     let special = [(47, Special::Chimney), (48, Special::Tower)];
-    building.special = special.into_iter().filter(|(c, _)| flag(*c)).map(|(_, s)| s).collect();
+    building.special = special
+        .into_iter()
+        .filter(|(c, _)| flag(*c))
+        .map(|(_, s)| s)
+        .collect();
     let shell = faces(&prisms(&building, options.joining));
     let facades = furnish(
         &building,
@@ -149,7 +153,10 @@ pub fn finish(
     );
     building.facades = facades.pieces;
     let model = model(&building, options.joining)?;
-    let reached: Vec<f64> = attributes(&building)?.into_iter().map(|v| v.unwrap_or(0.0)).collect();
+    let reached: Vec<f64> = attributes(&building)?
+        .into_iter()
+        .map(|v| v.unwrap_or(0.0))
+        .collect();
     let z = |c: usize| ((reached[c] - wanted[c]) / database.deviations[c]).abs();
     let deviations = &database.deviations;
     let report = HouseReport {
@@ -181,10 +188,17 @@ pub fn finish(
 /// longer side. Without any flag all roofs are sheds, which no attribute tells.
 fn roof(boxes: &mut [MassBox], flags: [bool; 3]) {
     let styles = [RoofStyle::Flat, RoofStyle::Gable, RoofStyle::Hip];
-    let flagged: Vec<RoofStyle> = styles.into_iter().zip(flags).filter(|(_, f)| *f).map(|(s, _)| s).collect();
+    let flagged: Vec<RoofStyle> = styles
+        .into_iter()
+        .zip(flags)
+        .filter(|(_, f)| *f)
+        .map(|(s, _)| s)
+        .collect();
     let area = |b: &MassBox| b.width * b.depth;
     let shown = |s: RoofStyle| {
-        let own = boxes.iter().filter(|b| b.roof.style == s && b.style == BoxStyle::Main);
+        let own = boxes
+            .iter()
+            .filter(|b| b.roof.style == s && b.style == BoxStyle::Main);
         own.map(area).sum::<f64>()
     };
     let main = flagged
@@ -194,7 +208,11 @@ fn roof(boxes: &mut [MassBox], flags: [bool; 3]) {
         .unwrap_or(RoofStyle::Shed);
     for b in boxes.iter_mut() {
         b.roof.style = main;
-        b.roof.ridge = if b.width >= b.depth { Ridge::X } else { Ridge::Y };
+        b.roof.ridge = if b.width >= b.depth {
+            Ridge::X
+        } else {
+            Ridge::Y
+        };
     }
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let rank = |b: &MassBox| match b.style {

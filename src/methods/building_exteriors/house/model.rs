@@ -4,7 +4,9 @@ use super::roofs::Joining;
 use super::solids::prisms;
 use super::walls::{WallPiece, wall_pieces, walls_of_pieces};
 use super::windows::{bare, cased, garage_door};
-use crate::shape::solid::{Faces, Finish, Opening, Prism, Report, Span, Surface, SurfaceError, Wall, faces, integral};
+use crate::shape::solid::{
+    Faces, Finish, Opening, Prism, Report, Span, Surface, SurfaceError, Wall, faces, integral,
+};
 use crate::shape::{BoxStyle, Building, ElementStyle, Side};
 
 /// A house one could print.
@@ -92,26 +94,36 @@ fn place(shell: &mut Faces, wall: &Wall, style: ElementStyle, mut rect: Span) ->
 
 /// Where the garage door goes: on the widest free stretch of a wall of the garage, in front if there is one.
 pub(crate) fn garage_opening(building: &Building, shell: &Faces) -> Option<(Wall, Span)> {
-    garage_walls(building).into_iter().find_map(|(piece, height)| {
-        let wall = piece.wall();
-        let width = (piece.end - piece.start - 0.5).min(GARAGE[1]);
-        let middle = (piece.start + piece.end) / 2.0;
-        let span = [middle - width / 2.0, middle + width / 2.0];
-        if width < GARAGE[0] {
-            return None;
-        }
-        let free = shell.free_band(&wall, span, 1.0)?;
-        let rect = [
-            span,
-            [free[0] + THRESHOLD, (height - LINTEL).min(2.2).min(free[1] - 0.05)],
-        ];
-        (rect[1][1] > 1.8 && shell.around(&wall, &rect).is_some()).then_some((wall, rect))
-    })
+    garage_walls(building)
+        .into_iter()
+        .find_map(|(piece, height)| {
+            let wall = piece.wall();
+            let width = (piece.end - piece.start - 0.5).min(GARAGE[1]);
+            let middle = (piece.start + piece.end) / 2.0;
+            let span = [middle - width / 2.0, middle + width / 2.0];
+            if width < GARAGE[0] {
+                return None;
+            }
+            let free = shell.free_band(&wall, span, 1.0)?;
+            let rect = [
+                span,
+                [
+                    free[0] + THRESHOLD,
+                    (height - LINTEL).min(2.2).min(free[1] - 0.05),
+                ],
+            ];
+            (rect[1][1] > 1.8 && shell.around(&wall, &rect).is_some()).then_some((wall, rect))
+        })
 }
 
 /// Wall pieces of the ground floor that bound the garage, best first, with its height.
 pub(crate) fn garage_walls(building: &Building) -> Vec<(WallPiece, f64)> {
-    let garages = || building.boxes.iter().filter(|b| b.style == BoxStyle::Garage);
+    let garages = || {
+        building
+            .boxes
+            .iter()
+            .filter(|b| b.style == BoxStyle::Garage)
+    };
     let mut found: Vec<(WallPiece, f64)> = Vec::new();
     for piece in wall_pieces(building).into_iter().filter(|p| p.floor == 0) {
         for g in garages() {

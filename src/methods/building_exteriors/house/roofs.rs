@@ -32,7 +32,14 @@ pub fn plan_units(r: &Rect) -> [i128; 4] {
 pub fn planes(b: &MassBox) -> Vec<Plane> {
     let plan = plan_units(&b.plan());
     let slope = (b.roof.pitch.to_radians().tan().min(10.0) * SLOPES as f64).round() as i128;
-    rising(b.roof.style, b.roof.ridge, slope, plan, units(b.height), [true; 4])
+    rising(
+        b.roof.style,
+        b.roof.ridge,
+        slope,
+        plan,
+        units(b.height),
+        [true; 4],
+    )
 }
 
 /// Planes that rise from the edges left, right, front and back; `hipped` says which edges of a hip roof do.
@@ -69,8 +76,22 @@ fn rising(
             // A pyramid: the planes of both axes meet in one height over the middle.
             let least = (x1 - x0).min(y1 - y0);
             let share = |extent: i128| slope * least / extent.max(1);
-            let mut planes = rising(RoofStyle::Gable, Ridge::Y, share(x1 - x0), [x0, x1, y0, y1], height, hipped);
-            planes.extend(rising(RoofStyle::Gable, Ridge::X, share(y1 - y0), [x0, x1, y0, y1], height, hipped));
+            let mut planes = rising(
+                RoofStyle::Gable,
+                Ridge::Y,
+                share(x1 - x0),
+                [x0, x1, y0, y1],
+                height,
+                hipped,
+            );
+            planes.extend(rising(
+                RoofStyle::Gable,
+                Ridge::X,
+                share(y1 - y0),
+                [x0, x1, y0, y1],
+                height,
+                hipped,
+            ));
             planes
         }
     }
@@ -86,9 +107,10 @@ pub fn merged(building: &Building, boxes: &[&MassBox]) -> Vec<Roofed> {
     let mut roofs = Vec::new();
     for height in heights {
         let own: Vec<&&MassBox> = boxes.iter().filter(|b| units(b.height) == height).collect();
-        let Some(main) = own.iter().max_by(|a, b| {
-            (a.width * a.depth).total_cmp(&(b.width * b.depth))
-        }) else {
+        let Some(main) = own
+            .iter()
+            .max_by(|a, b| (a.width * a.depth).total_cmp(&(b.width * b.depth)))
+        else {
             continue;
         };
         let plans: Vec<Rect> = own.iter().map(|b| b.plan()).collect();
@@ -98,7 +120,9 @@ pub fn merged(building: &Building, boxes: &[&MassBox]) -> Vec<Roofed> {
             let plan = plan_units(&r);
             let is_whole = |at: f64, start: f64, end: f64| {
                 let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
-                outline.iter().any(|e| near(e.at, at) && near(e.start, start) && near(e.end, end))
+                outline
+                    .iter()
+                    .any(|e| near(e.at, at) && near(e.start, start) && near(e.end, end))
             };
             let gable = main.roof.style == RoofStyle::Gable;
             let wide = r.width >= r.height;
@@ -133,7 +157,9 @@ fn largest_rectangles(plans: &[Rect]) -> Vec<Rect> {
     let (xs, ys) = (lines(|r| [r.x, r.right()]), lines(|r| [r.y, r.top()]));
     let inside = |i: usize, j: usize| {
         let (x, y) = ((xs[i] + xs[i + 1]) / 2.0, (ys[j] + ys[j + 1]) / 2.0);
-        plans.iter().any(|r| r.x < x && x < r.right() && r.y < y && y < r.top())
+        plans
+            .iter()
+            .any(|r| r.x < x && x < r.right() && r.y < y && y < r.top())
     };
     let full = |i0: usize, i1: usize, j0: usize, j1: usize| {
         (i0..i1).all(|i| (j0..j1).all(|j| inside(i, j)))

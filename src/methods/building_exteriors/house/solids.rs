@@ -56,7 +56,9 @@ pub fn prisms(building: &Building, joining: Joining) -> Vec<Prism> {
     }
     let tallest = general.iter().max_by(|a, b| {
         let key = |b: &MassBox| (b.height, b.width * b.depth);
-        key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
+        key(a)
+            .partial_cmp(&key(b))
+            .unwrap_or(std::cmp::Ordering::Equal)
     });
     if let Some(tallest) = tallest {
         if building.special.contains(&Special::Chimney) {
@@ -153,7 +155,9 @@ fn porch(b: &MassBox, building: &Building, k: usize, out: &mut Vec<Prism>) {
         let n = ((high - low) as f64 * UNIT / BAY).ceil().max(1.0) as i128;
         let inset = post / 2 + units(0.03);
         let (low, high) = (low + inset, high - inset);
-        (0..=n).map(|i| low + (high - low) * i / n).collect::<Vec<_>>()
+        (0..=n)
+            .map(|i| low + (high - low) * i / n)
+            .collect::<Vec<_>>()
     };
     let (xs, ys) = (places(x0, x1), places(y0, y1));
     let last = (xs.len() - 1, ys.len() - 1);
@@ -178,14 +182,18 @@ fn porch(b: &MassBox, building: &Building, k: usize, out: &mut Vec<Prism>) {
 fn is_near_walls(building: &Building, x: i128, y: i128, post: i128) -> bool {
     let margin = post * 3;
     let walls = building.boxes.iter().filter(|b| b.style != BoxStyle::Porch);
-    walls.map(|b| plan_units(&b.plan())).any(|[x0, x1, y0, y1]| {
-        x > x0 - margin && x < x1 + margin && y > y0 - margin && y < y1 + margin
-    })
+    walls
+        .map(|b| plan_units(&b.plan()))
+        .any(|[x0, x1, y0, y1]| {
+            x > x0 - margin && x < x1 + margin && y > y0 - margin && y < y1 + margin
+        })
 }
 
 /// Height of a box's roof over a place of its plan, in units.
 fn roof_at(b: &MassBox, x: i128, y: i128) -> i128 {
-    let heights = planes(b).into_iter().map(|p| (p.a * x + p.b * y + p.c) / 1000);
+    let heights = planes(b)
+        .into_iter()
+        .map(|p| (p.a * x + p.b * y + p.c) / 1000);
     heights.min().unwrap_or(0)
 }
 

@@ -1,7 +1,7 @@
 //! The walls of a building: where its facade pieces are.
 
-use crate::shape::{BoxStyle, Building, FacadePiece, MassBox, PlanEdge, PlanUnion, Rect, Side};
 use crate::shape::solid;
+use crate::shape::{BoxStyle, Building, FacadePiece, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// The wall of one floor between two corners of the outline of any floor, on one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +46,9 @@ fn outline(building: &Building, k: usize) -> Vec<PlanEdge> {
 
 /// All wall pieces by side, strip, floor and depth. A strip of a side lies between two corners of its outlines.
 pub fn wall_pieces(building: &Building) -> Vec<WallPiece> {
-    let outlines: Vec<_> = (0..building.floors()).map(|k| outline(building, k)).collect();
+    let outlines: Vec<_> = (0..building.floors())
+        .map(|k| outline(building, k))
+        .collect();
     let mut pieces = Vec::new();
     for side in Side::ALL {
         let edges = || {
@@ -101,9 +103,9 @@ pub fn walls_of_pieces(building: &Building) -> Vec<Option<WallPiece>> {
                 0
             }
         };
-        let mut over = walls.iter().filter(|w| {
-            w.side == side && w.floor == floor && w.start < middle && middle < w.end
-        });
+        let mut over = walls
+            .iter()
+            .filter(|w| w.side == side && w.floor == floor && w.start < middle && middle < w.end);
         found.push(over.nth(turn).copied());
     }
     found

@@ -21,7 +21,11 @@ pub fn cased(style: ElementStyle, rect: Span) -> Panel {
     if style == ElementStyle::Bay {
         return bay(rect);
     }
-    let below = if style == ElementStyle::Door { 0.0 } else { MARGIN };
+    let below = if style == ElementStyle::Door {
+        0.0
+    } else {
+        MARGIN
+    };
     let mouth = [mouth[0], [rect[1][0] - below, mouth[1][1]]];
     let face = [
         [mouth[0][0] + 0.01, mouth[0][1] - 0.01],
@@ -111,8 +115,18 @@ fn door(rect: Span) -> Panel {
         ]
     };
     leaf.inner = vec![
-        plain(at([0.18, 0.82], [0.08, 0.45]), LEAF + 0.02, Finish::Door, Finish::Door),
-        plain(at([0.18, 0.82], [0.55, 0.9]), LEAF + 0.02, Finish::Door, Finish::Pane),
+        plain(
+            at([0.18, 0.82], [0.08, 0.45]),
+            LEAF + 0.02,
+            Finish::Door,
+            Finish::Door,
+        ),
+        plain(
+            at([0.18, 0.82], [0.55, 0.9]),
+            LEAF + 0.02,
+            Finish::Door,
+            Finish::Pane,
+        ),
     ];
     leaf
 }
@@ -133,8 +147,13 @@ pub fn garage_door(rect: Span) -> Panel {
                 [u + 0.12 * cell[0], u + 0.88 * cell[0]],
                 [z + 0.15 * cell[1], z + 0.85 * cell[1]],
             ];
-            let finish = if j == 3 { Finish::Pane } else { Finish::GarageDoor };
-            leaf.inner.push(plain(own, LEAF + 0.025, Finish::GarageDoor, finish));
+            let finish = if j == 3 {
+                Finish::Pane
+            } else {
+                Finish::GarageDoor
+            };
+            leaf.inner
+                .push(plain(own, LEAF + 0.025, Finish::GarageDoor, finish));
         }
     }
     Panel {

@@ -48,12 +48,7 @@ impl Residuals for Model<'_> {
 
 /// Fits a scheme; then, when some lines come to lie within 10 cm, once more with these made one, if that
 /// reaches the attributes within `enough` too.
-pub(super) fn fit(
-    scheme: &Scheme,
-    target: &MassTarget,
-    deviations: &[f64],
-    enough: f64,
-) -> Fitted {
+pub(super) fn fit(scheme: &Scheme, target: &MassTarget, deviations: &[f64], enough: f64) -> Fitted {
     let (x, first) = once(scheme, target, deviations);
     if first.max_z > enough {
         return first;
@@ -63,7 +58,11 @@ pub(super) fn fit(
     };
     let (_, second) = once(&snapped, target, deviations);
     let evaluations = first.evaluations + second.evaluations;
-    let kept = if second.max_z <= enough { second } else { first };
+    let kept = if second.max_z <= enough {
+        second
+    } else {
+        first
+    };
     Fitted {
         evaluations,
         ..kept

@@ -115,15 +115,26 @@ fn stretch(blocks: &mut [Block], target: &MassTarget, rng: &mut impl Rng) {
         let parts = target.parts.iter().flatten();
         let ends: Vec<f64> = parts.flat_map(|p| [p.x, p.y][axis]).collect();
         let [low_free, high_free] = [0.0, extent].map(|end| ends.contains(&end) && rng.random());
-        let lowest = blocks.iter().map(|b| b.edges[axis][0]).fold(extent, f64::min);
+        let lowest = blocks
+            .iter()
+            .map(|b| b.edges[axis][0])
+            .fold(extent, f64::min);
         let highest = blocks.iter().map(|b| b.edges[axis][1]).fold(0.0, f64::max);
         for block in blocks.iter_mut().filter(|b| !b.frozen) {
             let [low, high] = &mut block.edges[axis];
             if *low == lowest {
-                *low = if low_free { lowest.max(0.1 * extent) } else { 0.0 };
+                *low = if low_free {
+                    lowest.max(0.1 * extent)
+                } else {
+                    0.0
+                };
             }
             if *high == highest {
-                *high = if high_free { highest.min(0.9 * extent) } else { extent };
+                *high = if high_free {
+                    highest.min(0.9 * extent)
+                } else {
+                    extent
+                };
             }
             if *high - *low < 0.5 {
                 (*low, *high) = ((*low - 0.5).max(0.0), (*high + 0.5).min(extent));

@@ -10,6 +10,8 @@ const ABSENT: [f64; 2] = [0.8, 1.2];
 /// Least height of a floor and of a part (m).
 const LEAST_FLOOR: f64 = 2.1;
 const LEAST_PART: f64 = 1.8;
+/// Alignment nearer than this to none or all is none or all.
+const NEARLY: f64 = 0.12;
 /// Room between parts that overlapped (m).
 const APART: f64 = 0.05;
 /// Slack of comparisons of given values (m, or shares).
@@ -29,7 +31,9 @@ pub enum Contradiction {
         expected: &'static str,
     },
     /// A garage or porch reaches outside the bounding box.
-    #[error("{position} = {at} and {size} = {extent} reach from {low:.3} to {high:.3} m, outside 0 to {bound} m ({bounding})")]
+    #[error(
+        "{position} = {at} and {size} = {extent} reach from {low:.3} to {high:.3} m, outside 0 to {bound} m ({bounding})"
+    )]
     Outside {
         /// Column of the position.
         position: &'static str,
@@ -61,7 +65,9 @@ pub enum Contradiction {
         y: f64,
     },
     /// Less boundary than any plan with this bounding box and coverage has.
-    #[error("bdry = {value} is below its bound 2 (bbox.w + bbox.d) / sqrt(bcr bbox.w bbox.d) = {bound:.4} for bcr = {bcr}")]
+    #[error(
+        "bdry = {value} is below its bound 2 (bbox.w + bbox.d) / sqrt(bcr bbox.w bbox.d) = {bound:.4} for bcr = {bcr}"
+    )]
     Boundary {
         /// The boundary complexity.
         value: f64,
@@ -132,7 +138,11 @@ pub fn check(row: &[f64; N]) -> Result<(), Contradiction> {
     for c in 0..3 {
         range(c, row[c] > 0.0, "above zero")?;
     }
-    range(3, row[3] > 0.0 && row[3] <= 1.0 + 1e-9, "above 0, at most 1 (coverage)")?;
+    range(
+        3,
+        row[3] > 0.0 && row[3] <= 1.0 + 1e-9,
+        "above 0, at most 1 (coverage)",
+    )?;
     for (c, value) in row.iter().enumerate().skip(4) {
         range(c, *value >= 0.0, "not below zero")?;
     }
@@ -140,9 +150,17 @@ pub fn check(row: &[f64; N]) -> Result<(), Contradiction> {
         range(c, *value <= 1.0 + 1e-9, "at most 1")?;
     }
     for (c, value) in row.iter().enumerate().take(31).skip(27) {
-        range(c, *value <= 0.9, "at most 0.9 (windows need walls around them)")?;
+        range(
+            c,
+            *value <= 0.9,
+            "at most 0.9 (windows need walls around them)",
+        )?;
     }
-    range(6, (row[6] + row[7] + row[8] - 1.0).abs() < SLACK, "such that the shares of the floors sum to 1")?;
+    range(
+        6,
+        (row[6] + row[7] + row[8] - 1.0).abs() < SLACK,
+        "such that the shares of the floors sum to 1",
+    )?;
     for c in [7, 8] {
         if row[c] > row[c - 1] + SLACK {
             return Err(Contradiction::Floors {
@@ -223,7 +241,7 @@ fn least_boundary(row: &[f64; N]) -> f64 {
 
 /// Moves sampled values as little as needed for a house to have them; given ones stay. What remains impossible is
 /// missed, and the report of the house says by how much.
-pub fn repair(row: &mut [f64; N], given: &[bool; N]) -> Vec<Change> {
+pub fn repair(row: &mut [f64; N], given: &[bool; N], deviations: &[f64; N]) -> Vec<Change> {
     let before = *row;
     let mut set = |row: &mut [f64; N], c: usize, value: f64| {
         if !given[c] && value.is_finite() {
@@ -232,7 +250,13 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N]) -> Vec<Change> {
     };
     for c in 27..39 {
         let most = if c < 31 { 0.6 } else { 1.0 };
-        let value = row[c].clamp(0.0, most);
+        let mut value = row[c].clamp(0.0, most);
+        // A few pairs of pieces have few ratios: what is nearly all or none is all or none.
+        if c >= 35 && value < NEARLY {
+            value = 0.0;
+        } else if c >= 35 && value > 1.0 - NEARLY {
+            value = 1.0;
+        }
         set(row, c, value);
     }
     // Floors.
@@ -244,7 +268,15 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N]) -> Vec<Change> {
     shares[2] = shares[2].min(shares[1]);
     let sum: f64 = shares.iter().sum();
     for (k, share) in shares.into_iter().enumerate() {
-        set(row, 6 + k, if sum > 0.0 { share / sum } else { f64::from(u8::from(k == 0)) });
+        set(
+            row,
+            6 + k,
+            if sum > 0.0 {
+                share / sum
+            } else {
+                f64::from(u8::from(k == 0))
+            },
+        );
     }
     let floors = floors(row) as f64;
     for (c, least) in [(0, 4.0), (1, 4.0), (2, LEAST_FLOOR * floors)] {
@@ -278,6 +310,7 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N]) -> Vec<Change> {
     for (a, b) in [(0, 1), (0, 2), (1, 2)] {
         separate(row, PARTS[a].1, PARTS[b].1, &mut set);
     }
+    share_out(row, given, deviations, &mut set);
     let value = row[3].clamp(0.2, 1.0);
     set(row, 3, value);
     let value = row[4].max(least_boundary(row));
@@ -292,6 +325,39 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N]) -> Vec<Change> {
             to: row[c],
         })
         .collect()
+}
+
+/// Moves coverage, share of the ground floor and floor area ratio so that the third is the first over the second,
+/// by the least sum of squares in standard deviations (one step of Newton's method; what is left goes to the last).
+fn share_out(
+    row: &mut [f64; N],
+    given: &[bool; N],
+    deviations: &[f64; N],
+    set: &mut impl FnMut(&mut [f64; N], usize, f64),
+) {
+    let gap = row[5] * row[6] - row[3];
+    let storeys = row[7] + row[8];
+    let slopes = [(3, -1.0), (5, row[6]), (6, row[5])];
+    let weight = |c: usize| match given[c] || (c == 6 && (storeys <= 0.0 || given[7] || given[8])) {
+        true => 0.0,
+        false => deviations[c].powi(2),
+    };
+    let total: f64 = slopes.iter().map(|(c, s)| weight(*c) * s * s).sum();
+    if total <= 0.0 {
+        return;
+    }
+    let before = row[6];
+    for (c, slope) in slopes {
+        let value = row[c] - gap * weight(c) * slope / total;
+        set(row, c, value);
+    }
+    let scale = (1.0 - row[6]) / (1.0 - before);
+    if weight(6) > 0.0 && scale.is_finite() && scale > 0.0 {
+        for c in [7, 8] {
+            let value = row[c] * scale;
+            set(row, c, value);
+        }
+    }
 }
 
 /// Moves the second of two overlapping parts along the axis on which it has the shorter way, where it has room.
@@ -316,7 +382,9 @@ fn separate(
             }
         }
     }
-    let shortest = ways.into_iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let shortest = ways
+        .into_iter()
+        .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     if let Some((axis, shift)) = shortest {
         let value = row[b + axis] + shift / row[axis];
         set(row, b + axis, value);

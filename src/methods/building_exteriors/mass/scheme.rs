@@ -202,9 +202,15 @@ impl Scheme {
                     continue;
                 };
                 let here = out.start[variable];
-                let others = (0..out.lines[axis].len()).filter(|&j| out.lines[axis][j] != Line::Free(variable));
+                let others = (0..out.lines[axis].len())
+                    .filter(|&j| out.lines[axis][j] != Line::Free(variable));
                 let near = others
-                    .map(|j| (out.lines[axis][j], (out.at(axis, j, &out.start) - here).abs()))
+                    .map(|j| {
+                        (
+                            out.lines[axis][j],
+                            (out.at(axis, j, &out.start) - here).abs(),
+                        )
+                    })
                     .filter(|(_, distance)| *distance < reach)
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((line, _)) = near {
@@ -242,7 +248,9 @@ pub(super) fn donated(
     let mut knots: [Vec<(f64, f64)>; 2] =
         [0, 1].map(|axis| vec![(0.0, 0.0), (b[axis][1] - b[axis][0], target.extent(axis))]);
     for m in &donor.boxes {
-        let Some(k) = part_of(m, middle) else { continue };
+        let Some(k) = part_of(m, middle) else {
+            continue;
+        };
         roofs[k] = m.roof;
         if let Some(part) = &target.parts[k] {
             for (axis, knots) in knots.iter_mut().enumerate() {

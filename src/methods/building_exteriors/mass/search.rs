@@ -78,7 +78,10 @@ pub fn search(
         let (mut blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         replace(&mut blocks, frozen);
         let scheme = Scheme::new(&blocks, roofs, target);
-        found.add(fit(&scheme, target, deviations, options.enough), Some(index));
+        found.add(
+            fit(&scheme, target, deviations, options.enough),
+            Some(index),
+        );
         if found.max_z() <= options.enough {
             break;
         }
@@ -88,7 +91,9 @@ pub fn search(
             break;
         }
         // Every other round changes the best arrangement so far, once there have been a few to choose from.
-        let near = (round >= OPENING && round % 2 == 1).then(|| found.nearest.clone()).flatten();
+        let near = (round >= OPENING && round % 2 == 1)
+            .then(|| found.nearest.clone())
+            .flatten();
         found.evaluations += GLANCES as u64;
         if let Some(scheme) = random_scheme(target, near.as_deref(), frozen, deviations, rng) {
             found.add(fit(&scheme, target, deviations, options.enough), None);
@@ -118,7 +123,9 @@ impl Found {
 
     fn add(&mut self, fitted: Fitted, donor: Option<usize>) {
         self.evaluations += fitted.evaluations;
-        if fitted.max_z >= self.max_z() || !(is_sound(&fitted.building) && has_boxes(&fitted.building)) {
+        if fitted.max_z >= self.max_z()
+            || !(is_sound(&fitted.building) && has_boxes(&fitted.building))
+        {
             return;
         }
         self.nearest = Some(fitted.blocks);
@@ -146,7 +153,11 @@ pub fn variations(
         let distinct = found
             .iter()
             .all(|m| 1.0 - iou(&m.building, &fitted.building) >= apart);
-        if fitted.max_z <= 0.05 && distinct && is_sound(&fitted.building) && has_boxes(&fitted.building) {
+        if fitted.max_z <= 0.05
+            && distinct
+            && is_sound(&fitted.building)
+            && has_boxes(&fitted.building)
+        {
             found.push(MassModel {
                 building: fitted.building,
                 max_z: fitted.max_z,
@@ -165,7 +176,11 @@ pub fn variations(
         }
         let (blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         let scheme = Scheme::new(&blocks, roofs, target);
-        keep(fit(&scheme, target, deviations, 0.05), Some(index), &mut found);
+        keep(
+            fit(&scheme, target, deviations, 0.05),
+            Some(index),
+            &mut found,
+        );
     }
     for _ in 0..4 * options.rounds {
         if found.len() == count {
@@ -222,7 +237,10 @@ fn replace(blocks: &mut Vec<Block>, frozen: &[Block]) {
     for block in frozen {
         let shared = |b: &Block| {
             (0..2)
-                .map(|a| (b.edges[a][1].min(block.edges[a][1]) - b.edges[a][0].max(block.edges[a][0])).max(0.0))
+                .map(|a| {
+                    (b.edges[a][1].min(block.edges[a][1]) - b.edges[a][0].max(block.edges[a][0]))
+                        .max(0.0)
+                })
                 .product::<f64>()
         };
         let closest = (0..blocks.len())
@@ -267,5 +285,7 @@ pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Ve
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let donors = found.into_iter().take(options.donors);
-    donors.map(|(_, index, mirrored)| (index, mirrored)).collect()
+    donors
+        .map(|(_, index, mirrored)| (index, mirrored))
+        .collect()
 }
