@@ -29,7 +29,9 @@
 
 mod frame;
 pub mod layouts;
+pub mod peers;
 mod picture;
+pub mod sweep;
 
 pub mod building_exteriors;
 pub mod facade_grammar;
@@ -38,6 +40,8 @@ pub mod procedural_logic;
 use std::process::ExitCode;
 
 pub use frame::datasets::shipped_bytes;
+use sweep::Study;
+
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
 
 /// Every paper's experiment, in the order of the report.
@@ -46,6 +50,17 @@ pub const ALL: &[&Experiment] = &[
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
 ];
+
+/// Every method that sweeps can run.
+const STUDIES: &[fn() -> Study] = &[
+    // One line each.
+    facade_grammar::study::infer,
+];
+
+/// Every method that sweeps can run.
+pub fn studies() -> Vec<Study> {
+    STUDIES.iter().map(|study| study()).collect()
+}
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.
 pub fn main(experiment: &'static Experiment) -> ExitCode {

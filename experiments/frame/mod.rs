@@ -4,14 +4,15 @@ mod context;
 pub mod datasets;
 mod document;
 mod journal;
-mod lock;
+pub(super) mod lock;
 mod options;
 mod progress;
-mod provenance;
+pub(super) mod provenance;
 mod run;
 
 pub use context::Context;
 pub use options::{Args, Budget, Options};
+pub use progress::Progress;
 pub use run::{Report, main, run, run_to_end};
 
 /// One table or figure of a paper.

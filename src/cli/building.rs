@@ -6,6 +6,7 @@ mod check;
 mod data;
 mod draw;
 mod evaluate;
+mod given;
 mod learn;
 mod output;
 mod produce;

@@ -7,6 +7,12 @@
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
 //! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
 //!
+//! One verb for one idea: *fit* estimates parameters of a given structure, *learn* structure and
+//! parameters, *select* a size by a criterion; *sample* draws, *complete* draws what is missing.
+//! `log_density` is of complete real points, `log_probability` of evidence, `log_likelihood` of the
+//! rows of a table with missing values integrated out. What draws takes a generator; what runs with
+//! restarts and streams of its own takes a seed ([`crate::rng`]).
+//!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
 //! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
 //! in log space, natural logarithms. Hidden variables and missing values are summed or integrated
@@ -17,11 +23,14 @@ pub mod conjugate;
 pub mod em;
 mod error;
 pub mod factor_graph;
+pub(crate) mod gaussian;
 pub mod gmm;
+pub(crate) mod graph;
 pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
 pub mod network;
+pub(crate) mod standardize;
 mod table;
 
 pub use error::ModelError;

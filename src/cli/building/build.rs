@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use edifice::io::building_csv::{self, TextTable};
 use edifice::methods::building_exteriors::attributes::COLUMNS;
-use edifice::methods::building_exteriors::given::evidence;
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
 use edifice::{Error, Result};
 
 use super::data;
 use super::draw::{Draw, drawn_table};
+use super::given::evidence;
 use super::output;
 use super::produce::{Order, Output, produce};
 

@@ -10,7 +10,6 @@ pub mod baseline;
 pub mod compare;
 pub mod data;
 pub mod facade;
-pub mod given;
 pub mod house;
 pub mod mass;
 pub mod model_file;

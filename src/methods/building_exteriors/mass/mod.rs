@@ -33,6 +33,7 @@ mod scheme;
 mod search;
 pub mod target;
 
+pub use scheme::Block;
 pub use search::{MassError, MassModel, Search, nearest, search, variations};
 pub use target::{MassTarget, PartTarget};
 
