@@ -191,7 +191,7 @@ fn centres(width: f64, floor: usize, plan: &Plan, spacing: f64) -> Vec<(f64, f64
     if plan.door {
         // An odd number, so that the door stands in the middle, and room for it.
         count = count.min((width / 1.4) as usize).max(1);
-        count -= usize::from(plan.symmetric && count % 2 == 0);
+        count -= usize::from(plan.symmetric && count.is_multiple_of(2));
     }
     // Where floors are not to stand in line they have other numbers of windows, or none.
     if !plan.aligned && floor > 0 {

@@ -164,7 +164,7 @@ fn porch(b: &MassBox, building: &Building, k: usize, out: &mut Vec<Prism>) {
     for (i, &x) in xs.iter().enumerate() {
         for (j, &y) in ys.iter().enumerate() {
             let on_edge = i == 0 || j == 0 || i == last.0 || j == last.1;
-            if on_edge && !is_near_walls(building, x, y, post) {
+            if on_edge && !is_near_walls(building, [x, y], post, beam) {
                 let half = post / 2;
                 out.push(Prism {
                     region: rectangle([x - half, x + half, y - half, y + half]),
@@ -178,10 +178,11 @@ fn porch(b: &MassBox, building: &Building, k: usize, out: &mut Vec<Prism>) {
     }
 }
 
-/// Whether a post would stand in or near a wall, which then carries the roof.
-fn is_near_walls(building: &Building, x: i128, y: i128, post: i128) -> bool {
+/// Whether a post would stand in or near a wall that reaches the beam and carries the roof.
+fn is_near_walls(building: &Building, [x, y]: [i128; 2], post: i128, beam: i128) -> bool {
     let margin = post * 3;
-    let walls = building.boxes.iter().filter(|b| b.style != BoxStyle::Porch);
+    let carries = |b: &&MassBox| b.style != BoxStyle::Porch && units(b.height) > beam;
+    let walls = building.boxes.iter().filter(carries);
     walls
         .map(|b| plan_units(&b.plan()))
         .any(|[x0, x1, y0, y1]| {

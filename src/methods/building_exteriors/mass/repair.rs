@@ -135,8 +135,8 @@ pub fn check(row: &[f64; N]) -> Result<(), Contradiction> {
             }),
         }
     };
-    for c in 0..3 {
-        range(c, row[c] > 0.0, "above zero")?;
+    for (c, value) in row.iter().enumerate().take(3) {
+        range(c, *value > 0.0, "above zero")?;
     }
     range(
         3,
