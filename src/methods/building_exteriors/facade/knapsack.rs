@@ -71,11 +71,11 @@ mod tests {
             program.lower.copy_from_slice(&lower);
             program.upper.copy_from_slice(&upper);
             let oracle = solve(&program, QpOptions::default()).unwrap();
-            for (w, x) in found.iter().zip(&oracle.x) {
+            for (w, x) in found.iter().zip(&oracle.best) {
                 assert!(
                     (w - x).abs() < 1e-5,
                     "case {case}: {found:?}, {:?}",
-                    oracle.x
+                    oracle.best
                 );
             }
         }
