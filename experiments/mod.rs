@@ -36,6 +36,7 @@ pub mod sweep;
 pub mod building_exteriors;
 pub mod facade_grammar;
 pub mod procedural_logic;
+pub mod structure_completion;
 
 use std::process::ExitCode;
 
@@ -49,6 +50,7 @@ pub const ALL: &[&Experiment] = &[
     &building_exteriors::EXPERIMENT,
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
+    &structure_completion::EXPERIMENT,
 ];
 
 /// Every method that sweeps can run.

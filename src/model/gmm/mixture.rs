@@ -125,7 +125,7 @@ impl Mixture {
     }
 
     /// `log (w_k N(x; μ_k, Σ_k))` of every component.
-    pub(super) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
+    pub(in crate::model) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
         let d = self.d;
         (0..self.components())
             .map(|k| {
