@@ -7,6 +7,7 @@ mod figure_10;
 mod figure_11;
 mod figure_12;
 mod figure_14;
+mod generation;
 pub mod houses;
 mod learning;
 mod reasons;
@@ -23,6 +24,21 @@ pub const EXPERIMENT: Experiment = Experiment {
 };
 
 const ARTEFACTS: &[Artefact] = &[
+    Artefact {
+        name: "figure_6",
+        title: "energy of mass models against iterations",
+        run: generation::figure_6,
+    },
+    Artefact {
+        name: "figure_15",
+        title: "six synthesized houses",
+        run: generation::figure_15,
+    },
+    Artefact {
+        name: "generation",
+        title: "how near houses come to their attributes, by method",
+        run: generation::run,
+    },
     Artefact {
         name: "figure_10",
         title: "the styles found, and what sets them apart",

@@ -40,6 +40,7 @@ pub mod structure_completion;
 
 use std::process::ExitCode;
 
+pub use frame::datasets::shipped_bytes;
 use sweep::Study;
 
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};

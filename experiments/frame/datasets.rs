@@ -29,6 +29,16 @@ pub fn files() -> Vec<(String, &'static [u8])> {
     found
 }
 
+/// The bytes of a shipped file, named by its path below `datasets/`.
+///
+/// # Errors
+/// [`Error::Content`] when there is none of this name.
+pub fn shipped_bytes(name: &str) -> Result<&'static [u8]> {
+    let file = DATASETS.get_file(name);
+    let file = file.ok_or_else(|| Error::content(&Path::new("datasets").join(name), NotShipped))?;
+    Ok(file.contents())
+}
+
 /// Writes a shipped file or folder below `folder` and returns its path there.
 ///
 /// # Errors

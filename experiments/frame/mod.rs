@@ -1,7 +1,7 @@
 //! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
 
 mod context;
-pub(super) mod datasets;
+pub mod datasets;
 mod document;
 mod journal;
 pub(super) mod lock;

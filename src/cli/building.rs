@@ -1,11 +1,15 @@
 //! Houses on the command line.
 
 mod attributes;
+mod build;
+mod check;
 mod data;
 mod draw;
 mod evaluate;
 mod given;
 mod learn;
+mod output;
+mod produce;
 mod show;
 
 use clap::Subcommand;
@@ -42,6 +46,28 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
     #[command(after_help = "Examples:
   edifice building evaluate datasets/building_exteriors/houses.buildings.jsonl --splits 2 --models ours,gmm")]
     Evaluate(evaluate::Args),
+    /// Build houses that have given attributes.
+    #[command(after_help = "Examples:
+  edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv
+  edifice building build houses.csv -o houses --format json,glb,png
+  edifice building sample model.houses.json -n 5 > sampled.csv && edifice building build sampled.csv --repair -o sampled")]
+    Build(build::BuildArgs),
+    /// Sample attributes from a model and build the houses.
+    #[command(after_help = "Examples:
+  edifice building generate model.houses.json -n 6 --most-probable -o houses --format json,obj,glb,svg,png
+  edifice building generate model.houses.json -n 3 --given garage=none --given roof.hip=yes -o houses --json
+  edifice building generate model.houses.json -n 50 -o town --street")]
+    Generate(build::GenerateArgs),
+    /// Check that houses are closed, in one shell, and that nothing overlaps or is hidden; exit code 1 names what is wrong.
+    #[command(after_help = "Examples:
+  edifice building check houses/*.building.json
+  edifice building check house.obj")]
+    Check(check::CheckArgs),
+    /// Draw houses: a view (PNG), elevations and plan (SVG), a scene (GLB).
+    #[command(after_help = "Examples:
+  edifice building draw house_0001.building.json -o house.png
+  edifice building draw houses/*.building.json -o street.glb")]
+    Draw(check::DrawArgs),
 }
 
 /// Runs the command.
@@ -53,5 +79,9 @@ pub fn run(command: Command) -> edifice::Result<()> {
         Command::Sample(args) => draw::sample(&args),
         Command::Complete(args) => draw::complete(&args),
         Command::Evaluate(args) => evaluate::run(&args),
+        Command::Build(args) => build::build(&args),
+        Command::Generate(args) => build::generate(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Draw(args) => check::draw(&args),
     }
 }

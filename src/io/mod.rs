@@ -27,6 +27,8 @@ pub mod palette;
 pub mod pixels;
 pub mod raster;
 pub mod scene_png;
+pub mod scene_svg;
+pub mod surface_obj;
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Pictures of scenes as PNG.
 
 use crate::scene::Scene;
-use crate::scene::render::{Camera, render};
+use crate::scene::render::{Camera, Picture, render};
 
 /// Draws a scene as an RGB PNG of `width` x `height` pixels.
 ///
@@ -13,9 +13,16 @@ pub fn scene_png(
     width: usize,
     height: usize,
 ) -> Result<Vec<u8>, png::EncodingError> {
-    let picture = render(scene, camera, width, height);
+    picture_png(&render(scene, camera, width, height))
+}
+
+/// A picture as an RGB PNG.
+///
+/// # Errors
+/// Those of the PNG encoder, which writes to memory.
+pub fn picture_png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, picture.width as u32, picture.height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_filter(png::Filter::Adaptive);
     encoder.set_compression(png::Compression::Balanced);

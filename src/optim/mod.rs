@@ -14,6 +14,7 @@ pub mod adp;
 pub mod annealing;
 pub mod genetic;
 pub mod grid;
+pub mod least_squares;
 pub mod projection;
 pub mod qp;
 pub mod qp_problem;

@@ -2,6 +2,7 @@
 
 pub mod relief;
 pub mod render;
+pub mod trace;
 
 /// A surface.
 #[derive(Debug, Clone, PartialEq)]

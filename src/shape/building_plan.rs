@@ -5,7 +5,10 @@
 //! the way in which a shape was cut into rectangles. Edges closer than 1e-9 of the extent are one
 //! edge, so that rounding (`0.1 + 0.2`) leaves no hairline gap between neighbours.
 
+mod soundness;
+
 use super::{Rect, Side};
+pub use soundness::Soundness;
 
 /// A union of rectangles in plan.
 #[derive(Debug, Clone)]

@@ -17,6 +17,7 @@ mod elements;
 mod facade;
 mod label_grid;
 mod rect;
+pub mod solid;
 mod splittable;
 #[cfg(test)]
 mod tests;
@@ -28,7 +29,7 @@ pub use building::{
     Side, Special,
 };
 pub use building_error::BuildingError;
-pub use building_plan::{PlanEdge, PlanUnion, Visibility, visibility};
+pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
 pub use cleaning::{ToleranceError, absorb_specks, clean, straighten};
 pub use components::{Component, components};
 pub use cuts::Cuts;

@@ -14,6 +14,9 @@ mod draw;
 mod plan;
 mod styles;
 mod walls;
+mod wild;
+
+pub use wild::wild;
 
 use rayon::prelude::*;
 

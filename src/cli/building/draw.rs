@@ -18,7 +18,7 @@ const APART: f64 = 0.05;
 
 /// What to draw.
 #[derive(clap::Args)]
-struct Draw {
+pub struct Draw {
     /// Houses to draw.
     #[arg(short = 'n', long, default_value_t = 10)]
     count: usize,
@@ -28,6 +28,17 @@ struct Draw {
     /// Seed of all random streams.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+}
+
+impl Draw {
+    /// What to draw.
+    pub fn new(count: usize, most_probable: bool, seed: u64) -> Self {
+        Self {
+            count,
+            most_probable,
+            seed,
+        }
+    }
 }
 
 /// Options of `sample`.
@@ -105,6 +116,11 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
 
 /// Completions of one row as CSV lines, the header first.
 fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<String>> {
+    Ok(csv_lines(&drawn_table(file, given, draw, row)?))
+}
+
+/// Completions of one row.
+pub fn drawn_table(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Table> {
     let mut rng = stream(draw.seed, "building/draw", row);
     let model = &file.model;
     let draws = if draw.most_probable {
@@ -117,5 +133,5 @@ fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<S
     };
     // Each row was asked about on its own; the message names its place in the input.
     let draws = draws.map_err(|e| Error::method(e.in_row(row as usize)))?;
-    Ok(csv_lines(&draws.table))
+    Ok(draws.table)
 }

@@ -86,6 +86,17 @@ pub fn attributes(building: &Building) -> Result<AttributeRow, AttributeError> {
     Ok(row)
 }
 
+/// The 27 mass model attributes alone (Appendix A.1): what [`attributes`] begins with, for any number
+/// of floors; area above the third counts for none.
+pub fn mass_attributes(building: &Building) -> Vec<f64> {
+    mass::attributes(building)
+}
+
+/// The twelve facade attributes alone (Appendix A.2), as they stand in [`attributes`].
+pub fn facade_attributes(building: &Building) -> AttributeRow {
+    facade::attributes(building)
+}
+
 /// The ten element attributes (Appendix A.3).
 fn presence(building: &Building) -> [bool; 10] {
     let roof = |style| building.boxes.iter().any(|b| b.roof.style == style);

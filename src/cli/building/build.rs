@@ -1,0 +1,163 @@
+//! `edifice building build` and `generate`.
+
+use std::path::{Path, PathBuf};
+
+use edifice::io::building_csv::{self, TextTable};
+use edifice::methods::building_exteriors::attributes::COLUMNS;
+use edifice::model::{Cell, Table};
+use edifice::rng::stream;
+use edifice::{Error, Result};
+
+use super::data;
+use super::draw::{Draw, drawn_table};
+use super::given::evidence;
+use super::output;
+use super::produce::{Order, Output, produce};
+
+/// Options of `build`.
+#[derive(clap::Args)]
+pub struct BuildArgs {
+    /// Attributes, one house a row, as `building attributes` and `building sample` print them.
+    attributes: PathBuf,
+    /// Take the values for sampled ones: repair what no house could have instead of refusing it.
+    #[arg(long)]
+    repair: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// Options of `generate`.
+#[derive(clap::Args)]
+pub struct GenerateArgs {
+    /// The model (`*.houses.json`).
+    model: PathBuf,
+    /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none (all zero); repeatable.
+    #[arg(long)]
+    given: Vec<String>,
+    /// Sample from this style only (the first is 1).
+    #[arg(long, conflicts_with_all = ["given", "most_probable"])]
+    style: Option<usize>,
+    /// Houses to generate.
+    #[arg(short = 'n', long, default_value_t = 10)]
+    count: usize,
+    /// Draw many and keep the most probable that differ.
+    #[arg(long)]
+    most_probable: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// Runs `build`.
+pub fn build(args: &BuildArgs) -> Result<()> {
+    let table = building_csv::read(&args.attributes)?;
+    let orders = orders(&table, &args.attributes, !args.repair)?;
+    let database = output::database(args.output.database.as_deref())?;
+    produce(&orders, &database, &args.output)
+}
+
+/// The rows of a table of all 49 columns; a column `name` names the houses.
+fn orders(table: &TextTable, path: &Path, given: bool) -> Result<Vec<Order>> {
+    let mut places = [0; 49];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        let found = table.header.iter().position(|h| h == column);
+        *place = found
+            .ok_or_else(|| Error::content(path, format!("the table has no column `{column}`")))?;
+    }
+    let name = table.header.iter().position(|h| h == "name");
+    let mut orders = Vec::with_capacity(table.rows.len());
+    for (r, row) in table.rows.iter().enumerate() {
+        let mut wanted = [0.0; 49];
+        for (c, value) in wanted.iter_mut().enumerate() {
+            let text = row[places[c]].trim();
+            let number = match text {
+                "yes" | "true" => Some(1.0),
+                "no" | "false" => Some(0.0),
+                text => text.parse().ok().filter(|v: &f64| v.is_finite()),
+            };
+            *value = number.ok_or_else(|| {
+                let place = format!("row {}, column `{}`", r + 1, COLUMNS[c]);
+                Error::input(path, place, format!("{text:?} is not a number"))
+            })?;
+        }
+        let name = match name.map(|n| row[n].trim()) {
+            Some(name) if is_file_name(name) => name.to_owned(),
+            Some(name) => {
+                let place = format!("row {}, column `name`", r + 1);
+                return Err(Error::input(
+                    path,
+                    place,
+                    format!("{name:?} cannot name a file"),
+                ));
+            }
+            None => format!("house_{:04}", r + 1),
+        };
+        orders.push(Order {
+            name,
+            wanted,
+            given: [given; 49],
+        });
+    }
+    Ok(orders)
+}
+
+/// Letters, digits, `-` and `_`, so that a name stays within its folder.
+pub fn is_file_name(name: &str) -> bool {
+    let usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    !name.is_empty() && name.len() <= 100 && name.chars().all(usual)
+}
+
+/// Runs `generate`.
+pub fn generate(args: &GenerateArgs) -> Result<()> {
+    let file = data::model(&args.model)?;
+    let mut rng = stream(args.output.seed, "building/sample", 0);
+    if args.count == 0 {
+        return Err(Error::option("--count", "must be at least 1"));
+    }
+    let (table, given) = match args.style {
+        Some(style) => {
+            let index = style.checked_sub(1);
+            let index = index.ok_or_else(|| Error::option("--style", "the first style is 1"))?;
+            let draws = file.model.sample_style(index, args.count, &mut rng);
+            let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
+            (draws.table, Table::new())
+        }
+        None => {
+            let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
+            let given = evidence(&file, &kinds.table, &args.given)
+                .map_err(|e| Error::option("--given", e.to_string()))?;
+            let draw = Draw::new(args.count, args.most_probable, args.output.seed);
+            (drawn_table(&file, &given, &draw, 0)?, given)
+        }
+    };
+    let orders = sampled(&table, &given, &args.model)?;
+    let database = output::database(args.output.database.as_deref())?;
+    produce(&orders, &database, &args.output)
+}
+
+/// The rows of a table of draws; columns of the evidence are given.
+pub fn sampled(table: &Table, given: &Table, model: &Path) -> Result<Vec<Order>> {
+    let is_given: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
+    let mut orders = Vec::with_capacity(table.rows());
+    for row in 0..table.rows() {
+        let mut wanted = [0.0; 49];
+        for (value, name) in wanted.iter_mut().zip(COLUMNS) {
+            let column = table.column(name).map_err(|_| {
+                Error::content(
+                    model,
+                    format!("the model has no column `{name}`: houses need all 49"),
+                )
+            })?;
+            *value = match column.cell(row) {
+                Cell::Real(v) => v,
+                Cell::Code(code) => code as f64,
+                Cell::Missing => 0.0,
+            };
+        }
+        orders.push(Order {
+            name: format!("house_{:04}", row + 1),
+            wanted,
+            given: is_given,
+        });
+    }
+    Ok(orders)
+}

@@ -1,0 +1,108 @@
+//! Files of houses.
+
+use std::path::{Path, PathBuf};
+
+use edifice::io::scene_png::picture_png;
+use edifice::io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
+use edifice::methods::building_exteriors::house::scene::{Placed, scene};
+use edifice::methods::building_exteriors::house::{Database, Model};
+use edifice::scene::Scene;
+use edifice::scene::trace::{framing, trace};
+use edifice::shape::Building;
+use edifice::{Error, Result};
+
+/// What the shipped database is called in the program.
+const SHIPPED: &str = "building_exteriors/houses.buildings.jsonl";
+/// Pixels of a picture.
+const PICTURE: [usize; 2] = [800, 500];
+/// Room between houses of one scene (m).
+const BETWEEN: f64 = 5.0;
+
+/// A file format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// `NAME.building.json`
+    Json,
+    /// `NAME.obj`, z up, in metres
+    Obj,
+    /// `NAME.glb`, y up
+    Glb,
+    /// `NAME.svg`: elevations and plan
+    Svg,
+    /// `NAME.png`: a perspective view
+    Png,
+}
+
+/// Reads the database of donors: a file, or the shipped houses.
+pub fn database(path: Option<&Path>) -> Result<Database> {
+    let (buildings, path) = match path {
+        Some(path) => (building_json::read(path)?, path.to_path_buf()),
+        None => {
+            let path = PathBuf::from(SHIPPED);
+            let bytes = edifice::experiments::shipped_bytes(SHIPPED)?;
+            (building_json::parse_lines(bytes, &path)?, path)
+        }
+    };
+    Database::new(buildings).map_err(|e| Error::content(&path, e))
+}
+
+/// The scene of one house, its colours chosen by its name.
+pub fn scene_of(building: &Building, model: &Model) -> Scene {
+    scene(&[placed(building, model, [0.0; 2])])
+}
+
+fn placed<'a>(building: &'a Building, model: &'a Model, at: [f64; 2]) -> Placed<'a> {
+    Placed {
+        name: &building.name,
+        surface: &model.surface,
+        at,
+        colours: building.name.bytes().map(usize::from).sum(),
+    }
+}
+
+/// Houses in a row along the street.
+pub fn street(houses: &[(Building, Model)]) -> Scene {
+    let mut x = 0.0;
+    let mut all = Vec::new();
+    for (building, model) in houses {
+        let ends = building.boxes.iter().map(|b| b.x + b.width / 2.0);
+        all.push(placed(building, model, [x, 0.0]));
+        x += ends.fold(0.0, f64::max) + BETWEEN;
+    }
+    scene(&all)
+}
+
+/// Writes a scene as a picture.
+pub fn write_png(scene: &Scene, path: &Path) -> Result<()> {
+    let [w, h] = PICTURE;
+    let camera = framing(scene, [0.45, -0.42, -0.9], w as f32 / h as f32);
+    let picture = trace(scene, &camera, w, h);
+    let bytes = picture_png(&picture).map_err(|e| Error::content(path, e))?;
+    write_atomic(path, &bytes)
+}
+
+/// Writes a house in all formats asked for, named after it.
+pub fn write(building: &Building, model: &Model, folder: &Path, formats: &[Format]) -> Result<()> {
+    let file = |ending: &str| folder.join(format!("{}.{ending}", building.name));
+    for format in formats {
+        match format {
+            Format::Json => building_json::write(building, &file("building.json"))?,
+            Format::Obj => {
+                let text = surface_obj::to_text(&model.surface, &building.name);
+                write_atomic(&file("obj"), text.as_bytes())?;
+            }
+            Format::Glb => gltf::write(&scene_of(building, model), &file("glb"))?,
+            Format::Svg => {
+                let text = scene_svg::elevations(&scene_of(building, model));
+                write_atomic(&file("svg"), text.as_bytes())?;
+            }
+            Format::Png => write_png(&scene_of(building, model), &file("png"))?,
+        }
+    }
+    Ok(())
+}
+
+/// Makes the folder of the output.
+pub fn folder(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path).map_err(|e| Error::io(path, "create", e))
+}

@@ -1,0 +1,182 @@
+//! Many houses from rows of attributes: in parallel, resumable, one report each.
+
+use std::path::{Path, PathBuf};
+
+use edifice::io::{gltf, write_atomic};
+use edifice::methods::building_exteriors::attributes::COLUMNS;
+use edifice::methods::building_exteriors::house::{
+    Database, Generated, HouseReport, Joining, Options, generate,
+};
+use edifice::rng::stream;
+use edifice::shape::Building;
+use edifice::{Error, Result};
+use rayon::prelude::*;
+
+use super::output::{self, Format};
+use crate::cli::print;
+
+/// Houses written together: at most so many are in memory.
+const CHUNK: usize = 64;
+
+/// Where houses go, and in which form.
+#[derive(clap::Args)]
+pub struct Output {
+    /// Folder of the output; it is made when it does not exist.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Files for each house.
+    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Format::Json, Format::Glb])]
+    pub format: Vec<Format>,
+    /// Houses that donate boxes (`*.buildings.jsonl`); the shipped ones by default.
+    #[arg(long, value_name = "FILE")]
+    pub database: Option<PathBuf>,
+    /// Roofs of each box, or one joined roof for all boxes of a height.
+    #[arg(long, value_enum, default_value = "boxes")]
+    pub roof: RoofOption,
+    /// Never cut a strip of wall in two for the sake of symmetry.
+    #[arg(long)]
+    pub no_cuts: bool,
+    /// Also write all houses of this run as one scene, a street: `DIR/street.glb`.
+    #[arg(long)]
+    pub street: bool,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Print a line of JSON for each house.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How roofs are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum RoofOption {
+    /// Each box has its own.
+    Boxes,
+    /// One for all boxes of a height.
+    Merged,
+}
+
+impl RoofOption {
+    /// As the library knows it.
+    pub fn joining(self) -> Joining {
+        match self {
+            Self::Boxes => Joining::Boxes,
+            Self::Merged => Joining::Merged,
+        }
+    }
+}
+
+/// A house to make.
+pub struct Order {
+    /// Its name, and that of its files.
+    pub name: String,
+    /// The 49 columns.
+    pub wanted: [f64; 49],
+    /// Columns that must stay.
+    pub given: [bool; 49],
+}
+
+impl Output {
+    /// The settings of generation.
+    pub fn options(&self) -> Options {
+        Options {
+            joining: self.roof.joining(),
+            no_cuts: self.no_cuts,
+            ..Options::default()
+        }
+    }
+
+    fn report_file(&self, name: &str) -> PathBuf {
+        self.output.join(format!("{name}.report.json"))
+    }
+}
+
+/// Makes and writes the houses. Those whose report is there with the same attributes are left as they are.
+pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result<()> {
+    let options = output.options();
+    // Nothing is written when some row cannot be a house.
+    for order in orders.iter().filter(|o| o.given.iter().all(|g| *g)) {
+        edifice::methods::building_exteriors::mass::repair::check(&order.wanted)
+            .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
+    }
+    output::folder(&output.output)?;
+    let mut street: Vec<(Building, edifice::methods::building_exteriors::house::Model)> =
+        Vec::new();
+    let (mut done, mut near) = (0, 0);
+    for chunk in orders.chunks(CHUNK) {
+        let made: Vec<Result<Option<(Generated, f64)>>> = chunk
+            .par_iter()
+            .map(|order| {
+                if !output.street && is_done(&output.report_file(&order.name), order) {
+                    return Ok(None);
+                }
+                let mut rng = stream(output.seed, &format!("building/generate/{}", order.name), 0);
+                let start = std::time::Instant::now();
+                let house = generate(
+                    &order.name,
+                    &order.wanted,
+                    &order.given,
+                    database,
+                    &options,
+                    &mut rng,
+                )
+                .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
+                let seconds = start.elapsed().as_secs_f64();
+                output::write(
+                    &house.building,
+                    &house.model,
+                    &output.output,
+                    &output.format,
+                )?;
+                let text = report(&house.report, Some(seconds))?;
+                write_atomic(
+                    &output.report_file(&order.name),
+                    format!("{text}\n").as_bytes(),
+                )?;
+                Ok(Some((house, seconds)))
+            })
+            .collect();
+        for house in made {
+            done += 1;
+            let Some((house, seconds)) = house? else {
+                continue;
+            };
+            near += usize::from(house.report.repaired_z <= 0.05);
+            if output.json {
+                print::line(&report(&house.report, Some(seconds))?)?;
+            }
+            if output.street {
+                street.push((house.building, house.model));
+            }
+        }
+        if orders.len() > CHUNK {
+            print::message(&format!("{done} of {} houses", orders.len()));
+        }
+    }
+    if output.street {
+        gltf::write(&output::street(&street), &output.output.join("street.glb"))?;
+    }
+    print::message(&format!(
+        "{done} houses in {}, {near} made now within 0.05 standard deviations of their attributes",
+        output.output.display()
+    ));
+    Ok(())
+}
+
+fn is_done(path: &Path, order: &Order) -> bool {
+    #[derive(serde::Deserialize)]
+    struct Wanted {
+        wanted: Vec<f64>,
+    }
+    let known = std::fs::read(path).ok();
+    let known = known.and_then(|b| serde_json::from_slice::<Wanted>(&b).ok());
+    known.is_some_and(|k| k.wanted == order.wanted)
+}
+
+/// A report as one line of JSON.
+fn report(report: &HouseReport, seconds: Option<f64>) -> Result<String> {
+    let mut value = serde_json::to_value(report).map_err(Error::method)?;
+    value["seconds"] = serde_json::json!(seconds);
+    value["columns"] = serde_json::json!(&COLUMNS[..]);
+    Ok(value.to_string())
+}

@@ -1,0 +1,325 @@
+//! The four sides of a house, each by the search of method `best`.
+
+use super::cut::{Candidate, Choice, NARROWEST, choices};
+use super::glaze::{Plan, glaze, holds_asymmetric, millimetres};
+use super::room::{Strip, Walls};
+use super::styles;
+use crate::methods::building_exteriors::attributes::facade_attributes;
+use crate::shape::solid::Faces;
+use crate::shape::{BoxStyle, Building, ElementStyle, FacadePiece, Side};
+
+/// What the facades are wanted to come to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FacadeTarget {
+    /// Window-to-wall ratio, symmetry and alignment, each of front, back, left and right.
+    pub wanted: [f64; 12],
+    /// Sash, sliding, casement, bay, fixed.
+    pub windows: [bool; 5],
+    /// Whether a strip may be cut.
+    pub cuts: bool,
+}
+
+/// Facades and how near they are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facades {
+    /// The pieces of all sides.
+    pub pieces: Vec<FacadePiece>,
+    /// Largest distance from the wanted attributes in standard deviations.
+    pub max_z: f64,
+    /// Layouts measured.
+    pub evaluations: u64,
+}
+
+/// Usual distances between windows to try (m), the most natural first.
+const SPACINGS: [f64; 7] = [2.4, 2.0, 3.0, 1.6, 3.8, 1.25, 5.0];
+/// Choices of asymmetric strips tried.
+const CHOICES: usize = 10;
+/// Distance in standard deviations at which to stop.
+const ENOUGH: f64 = 0.02;
+
+/// Puts windows and doors on the walls of a building; `deviations` are those of the twelve attributes.
+pub fn furnish(
+    building: &Building,
+    shell: &Faces,
+    target: &FacadeTarget,
+    deviations: &[f64],
+) -> Facades {
+    let walls = Walls::new(building, shell);
+    let styles = styles::wanted(target.windows);
+    let mut out = Facades {
+        pieces: Vec::new(),
+        max_z: 0.0,
+        evaluations: 0,
+    };
+    for (s, side) in Side::ALL.into_iter().enumerate() {
+        let mut search = SideSearch {
+            building,
+            walls: &walls,
+            strips: &walls.strips[s],
+            wanted: [0, 1, 2].map(|k| target.wanted[4 * k + s]),
+            deviations: [0, 1, 2].map(|k| deviations[4 * k + s]),
+            styles: shared(&styles, s),
+            column: s,
+            cuts: target.cuts,
+            evaluations: 0,
+        };
+        let door = (side == Side::Front)
+            .then(|| door_strip(building, &walls))
+            .flatten();
+        let (pieces, z) = search.run(door);
+        out.evaluations += search.evaluations;
+        out.max_z = out.max_z.max(z);
+        out.pieces.extend(pieces);
+    }
+    missing_styles(&mut out.pieces, &styles);
+    out
+}
+
+/// The styles of a side: the main one, and for each further one a side of its own, bays in front.
+fn shared(styles: &[ElementStyle], side: usize) -> Vec<ElementStyle> {
+    let mut own: Vec<ElementStyle> = styles.first().copied().into_iter().collect();
+    for (k, style) in styles.iter().enumerate().skip(1) {
+        let home = if *style == ElementStyle::Bay {
+            0
+        } else {
+            [0, 1, 3, 2, 1][k]
+        };
+        if home == side {
+            own.push(*style);
+        }
+    }
+    own
+}
+
+/// Gives a style that no piece shows yet to the last piece of the most common style.
+fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle]) {
+    let windows = |p: &FacadePiece| p.elements.iter().any(|e| e.style != ElementStyle::Door);
+    for style in styles {
+        let shows = |p: &FacadePiece, s: ElementStyle| p.elements.iter().any(|e| e.style == s);
+        if pieces.iter().any(|p| shows(p, *style)) {
+            continue;
+        }
+        let count = |s: ElementStyle| pieces.iter().filter(|p| shows(p, s)).count();
+        let most = styles.iter().copied().max_by_key(|s| count(*s));
+        let Some(most) = most.filter(|s| count(*s) > 1) else {
+            continue;
+        };
+        let last = pieces
+            .iter_mut()
+            .rev()
+            .find(|p| windows(p) && shows(p, most));
+        for e in last.into_iter().flat_map(|p| &mut p.elements) {
+            if e.style == most {
+                e.style = *style;
+            }
+        }
+    }
+}
+
+/// The front strip for the door: behind the front porch, else the narrowest that a door fits into with room.
+fn door_strip(building: &Building, walls: &Walls) -> Option<usize> {
+    let strips = &walls.strips[0];
+    let porch = building
+        .boxes
+        .iter()
+        .filter(|b| b.style == BoxStyle::Porch)
+        .min_by(|a, b| a.y.total_cmp(&b.y))
+        .map(|b| b.x);
+    let fits = |k: &usize| {
+        let strip = &strips[*k];
+        let middle = (strip.start + strip.end) / 2.0;
+        let ground = strip.rooms.iter().find(|r| r.piece.floor == 0);
+        strip.width() >= 1.3
+            && ground.is_some_and(|r| {
+                walls
+                    .free(r, [middle - 0.5, middle + 0.5])
+                    .is_some_and(|f| f[1] > 2.15)
+            })
+    };
+    let fitting: Vec<usize> = (0..strips.len()).filter(fits).collect();
+    let under = fitting
+        .iter()
+        .copied()
+        .find(|&k| porch.is_some_and(|x| strips[k].start < x && x < strips[k].end));
+    under.or_else(|| {
+        fitting
+            .into_iter()
+            .min_by(|&a, &b| strips[a].width().total_cmp(&strips[b].width()))
+    })
+}
+
+struct SideSearch<'a> {
+    building: &'a Building,
+    walls: &'a Walls<'a>,
+    strips: &'a [Strip],
+    /// Window-to-wall ratio, symmetry, alignment.
+    wanted: [f64; 3],
+    deviations: [f64; 3],
+    styles: Vec<ElementStyle>,
+    column: usize,
+    cuts: bool,
+    evaluations: u64,
+}
+
+impl SideSearch<'_> {
+    /// The pieces nearest to the wanted attributes, and their distance.
+    fn run(&mut self, door: Option<usize>) -> (Vec<FacadePiece>, f64) {
+        let mut best: Option<(Vec<FacadePiece>, f64, f64)> = None;
+        let total: f64 = self
+            .strips
+            .iter()
+            .map(|s| s.width() * s.rooms.len() as f64)
+            .sum();
+        let wanted = (1.0 - self.wanted[1]) * total;
+        let enough = 0.01 * self.deviations[1] * total;
+        for spacing in SPACINGS {
+            let candidates = self.strips.iter().map(|s| self.candidate(s, spacing));
+            let candidates: Vec<Candidate> = candidates.collect();
+            let choices = choices(&candidates, wanted, enough, self.cuts, CHOICES);
+            for choice in &choices {
+                let (strips, plans) = self.plans(choice, door);
+                for plans in self.alignments(&strips, plans) {
+                    let ratio = self.wanted[0];
+                    let pieces = glaze(self.walls, &strips, &plans, ratio, spacing);
+                    let (z, sum) = self.distance(&pieces);
+                    if best
+                        .as_ref()
+                        .is_none_or(|(_, least, all)| (z, sum) < (*least - 1e-9, *all))
+                    {
+                        best = Some((pieces, z, sum));
+                    }
+                    if z <= ENOUGH {
+                        break;
+                    }
+                }
+                if best.as_ref().is_some_and(|b| b.1 <= ENOUGH) {
+                    break;
+                }
+            }
+            if best.as_ref().is_some_and(|b| b.1 <= ENOUGH) {
+                break;
+            }
+        }
+        best.map_or((Vec::new(), 0.0), |(pieces, z, _)| (pieces, z))
+    }
+
+    /// Room for windows off the middle.
+    fn candidate(&self, strip: &Strip, spacing: f64) -> Candidate {
+        let holds = |r: &&super::room::Room| {
+            strip.width() >= NARROWEST && holds_asymmetric(self.walls, strip, r, spacing)
+        };
+        Candidate {
+            width: strip.width(),
+            height: strip.rooms.iter().filter(holds).count() as f64,
+        }
+    }
+
+    /// Strips, one of them cut in two, with what is to stand on each.
+    fn plans(&self, choice: &Choice, door: Option<usize>) -> (Vec<Strip>, Vec<Plan>) {
+        let (mut strips, mut plans) = (Vec::new(), Vec::new());
+        let main = self.styles.first().copied().unwrap_or(ElementStyle::Fixed);
+        for (k, strip) in self.strips.iter().enumerate() {
+            let plan = Plan {
+                symmetric: !choice.asymmetric[k],
+                aligned: true,
+                style: main,
+                door: door == Some(k),
+            };
+            match choice.cut {
+                Some((cut, width)) if cut == k => {
+                    let at = millimetres(strip.start + width);
+                    let mut first = strip.clone();
+                    first.end = at;
+                    let mut rest = strip.clone();
+                    rest.start = at;
+                    let roomy = rest.width() > first.width();
+                    strips.extend([first, rest]);
+                    plans.push(Plan {
+                        door: plan.door && !roomy,
+                        ..plan
+                    });
+                    plans.push(Plan {
+                        symmetric: true,
+                        door: plan.door && roomy,
+                        ..plan
+                    });
+                }
+                _ => {
+                    strips.push(strip.clone());
+                    plans.push(plan);
+                }
+            }
+        }
+        // Further styles take the widest strips, one each.
+        let mut widest: Vec<usize> = (0..strips.len()).filter(|&k| !plans[k].door).collect();
+        widest.sort_by(|&a, &b| strips[b].width().total_cmp(&strips[a].width()));
+        for (style, k) in self.styles.iter().skip(1).zip(widest) {
+            plans[k].style = *style;
+        }
+        (strips, plans)
+    }
+
+    /// Plans with subsets of the strips of several floors out of line: those with the wanted share of pairs first.
+    fn alignments(&self, strips: &[Strip], plans: Vec<Plan>) -> Vec<Vec<Plan>> {
+        let pairs: Vec<(usize, usize)> = strips
+            .iter()
+            .enumerate()
+            .map(|(k, s)| {
+                let floors: Vec<usize> = s
+                    .rooms
+                    .iter()
+                    .filter(|r| !r.taken)
+                    .map(|r| r.piece.floor)
+                    .collect();
+                let above = |a: &usize| floors.iter().filter(|b| *b > a).count();
+                (k, floors.iter().map(above).sum())
+            })
+            .filter(|(_, pairs)| *pairs > 0)
+            .take(8)
+            .collect();
+        let total: usize = pairs.iter().map(|p| p.1).sum();
+        let mut ranked: Vec<(f64, u32)> = (0..1_u32 << pairs.len())
+            .map(|mask| {
+                let out: usize = (0..pairs.len())
+                    .filter(|k| mask >> k & 1 == 1)
+                    .map(|k| pairs[k].1)
+                    .sum();
+                let share = if total == 0 {
+                    0.0
+                } else {
+                    1.0 - out as f64 / total as f64
+                };
+                ((share - self.wanted[2]).abs(), mask)
+            })
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let best = ranked.into_iter().take(2);
+        best.map(|(_, mask)| {
+            let mut plans = plans.clone();
+            for (k, (strip, _)) in pairs.iter().enumerate() {
+                plans[*strip].aligned = mask >> k & 1 == 0;
+            }
+            plans
+        })
+        .collect()
+    }
+
+    /// Largest and summed distance of the side's attributes, measured by the one code of attributes.
+    fn distance(&mut self, pieces: &[FacadePiece]) -> (f64, f64) {
+        self.evaluations += 1;
+        let side = Building {
+            name: String::new(),
+            unit: String::new(),
+            floor_height: self.building.floor_height,
+            boxes: Vec::new(),
+            facades: pieces.to_vec(),
+            special: Vec::new(),
+        };
+        let measured = facade_attributes(&side);
+        let z = (0..3).map(|k| {
+            let value = measured[4 * k + self.column].unwrap_or(0.0);
+            ((value - self.wanted[k]) / self.deviations[k]).abs()
+        });
+        z.fold((0.0, 0.0), |(most, sum), z| (z.max(most), sum + z))
+    }
+}

@@ -1,0 +1,89 @@
+//! What a wall leaves free for windows.
+
+use crate::methods::building_exteriors::house::model::garage_opening;
+use crate::methods::building_exteriors::house::walls::{WallPiece, wall_pieces};
+use crate::shape::solid::{Faces, Wall};
+use crate::shape::{Building, Side};
+
+/// Clear wall between a window and a corner, and over and under it (m).
+pub(super) const CLEAR: f64 = 0.13;
+/// Height of the middle of a window over its floor (m).
+pub(super) const EYE: f64 = 1.5;
+
+/// A wall piece of a strip with what it has free.
+#[derive(Debug, Clone)]
+pub(super) struct Room {
+    pub piece: WallPiece,
+    /// A garage door takes this piece.
+    pub taken: bool,
+}
+
+/// The wall of all floors between two corners of the outlines of a side.
+#[derive(Debug, Clone)]
+pub(super) struct Strip {
+    pub start: f64,
+    pub end: f64,
+    /// Pieces from the ground up.
+    pub rooms: Vec<Room>,
+}
+
+impl Strip {
+    pub fn width(&self) -> f64 {
+        self.end - self.start
+    }
+}
+
+/// The walls of a building and their free places.
+pub(super) struct Walls<'a> {
+    pub shell: &'a Faces,
+    pub floor_height: f64,
+    /// By side.
+    pub strips: [Vec<Strip>; 4],
+}
+
+impl<'a> Walls<'a> {
+    pub fn new(building: &Building, shell: &'a Faces) -> Self {
+        let garage = garage_opening(building, shell);
+        let mut strips: [Vec<Strip>; 4] = Default::default();
+        for piece in wall_pieces(building) {
+            let taken = garage.is_some_and(|(wall, span)| {
+                let overlap = span[0][1].min(piece.end) - span[0][0].max(piece.start);
+                piece.floor == 0 && same(&wall, &piece.wall()) && overlap > 0.0
+            });
+            let side = Side::ALL.iter().position(|s| *s == piece.side).unwrap_or(0);
+            let room = Room { piece, taken };
+            match strips[side].last_mut() {
+                Some(last) if last.start == piece.start => last.rooms.push(room),
+                _ => strips[side].push(Strip {
+                    start: piece.start,
+                    end: piece.end,
+                    rooms: vec![room],
+                }),
+            }
+        }
+        Self {
+            shell,
+            floor_height: building.floor_height,
+            strips,
+        }
+    }
+
+    /// Heights over the floor between which a stretch of a piece is bare around eye level.
+    pub fn free(&self, room: &Room, span: [f64; 2]) -> Option<[f64; 2]> {
+        if room.taken {
+            return None;
+        }
+        let base = room.piece.floor as f64 * self.floor_height;
+        let span = [span[0] - CLEAR, span[1] + CLEAR];
+        let band = self.shell.free_band(&room.piece.wall(), span, base + EYE)?;
+        let ends = [
+            band[0].max(base) - base + CLEAR,
+            band[1].min(base + self.floor_height) - base - CLEAR,
+        ];
+        (ends[1] - ends[0] > 0.3).then_some(ends)
+    }
+}
+
+fn same(a: &Wall, b: &Wall) -> bool {
+    a.axis == b.axis && a.positive == b.positive && (a.at - b.at).abs() < 1e-6
+}

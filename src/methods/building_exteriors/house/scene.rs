@@ -1,0 +1,114 @@
+//! Houses as scenes: colours by pre-designed templates (Sec. 6), one mesh a house.
+
+use super::model::FINISHES;
+use crate::scene::{Group, Instance, Material, Mesh, Scene};
+use crate::shape::solid::{Finish, Surface};
+
+/// Colours of wall, roof, trim, door; the rest is the same for all.
+const TEMPLATES: [[[u8; 3]; 4]; 8] = [
+    [
+        [226, 214, 190],
+        [96, 72, 62],
+        [244, 241, 234],
+        [120, 52, 40],
+    ],
+    [[186, 198, 204], [72, 76, 84], [246, 246, 244], [44, 66, 92]],
+    [
+        [214, 186, 152],
+        [112, 60, 46],
+        [238, 230, 214],
+        [70, 88, 64],
+    ],
+    [
+        [240, 236, 226],
+        [84, 88, 92],
+        [250, 250, 248],
+        [150, 60, 44],
+    ],
+    [
+        [164, 176, 150],
+        [88, 78, 66],
+        [240, 238, 228],
+        [104, 70, 42],
+    ],
+    [[198, 140, 112], [74, 64, 60], [236, 228, 216], [58, 70, 84]],
+    [
+        [222, 206, 160],
+        [120, 82, 62],
+        [248, 244, 234],
+        [60, 92, 88],
+    ],
+    [
+        [150, 162, 176],
+        [62, 62, 68],
+        [242, 242, 240],
+        [166, 120, 60],
+    ],
+];
+
+/// Number of colour templates.
+pub const COLOURS: usize = TEMPLATES.len();
+
+fn colour(finish: Finish, template: usize) -> [u8; 3] {
+    let [wall, roof, trim, door] = TEMPLATES[template % TEMPLATES.len()];
+    match finish {
+        Finish::Wall => wall,
+        Finish::Roof => roof,
+        Finish::Trim | Finish::Frame => trim,
+        Finish::Door => door,
+        Finish::Chimney => [142, 84, 68],
+        Finish::Deck => [150, 132, 112],
+        Finish::Pane => [58, 74, 88],
+        Finish::GarageDoor => trim.map(|c| (f32::from(c) * 0.92) as u8),
+    }
+}
+
+/// A house with the place of its corner (x, y) and its colours.
+#[derive(Debug, Clone)]
+pub struct Placed<'a> {
+    /// Name of the node.
+    pub name: &'a str,
+    /// Its surface.
+    pub surface: &'a Surface,
+    /// Where the origin of its coordinates comes to lie, x to the right, y away from the street (m).
+    pub at: [f64; 2],
+    /// Which colour template.
+    pub colours: usize,
+}
+
+/// The scene of houses, y up. Same surfaces are stored once for each house that is given.
+pub fn scene(houses: &[Placed]) -> Scene {
+    let mut scene = Scene::default();
+    for (k, house) in houses.iter().enumerate() {
+        let first = scene.materials.len();
+        for finish in FINISHES {
+            scene.materials.push(Material {
+                name: format!("{finish:?}").to_lowercase(),
+                color: colour(finish, house.colours),
+                roughness: if finish == Finish::Pane { 0.15 } else { 0.85 },
+            });
+        }
+        let mut parts: Vec<(usize, Vec<u32>)> = Vec::new();
+        for (i, finish) in FINISHES.into_iter().enumerate() {
+            let own = house.surface.triangles.iter().filter(|(_, f)| *f == finish);
+            let indices: Vec<u32> = own.flat_map(|(t, _)| *t).collect();
+            if !indices.is_empty() {
+                parts.push((first + i, indices));
+            }
+        }
+        // Turned from z up to y up: the back of the house lies at negative z.
+        let place = |p: &[f64; 3]| [p[0] as f32, p[2] as f32, -p[1] as f32];
+        scene.meshes.push(Mesh {
+            name: house.name.into(),
+            positions: house.surface.positions.iter().map(place).collect(),
+            parts,
+        });
+        scene.groups.push(Group {
+            name: house.name.into(),
+            yaw: 0.0,
+            translation: [house.at[0] as f32, 0.0, -house.at[1] as f32],
+            instances: vec![Instance::at(k, [0.0; 3])],
+        });
+    }
+    scene
+}

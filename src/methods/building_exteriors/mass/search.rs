@@ -1,0 +1,291 @@
+//! The search of method `best`: donors first, then random arrangements.
+
+use rand::Rng;
+
+use super::fit::{Fitted, fit};
+use super::random;
+use super::scheme::{Block, PLAIN, Scheme, donated};
+use super::target::MassTarget;
+use super::{MASS, is_sound};
+use crate::methods::building_exteriors::attributes::mass_attributes;
+use crate::methods::building_exteriors::house::Database;
+use crate::shape::{BoxStyle, Building, PlanUnion};
+
+/// Limits of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Donors tried at most.
+    pub donors: usize,
+    /// Rounds of random arrangements at most.
+    pub rounds: usize,
+    /// Largest distance in standard deviations at which to stop.
+    pub enough: f64,
+    /// House of the database that must not be a donor.
+    pub leave_out: Option<usize>,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            donors: 8,
+            rounds: 100,
+            enough: 0.008,
+            leave_out: None,
+        }
+    }
+}
+
+/// A mass model and how it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MassModel {
+    /// The boxes; no facades yet.
+    pub building: Building,
+    /// Largest distance from the wanted columns in standard deviations.
+    pub max_z: f64,
+    /// How often attributes were measured.
+    pub evaluations: u64,
+    /// House of the database whose boxes it has; `None` for a random arrangement.
+    pub donor: Option<usize>,
+}
+
+/// No sound mass model was found.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("no connected mass model without courtyards was found in {evaluations} evaluations")]
+pub struct MassError {
+    /// How often attributes were measured.
+    pub evaluations: u64,
+}
+
+/// Random arrangements looked at for one that is fitted.
+const GLANCES: usize = 30;
+/// Rounds of wholly random arrangements at first.
+const OPENING: usize = 8;
+
+/// Finds boxes with the wanted attributes.
+///
+/// # Errors
+/// [`MassError`] when no arrangement tried is sound.
+pub fn search(
+    target: &MassTarget,
+    frozen: &[Block],
+    database: &Database,
+    options: &Search,
+    rng: &mut impl Rng,
+) -> Result<MassModel, MassError> {
+    let deviations = &database.deviations[..MASS];
+    let mut found = Found::default();
+    for (index, mirrored) in nearest(target, database, options) {
+        let (mut blocks, roofs) = donated(&database.buildings[index], mirrored, target);
+        replace(&mut blocks, frozen);
+        let scheme = Scheme::new(&blocks, roofs, target);
+        found.add(
+            fit(&scheme, target, deviations, options.enough),
+            Some(index),
+        );
+        if found.max_z() <= options.enough {
+            break;
+        }
+    }
+    for round in 0..options.rounds {
+        if found.max_z() <= options.enough {
+            break;
+        }
+        // Every other round changes the best arrangement so far, once there have been a few to choose from.
+        let near = (round >= OPENING && round % 2 == 1)
+            .then(|| found.nearest.clone())
+            .flatten();
+        found.evaluations += GLANCES as u64;
+        if let Some(scheme) = random_scheme(target, near.as_deref(), frozen, deviations, rng) {
+            found.add(fit(&scheme, target, deviations, options.enough), None);
+        }
+    }
+    let evaluations = found.evaluations;
+    let best = found.best.ok_or(MassError { evaluations })?;
+    Ok(MassModel {
+        evaluations,
+        ..best
+    })
+}
+
+/// The best so far.
+#[derive(Default)]
+struct Found {
+    best: Option<MassModel>,
+    evaluations: u64,
+    /// General boxes of the best.
+    nearest: Option<Vec<Block>>,
+}
+
+impl Found {
+    fn max_z(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.max_z)
+    }
+
+    fn add(&mut self, fitted: Fitted, donor: Option<usize>) {
+        self.evaluations += fitted.evaluations;
+        if fitted.max_z >= self.max_z()
+            || !(is_sound(&fitted.building) && has_boxes(&fitted.building))
+        {
+            return;
+        }
+        self.nearest = Some(fitted.blocks);
+        self.best = Some(MassModel {
+            building: fitted.building,
+            max_z: fitted.max_z,
+            evaluations: 0,
+            donor,
+        });
+    }
+}
+
+/// Several different mass models of one target: each plan at least `apart` (1 - IoU) from the others.
+pub fn variations(
+    target: &MassTarget,
+    count: usize,
+    apart: f64,
+    database: &Database,
+    options: &Search,
+    rng: &mut impl Rng,
+) -> Vec<MassModel> {
+    let mut found: Vec<MassModel> = Vec::new();
+    let deviations = &database.deviations[..MASS];
+    let keep = |fitted: Fitted, donor, found: &mut Vec<MassModel>| {
+        let distinct = found
+            .iter()
+            .all(|m| 1.0 - iou(&m.building, &fitted.building) >= apart);
+        if fitted.max_z <= 0.05
+            && distinct
+            && is_sound(&fitted.building)
+            && has_boxes(&fitted.building)
+        {
+            found.push(MassModel {
+                building: fitted.building,
+                max_z: fitted.max_z,
+                evaluations: fitted.evaluations,
+                donor,
+            });
+        }
+    };
+    let many = Search {
+        donors: 8 * count,
+        ..options.clone()
+    };
+    for (index, mirrored) in nearest(target, database, &many) {
+        if found.len() == count {
+            return found;
+        }
+        let (blocks, roofs) = donated(&database.buildings[index], mirrored, target);
+        let scheme = Scheme::new(&blocks, roofs, target);
+        keep(
+            fit(&scheme, target, deviations, 0.05),
+            Some(index),
+            &mut found,
+        );
+    }
+    for _ in 0..4 * options.rounds {
+        if found.len() == count {
+            break;
+        }
+        if let Some(scheme) = random_scheme(target, None, &[], deviations, rng) {
+            keep(fit(&scheme, target, deviations, 0.05), None, &mut found);
+        }
+    }
+    found
+}
+
+/// Intersection over union of two ground floors whose bounding boxes start at the same corner.
+fn iou(a: &Building, b: &Building) -> f64 {
+    let (p, q) = (a.floor_plan(0), b.floor_plan(0));
+    let area = |plan: &[crate::shape::Rect]| PlanUnion::new(plan).area();
+    let both: Vec<_> = p.iter().chain(&q).copied().collect();
+    let union = area(&both);
+    (area(&p) + area(&q) - union) / union
+}
+
+/// The best of a few random arrangements, at a glance.
+fn random_scheme(
+    target: &MassTarget,
+    near: Option<&[Block]>,
+    frozen: &[Block],
+    deviations: &[f64],
+    rng: &mut impl Rng,
+) -> Option<Scheme> {
+    let mut best: Option<(f64, Scheme)> = None;
+    for _ in 0..GLANCES {
+        let mut blocks = match near {
+            Some(blocks) => random::changed(blocks, target, rng),
+            None => random::blocks(target, None, rng),
+        };
+        replace(&mut blocks, frozen);
+        let scheme = Scheme::new(&blocks, [PLAIN; 3], target);
+        let building = scheme.building(&scheme.start, target.floor_height);
+        if !is_sound(&building) {
+            continue;
+        }
+        let measured = mass_attributes(&building);
+        let cost = measured.iter().zip(&target.wanted).zip(deviations);
+        let cost: f64 = cost.map(|((m, w), s)| ((m - w) / s).powi(2)).sum();
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, scheme));
+        }
+    }
+    best.map(|(_, scheme)| scheme)
+}
+
+/// Frozen boxes take the places of the general boxes that overlap them most.
+fn replace(blocks: &mut Vec<Block>, frozen: &[Block]) {
+    for block in frozen {
+        let shared = |b: &Block| {
+            (0..2)
+                .map(|a| {
+                    (b.edges[a][1].min(block.edges[a][1]) - b.edges[a][0].max(block.edges[a][0]))
+                        .max(0.0)
+                })
+                .product::<f64>()
+        };
+        let closest = (0..blocks.len())
+            .filter(|&i| !blocks[i].frozen)
+            .max_by(|&i, &j| shared(&blocks[i]).total_cmp(&shared(&blocks[j])));
+        match closest {
+            Some(i) => blocks[i] = *block,
+            None => blocks.push(*block),
+        }
+    }
+}
+
+fn has_boxes(building: &Building) -> bool {
+    let mut general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
+    general.all(|b| b.width.min(b.depth) >= 0.3)
+}
+
+/// The nearest houses with the same floors, garage and porches, and whether they serve mirrored.
+pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Vec<(usize, bool)> {
+    let mut found: Vec<(f64, usize, bool)> = Vec::new();
+    for (index, row) in database.rows.iter().enumerate() {
+        if options.leave_out == Some(index) {
+            continue;
+        }
+        let other = MassTarget::new(std::array::from_fn(|c| row[c].unwrap_or(0.0)));
+        if other.floors != target.floors || other.presence() != target.presence() {
+            continue;
+        }
+        for mirrored in [false, true] {
+            let distance: f64 = (0..MASS)
+                .map(|c| {
+                    let is_x = matches!(c, 9 | 15 | 21) && other.wanted[c + 2] > 0.0;
+                    let value = match mirrored && is_x {
+                        true => 1.0 - other.wanted[c],
+                        false => other.wanted[c],
+                    };
+                    ((value - target.wanted[c]) / database.deviations[c]).powi(2)
+                })
+                .sum();
+            found.push((distance, index, mirrored));
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let donors = found.into_iter().take(options.donors);
+    donors
+        .map(|(_, index, mirrored)| (index, mirrored))
+        .collect()
+}
