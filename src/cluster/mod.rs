@@ -2,14 +2,20 @@
 //!
 //! - [`chi_square`]: distance between two histograms.
 //! - [`agglomerate`]: hierarchical clustering of a distance matrix, with its [`Dendrogram`].
+//! - [`ward()`]: Ward's hierarchy of points in near-linear time; [`kmeans()`] and [`lloyd`].
 //! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
 
 mod agglomerative;
 mod chi_square;
+mod kd_tree;
+mod kmeans;
 mod retrieval;
+mod ward;
 
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
 pub use chi_square::{Histogram, chi_square};
+pub use kmeans::{KMeans, kmeans, lloyd, means, sum_of_squares};
 pub use retrieval::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,
 };
+pub use ward::{WardError, WardMerge, WardTree, ward};

@@ -3,6 +3,7 @@
 //! - [`Rect`]: an axis-parallel rectangle, origin at the lower left, y up.
 //! - [`Facade`]: labelled rectangles inside a rectangular domain (Wu et al. 2014, Sec. 3.1).
 //! - [`Building`]: boxes, roofs and facade pieces (Fan and Wonka 2016, Sec. 4.1).
+//! - [`solid`]: cities and buildings as triangles, and what is measured on them.
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
 mod building;
@@ -17,6 +18,7 @@ mod facade;
 mod label_grid;
 mod rect;
 pub mod scene;
+pub mod solid;
 mod splittable;
 #[cfg(test)]
 mod tests;

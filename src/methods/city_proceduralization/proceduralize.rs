@@ -1,0 +1,123 @@
+//! The whole pipeline.
+
+use super::components::{Decomposition, decompose};
+use super::emission::emit;
+use super::types::{Types, best_types, paper_types};
+use crate::cluster::WardError;
+use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError};
+use crate::shape::solid::City;
+
+/// How types are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// As the paper writes.
+    Paper,
+    /// Geometric features, Ward, medoids.
+    Best,
+}
+
+/// How many templates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Budget {
+    /// One for each distinct component.
+    All,
+    /// So many.
+    Templates(usize),
+    /// The components' number halved so many times.
+    Level(u32),
+}
+
+/// What represents a type in `paper`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Representative {
+    /// The member nearest to the mean.
+    Nearest,
+    /// The member of fewest polygons ("-poly").
+    FewestPolygons,
+}
+
+/// Settings of the method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// How types are found.
+    pub mode: Mode,
+    /// How many templates.
+    pub budget: Budget,
+    /// Weights W of the eleven features, in `paper`.
+    pub weights: [f64; 11],
+    /// What represents a type, in `paper`.
+    pub representative: Representative,
+    /// Seed of k-means, in `paper`.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Best,
+            budget: Budget::Level(4),
+            weights: [1.0; 11],
+            representative: Representative::Nearest,
+            seed: 1,
+        }
+    }
+}
+
+/// Why a city cannot be proceduralized.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ProceduralizeError {
+    /// There is nothing to proceduralize.
+    #[error("no building has a triangle with an area")]
+    Empty,
+    /// Features cannot be clustered.
+    #[error("features: {0}")]
+    Ward(#[from] WardError),
+    /// The grammar made is not sound: an error of this program.
+    #[error("the grammar is not sound: {0}")]
+    Grammar(#[from] InstanceGrammarError),
+}
+
+/// A city as a grammar, and what it was made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proceduralized {
+    /// The grammar.
+    pub grammar: InstanceGrammar,
+    /// The components.
+    pub decomposition: Decomposition,
+    /// Their types.
+    pub types: Types,
+}
+
+/// Makes a grammar of a city.
+///
+/// # Errors
+/// [`ProceduralizeError`].
+pub fn proceduralize(city: &City, settings: &Settings) -> Result<Proceduralized, ProceduralizeError> {
+    let decomposition = decompose(city);
+    let components = &decomposition.components;
+    if components.is_empty() {
+        return Err(ProceduralizeError::Empty);
+    }
+    let n = components.len();
+    let k = match settings.budget {
+        Budget::All => n,
+        Budget::Templates(k) => k.clamp(1, n),
+        Budget::Level(level) => n.checked_shr(level).unwrap_or(0).max(1),
+    };
+    let types = match settings.mode {
+        Mode::Best => best_types(components, k)?,
+        Mode::Paper => paper_types(
+            components,
+            k,
+            &settings.weights,
+            settings.representative,
+            settings.seed,
+        ),
+    };
+    let grammar = emit(city, components, &types, settings.mode == Mode::Best);
+    Ok(Proceduralized {
+        grammar,
+        decomposition,
+        types,
+    })
+}
