@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::shape::solid::{
-    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, height_map, repair,
+    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, height_map, plan_area, repair,
     section_lid,
 };
 
@@ -25,6 +25,8 @@ const MOST_SAMPLES: usize = 16_000;
 pub const CELLS: usize = 16;
 /// Columns per cell along a side.
 const SAMPLES: usize = 2;
+/// Faces that look down matter beyond this share of those that look up.
+const OVERHANG: f64 = 0.01;
 /// First moments below this share of the mean say nothing about the orientation.
 const SYMMETRIC: f64 = 0.004;
 
@@ -82,11 +84,18 @@ pub fn decompose(city: &City) -> Decomposition {
 fn components_of(mesh: &TriangleMesh, building: usize) -> Vec<Component> {
     let cuts = cut_planes(mesh);
     let mut components = Vec::new();
+    let lids: Vec<TriangleMesh> = cuts.iter().map(|&z| section_lid(mesh, z)).collect();
+    let bottoms = overhangs(mesh);
     for (slab, mut part) in clip_to_slabs(mesh, &cuts).into_iter().enumerate() {
-        if let Some(&z) = cuts.get(slab) {
-            part.append(&section_lid(mesh, z));
-            part = part.welded(1e-6);
+        if let Some(lid) = lids.get(slab) {
+            part.append(lid);
         }
+        if bottoms && slab > 0 {
+            let mut bottom = lids[slab - 1].clone();
+            bottom.flip();
+            part.append(&bottom);
+        }
+        part = part.welded(1e-6);
         let Some(mut frame) = OrientedBox::around(&part) else {
             continue;
         };
@@ -108,6 +117,23 @@ fn components_of(mesh: &TriangleMesh, building: usize) -> Vec<Component> {
         });
     }
     components
+}
+
+/// Whether faces above the lowest point look down: below them is air, and each slab needs its bottom.
+fn overhangs(mesh: &TriangleMesh) -> bool {
+    std::env::var("BOTTOM").map(|v| v == "1").unwrap_or_else(|_| {
+    let floor = mesh.bounds().map_or(0.0, |b| b.0[2]) + 1.0;
+    let (mut down, mut up) = (0.0, 0.0);
+    for t in mesh.corners() {
+        let area = plan_area(&t);
+        let above = t.iter().any(|p| p[2] > floor);
+        match area < 0.0 {
+            true if above => down -= area,
+            true => {}
+            false => up += area,
+        }
+    }
+    down > OVERHANG * up })
 }
 
 /// The heights at which a building is cut, increasing.

@@ -90,7 +90,7 @@ impl TriangleMesh {
 }
 
 /// Signed area of a triangle's plan: positive when it faces up.
-pub(super) fn plan_area(t: &Corners) -> f64 {
+pub fn plan_area(t: &Corners) -> f64 {
     let [a, b, c] = t;
     ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
 }

@@ -27,7 +27,7 @@ pub use clip::clip_to_slabs;
 pub use coplanar::merge_coplanar;
 pub use distance::{SurfaceDistance, point_triangle_distance};
 pub use lid::section_lid;
-pub use mesh::{Corners, TriangleMesh};
+pub use mesh::{Corners, TriangleMesh, plan_area};
 pub use oriented_box::{OrientedBox, convex_hull};
 pub use profile::SectionProfile;
 pub use raster::{Overlap, VolumeRaster, height_map, solid_intervals};
