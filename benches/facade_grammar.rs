@@ -1,8 +1,9 @@
 //! Inference of facade grammars: the number of terminals stands in the id.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use edifice::experiments::facade_grammar::made;
 use edifice::grammar::derive;
-use edifice::methods::facade_grammar::{Method, Settings, infer, synthetic};
+use edifice::methods::facade_grammar::{Method, Settings, infer};
 
 fn settings(method: Method, iterations: u64) -> Settings {
     Settings {
@@ -14,10 +15,10 @@ fn settings(method: Method, iterations: u64) -> Settings {
 
 /// 10,000 iterations on about 600 terminals: at most 2 s on one core.
 fn ten_thousand_iterations(c: &mut Criterion) {
-    let Ok(made) = synthetic::sized(0, 600) else {
+    let Ok(layout) = made::sized(0, 600) else {
         return;
     };
-    let facade = made.facade;
+    let facade = layout.facade;
     let mut group = c.benchmark_group("infer_10000_iterations");
     group.sample_size(10);
     for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
@@ -34,10 +35,10 @@ fn scaling(c: &mut Criterion) {
     let mut group = c.benchmark_group("scaling");
     group.sample_size(10);
     for terminals in [50, 200, 1_000, 5_000, 20_000] {
-        let Ok(made) = synthetic::sized(0, terminals) else {
+        let Ok(layout) = made::sized(0, terminals) else {
             continue;
         };
-        let facade = made.facade;
+        let facade = layout.facade;
         let count = facade.regions.len();
         let greedy = || infer(std::slice::from_ref(&facade), &settings(Method::Greedy, 1));
         group.bench_function(BenchmarkId::new("symmetry_and_greedy", count), |b| {

@@ -16,6 +16,7 @@ mod figure_9;
 mod joint_real;
 mod judge;
 mod likeness;
+pub mod made;
 mod optimality;
 mod projection;
 mod published;

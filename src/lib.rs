@@ -16,19 +16,35 @@
 //! - Origin at the lower left, x to the right, y up; lengths in the facade's own unit.
 //! - Randomness is an argument: see [`rng`]. Same seed, same bytes, whatever the number of threads.
 //! - Library code neither prints nor touches paths, except in [`io`], [`report`] and [`experiments`].
+//!
+//! ## Features
+//! The default is everything. With `default-features = false` the crate is its models, optimizers,
+//! clustering, shapes, grammars and methods, without a crate for files, figures or commands.
+//!
+//! | feature | adds |
+//! | --- | --- |
+//! | `io` | [`io`]: file formats of facades, grammars, buildings and scenes |
+//! | `report` | [`report`]: tables and figures |
+//! | `cli` (default) | [`experiments`] and the programs; includes `io` and `report` |
 
 pub mod cluster;
 pub mod error;
+#[cfg(feature = "cli")]
 #[path = "../experiments/mod.rs"]
 pub mod experiments;
+#[cfg(feature = "file")]
 pub mod file;
 pub mod grammar;
+#[cfg(feature = "io")]
 pub mod io;
+pub mod layout;
 pub mod methods;
 pub mod model;
 pub mod optim;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod rng;
+pub mod scene;
 pub mod shape;
 
 pub use error::{Error, Result};

@@ -2,9 +2,10 @@
 
 use edifice::grammar::{Grammar, combine, scaled};
 use edifice::io::grammar_cga::from_str;
-use edifice::io::scene_png::{Camera, render};
+use edifice::io::scene_png::scene_png;
 use edifice::io::{gltf, grammar_json};
-use edifice::methods::facade_grammar::scene::{City, Settings, city};
+use edifice::methods::facade_grammar::city::{City, Settings, city};
+use edifice::scene::render::Camera;
 use serde_json::Value;
 
 fn grammars() -> Vec<Grammar> {
@@ -183,7 +184,7 @@ fn a_picture_shows_the_city() {
         target: [0.0; 3],
         angle: 40.0,
     };
-    let bytes = render(&small().scene, &camera, 160, 90).unwrap();
+    let bytes = scene_png(&small().scene, &camera, 160, 90).unwrap();
     let picture = image::load_from_memory(&bytes).unwrap().to_rgb8();
     let colors: std::collections::BTreeSet<[u8; 3]> = picture.pixels().map(|p| p.0).collect();
     assert!(colors.len() > 500, "{}", colors.len());

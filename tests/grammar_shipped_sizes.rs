@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use edifice::grammar::{Grammar, derivation, derive, derive_at, same_tiling, size_independent};
 use edifice::io::{facade_json, read_grammar};
-use edifice::methods::facade_grammar::{Method, Settings, align, infer};
+use edifice::layout::resize::align;
+use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::rng::stream;
 use edifice::shape::{Facade, is_background};
 use rand::RngExt;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use edifice::io::{self, LabelMap, ReadOptions};
-use edifice::methods::facade_grammar::regularize::regularize_grid;
+use edifice::layout::regularize::regularize_grid;
 use edifice::shape::{LabelGrid, decompose, splittable};
 
 use common::real_data;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use edifice::grammar::{Costs, evaluate};
 use edifice::io::{facade_json, grammar_cga, read_label_grid};
-use edifice::methods::facade_grammar::regularize::regularize_grid;
+use edifice::layout::regularize::regularize_grid;
 use edifice::methods::facade_grammar::{BoundLimits, Settings, lower_bound};
 use edifice::shape::decompose;
 

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use edifice::io::{facade_json, read_label_grid};
-use edifice::methods::facade_grammar::regularize::{regularize_facade, regularize_grid};
+use edifice::layout::regularize::{regularize_facade, regularize_grid};
 use edifice::shape::{Facade, LabelGrid, decompose};
 
 const TOLERANCES: [f64; 7] = [0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0];

@@ -12,19 +12,21 @@ const WALLS: &[(&str, &[&str])] = &[
     ("cluster", &["error", "rng"]),
     ("report", &["error", "rng", "file"]),
     ("shape", &["error", "rng"]),
+    ("scene", &["error", "rng", "shape"]),
+    ("layout", &["error", "rng", "shape", "optim", "grammar"]),
     ("grammar", &["error", "rng", "shape"]),
-    ("io", &["error", "file", "grammar", "shape"]),
+    ("io", &["error", "file", "grammar", "shape", "scene"]),
     (
         "methods",
         &[
-            "error", "rng", "model", "optim", "cluster", "grammar", "shape",
+            "error", "rng", "model", "optim", "cluster", "grammar", "shape", "scene", "layout",
         ],
     ),
     (
         "experiments",
         &[
             "error", "rng", "file", "grammar", "io", "methods", "report", "shape", "model",
-            "optim", "cluster",
+            "optim", "cluster", "scene", "layout",
         ],
     ),
 ];
@@ -96,10 +98,9 @@ fn other_methods(place: &str, text: &str) -> Vec<String> {
 
 /// Source without comments and without its module of tests.
 fn code(text: &str) -> String {
-    let text = match text.find("#[cfg(test)]\nmod tests") {
-        Some(at) => &text[..at],
-        None => text,
-    };
+    let tests = (text.find("#[cfg(test)]\nmod tests"))
+        .or_else(|| text.find("#[cfg(all(test, feature = \"io\"))]\nmod tests"));
+    let text = &text[..tests.unwrap_or(text.len())];
     text.lines()
         .map(|line| line.split("//").next().unwrap_or_default())
         .collect::<Vec<_>>()

@@ -7,7 +7,7 @@ use super::{BEST, data, picture};
 use crate::experiments::Context;
 use crate::grammar::{Derivation, Grammar, Sampler, combine};
 use crate::io::gltf;
-use crate::methods::facade_grammar::scene::{Settings, city};
+use crate::methods::facade_grammar::city::{Settings, city};
 use crate::report::{Figure, Row};
 use crate::rng::stream;
 use crate::{Error, Result};

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::experiments::facade_grammar::made;
 use crate::experiments::{Budget, Context, layouts};
 use crate::grammar::{Grammar, derive};
 use crate::io::{facade_json, grammar_cga, grammar_json, read_label_grid};
-use crate::methods::facade_grammar::regularize::regularize_grid;
-use crate::methods::facade_grammar::synthetic;
+use crate::layout::regularize::regularize_grid;
 use crate::shape::{Facade, LabelGrid, decompose, splittable};
 use crate::{Error, Result, file};
 
@@ -143,9 +143,9 @@ pub fn write_layouts(folder: &Path, seed: u64) -> Result<()> {
 /// # Errors
 /// [`Error::Method`] if a made grammar did not derive.
 pub fn layout_files(seed: u64) -> Result<Vec<(String, Vec<u8>)>> {
-    let made = synthetic::layouts(seed).map_err(Error::method)?;
+    let layouts = made::layouts(seed).map_err(Error::method)?;
     let mut files = Vec::new();
-    for one in &made {
+    for one in &layouts {
         let name = &one.facade.name;
         let facade = facade_json::to_string(&one.facade);
         let grammar = grammar_json::to_string(&one.grammar);

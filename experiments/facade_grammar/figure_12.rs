@@ -6,7 +6,7 @@ use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
 use crate::experiments::Context;
 use crate::grammar::{derivation, derive_at, size_independent};
-use crate::methods::facade_grammar::{ALIGN_REACH, ALIGN_TOLERANCE, Aligned, align};
+use crate::layout::resize::{ALIGN_REACH, ALIGN_TOLERANCE, Aligned, align};
 use crate::report::{Align, Figure, Row, Table};
 use crate::shape::{Facade, is_background};
 use crate::{Error, Result};

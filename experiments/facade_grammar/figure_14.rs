@@ -89,7 +89,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ends(ctx, &units, &traces, few);
     ctx.note(
         "The paper measures every 500 iterations on one facade of Fig. 5. Its time per iteration falls because exploitation is \
-         faster than exploration. `adp_best` starts with cost shares, which its first step stands for, \
+         faster than exploration. `adp_best` starts with the Lagrangian bound, which its first step stands for, \
          then makes a walk by shortest paths and a round of annealing for every eight iterations of the others, so that it ends early; its cost then stays. Bands run from the lowest to the highest seed.",
     );
     Ok(())

@@ -8,7 +8,7 @@ use super::data;
 use crate::experiments::{Budget, Context};
 use crate::grammar::{Costs, evaluate};
 use crate::io::read_label_grid;
-use crate::methods::facade_grammar::regularize::{regularize_facade, regularize_grid};
+use crate::layout::regularize::{regularize_facade, regularize_grid};
 use crate::methods::facade_grammar::{Settings, infer};
 use crate::report::{Align, Table};
 use crate::shape::{Facade, decompose, splittable};

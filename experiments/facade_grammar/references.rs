@@ -2,9 +2,9 @@
 
 use super::data::{self, FIGURE_9};
 use crate::experiments::Context;
+use crate::experiments::facade_grammar::made::references::{Kind, referenced};
 use crate::grammar::Grammar;
 use crate::io::grammar_cga;
-use crate::methods::facade_grammar::synthetic::references::{Kind, referenced};
 use crate::shape::Facade;
 use crate::{Error, Result};
 
@@ -67,7 +67,7 @@ pub const NOTE: &str = "**References.** The paper compares with grammars of four
     references are of several kinds, none of which any method sees. *shipped*: the grammars that the 34 shipped layouts were \
     derived from, mostly all floors of a wing at once and then all elements of a floor at once. *printed*: the grammar that the paper \
     prints for facade (i) (Sec. 4.6); its own method found it. *floors_first*, *columns_first*, *interleaved*, *symmetric*, *nested*: \
-    grammars as people with these habits write them (module `methods::facade_grammar::synthetic::references`), in which a window or door with \
+    grammars as people with these habits write them (module `experiments::facade_grammar::made::references`), in which a window or door with \
     the wall around it is a tile. Each of these five has layouts made for it, and for each of these layouts there is a grammar of all five \
     kinds that derives the same terminals. All non-terminal regions count, the whole facade included. A repeat has no region for its period \
     unless the period is one non-terminal.";

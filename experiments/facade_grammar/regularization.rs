@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{data, projection};
 use crate::experiments::Context;
 use crate::io::{LabelMap, label_image};
-use crate::methods::facade_grammar::regularize::regularize_grid;
+use crate::layout::regularize::regularize_grid;
 use crate::report::{Align, Row, Table};
 use crate::{Error, Result};
 

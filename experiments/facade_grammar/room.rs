@@ -128,7 +128,7 @@ pub fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
     ctx.table(&table);
     ctx.note(format!(
         "*possible %, at most* is what `adp_best` would save if its grammars cost no more than the lower bounds: no grammar of these \
-         facades saves more, whatever the method (cost shares with {} branches at most; the first page of `methods::facade_grammar` has the \
+         facades saves more, whatever the method (Lagrangian bound with {} branches at most; the first page of `methods::facade_grammar` has the \
          proof, and says which grammars are bounded).",
         LIMITS.nodes
     ));

@@ -4,10 +4,11 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
+use super::made;
 use super::{BEST, PAPER};
 use crate::experiments::Context;
 use crate::grammar::derive;
-use crate::methods::facade_grammar::{Method, Settings, infer, synthetic};
+use crate::methods::facade_grammar::{Method, Settings, infer};
 use crate::report::{Chart, Corner, Figure, Row, Scale, Series};
 use crate::{Error, Result};
 
@@ -44,7 +45,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         &units,
         |(method, size)| format!("{method}/{size}"),
         |&(method, size)| {
-            let made = synthetic::sized(seed, size).map_err(Error::method)?;
+            let layout = made::sized(seed, size).map_err(Error::method)?;
             let settings = |iterations| Settings {
                 method,
                 iterations,
@@ -53,7 +54,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             };
             let timed = |iterations| {
                 let start = ThreadTime::now();
-                let found = infer(std::slice::from_ref(&made.facade), &settings(iterations));
+                let found = infer(std::slice::from_ref(&layout.facade), &settings(iterations));
                 found
                     .map(|outcome| (outcome.grammar, start.elapsed().as_secs_f64()))
                     .map_err(Error::method)
@@ -65,7 +66,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let start = ThreadTime::now();
             derive(&grammar, 0).map_err(Error::method)?;
             Ok(Times {
-                terminals: made.facade.regions.len(),
+                terminals: layout.facade.regions.len(),
                 iteration,
                 setup: (short - iteration * (iterations / 10) as f64).max(0.0),
                 derive: start.elapsed().as_secs_f64(),

@@ -47,7 +47,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.note(
         "Facades: that of Fig. 9 is facade (i) of the paper; its other facades are not public, so averages over facades are \
          of other facades than the paper's and only ratios compare. `adp_paper` follows the text; `adp_best` is this \
-         project's: cost shares, then walks by shortest paths and annealing; it stops when its grammar is proven optimal, so that its seconds hardly \
+         project's: a Lagrangian bound, then walks by shortest paths and annealing; it stops when its grammar is proven optimal, so that its seconds hardly \
          depend on the iterations that it may use. Seconds are processor time of one thread on the machine that `run.json` names; the paper's are of a 3.07 GHz Xeon X5675.",
     );
     Ok(())

@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use edifice::io::{self, Source};
-use edifice::methods::facade_grammar::regularize::{
-    RegularizeError, Report, regularize_facade, regularize_grid,
-};
+use edifice::layout::regularize::{RegularizeError, Report, regularize_facade, regularize_grid};
 use edifice::shape::{self, Decomposition, Facade, LabelGrid};
 use edifice::{Error, Result};
 

@@ -66,9 +66,8 @@ impl KdTree {
         {
             let key = |row: u32| points[row as usize * d + axis];
             let middle = (to - from) / 2;
-            self.order[from..to].select_nth_unstable_by(middle, |&a, &b| {
-                key(a).total_cmp(&key(b)).then(a.cmp(&b))
-            });
+            self.order[from..to]
+                .select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
             self.build(points, weights, from, from + middle);
             self.nodes[index].second = self.build(points, weights, from + middle, to);
         }

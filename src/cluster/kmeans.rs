@@ -31,7 +31,13 @@ pub fn kmeans<R: Rng>(
     let mut nearest = vec![f64::INFINITY; n];
     let mut centres = Vec::with_capacity(k * dimension);
     for c in 0..k.min(n) {
-        let mass = |i: usize| if c == 0 { weights[i] } else { weights[i] * nearest[i] };
+        let mass = |i: usize| {
+            if c == 0 {
+                weights[i]
+            } else {
+                weights[i] * nearest[i]
+            }
+        };
         let total: f64 = (0..n).map(mass).sum();
         let mut left = rng.random::<f64>() * total;
         // Rounding may leave a rest: the last point with mass. Without mass all points are centres.
@@ -110,7 +116,11 @@ pub fn means(
     }
     for c in 0..k {
         for d in c * dimension..(c + 1) * dimension {
-            sums[d] = if totals[c] > 0.0 { sums[d] / totals[c] } else { before[d] };
+            sums[d] = if totals[c] > 0.0 {
+                sums[d] / totals[c]
+            } else {
+                before[d]
+            };
         }
     }
     sums
@@ -125,14 +135,19 @@ fn assign(points: &[f64], dimension: usize, centres: &[f64]) -> Vec<usize> {
         .with_min_len(256)
         .map(|p| {
             let mut best = (f64::INFINITY, 0);
-            tree.search(p, f64::INFINITY, |gap, _| gap * (1.0 - 1e-12), |c| {
-                let c = c as usize;
-                let distance = square(p, &centres[c * dimension..(c + 1) * dimension]);
-                if (distance, c) < best {
-                    best = (distance, c);
-                }
-                best.0
-            });
+            tree.search(
+                p,
+                f64::INFINITY,
+                |gap, _| gap * (1.0 - 1e-12),
+                |c| {
+                    let c = c as usize;
+                    let distance = square(p, &centres[c * dimension..(c + 1) * dimension]);
+                    if (distance, c) < best {
+                        best = (distance, c);
+                    }
+                    best.0
+                },
+            );
             best.1
         })
         .collect()

@@ -216,7 +216,12 @@ impl WardTree {
     pub fn cut(&self, k: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.merges.len()).collect();
         // Stable: a child is before its parent, and costs no more.
-        order.sort_by(|&a, &b| self.merges[a].cost.total_cmp(&self.merges[b].cost).then(a.cmp(&b)));
+        order.sort_by(|&a, &b| {
+            self.merges[a]
+                .cost
+                .total_cmp(&self.merges[b].cost)
+                .then(a.cmp(&b))
+        });
         let merged = self.points.saturating_sub(k.max(1));
         let mut done = vec![false; self.merges.len()];
         for &m in &order[..merged.min(order.len())] {

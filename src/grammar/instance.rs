@@ -191,7 +191,7 @@ impl InstanceGrammar {
     /// # Errors
     /// [`InstanceGrammarError`]; the grammar is checked whole first.
     pub fn derive(&self) -> Result<InstanceDerivation, InstanceGrammarError> {
-        let symbols = self.check()?;
+        let symbols = self.symbols()?;
         let Some(&Symbol::Rule(start)) = symbols.get(self.axiom.as_str()) else {
             return Err(InstanceGrammarError::NoAxiom(self.axiom.clone()));
         };
@@ -209,11 +209,34 @@ impl InstanceGrammar {
         Ok(out)
     }
 
+    /// Number of symbols with rules.
+    pub fn non_terminals(&self) -> usize {
+        let mut symbols: Vec<&str> = self.rules.iter().map(|r| r.symbol.as_str()).collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        symbols.len()
+    }
+
+    /// Checks numbers, references and nesting.
+    ///
+    /// # Errors
+    /// [`InstanceGrammarError`].
+    pub fn check(&self) -> Result<(), InstanceGrammarError> {
+        let symbols = self.symbols()?;
+        match symbols.get(self.axiom.as_str()) {
+            Some(Symbol::Rule(_)) => Ok(()),
+            _ => Err(InstanceGrammarError::NoAxiom(self.axiom.clone())),
+        }
+    }
+
     /// Names every symbol, and checks numbers, references and nesting.
-    fn check(&self) -> Result<FxHashMap<&str, Symbol>, InstanceGrammarError> {
+    fn symbols(&self) -> Result<FxHashMap<&str, Symbol>, InstanceGrammarError> {
         let mut symbols = FxHashMap::default();
         for (i, template) in self.templates.iter().enumerate() {
-            if symbols.insert(template.symbol.as_str(), Symbol::Template(i)).is_some() {
+            if symbols
+                .insert(template.symbol.as_str(), Symbol::Template(i))
+                .is_some()
+            {
                 return Err(InstanceGrammarError::Ambiguous(template.symbol.clone()));
             }
             let count = template.mesh.positions.len();
@@ -241,7 +264,9 @@ impl InstanceGrammar {
                 }
             }
             let usable = rule.weight.is_finite() && rule.weight >= 0.0;
-            number(rule.weight, "weight", usable, || format!("rules[{i}].weight"))?;
+            number(rule.weight, "weight", usable, || {
+                format!("rules[{i}].weight")
+            })?;
         }
         for (rule, r) in self.rules.iter().enumerate() {
             for (successor, s) in r.successors.iter().enumerate() {
@@ -262,10 +287,7 @@ impl InstanceGrammar {
     }
 
     /// Depth-first search over the rules; an open rule met again is a cycle.
-    fn check_cycles(
-        &self,
-        symbols: &FxHashMap<&str, Symbol>,
-    ) -> Result<(), InstanceGrammarError> {
+    fn check_cycles(&self, symbols: &FxHashMap<&str, Symbol>) -> Result<(), InstanceGrammarError> {
         let mut by_symbol: FxHashMap<&str, Vec<usize>> = FxHashMap::default();
         for (i, rule) in self.rules.iter().enumerate() {
             by_symbol.entry(rule.symbol.as_str()).or_default().push(i);
@@ -336,7 +358,9 @@ fn check_placement(
         number(v, "shift", v.is_finite(), || format!("{}.at", place()))?;
     }
     let turn = placement.turn;
-    number(turn, "turn", turn.is_finite(), || format!("{}.turn", place()))?;
+    number(turn, "turn", turn.is_finite(), || {
+        format!("{}.turn", place())
+    })?;
     let [w, d, h] = placement.size;
     for v in [w, d, h] {
         let usable = v.is_finite() && v > 0.0;

@@ -74,7 +74,7 @@ fn sized(size: Size, symbol: &str, sizes: bool) -> String {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "io"))]
 mod tests {
     use crate::grammar::{Costs, listing};
     use crate::io::grammar_cga::from_str;

@@ -234,6 +234,14 @@ impl CmpFacade {
         self.facade(width, height, regions)
     }
 
+    /// All objects as rectangles of whole pixels, y up, the facade itself among them.
+    ///
+    /// # Errors
+    /// As [`CmpFacade::elements`].
+    pub fn layout(&self, width: f64, height: f64) -> Result<Facade> {
+        self.facade(width, height, self.regions(width, height))
+    }
+
     /// The label picture, painted in the order of the database.
     ///
     /// # Errors

@@ -5,6 +5,8 @@
 //!   "width": 400.0, "height": 600.0,
 //!   "regions": [ { "label": "window", "x": 20.0, "y": 40.0, "width": 30.0, "height": 60.0 } ] }
 //! ```
+//! Optional keys of a region are `id`, `observed`, `probability` and `reason`, and of a partial layout
+//! `unknown`, a list of rectangles ([`parse_annotated`]).
 //! Origin at the lower left, y up. The reader is strict about what it knows (types, duplicate
 //! keys, finite numbers, positive sizes, trailing text) and ignores keys that it does not know.
 
@@ -15,7 +17,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::{read_bytes, write_atomic};
-use crate::shape::{Facade, Rect, Region};
+use crate::shape::{AnnotatedFacade, Facade, Note, Rect, Region};
 use crate::{Error, Result};
 
 /// The value of the key `format`.
@@ -44,22 +46,40 @@ pub fn write(facade: &Facade, path: &Path) -> Result<()> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], path: &Path) -> Result<Facade> {
+    Ok(parse_annotated(bytes, path)?.facade)
+}
+
+/// Parses the bytes of a facade file with the annotations of its regions and its unknown part.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse_annotated(bytes: &[u8], path: &Path) -> Result<AnnotatedFacade> {
     check_header(bytes, path, FORMAT, VERSION)?;
     let file: File = parse_json(bytes, path)?;
-    let regions = file
-        .regions
-        .into_iter()
-        .map(|r| Region {
-            label: r.label,
-            rect: Rect::new(r.x, r.y, r.width, r.height),
-        })
-        .collect();
-    Facade::new(file.name, file.unit, file.width, file.height, regions)
-        .map_err(|e| Error::content(path, e))
+    let (regions, notes) = file.regions.into_iter().map(FileRegion::split).unzip();
+    let facade = Facade::new(file.name, file.unit, file.width, file.height, regions)
+        .map_err(|e| Error::content(path, e))?;
+    let annotated = AnnotatedFacade {
+        facade,
+        notes,
+        unknown: file.unknown,
+    };
+    annotated.check().map_err(|e| Error::content(path, e))?;
+    Ok(annotated)
 }
 
 /// The text of a facade file, one region a line. Numbers read back to the same bits.
 pub fn to_string(facade: &Facade) -> String {
+    text(facade, &[], None)
+}
+
+/// As [`to_string`], with the annotations that there are.
+pub fn annotated_to_string(annotated: &AnnotatedFacade) -> String {
+    let unknown = annotated.unknown.as_deref();
+    text(&annotated.facade, &annotated.notes, unknown)
+}
+
+fn text(facade: &Facade, notes: &[Note], unknown: Option<&[Rect]>) -> String {
     let mut out = format!(
         "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {}, \"unit\": {},\n  \"width\": {}, \"height\": {},\n  \"regions\": [",
         quoted(&facade.name),
@@ -72,17 +92,43 @@ pub fn to_string(facade: &Facade) -> String {
         // Writing to a String cannot fail.
         let _ = write!(
             out,
-            "{}\n    {{ \"label\": {}, \"x\": {}, \"y\": {}, \"width\": {}, \"height\": {} }}",
+            "{}\n    {{ \"label\": {}, {}{} }}",
             if index == 0 { "" } else { "," },
             quoted(&region.label),
-            number(r.x),
-            number(r.y),
-            number(r.width),
-            number(r.height)
+            place(&r),
+            notes.get(index).map(note_text).unwrap_or_default()
         );
     }
-    out.push_str("\n  ] }\n");
+    out.push_str("\n  ]");
+    if let Some(unknown) = unknown {
+        let rects: Vec<String> = unknown
+            .iter()
+            .map(|r| format!("\n    {{ {} }}", place(r)))
+            .collect();
+        let _ = write!(out, ",\n  \"unknown\": [{}\n  ]", rects.join(","));
+    }
+    out.push_str(" }\n");
     out
+}
+
+/// The keys of a rectangle.
+fn place(r: &Rect) -> String {
+    let [x, y, width, height] = [r.x, r.y, r.width, r.height].map(number);
+    format!("\"x\": {x}, \"y\": {y}, \"width\": {width}, \"height\": {height}")
+}
+
+/// The keys of a region's annotations, each after a comma.
+fn note_text(note: &Note) -> String {
+    let keys = [
+        ("id", note.id.as_deref().map(quoted)),
+        ("observed", note.observed.map(|o| o.to_string())),
+        ("probability", note.probability.map(number)),
+        ("reason", note.reason.as_deref().map(quoted)),
+    ];
+    let written = keys
+        .into_iter()
+        .filter_map(|(key, value)| Some(format!(", \"{key}\": {}", value?)));
+    written.collect()
 }
 
 pub(super) fn quoted(text: &str) -> String {
@@ -149,6 +195,8 @@ struct File {
     width: f64,
     height: f64,
     regions: Vec<FileRegion>,
+    #[serde(default)]
+    unknown: Option<Vec<Rect>>,
 }
 
 #[derive(Deserialize)]
@@ -158,6 +206,30 @@ struct FileRegion {
     y: f64,
     width: f64,
     height: f64,
+    #[serde(default)]
+    id: Option<String>,
+    #[serde(default)]
+    observed: Option<bool>,
+    #[serde(default)]
+    probability: Option<f64>,
+    #[serde(default)]
+    reason: Option<String>,
+}
+
+impl FileRegion {
+    fn split(self) -> (Region, Note) {
+        let region = Region {
+            label: self.label,
+            rect: Rect::new(self.x, self.y, self.width, self.height),
+        };
+        let note = Note {
+            id: self.id,
+            observed: self.observed,
+            probability: self.probability,
+            reason: self.reason,
+        };
+        (region, note)
+    }
 }
 
 #[cfg(test)]
@@ -181,6 +253,35 @@ mod tests {
         assert_eq!(facade.regions[0].rect, Rect::new(1.0, 2.5, 3.0, 0.1));
         let again = parse(to_string(&facade).as_bytes(), "f".as_ref()).unwrap();
         assert_eq!(facade, again);
+    }
+
+    #[test]
+    fn annotations_round_trip_and_stay_out_of_plain_layouts() {
+        let text = GOOD
+            .replace("1e-1 }", "1e-1, \"id\": \"w1\", \"observed\": false, \"probability\": 0.25, \"reason\": \"symmetry\" }")
+            .replace("] }", "], \"unknown\": [ { \"x\": 0, \"y\": 0, \"width\": 4, \"height\": 2 } ] }");
+        let annotated = parse_annotated(text.as_bytes(), "f".as_ref()).unwrap();
+        assert_eq!(annotated.notes[0].probability, Some(0.25));
+        assert_eq!(annotated.unknown.as_deref().unwrap().len(), 1);
+        let again = annotated_to_string(&annotated);
+        assert_eq!(
+            parse_annotated(again.as_bytes(), "f".as_ref()).unwrap(),
+            annotated
+        );
+        let plain = to_string(&annotated.facade);
+        assert_eq!(
+            plain,
+            annotated_to_string(&AnnotatedFacade::plain(annotated.facade))
+        );
+        assert!(!plain.contains("observed"));
+        for (from, to, expected) in [
+            ("0.25", "1.25", "regions[0].probability is 1.25"),
+            ("\"height\": 2 }", "\"height\": -2 }", "unknown[0]"),
+            ("false", "\"no\"", "regions[0].observed"),
+        ] {
+            let message = fail(&text.replacen(from, to, 1));
+            assert!(message.contains(expected), "{message}");
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ use json::validation::USize64;
 use json::{Index, Root};
 
 use super::write_atomic;
-use crate::shape::scene::{Group, Instance, Material, Mesh, Scene};
+use crate::scene::{Group, Instance, Material, Mesh, Scene};
 use crate::{Error, Result};
 
 /// Why a scene cannot be written.

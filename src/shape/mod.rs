@@ -6,6 +6,7 @@
 //! - [`solid`]: cities and buildings as triangles, and what is measured on them.
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
+mod annotated;
 mod building;
 mod building_error;
 mod building_plan;
@@ -17,13 +18,13 @@ mod elements;
 mod facade;
 mod label_grid;
 mod rect;
-pub mod scene;
 pub mod solid;
 mod splittable;
 #[cfg(test)]
 mod tests;
 mod tiling;
 
+pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{
     BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof, RoofStyle,
     Side, Special,

@@ -72,6 +72,30 @@ impl Rect {
         self.width * self.height
     }
 
+    /// Abscissa and ordinate of the centre.
+    pub fn centre(&self) -> (f64, f64) {
+        (self.x + self.width / 2.0, self.y + self.height / 2.0)
+    }
+
+    /// Whether a point lies in the rectangle, its lower and left edges included.
+    pub fn contains(&self, x: f64, y: f64) -> bool {
+        (self.x..self.right()).contains(&x) && (self.y..self.top()).contains(&y)
+    }
+
+    /// Area that two rectangles share.
+    pub fn overlap(&self, other: &Rect) -> f64 {
+        let width = self.right().min(other.right()) - self.x.max(other.x);
+        let height = self.top().min(other.top()) - self.y.max(other.y);
+        width.max(0.0) * height.max(0.0)
+    }
+
+    /// Intersection over union; 0 where neither has an area.
+    pub fn iou(&self, other: &Rect) -> f64 {
+        let shared = self.overlap(other);
+        let union = self.area() + other.area() - shared;
+        if union > 0.0 { shared / union } else { 0.0 }
+    }
+
     /// Lower coordinate along `axis`.
     pub fn start(&self, axis: Axis) -> f64 {
         match axis {

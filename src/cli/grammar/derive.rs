@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use edifice::grammar::{Derivation, Grammar, check, derive_at, size_independent};
 use edifice::io::{read_grammar, write_facade};
-use edifice::methods::facade_grammar::align;
+use edifice::layout::resize::align;
 use edifice::shape::Facade;
 use edifice::{Error, Result, rng};
 

@@ -64,7 +64,7 @@ pub struct Args {
 /// Names of the contract.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// Cost shares, which prove most grammars optimal; else also walks and annealing over the set of non-terminal types
+    /// A Lagrangian bound, which proves most grammars optimal; else also walks and annealing over the set of non-terminal types
     Adp,
     /// Approximate dynamic programming as Wu et al. 2014 describe it
     AdpPaper,

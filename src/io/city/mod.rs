@@ -5,10 +5,15 @@
 //! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
 //! | `.obj` | [`obj`]: an object or group is a building | yes |
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
-//! | `.glb` | [`glb_reader`]: a node with a mesh is a building | yes, see [`glb`] |
+//! | `.glb` | no | [`glb`]: a node with instances for each template |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
 
+pub mod cityjson;
+pub mod glb;
+pub mod grammar_json;
 pub mod npz;
+pub mod obj;
+pub mod picture;
 
 use std::path::Path;
 
@@ -26,7 +31,7 @@ pub enum CityError {
     #[error("no buildings with triangles")]
     NoBuildings,
     /// An extension that is no city format.
-    #[error("unknown city format; expected .npz, .obj, .glb, .city.json or .city.jsonl")]
+    #[error("unknown city format; expected .npz, .obj, .city.json or .city.jsonl")]
     UnknownFormat,
     /// Coordinates look like degrees.
     #[error(
@@ -56,6 +61,8 @@ pub enum CityError {
 pub fn read(path: &Path) -> Result<City> {
     let city = match packed::extension(path).as_str() {
         "npz" => npz::read(path)?,
+        "obj" => obj::read(path)?,
+        "json" | "jsonl" => cityjson::read(path)?,
         _ => return Err(Error::content(path, CityError::UnknownFormat)),
     };
     check(city, path)

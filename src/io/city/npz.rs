@@ -103,10 +103,12 @@ impl Arrays<'_> {
     /// All items of an array; grows with what is read, never with what a header says.
     fn items<T: Deserialize>(&mut self, array: &str) -> Result<Vec<T>> {
         let path = self.path;
-        let fail = |error: String| {
-            Error::input(path, format!("array {array}"), CityError::Format(error))
-        };
-        let file = self.archive.by_name(array).map_err(|e| fail(e.to_string()))?;
+        let fail =
+            |error: String| Error::input(path, format!("array {array}"), CityError::Format(error));
+        let file = self
+            .archive
+            .by_name(array)
+            .map_err(|e| fail(e.to_string()))?;
         let file = file.ok_or_else(|| fail("missing from the archive".to_owned()))?;
         let mut items = Vec::new();
         for item in file.data::<T>().map_err(|e| fail(e.to_string()))? {
@@ -129,7 +131,11 @@ impl Arrays<'_> {
     fn integers(&mut self, array: &str) -> Result<Vec<i64>> {
         macro_rules! widened {
             ($t:ty) => {
-                Ok(self.items::<$t>(array)?.into_iter().map(i64::from).collect())
+                Ok(self
+                    .items::<$t>(array)?
+                    .into_iter()
+                    .map(i64::from)
+                    .collect())
             };
         }
         match self.kind(array)? {

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::shape::solid::{
-    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, height_map, plan_area, repair,
+    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, height_map, repair,
     section_lid,
 };
 
@@ -25,8 +25,6 @@ const MOST_SAMPLES: usize = 16_000;
 pub const CELLS: usize = 16;
 /// Columns per cell along a side.
 const SAMPLES: usize = 2;
-/// Faces that look down matter beyond this share of those that look up.
-const OVERHANG: f64 = 0.01;
 /// First moments below this share of the mean say nothing about the orientation.
 const SYMMETRIC: f64 = 0.004;
 
@@ -58,15 +56,16 @@ pub struct Decomposition {
     pub empty: Vec<usize>,
 }
 
-/// Cuts every building of a city into components, on all threads.
-pub fn decompose(city: &City) -> Decomposition {
+/// Cuts every building of a city into components, on all threads. With `bottoms`, components above others get a
+/// bottom: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
+pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
     let parts: Vec<(Vec<Component>, MeshFaults)> = city
         .buildings
         .par_iter()
         .enumerate()
         .map(|(b, building)| {
             let (mesh, faults) = repair(&building.mesh);
-            (components_of(&mesh, b), faults)
+            (components_of(&mesh, b, bottoms), faults)
         })
         .collect();
     let mut out = Decomposition::default();
@@ -81,11 +80,10 @@ pub fn decompose(city: &City) -> Decomposition {
 }
 
 /// The components of a repaired building.
-fn components_of(mesh: &TriangleMesh, building: usize) -> Vec<Component> {
+fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Component> {
     let cuts = cut_planes(mesh);
     let mut components = Vec::new();
     let lids: Vec<TriangleMesh> = cuts.iter().map(|&z| section_lid(mesh, z)).collect();
-    let bottoms = overhangs(mesh);
     for (slab, mut part) in clip_to_slabs(mesh, &cuts).into_iter().enumerate() {
         if let Some(lid) = lids.get(slab) {
             part.append(lid);
@@ -119,23 +117,6 @@ fn components_of(mesh: &TriangleMesh, building: usize) -> Vec<Component> {
     components
 }
 
-/// Whether faces above the lowest point look down: below them is air, and each slab needs its bottom.
-fn overhangs(mesh: &TriangleMesh) -> bool {
-    std::env::var("BOTTOM").map(|v| v == "1").unwrap_or_else(|_| {
-    let floor = mesh.bounds().map_or(0.0, |b| b.0[2]) + 1.0;
-    let (mut down, mut up) = (0.0, 0.0);
-    for t in mesh.corners() {
-        let area = plan_area(&t);
-        let above = t.iter().any(|p| p[2] > floor);
-        match area < 0.0 {
-            true if above => down -= area,
-            true => {}
-            false => up += area,
-        }
-    }
-    down > OVERHANG * up })
-}
-
 /// The heights at which a building is cut, increasing.
 ///
 /// With S_i = A(z_i) - A(z_{i+1}), a cut is where |S_i - S_{i-1}| exceeds 5 % of the largest area.
@@ -143,7 +124,11 @@ pub fn cut_planes(mesh: &TriangleMesh) -> Vec<f64> {
     let Some(profile) = SectionProfile::new(mesh, STEP, MOST_SAMPLES) else {
         return Vec::new();
     };
-    let stride = if profile.top - profile.base < LOW { FINE } else { COARSE };
+    let stride = if profile.top - profile.base < LOW {
+        FINE
+    } else {
+        COARSE
+    };
     let area = |i: usize| profile.areas.get(i).copied().unwrap_or(0.0);
     let steps = profile.areas.len().div_ceil(stride);
     let fall = |i: usize| area(i * stride) - area((i + 1) * stride);

@@ -21,10 +21,14 @@ pub const AXIOM: &str = "City";
 /// The grammar: a terminal for each type, a non-terminal for each arrangement of parts that buildings
 /// have, and the buildings in their places under the axiom.
 pub fn emit(city: &City, components: &[Component], types: &Types, merge: bool) -> InstanceGrammar {
-    let templates = types.representatives.iter().enumerate().map(|(kind, &c)| Template {
-        symbol: terminal(kind),
-        mesh: template(&components[c].mesh, merge),
-    });
+    let templates = types
+        .representatives
+        .iter()
+        .enumerate()
+        .map(|(kind, &c)| Template {
+            symbol: terminal(kind),
+            mesh: template(&components[c].mesh, merge),
+        });
     let mut grammar = InstanceGrammar {
         name: city.name.clone(),
         reference_system: city.reference_system.clone(),
@@ -100,7 +104,11 @@ impl Frame {
 fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Placement {
     let used = types.uses[index];
     let [w, d, h] = component.frame.size;
-    let size = if used.quarter % 2 == 0 { [w, d, h] } else { [d, w, h] };
+    let size = if used.quarter % 2 == 0 {
+        [w, d, h]
+    } else {
+        [d, w, h]
+    };
     let turn = component.frame.angle.to_degrees() + 90.0 * f64::from(used.quarter);
     let shift = [0, 1, 2].map(|k| component.frame.base[k] - frame.at[k]);
     let (sin, cos) = frame.turn.to_radians().sin_cos();
@@ -121,9 +129,16 @@ fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Pl
 
 /// A representative's mesh: coplanar triangles merged, coordinates on 12 bits.
 fn template(unit: &TriangleMesh, merge: bool) -> TriangleMesh {
-    let mesh = if merge { merge_coplanar(unit, COPLANAR) } else { unit.clone() };
+    let mesh = if merge {
+        merge_coplanar(unit, COPLANAR)
+    } else {
+        unit.clone()
+    };
     let grid = |v: f64| (v * TEMPLATE_STEPS).round() / TEMPLATE_STEPS;
-    let snapped = mesh.positions.iter().map(|p| [grid(p[0] + 0.5) - 0.5, grid(p[1] + 0.5) - 0.5, grid(p[2])]);
+    let snapped = mesh
+        .positions
+        .iter()
+        .map(|p| [grid(p[0] + 0.5) - 0.5, grid(p[1] + 0.5) - 0.5, grid(p[2])]);
     TriangleMesh {
         positions: snapped.collect(),
         triangles: mesh.triangles,

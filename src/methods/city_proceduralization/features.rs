@@ -70,7 +70,9 @@ pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
     }
     let dimension = columns.len();
     let value = |r: &[f64; 11], &(k, mean, factor): &(usize, f64, f64)| (r[k] - mean) * factor;
-    let values = raw.iter().flat_map(|r| columns.iter().map(move |c| value(r, c)));
+    let values = raw
+        .iter()
+        .flat_map(|r| columns.iter().map(move |c| value(r, c)));
     Points {
         values: values.collect(),
         dimension,
@@ -80,7 +82,11 @@ pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
 /// Vertices of the plan's hull after Douglas and Peucker (1973).
 fn outline_vertices(component: &Component) -> usize {
     let [w, d, _] = component.frame.size;
-    let plan = component.mesh.positions.iter().map(|p| [p[0] * w, p[1] * d]);
+    let plan = component
+        .mesh
+        .positions
+        .iter()
+        .map(|p| [p[0] * w, p[1] * d]);
     let hull = convex_hull(plan.collect());
     let tolerance = SIMPLIFY * w.hypot(d);
     if hull.len() < 4 {
@@ -88,7 +94,9 @@ fn outline_vertices(component: &Component) -> usize {
     }
     // A closed ring is two chains between its first corner and the one farthest from it.
     let far = |i: &usize| (hull[*i][0] - hull[0][0]).hypot(hull[*i][1] - hull[0][1]);
-    let split = (1..hull.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(1);
+    let split = (1..hull.len())
+        .max_by(|a, b| far(a).total_cmp(&far(b)))
+        .unwrap_or(1);
     let mut ring = hull.clone();
     ring.push(hull[0]);
     inner_vertices(&ring[..=split], tolerance) + inner_vertices(&ring[split..], tolerance) + 2
@@ -127,7 +135,9 @@ pub fn geometric_features(components: &[Component]) -> Points {
             *m += f64::from(h) / n;
         }
     }
-    let table = DMatrix::from_fn(d, sample.len(), |i, j| f64::from(sample[j].heights[i]) - mean[i]);
+    let table = DMatrix::from_fn(d, sample.len(), |i, j| {
+        f64::from(sample[j].heights[i]) - mean[i]
+    });
     let covariance = &table * table.transpose() / n;
     let eigen = SymmetricEigen::new(covariance);
     let mut order: Vec<usize> = (0..d).collect();

@@ -38,6 +38,8 @@ pub mod proceduralize;
 pub mod types;
 
 pub use components::{Component, Decomposition, decompose};
+pub use features::PAPER_FEATURES;
 pub use proceduralize::{
-    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, proceduralize,
+    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, largest,
+    proceduralize, smallest,
 };

@@ -92,8 +92,23 @@ pub struct Proceduralized {
 ///
 /// # Errors
 /// [`ProceduralizeError`].
-pub fn proceduralize(city: &City, settings: &Settings) -> Result<Proceduralized, ProceduralizeError> {
-    let decomposition = decompose(city);
+pub fn proceduralize(
+    city: &City,
+    settings: &Settings,
+) -> Result<Proceduralized, ProceduralizeError> {
+    let decomposition = decompose(city, settings.budget != Budget::All);
+    from_components(city, decomposition, settings)
+}
+
+/// Makes a grammar of a city that is already cut.
+///
+/// # Errors
+/// [`ProceduralizeError`].
+pub fn from_components(
+    city: &City,
+    decomposition: Decomposition,
+    settings: &Settings,
+) -> Result<Proceduralized, ProceduralizeError> {
     let components = &decomposition.components;
     if components.is_empty() {
         return Err(ProceduralizeError::Empty);
@@ -120,4 +135,70 @@ pub fn proceduralize(city: &City, settings: &Settings) -> Result<Proceduralized,
         decomposition,
         types,
     })
+}
+
+/// Steps of the search for a number of templates.
+const SEARCH_STEPS: usize = 7;
+
+/// The grammar of the most templates that `fits`, on the assumption that fewer templates fit as well; `None`
+/// when one template does not fit.
+///
+/// # Errors
+/// [`ProceduralizeError`], or those of `fits`.
+pub fn largest<E: From<ProceduralizeError>>(
+    city: &City,
+    settings: &Settings,
+    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+) -> Result<Option<Proceduralized>, E> {
+    search(city, settings, fits, true)
+}
+
+/// The grammar of the fewest templates that `fits`, on the assumption that more templates fit as well; `None`
+/// when a template for each component does not fit.
+///
+/// # Errors
+/// [`ProceduralizeError`], or those of `fits`.
+pub fn smallest<E: From<ProceduralizeError>>(
+    city: &City,
+    settings: &Settings,
+    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+) -> Result<Option<Proceduralized>, E> {
+    search(city, settings, fits, false)
+}
+
+/// Bisection over the logarithm of the number of templates.
+fn search<E: From<ProceduralizeError>>(
+    city: &City,
+    settings: &Settings,
+    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+    many: bool,
+) -> Result<Option<Proceduralized>, E> {
+    let decomposition = decompose(city, true);
+    let at = |k: usize| {
+        let settings = Settings {
+            budget: Budget::Templates(k),
+            ..settings.clone()
+        };
+        from_components(city, decomposition.clone(), &settings)
+    };
+    let (mut low, mut high) = (1, decomposition.components.len().max(1));
+    let sure = at(if many { low } else { high })?;
+    let mut best = fits(&sure)?.then_some(sure);
+    for _ in 0..SEARCH_STEPS {
+        let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
+        if best.is_none() || middle == low || middle == high {
+            break;
+        }
+        let made = at(middle)?;
+        let fit = fits(&made)?;
+        if fit {
+            best = Some(made);
+        }
+        if fit == many {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(best)
 }

@@ -44,20 +44,26 @@ pub fn paper_types(
         members[l].push(i);
     }
     let choose = |list: &Vec<usize>| match representative {
-        Representative::FewestPolygons => {
-            list.iter().copied().min_by_key(|&i| components[i].mesh.triangles.len())
-        }
+        Representative::FewestPolygons => list
+            .iter()
+            .copied()
+            .min_by_key(|&i| components[i].mesh.triangles.len()),
         Representative::Nearest => {
             let n = list.len() as f64;
             let mean = |k: usize| list.iter().map(|&i| points.row(i)[k]).sum::<f64>() / n;
             let mean: Vec<f64> = (0..points.dimension).map(mean).collect();
             let far = |i: usize| square(points.row(i), &mean);
-            list.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))
+            list.iter()
+                .copied()
+                .min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)))
         }
     };
     Types {
         representatives: members.iter().filter_map(choose).collect(),
-        uses: labels.into_iter().map(|kind| Use { kind, quarter: 0 }).collect(),
+        uses: labels
+            .into_iter()
+            .map(|kind| Use { kind, quarter: 0 })
+            .collect(),
     }
 }
 
@@ -74,7 +80,14 @@ fn halving(points: &Points, k: usize, seed: u64) -> Vec<usize> {
         // The levels are n/2, n/4, ...; the last one is the k asked for.
         let target = (n >> (level + 1)).max(k).max(1).min(weights.len() - 1);
         let mut stream = rng::stream(seed, "city halving", level as u64);
-        let found = kmeans(&centres, points.dimension, &weights, target, LLOYD_STEPS, &mut stream);
+        let found = kmeans(
+            &centres,
+            points.dimension,
+            &weights,
+            target,
+            LLOYD_STEPS,
+            &mut stream,
+        );
         let (numbers, count) = renumbered(&found.labels);
         labels.iter_mut().for_each(|l| *l = numbers[*l]);
         let mut next = vec![0.0; count];
@@ -121,7 +134,11 @@ pub fn best_types(components: &[Component], k: usize) -> Result<Types, Procedura
     let mut weights: Vec<f64> = Vec::new();
     let mut group = Vec::with_capacity(components.len());
     for (i, c) in components.iter().enumerate() {
-        let key: Vec<u8> = c.heights.iter().map(|h| (h * 255.0).round() as u8).collect();
+        let key: Vec<u8> = c
+            .heights
+            .iter()
+            .map(|h| (h * 255.0).round() as u8)
+            .collect();
         let g = *known.entry(key).or_insert_with(|| {
             distinct.push(i);
             weights.push(0.0);
@@ -130,7 +147,10 @@ pub fn best_types(components: &[Component], k: usize) -> Result<Types, Procedura
         weights[g] += c.volume.max(1e-3);
         group.push(g);
     }
-    let rows: Vec<f64> = distinct.iter().flat_map(|&i| points.row(i).to_vec()).collect();
+    let rows: Vec<f64> = distinct
+        .iter()
+        .flat_map(|&i| points.row(i).to_vec())
+        .collect();
     let k = k.clamp(1, distinct.len());
     let mut labels = ward(&rows, d, &weights)?.cut(k);
     if k < distinct.len() {
@@ -143,9 +163,15 @@ pub fn best_types(components: &[Component], k: usize) -> Result<Types, Procedura
         rows,
         d,
         weights,
-        heights: distinct.iter().map(|&i| components[i].heights.as_slice()).collect(),
+        heights: distinct
+            .iter()
+            .map(|&i| components[i].heights.as_slice())
+            .collect(),
     };
-    let uses: Vec<Use> = labels.into_iter().map(|kind| Use { kind, quarter: 0 }).collect();
+    let uses: Vec<Use> = labels
+        .into_iter()
+        .map(|kind| Use { kind, quarter: 0 })
+        .collect();
     let (medoids, uses) = table.medoids(uses, count);
     Ok(Types {
         representatives: medoids.iter().map(|&m| distinct[m]).collect(),
@@ -185,7 +211,10 @@ impl Table<'_> {
         let medoid = |(kind, list): (usize, &Vec<usize>)| {
             let total: f64 = list.iter().map(|&i| self.weights[i]).sum();
             let mean = |k: usize| {
-                list.iter().map(|&i| self.weights[i] * self.row(i)[k]).sum::<f64>() / total
+                list.iter()
+                    .map(|&i| self.weights[i] * self.row(i)[k])
+                    .sum::<f64>()
+                    / total
             };
             let mean: Vec<f64> = (0..self.d).map(mean).collect();
             let mut near = list.clone();

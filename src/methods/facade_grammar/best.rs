@@ -2,90 +2,119 @@
 
 use std::rc::Rc;
 
+use super::adp::search::Search;
+use super::adp::walk::ShortestPathRules;
+use super::annealing::NonterminalSet;
 use super::bound::{labels_once, saved_by_grids};
-use super::choice::Router;
 use super::infer::{InferError, Settings};
-use super::members::Members;
-use super::search::Search;
-use super::shares::{BoundLimits, Incumbent, NOISE, Program, solve};
-use super::walk::{AddRule, ShortestRoutes};
+use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
+use super::rules::RulePricer;
+use crate::methods::facade_grammar::rules::AddRule;
 use crate::optim::Step;
 use crate::optim::adp::Epsilon;
 use crate::optim::annealing::{Annealing, Cooling};
 use crate::shape::Facade;
 
+/// Rules found, and a bound below which no grammar costs.
+type Found = (Vec<AddRule>, f64);
+
 impl Search<'_> {
-    /// The optimum, where the Lagrangian bound finds and proves it. Else walks that exploit by shortest paths, then
-    /// annealing over the set of types from the cheapest grammar found. Where there are too many rules for the
-    /// bound, walks of `paper` come first, and everything ends when a limit of memory is reached. Several facades start
-    /// from the union of their own grammars. Also a bound below which no grammar costs.
+    /// The default method, in stages:
+    ///
+    /// 1. several facades start from the union of their own grammars;
+    /// 2. the Lagrangian bound, which ends the search when it proves its grammar optimal; where there are too many
+    ///    items for it, walks of `paper`;
+    /// 3. walks that exploit by shortest paths;
+    /// 4. annealing over the set of non-terminal types, from the cheapest grammar so far.
+    ///
+    /// Everything ends when a limit of memory is reached.
     pub fn best(
         &self,
         facades: &[Facade],
         mut observer: impl FnMut(Step) + Clone + 'static,
-    ) -> Result<(Vec<AddRule>, f64), InferError> {
-        let Settings {
-            iterations,
-            seed,
-            readings,
-            ..
-        } = *self.settings;
+    ) -> Result<Found, InferError> {
         let union = match facades {
             [_] => None,
             _ => self.union(facades)?,
         };
-        let mut iterations = iterations;
-        let (first, lower, learnt, steps) = match self.bounded(facades, union.as_deref()) {
-            Some(Bounded { rules, cost, lower }) => {
-                observer(Step {
-                    iteration: 0,
-                    cost,
-                    best: cost,
-                });
-                if cost <= lower + NOISE {
-                    return Ok((rules, lower));
-                }
-                (rules, lower, Vec::new(), 1)
-            }
-            None => {
-                let terminals: usize = facades.iter().map(|f| f.regions.len()).sum();
-                iterations = iterations.min(MOST_WALKED / terminals as u64).max(1);
-                self.types.borrow_mut().limit = MOST_STRIPS;
-                let (rules, learnt) = self.paper(iterations, observer.clone())?;
-                (rules, self.labels_once(), learnt, iterations)
-            }
+        let Some(found) = self.bounded(facades, union.as_deref()) else {
+            return self.best_unbounded(facades, union, observer);
         };
+        let Bounded { rules, cost, lower } = found;
+        observer(Step {
+            iteration: 0,
+            cost,
+            best: cost,
+        });
+        if cost <= lower + NOISE {
+            return Ok((rules, lower));
+        }
+        let iterations = self.settings.iterations;
+        let start = [rules].into_iter().chain(union);
+        self.second_stage(start, lower, Vec::new(), iterations, later(1, observer))
+    }
+
+    /// [`Search::best`] where there are too many items for the Lagrangian bound.
+    fn best_unbounded(
+        &self,
+        facades: &[Facade],
+        union: Option<Vec<AddRule>>,
+        observer: impl FnMut(Step) + Clone + 'static,
+    ) -> Result<Found, InferError> {
+        let terminals: usize = facades.iter().map(|f| f.regions.len()).sum();
+        let most = MOST_WALKED / terminals as u64;
+        let iterations = self.settings.iterations.min(most).max(1);
+        self.types.borrow_mut().limit = MOST_STRIPS;
+        let (walked, learnt) = self.paper(iterations, observer.clone())?;
+        let start = [walked].into_iter().chain(union);
+        let observer = later(iterations, observer);
+        self.second_stage(start, self.labels_once(), learnt, iterations, observer)
+    }
+
+    /// Walks by shortest paths, then annealing. `learnt` estimates `V(R)` by type.
+    fn second_stage(
+        &self,
+        found: impl Iterator<Item = Vec<AddRule>>,
+        lower: f64,
+        learnt: Vec<f64>,
+        iterations: u64,
+        observer: impl FnMut(Step) + Clone + 'static,
+    ) -> Result<Found, InferError> {
         let full = || self.types.borrow().is_full();
         if full() {
-            let start = self.cheapest([first].into_iter().chain(union));
-            return Ok((start, lower));
+            return Ok((self.cheapest(found), lower));
         }
-        let router = || Router::new(self.settings.costs, self.settings.operations);
-        let share = share(iterations);
-        let (by_routes, routes) = self.walks(
-            self.explore(readings.protection.anew()),
-            ShortestRoutes::new(router()),
+        let Settings { costs, seed, .. } = *self.settings;
+        let pricer = || RulePricer::new(costs, self.settings.operations);
+        let rounds = second_stage_steps(iterations);
+        let (walked, paths) = self.walks(
+            self.explore(self.settings.readings.protection.anew()),
+            ShortestPathRules::new(pricer()),
             Epsilon::default(),
-            share,
-            later(steps, observer.clone()),
+            rounds,
+            observer.clone(),
         )?;
-        let start = self.cheapest([first, by_routes].into_iter().chain(union));
+        // Of equally cheap grammars the first stays: those found before come first.
+        let mut found: Vec<Vec<AddRule>> = found.collect();
+        found.insert(found.len().min(1), walked);
+        let start = self.cheapest(found.into_iter());
         if full() {
             return Ok((start, lower));
         }
-        let mut values = routes.into_values();
+        let mut values = paths.into_values();
         for (value, learnt) in values.iter_mut().zip(learnt) {
             *value = value.min(learnt);
         }
-        let members = Members::new(
+        let set = NonterminalSet::new(
             Rc::clone(&self.types),
-            router(),
+            pricer(),
             Rc::clone(&self.exploration),
             values,
             &start,
         );
-        let annealing = Annealing::new(COOLING, share, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
-        let (rules, ..) = annealing.run(members, later(steps + share, observer))?;
+        let annealing =
+            Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
+        let (rules, ..) = annealing.run(set, later(rounds, observer))?;
         Ok((rules, lower))
     }
 
@@ -120,7 +149,7 @@ impl Search<'_> {
             Some(rules) if incumbent.cost >= cost => rules.to_vec(),
             _ => incumbent.rules(&mut self.types.borrow_mut()),
         };
-        let lower = incumbent.attainable(lower);
+        let lower = incumbent.round_up(lower);
         Some(Bounded {
             rules,
             cost: incumbent.cost,
@@ -138,10 +167,10 @@ impl Search<'_> {
     /// One rule at least, unless every facade is a terminal, and every label of a facade that is none written once.
     fn labels_once(&self) -> f64 {
         let types = &self.fresh;
-        let compound = types.roots.iter().zip(types.sheets.iter());
+        let compound = types.roots.iter().zip(types.layouts.iter());
         let compound = compound.filter(|(root, _)| !types.is_terminal(**root));
         let mut labels: Vec<u32> = compound
-            .flat_map(|(_, sheet)| sheet.terminals.iter().map(|(_, label)| *label))
+            .flat_map(|(_, layout)| layout.terminals.iter().map(|(_, label)| *label))
             .collect();
         labels.sort_unstable();
         labels.dedup();
@@ -154,7 +183,7 @@ impl Search<'_> {
     /// Eq. 1.
     fn cost(&self, rules: &[AddRule]) -> f64 {
         let costs = &self.settings.costs;
-        rules.iter().map(|r| r.choice.cost(costs)).sum()
+        rules.iter().map(|r| r.candidate.cost(costs)).sum()
     }
 
     /// The cheapest of what was found and of what the deterministic baselines find; of several, the first.
@@ -179,19 +208,22 @@ struct Bounded {
     lower: f64,
 }
 
-/// Walks by shortest paths, and rounds of annealing, in the second stage of `best`.
-fn share(iterations: u64) -> u64 {
+/// Walks by shortest paths, and as many rounds of annealing, in the second stage of `best`.
+fn second_stage_steps(iterations: u64) -> u64 {
     (iterations / SECOND_STAGE_SHARE).max(1)
 }
 
 /// Maximum observer steps beyond `iterations`: the Lagrangian bound counts as one, then come the walks and rounds of the
 /// second stage.
 pub(super) fn further_steps(iterations: u64) -> u64 {
-    1 + 2 * share(iterations)
+    1 + 2 * second_stage_steps(iterations)
 }
 
 /// An observer of a stage before which so many steps were made.
-fn later(before: u64, mut observer: impl FnMut(Step) + 'static) -> impl FnMut(Step) + 'static {
+fn later(
+    before: u64,
+    mut observer: impl FnMut(Step) + Clone + 'static,
+) -> impl FnMut(Step) + Clone + 'static {
     move |step| {
         observer(Step {
             iteration: before + step.iteration,

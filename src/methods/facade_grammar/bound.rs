@@ -5,9 +5,9 @@ use std::fmt;
 use rustc_hash::FxHashSet;
 
 use super::infer::{InferError, Method, Settings, infer};
+use super::lagrangian::{BoundLimits, Incumbent, Program, solve};
 use super::operations::Operations;
 use super::regions::Types;
-use super::shares::{BoundLimits, Incumbent, Program, solve};
 use crate::grammar::Costs;
 use crate::shape::Facade;
 
@@ -103,7 +103,7 @@ pub fn lower_bound(
         return Ok(known(&incumbent, labels, Some(Weakness::Items)));
     };
     if !operations.grid_split {
-        let types = program.kinds.len();
+        let types = program.region_types.len();
         let (lower, nodes) = solve(program, &mut incumbent, limits);
         return Ok(Bound {
             nodes,
@@ -112,9 +112,9 @@ pub fn lower_bound(
         });
     }
     let mut without = Incumbent::new(f64::INFINITY, costs, without_grids);
-    let types = program.kinds.len();
+    let types = program.region_types.len();
     let (lower, nodes) = solve(program, &mut without, limits);
-    let lower = without.attainable(lower) * saved_by_grids(costs, lines.0.max(lines.1));
+    let lower = without.round_up(lower) * saved_by_grids(costs, lines.0.max(lines.1));
     Ok(Bound {
         nodes,
         types,

@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::adp::readings::Readings;
+use super::adp::search::Search;
 use super::best::further_steps;
+use super::lagrangian::NOISE;
 use super::operations::Operations;
-use super::readings::Readings;
-use super::search::Search;
-use super::shares::NOISE;
 use crate::grammar::{CostError, Costs, Grammar};
 use crate::optim::Step;
 use crate::optim::adp::AdpError;
@@ -20,7 +20,7 @@ use crate::shape::{Facade, LayoutError, splittable};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Cost shares; where these do not prove a grammar optimal, approximate dynamic programming, then annealing over the
+    /// The Lagrangian bound; where it does not prove a grammar optimal, approximate dynamic programming, then annealing over the
     /// set of non-terminal types.
     AdpBest,
     /// Approximate dynamic programming as the text describes it.
@@ -227,7 +227,7 @@ pub fn infer_observed(
     })
 }
 
-/// Grid lines that a sheet may have along one axis, and cells in all: what fits in memory.
+/// Grid lines that a layout may have along one axis, and cells in all: what fits in memory.
 const MAX_LINES: usize = 20_000;
 const MAX_CELLS: usize = 60_000_000;
 

@@ -13,41 +13,53 @@
 //! its [`Settings`]:
 //!
 //! - [`Method::AdpPaper`]: approximate dynamic programming, as the text can be read;
-//! - [`Method::AdpBest`]: cost shares, below, which find the optimum of most facades and prove it; where they
-//!   leave a gap, walks by shortest paths over all sets of lines, then annealing over the set of non-terminal
+//! - [`Method::AdpBest`]: a Lagrangian bound, below, which finds the optimum of most facades and proves it; where it
+//!   leaves a gap, walks by shortest paths over all sets of lines, then annealing over the set of non-terminal
 //!   types;
 //! - the baselines of Sec. 6.1.
 //!
-//! # Cost shares: a bound, and most often the optimum
-//! Not in the paper. A *place* is a rectangle of a facade that full lines can cut out. A derivation splits some
-//! places, each by one rule, into others and terminals. A rule pays for *items*: its operation and each
-//! successor. A grammar pays once for item `i` of a rule of type `t`, however many places use it. Of places that
-//! overlap a derivation splits one at most: let a *purse* of `t` be a largest group of its places that share a corner of
-//! one of them. Let every purse `q` pay a share `s_qi >= 0` of the cost `c_i` of each item of `t`'s rules, so that
+//! | folder or file | what |
+//! | --- | --- |
+//! | `regions/` | regions, region types, which lengths are equal |
+//! | `rules/` | rules of a type, the cheapest one, the grammar of a set of rules |
+//! | `lagrangian/` | Lagrangian bound: multipliers, subgradient steps, variable fixing, branch and bound |
+//! | `adp/` | approximate dynamic programming (Sec. 4) |
+//! | `annealing/` | annealing over the set of non-terminal types |
+//! | `baselines/` | importance sampling, greedy, Bayesian, symmetry |
+//! | `best.rs`, `joint_start.rs` | the default method, and where it starts with several facades |
+//! | `bound.rs` | [`lower_bound`] |
+//! | `city/` | a city of stochastic variations (Sec. 6.2) |
+//!
+//! # Lagrangian bound
+//! Not in the paper. An *occurrence* of a region type is a rectangle of a facade that full lines can cut out and that
+//! has the type's contents. A derivation splits some occurrences, each by one rule, into others and terminals. A rule has *items*:
+//! its operation and each successor. A grammar pays once for item `i` of a rule of type `t`, however many occurrences use it.
+//! Let `Q_t` be the maximal cliques of overlapping occurrences of `t`; a derivation uses at most one occurrence of each
+//! clique. Split the cost `c_i` of each item of `t`'s rules by multipliers `s_qi >= 0` over the cliques `q` of `t`,
 //!
 //! ```text
-//! sum_{q of type t} s_qi = c_i,
-//! L(s) = min over derivations of the sum of s_qi over the items i used at places p and the purses q of p.
+//! sum_{q in Q_t} s_qi = c_i,
+//! L(s) = min over derivations of the sum of s_qi over the items i used at occurrences p and the cliques q that contain p.
 //! ```
 //!
-//! No grammar costs less than `L(s)`, whatever the shares: its own derivation empties each purse once at most for
-//! each item that it has, and so pays `c_i` at most. And nothing is shared any more, so that `L` is a dynamic program
-//! over places, parts before wholes, in which every rule is a shortest path over its lines:
+//! Weak duality: no grammar costs less than `L(s)`, for its derivation uses one occurrence per clique at most, so that each of
+//! its items adds at most `sum_q s_qi = c_i`. With costs split, the subproblems decouple: `L` is evaluated bottom up,
+//! a dynamic program over occurrences in which every rule is a shortest path over its lines:
 //!
 //! ```text
-//! V(p) = min over rules of sum_i ( sum_{q of p} s_qi + sum of V over the parts that i writes out ).
+//! V(p) = min over rules of sum_i ( sum_{q containing p} s_qi + sum of V over the parts that i writes out ).
 //! ```
 //!
-//! `L` is concave and piecewise linear in the shares; it is the dual of a linear program, "a type has an item if a place of
-//! any purse uses it" (Lagrangian decomposition: Guignard and Kim, *Lagrangean decomposition*, Mathematical
-//! Programming 39, 1987). From equal shares, subgradient steps of Polyak's length raise it: purses whose places use an
-//! item in the cheapest derivation pay more of it, the others less. The types of each cheapest derivation are in
+//! `L` is concave and piecewise linear in the multipliers; it is the Lagrangian dual of a linear program, "a type has an
+//! item if an occurrence of any clique uses it" (Lagrangian decomposition: Guignard and Kim, *Lagrangean decomposition*, Mathematical
+//! Programming 39, 1987). From equal multipliers, subgradient steps of Polyak's length raise it: the multipliers of cliques whose
+//! occurrences use an item in the cheapest derivation rise, the others fall. The types of each cheapest derivation are in
 //! turn the set of non-terminals of a grammar, whose best rules are independent shortest paths. When `L` meets the
-//! cost of the cheapest such grammar, that one is optimal. After some steps, *variable fixing* takes out every place and item
-//! whose cheapest derivation costs more than the best grammar known, which leaves a small part of the program. Where a
-//! gap stays, branch and bound decides which types have rules, then which items these have: a type that has a rule
-//! pays for its operation and for its first and last successor whatever the shares. On real facades there is hardly a
-//! gap. [`lower_bound`] takes more time for the same.
+//! cost of the cheapest such grammar, that one is optimal. After some steps, *variable fixing* by reduced costs removes every
+//! occurrence and item whose cheapest derivation costs more than the best grammar known, which leaves a small part of the program.
+//! Where a gap stays, branch and bound decides which types have rules, then which items these have: the operation and
+//! the first and last successor of a type that has a rule are a constant, whatever the multipliers. On real facades there is
+//! hardly a gap. [`lower_bound`] takes more time for the same.
 //!
 //! Bounded are all grammars whose symbols each derive regions of one type by splits, repeats, alternations and mirrored
 //! splits: those that [`infer`] searches. Grid splits are no paths; their bound is weaker ([`lower_bound`]). Layouts
@@ -93,7 +105,7 @@
 //! - These readings can be set ([`Readings`]); the report's `readings` shows what each does.
 //! - *Iterations* are walks. Of `best` they are a measure of work: for each, the Lagrangian bound may look at 9,000 items;
 //!   for every eight there is one walk by shortest paths and one round of annealing. `best` stops once its
-//!   grammar is proven optimal. Where there are too many places for the bound it makes walks of
+//!   grammar is proven optimal. Where there are too many occurrences for the bound it makes walks of
 //!   `paper` first, fewer the larger the facade, and ends when a limit of memory is reached. With grids allowed, the
 //!   bound looks for a start without them.
 //! - *Costs* of operations and successors are 0 or from 0.001 to 1,000: sums beyond cannot be compared.
@@ -102,46 +114,28 @@
 //! - *Baselines*: what is read into the methods of Table 2 stands in the report's `table_2` and `baseline_ranges`; the columns of
 //!   procedural logic (compression setting of its authors) and Bayesian grammar learning coincide on nearly all facades,
 //!   where the paper prints 51 and 43 on facade (i).
-//! - *Tables 4 and 5* need grammars that people made. [`synthetic::references`] writes references of five kinds for one layout;
-//!   the report's `table_4` and `table_5` say which of the paper's statements hold for which kind.
+//! - *Tables 4 and 5* need grammars that people made. The report makes references of several kinds for one layout;
+//!   `table_4` and `table_5` say which of the paper's statements hold for which kind.
 //! - *gridsplit* (Sec. 4.7, named only): one successor per cell, columns times rows. The search looks
 //!   for grids in regions whose full lines make at most 4,000 rectangles.
 //! - *Symmetry detection* is exhaustive up to a number of occurrences that grows with the number of
 //!   terminals, most important first; the text gives no bound.
 
-mod align;
+mod adp;
+mod annealing;
 mod baselines;
 mod best;
 mod bound;
-mod choice;
-mod closure;
-mod exploitation;
-mod exploration;
-mod extract;
-mod grid;
+pub mod city;
 mod infer;
-mod kinds;
-mod members;
-mod offers;
+mod joint_start;
+mod lagrangian;
 mod operations;
-mod protection;
-mod readings;
-mod reasonable;
 mod regions;
-pub mod regularize;
-mod remainder;
-pub mod scene;
-mod search;
-mod shares;
-mod symmetry;
-pub mod synthetic;
-mod union;
-mod walk;
+mod rules;
 
-pub use align::{ALIGN_REACH, ALIGN_TOLERANCE, AlignError, Aligned, align};
+pub use adp::readings::{Exploit, Protect, Readings};
 pub use bound::{Bound, Weakness, lower_bound};
 pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer, infer_observed};
-pub use kinds::kinds;
+pub use lagrangian::BoundLimits;
 pub use operations::{Operations, UnknownOperation};
-pub use readings::{Exploit, Protect, Readings};
-pub use shares::BoundLimits;

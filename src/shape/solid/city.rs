@@ -31,4 +31,29 @@ impl City {
     pub fn triangles(&self) -> usize {
         self.buildings.iter().map(|b| b.mesh.triangles.len()).sum()
     }
+
+    /// Appends the buildings of another city, moved into this one's frame.
+    pub fn merge(&mut self, other: Self) {
+        let shift = [0, 1, 2].map(|k| other.origin[k] - self.origin[k]);
+        for mut building in other.buildings {
+            for p in &mut building.mesh.positions {
+                *p = [0, 1, 2].map(|k| p[k] + shift[k]);
+            }
+            self.buildings.push(building);
+        }
+    }
+
+    /// Makes identifiers unique: one that occurs again gets a number.
+    pub fn number_duplicates(&mut self) {
+        let mut seen = rustc_hash::FxHashSet::default();
+        for building in &mut self.buildings {
+            let mut number = 1;
+            let mut id = building.id.clone();
+            while !seen.insert(id.clone()) {
+                number += 1;
+                id = format!("{}#{number}", building.id);
+            }
+            building.id = id;
+        }
+    }
 }

@@ -49,7 +49,9 @@ pub fn merge_coplanar(mesh: &TriangleMesh, tolerance: f64) -> TriangleMesh {
             Some(triangles) if triangles.len() < members.len() => {
                 triangles.into_iter().for_each(|t| out.push(t));
             }
-            _ => members.iter().for_each(|&m| out.push(mesh.triangles[m].map(at))),
+            _ => members
+                .iter()
+                .for_each(|&m| out.push(mesh.triangles[m].map(at))),
         }
     }
     out.welded(tolerance.min(1e-6))
@@ -104,7 +106,11 @@ fn outline(
         }
     }
     // Axes in the plane, right-handed with the normal.
-    let seed = if n[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+    let seed = if n[2].abs() < 0.9 {
+        [0.0, 0.0, 1.0]
+    } else {
+        [1.0, 0.0, 0.0]
+    };
     let u = cross(seed, n);
     let u = u.map(|v| v / norm(u));
     let v = cross(n, u);
@@ -151,7 +157,11 @@ fn outline(
     }
     let whole: f64 = members
         .iter()
-        .map(|&m| norm(normal(&mesh.triangles[m].map(|i| mesh.positions[i as usize]))) / 2.0)
+        .map(|&m| {
+            norm(normal(
+                &mesh.triangles[m].map(|i| mesh.positions[i as usize]),
+            )) / 2.0
+        })
         .sum();
     let same = |a: f64| (a - whole).abs() <= 1e-3 * whole + tolerance;
     (same(area) && same(made)).then_some(found)

@@ -119,3 +119,31 @@ fn point_segment_distance(p: [f64; 3], a: [f64; 3], b: [f64; 3]) -> f64 {
     };
     norm(sub(p, [a[0] + s * d[0], a[1] + s * d[1], a[2] + s * d[2]]))
 }
+
+/// Points spread evenly over the triangles of meshes, by area: `count` of them, seeded.
+pub fn surface_samples<R: rand::Rng>(
+    triangles: impl Iterator<Item = Corners>,
+    count: usize,
+    rng: &mut R,
+) -> Vec<[f64; 3]> {
+    use rand::RngExt;
+    let triangles: Vec<Corners> = triangles.collect();
+    let area = |t: &Corners| norm(super::mesh::normal(t)) / 2.0;
+    let step = triangles.iter().map(area).sum::<f64>() / count.max(1) as f64;
+    let mut points = Vec::with_capacity(count);
+    // One point in each stretch of `step` along the running sum of areas.
+    let mut next = rng.random::<f64>() * step;
+    for t in &triangles {
+        next -= area(t);
+        while next < 0.0 && points.len() < count {
+            let (mut u, mut v): (f64, f64) = (rng.random(), rng.random());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            let [a, b, c] = t;
+            points.push([0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k])));
+            next += step;
+        }
+    }
+    points
+}

@@ -4,8 +4,8 @@ use rustc_hash::FxHashMap;
 
 use super::clip::{clip_to_slabs, crossing};
 use super::mesh::plan_area;
-use super::{Corners, TriangleMesh};
 use super::triangulate::{nest, ring_area, triangles};
+use super::{Corners, TriangleMesh};
 
 /// Rings of less than this area are left out, in square metres.
 const LEAST_AREA: f64 = 1e-4;

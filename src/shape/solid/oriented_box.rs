@@ -41,7 +41,12 @@ impl OrientedBox {
             let side = [(h[0] - l[0]).max(LEAST), (h[1] - l[1]).max(LEAST)];
             let middle = [(l[0] + h[0]) / 2.0, (l[1] + h[1]) / 2.0];
             let long = side[0] >= side[1];
-            let angle = (if long { direction } else { direction + PI / 2.0 }).rem_euclid(PI);
+            let angle = (if long {
+                direction
+            } else {
+                direction + PI / 2.0
+            })
+            .rem_euclid(PI);
             // Just below π is a rounded 0.
             let angle = if PI - angle < 1e-9 { 0.0 } else { angle };
             let rect = Self {
@@ -116,7 +121,8 @@ pub fn convex_hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
         let mut chain: Vec<[f64; 2]> = Vec::new();
         for p in points {
-            while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0 {
+            while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0
+            {
                 chain.pop();
             }
             chain.push(p);

@@ -101,7 +101,9 @@ impl VolumeRaster {
             self.cross(&t, strip, &mut crossings);
         }
         crossings.sort_unstable_by(|a, b| {
-            (a.0.cmp(&b.0)).then(b.1.total_cmp(&a.1)).then(b.2.cmp(&a.2))
+            (a.0.cmp(&b.0))
+                .then(b.1.total_cmp(&a.1))
+                .then(b.2.cmp(&a.2))
         });
         for column in crossings.chunk_by(|a, b| a.0 == b.0) {
             let heights = column.iter().map(|c| (c.1, c.2));
@@ -156,7 +158,10 @@ impl VolumeRaster {
 pub fn height_map(unit: &TriangleMesh, cells: usize, samples: usize) -> Vec<f32> {
     let side = cells * samples;
     let scale = side as f64;
-    let scaled = unit.positions.iter().map(|p| [(p[0] + 0.5) * scale, (p[1] + 0.5) * scale, p[2]]);
+    let scaled = unit
+        .positions
+        .iter()
+        .map(|p| [(p[0] + 0.5) * scale, (p[1] + 0.5) * scale, p[2]]);
     let mesh = TriangleMesh {
         positions: scaled.collect(),
         triangles: unit.triangles.clone(),

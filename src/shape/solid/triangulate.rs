@@ -2,6 +2,8 @@
 
 use earcut::Earcut;
 
+use super::Corners;
+
 /// Signed area of a ring, positive when counterclockwise.
 pub(super) fn ring_area(ring: &[[f64; 2]]) -> f64 {
     let n = ring.len();
@@ -62,4 +64,39 @@ pub(super) fn triangles(rings: &[&[[f64; 2]]]) -> Vec<[(usize, usize); 3]> {
         .chunks_exact(3)
         .map(|t| [corner(t[0]), corner(t[1]), corner(t[2])])
         .collect()
+}
+
+/// Triangles of a plane polygon in space, the outer ring first; in its Newell plane, facing as the outer
+/// ring does. Nothing for rings without area.
+pub fn polygon_triangles(rings: &[Vec<[f64; 3]>]) -> Vec<Corners> {
+    let Some(outer) = rings.first() else {
+        return Vec::new();
+    };
+    let mut n = [0.0; 3];
+    for (i, p) in outer.iter().enumerate() {
+        let q = outer[(i + 1) % outer.len()];
+        for k in 0..3 {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            n[k] += (p[a] - q[a]) * (p[b] + q[b]);
+        }
+    }
+    // Seen along the axis that the polygon faces most, the others in right-handed order.
+    let longer = |a: &usize, b: &usize| n[*a].abs().total_cmp(&n[*b].abs());
+    let axis = (0..3).max_by(longer).unwrap_or(2);
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let flat = |ring: &Vec<[f64; 3]>| ring.iter().map(|p| [p[u], p[v]]).collect();
+    let plans: Vec<Vec<[f64; 2]>> = rings.iter().map(flat).collect();
+    let parts: Vec<&[[f64; 2]]> = plans.iter().map(Vec::as_slice).collect();
+    let facing = ring_area(&plans[0]);
+    let mut out = Vec::new();
+    for t in triangles(&parts) {
+        let plan = t.map(|(r, k)| plans[r][k]);
+        let [a, b, c] = t.map(|(r, k)| rings[r][k]);
+        match ring_area(&plan) * facing {
+            area if area > 0.0 => out.push([a, b, c]),
+            area if area < 0.0 => out.push([a, c, b]),
+            _ => {}
+        }
+    }
+    out
 }

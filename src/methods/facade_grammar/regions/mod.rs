@@ -5,12 +5,12 @@
 //! type is its label, whatever its size.
 
 mod cells;
+mod layout_index;
 mod lengths;
-mod sheet;
 mod strips;
 mod types;
 
 pub(crate) use cells::Cells;
-pub(crate) use sheet::{Region, Sheet};
+pub(crate) use layout_index::{LayoutIndex, Region};
 pub(crate) use strips::{Offsets, Strips};
 pub(crate) use types::{TypeId, Types, ends, part};

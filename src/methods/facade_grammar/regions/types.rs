@@ -5,7 +5,7 @@ use std::rc::Rc;
 use rustc_hash::FxHashMap;
 
 use super::lengths::{lines, minus};
-use super::{Cells, Offsets, Region, Sheet, Strips};
+use super::{Cells, LayoutIndex, Offsets, Region, Strips};
 use crate::shape::{Axis, Facade, LayoutError};
 
 /// Index of a region type. Types below [`Types::label_count`] are the terminal labels.
@@ -24,7 +24,7 @@ type Key = (u64, u64, u64, u32);
 /// The region types of one or several facades.
 #[derive(Debug, Clone)]
 pub(crate) struct Types {
-    pub sheets: Rc<[Sheet]>,
+    pub layouts: Rc<[LayoutIndex]>,
     pub labels: Vec<String>,
     ids: FxHashMap<Key, TypeId>,
     types: Vec<Type>,
@@ -45,12 +45,12 @@ impl Types {
     /// The index of a facade with a region that is too thin, which a check of the tiling has excluded.
     pub fn new(facades: &[Facade]) -> Result<Self, (usize, LayoutError)> {
         let mut labels: Vec<String> = Vec::new();
-        let sheets: Rc<[Sheet]> = lines(facades)?
+        let layouts: Rc<[LayoutIndex]> = lines(facades)?
             .into_iter()
             .zip(facades)
             .enumerate()
             .map(|(index, (lines, facade))| {
-                Sheet::new(index as u16, facade, lines, |name| {
+                LayoutIndex::new(index as u16, facade, lines, |name| {
                     labels.iter().position(|l| l == name).unwrap_or_else(|| {
                         labels.push(name.to_owned());
                         labels.len() - 1
@@ -59,7 +59,7 @@ impl Types {
             })
             .collect();
         let nowhere = Region {
-            sheet: 0,
+            layout: 0,
             x0: 0,
             x1: 0,
             y0: 0,
@@ -79,21 +79,21 @@ impl Types {
             roots: Vec::new(),
             cut: 0,
             limit: usize::MAX,
-            sheets,
+            layouts,
             labels,
         };
-        for index in 0..types.sheets.len() {
-            let root = types.sheets[index].root(index as u16);
+        for index in 0..types.layouts.len() {
+            let root = types.layouts[index].root(index as u16);
             let id = types.intern(root);
             types.roots.push(id);
         }
         Ok(types)
     }
 
-    /// Columns and rows of the grid of edges of each sheet.
+    /// Columns and rows of the grid of edges of each layout.
     pub fn extents(&self) -> Vec<(usize, usize)> {
-        let extent = |sheet: &Sheet| (sheet.xs.len() - 1, sheet.ys.len() - 1);
-        self.sheets.iter().map(extent).collect()
+        let extent = |layout: &LayoutIndex| (layout.xs.len() - 1, layout.ys.len() - 1);
+        self.layouts.iter().map(extent).collect()
     }
 
     /// Number of terminal labels.
@@ -128,15 +128,15 @@ impl Types {
 
     /// The type of a region that cuts no terminal.
     pub fn intern(&mut self, region: Region) -> TypeId {
-        let sheet = &self.sheets[usize::from(region.sheet)];
-        if let Some(label) = sheet.terminal_label(region) {
+        let layout = &self.layouts[usize::from(region.layout)];
+        if let Some(label) = layout.terminal_label(region) {
             return label;
         }
-        let terminals = sheet.terminals_in(region);
+        let terminals = layout.terminals_in(region);
         let key = (
-            sheet.hash_of(region),
-            sheet.extent_x(region),
-            sheet.extent_y(region),
+            layout.hash_of(region),
+            layout.extent_x(region),
+            layout.extent_y(region),
             terminals,
         );
         let next = self.types.len() as TypeId;
@@ -186,8 +186,8 @@ impl Types {
     pub fn cuts_at(&mut self, id: TypeId, axis: Axis, region: Region) -> Vec<u16> {
         let strips = self.strips(id, axis);
         let offsets = self.offsets(self.region(id), axis, &strips.cuts);
-        let sheet = &self.sheets[usize::from(region.sheet)];
-        let (lines, _) = sheet.lines(axis);
+        let layout = &self.layouts[usize::from(region.layout)];
+        let (lines, _) = layout.lines(axis);
         let start = lines[usize::from(ends(region, axis).0)];
         // Equal up to noise: the nearest line.
         let nearest = |&offset: &f64| {
@@ -204,11 +204,11 @@ impl Types {
 
     /// Ends of the region and the full lines between them that cut no terminal.
     fn full_lines(&self, r: Region, axis: Axis) -> Vec<u16> {
-        let sheet = &self.sheets[usize::from(r.sheet)];
+        let layout = &self.layouts[usize::from(r.layout)];
         let (first, last) = ends(r, axis);
         let free = |&line: &u16| match axis {
-            Axis::X => !sheet.cuts_terminal_x(line, r.y0, r.y1),
-            Axis::Y => !sheet.cuts_terminal_y(line, r.x0, r.x1),
+            Axis::X => !layout.cuts_terminal_x(line, r.y0, r.y1),
+            Axis::Y => !layout.cuts_terminal_y(line, r.x0, r.x1),
         };
         std::iter::once(first)
             .chain((first + 1..last).filter(free))
@@ -218,7 +218,7 @@ impl Types {
 
     /// Distances of the cuts from the region's start.
     pub fn offsets(&self, region: Region, axis: Axis, cuts: &[u16]) -> Offsets {
-        let (lines, residues) = self.sheets[usize::from(region.sheet)].lines(axis);
+        let (lines, residues) = self.layouts[usize::from(region.layout)].lines(axis);
         let from = |line: u16| usize::from(line);
         let start = from(cuts[0]);
         let offset = |&cut: &u16| lines[from(cut)] - lines[start];

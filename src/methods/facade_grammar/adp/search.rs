@@ -1,0 +1,132 @@
+//! The methods of inference, as far as they share what they start from.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::exploitation::{AllRules, Remembered};
+use super::exploration::{Exploration, Lambdas};
+use super::readings::{Exploit, Protect};
+use super::symmetry;
+use super::walk::{Explore, Inference, SharedTypes};
+use crate::grammar::Grammar;
+use crate::methods::facade_grammar::baselines;
+use crate::methods::facade_grammar::infer::{InferError, Settings};
+use crate::methods::facade_grammar::regions::Types;
+use crate::methods::facade_grammar::rules::AddRule;
+use crate::methods::facade_grammar::rules::extract;
+use crate::optim::Step;
+use crate::optim::adp::{Adp, Approximation, Epsilon};
+use crate::shape::Facade;
+
+/// What every method starts from, and the methods.
+pub(in crate::methods::facade_grammar) struct Search<'a> {
+    pub settings: &'a Settings,
+    /// The facades before symmetry detection.
+    pub fresh: Types,
+    pub types: SharedTypes,
+    pub exploration: Rc<RefCell<Exploration>>,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(facades: &[Facade], settings: &'a Settings) -> Result<Self, InferError> {
+        let fresh = Types::new(facades).map_err(|(index, source)| InferError::NotATiling {
+            name: facades[index].name.clone(),
+            source,
+        })?;
+        let mut types = fresh.clone();
+        let repeated = symmetry::detect(&mut types);
+        let lambdas = Lambdas {
+            rule: settings.lambda_rule,
+            lines: settings.lambda_lines,
+        };
+        let exploration = Exploration::new(
+            &types,
+            repeated,
+            settings.costs,
+            settings.operations,
+            lambdas,
+        );
+        Ok(Self {
+            settings,
+            fresh,
+            types: Rc::new(RefCell::new(types)),
+            exploration: Rc::new(RefCell::new(exploration)),
+        })
+    }
+
+    fn process(&self) -> Inference {
+        Inference {
+            types: Rc::clone(&self.types),
+            costs: self.settings.costs,
+        }
+    }
+
+    pub fn explore(&self, protect: Protect) -> Explore {
+        Explore::new(
+            Rc::clone(&self.types),
+            Rc::clone(&self.exploration),
+            protect,
+        )
+    }
+
+    /// The text's algorithm (Sec. 4.2), and the `V(R)` that it learnt, by type.
+    pub fn paper(
+        &self,
+        iterations: u64,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
+        let readings = self.settings.readings;
+        let epsilon = Epsilon {
+            end: readings.last_epsilon,
+            ..Epsilon::default()
+        };
+        let explore = self.explore(readings.protection);
+        Ok(match readings.exploitation {
+            Exploit::AllRules => {
+                let values = AllRules::new(Rc::clone(&self.exploration));
+                let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
+                (rules, known.into_values())
+            }
+            Exploit::Remembered(most) => {
+                let values = Remembered::new(most, Rc::clone(&self.exploration));
+                let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
+                (rules, known.into_values())
+            }
+        })
+    }
+
+    /// The cheapest of many walks, and what they taught.
+    pub fn walks<V: Approximation<Inference>>(
+        &self,
+        explore: Explore,
+        values: V,
+        epsilon: Epsilon,
+        iterations: u64,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<(Vec<AddRule>, V), InferError> {
+        let adp = Adp::new(explore, values, epsilon, iterations, self.settings.seed);
+        let (walk, _, values) = adp.run_observed(self.process(), observer)?;
+        Ok((walk.actions, values))
+    }
+
+    /// Always the best rule by the splitting heuristic.
+    pub fn greedy(&self) -> Vec<AddRule> {
+        let exploration = &mut self.exploration.borrow_mut();
+        baselines::greedy::greedy(&mut self.types.borrow_mut(), exploration)
+    }
+
+    /// Initial step of Martinovic and Van Gool 2013.
+    pub fn all_lines(&self) -> Vec<AddRule> {
+        baselines::bayesian::all_lines(&mut self.types.borrow_mut())
+    }
+
+    /// Splitting heuristic of Zhang et al. 2013.
+    pub fn symmetry_maximization(&self) -> Vec<AddRule> {
+        baselines::symmetry::symmetry_maximization(&mut self.types.borrow_mut())
+    }
+
+    /// The grammar of some rules.
+    pub fn grammar(&self, facades: &[Facade], rules: &[AddRule]) -> Grammar {
+        extract::grammar(&mut self.types.borrow_mut(), facades, rules)
+    }
+}

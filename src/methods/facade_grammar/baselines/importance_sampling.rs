@@ -1,0 +1,33 @@
+//! Importance sampling: the cheapest of many walks that always explore.
+
+use crate::methods::facade_grammar::adp::search::Search;
+use crate::methods::facade_grammar::adp::walk::{Derivation, Inference};
+use crate::methods::facade_grammar::infer::InferError;
+use crate::methods::facade_grammar::rules::AddRule;
+use crate::optim::Step;
+use crate::optim::adp::{Approximation, Epsilon};
+
+/// Importance sampling learns nothing.
+pub(crate) struct NothingKnown;
+
+impl Approximation<Inference> for NothingKnown {
+    fn best(&mut self, _: &Inference, _: &Derivation) -> Option<AddRule> {
+        None
+    }
+
+    fn learn(&mut self, _: &Inference, _: &[AddRule], _: &[f64]) {}
+}
+
+impl Search<'_> {
+    /// The cheapest of many walks by the splitting heuristic.
+    pub fn importance(
+        &self,
+        observer: impl FnMut(Step) + 'static,
+    ) -> Result<Vec<AddRule>, InferError> {
+        let iterations = self.settings.iterations;
+        let explore = self.explore(self.settings.readings.protection.anew());
+        let always = Epsilon::ALWAYS_EXPLORE;
+        let (rules, _) = self.walks(explore, NothingKnown, always, iterations, observer)?;
+        Ok(rules)
+    }
+}

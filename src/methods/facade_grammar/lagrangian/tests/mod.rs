@@ -1,0 +1,249 @@
+mod linear_program;
+
+use super::*;
+use crate::grammar::{Costs, evaluate};
+use crate::methods::facade_grammar::operations::Operations;
+use crate::methods::facade_grammar::regions::Types;
+use crate::methods::facade_grammar::rules::extract;
+use crate::shape::{Facade, Rect, Region};
+
+/// A facade of unit cells, one character a cell, rows from bottom to top.
+fn facade(rows: &[&str]) -> Facade {
+    let cells = rows.iter().enumerate().flat_map(|(y, row)| {
+        row.chars().enumerate().map(move |(x, label)| Region {
+            label: label.to_string(),
+            rect: Rect::new(x as f64, y as f64, 1.0, 1.0),
+        })
+    });
+    let (width, height) = (rows[0].len() as f64, rows.len() as f64);
+    Facade::new("cells", "cell", width, height, cells.collect()).unwrap()
+}
+
+const EXTENSIONS: Operations = Operations {
+    repeat: true,
+    repeat_aba: true,
+    sym_split: true,
+    grid_split: false,
+};
+
+/// Bound and incumbent after some steps; the incumbent's rules must derive the facades at its cost.
+fn solved(facades: &[Facade], operations: Operations, nodes: u64) -> (f64, f64) {
+    let costs = Costs::default();
+    let program =
+        Program::new(Types::new(facades).unwrap(), &costs, operations, usize::MAX).unwrap();
+    let mut incumbent = Incumbent::new(f64::INFINITY, &costs, operations);
+    let limits = BoundLimits {
+        nodes,
+        ..BoundLimits::default()
+    };
+    let (lower, _) = solve(program, &mut incumbent, &limits);
+    let mut types = Types::new(facades).unwrap();
+    let rules = incumbent.rules(&mut types);
+    let grammar = extract::grammar(&mut types, facades, &rules);
+    let evaluation = evaluate(&grammar, facades, &costs).unwrap();
+    assert!((evaluation.cost - incumbent.cost).abs() < 1e-9);
+    assert!(lower <= incumbent.cost + 1e-9);
+    (lower, incumbent.cost)
+}
+
+#[test]
+fn one_rule_is_its_own_optimum() {
+    // One split of four different cells.
+    let (lower, cost) = solved(&[facade(&["abcd"])], Operations::default(), 1);
+    assert!((cost - 4.1).abs() < 1e-9 && (lower - 4.1).abs() < 1e-9);
+    // One repeat of two.
+    let (_, cost) = solved(&[facade(&["abababab"])], Operations::default(), 1);
+    assert!((cost - 2.5).abs() < 1e-9);
+}
+
+#[test]
+fn extensions_are_ways_of_their_own() {
+    let cost = |rows: &[&str]| solved(&[facade(rows)], EXTENSIONS, 1).1;
+    // a b a b a as an alternation, a b c b a mirrored about a cell, a b c c b a about a line.
+    assert!((cost(&["ababa"]) - 2.5).abs() < 1e-9);
+    assert!((cost(&["abcba"]) - 3.1).abs() < 1e-9);
+    assert!((cost(&["abccba"]) - 3.1).abs() < 1e-9);
+}
+
+#[test]
+fn facades_share_what_they_have_in_common() {
+    let pair = [facade(&["abcde", "fghij"]), facade(&["abcde", "klmno"])];
+    let alone: f64 = pair
+        .iter()
+        .map(|f| solved(std::slice::from_ref(f), Operations::default(), 1).1)
+        .sum();
+    let (lower, together) = solved(&pair, Operations::default(), 200);
+    assert!(together < alone - 1.0 && (lower - together).abs() < 1e-6);
+    // The same facade twice needs its rules once.
+    let twins = [pair[0].clone(), pair[0].clone()];
+    assert!((solved(&twins, Operations::default(), 1).1 - alone / 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn steps_only_raise_the_bound() {
+    let costs = Costs::default();
+    let rows = ["abcabd", "bacabd", "abcabd", "cabdab"];
+    let facades = [facade(&rows)];
+    let program = Program::new(
+        Types::new(&facades).unwrap(),
+        &costs,
+        Operations::default(),
+        usize::MAX,
+    )
+    .unwrap();
+    let bound_after = |steps| {
+        // An incumbent out of reach, so that all steps are made.
+        let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
+        Dual::new(&program)
+            .ascend(&mut incumbent, steps, &mut { u64::MAX })
+            .bound
+    };
+    let bounds = [1, 10, 100].map(bound_after);
+    assert!(bounds.is_sorted(), "{bounds:?}");
+    assert!(bounds[2] > bounds[0], "{bounds:?}");
+}
+
+#[test]
+fn steps_climb_to_the_optimum_of_the_linear_program() {
+    let costs = Costs::default();
+    for (rows, operations) in [
+        (
+            &["abcabd", "bacabd", "abcabd", "cabdab"][..],
+            Operations::default(),
+        ),
+        (
+            &["abcabd", "bacabd", "abcabd", "cabdab"],
+            Operations::split_only(),
+        ),
+        (&["abacaba", "bcbabcb", "abacaba"], EXTENSIONS),
+    ] {
+        let facades = [facade(rows)];
+        let program = Program::new(
+            Types::new(&facades).unwrap(),
+            &costs,
+            operations,
+            usize::MAX,
+        )
+        .unwrap();
+        let optimum = linear_program::optimum(&program);
+        let mut incumbent = Incumbent::new(f64::INFINITY, &costs, operations);
+        let found = Dual::new(&program).ascend(&mut incumbent, 2_000, &mut { u64::MAX });
+        assert!(
+            found.bound <= optimum + 1e-6,
+            "{} above {optimum}",
+            found.bound
+        );
+        // It stops where the bound shows that the incumbent is optimal.
+        let reached = found.bound > optimum - 0.05 || incumbent.is_optimal(found.bound);
+        assert!(reached, "{} far below {optimum}", found.bound);
+    }
+}
+
+#[test]
+fn overlapping_occurrences_share_a_clique() {
+    let costs = Costs::default();
+    // `ab` stands at three occurrences apart, `abab` at two that overlap, `ba` at two apart.
+    let facades = [facade(&["ababab"])];
+    let split = Operations::split_only();
+    let program = Program::new(Types::new(&facades).unwrap(), &costs, split, usize::MAX).unwrap();
+    let mut cliques: Vec<(usize, usize)> = program
+        .region_types
+        .iter()
+        .map(|region_type| (region_type.occurrences.len(), region_type.cliques.len()))
+        .collect();
+    cliques.sort_unstable();
+    assert_eq!(
+        cliques,
+        // ababab; ababa, babab; abab twice in one clique, baba; aba and bab twice; ab, ba.
+        [
+            (1, 1),
+            (1, 1),
+            (1, 1),
+            (1, 1),
+            (2, 1),
+            (2, 1),
+            (2, 1),
+            (2, 2),
+            (3, 3)
+        ]
+    );
+    for region_type in &program.region_types {
+        for (index, own) in region_type.cliques_of.iter().enumerate() {
+            assert!(!own.is_empty());
+            for &clique in own {
+                assert!(region_type.cliques[clique as usize].contains(&(index as u32)));
+            }
+        }
+    }
+}
+
+#[test]
+fn multipliers_of_an_item_sum_to_its_cost() {
+    let costs = Costs::default();
+    let facades = [facade(&["abcabc", "abdabd", "abcabc"])];
+    let program = Program::new(
+        Types::new(&facades).unwrap(),
+        &costs,
+        Operations::default(),
+        usize::MAX,
+    )
+    .unwrap();
+    let mut multipliers = Dual::new(&program);
+    let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
+    multipliers.ascend(&mut incumbent, 50, &mut { u64::MAX });
+    for region_type in &program.region_types {
+        for (item, cost) in region_type.costs.iter().enumerate() {
+            let multiplier = |clique| {
+                multipliers.multipliers
+                    [region_type.first_multiplier + clique * region_type.costs.len() + item]
+            };
+            let item_costs: Vec<f64> = (0..region_type.cliques.len()).map(multiplier).collect();
+            assert!(item_costs.iter().all(|s| *s >= 0.0));
+            assert!((item_costs.iter().sum::<f64>() - cost).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn too_many_items_and_grids_are_refused() {
+    let (costs, facades) = (Costs::default(), [facade(&["abc", "abd"])]);
+    assert!(
+        Program::new(
+            Types::new(&facades).unwrap(),
+            &costs,
+            Operations::default(),
+            3
+        )
+        .is_none()
+    );
+    assert!(
+        Program::new(
+            Types::new(&facades).unwrap(),
+            &costs,
+            Operations::all(),
+            usize::MAX
+        )
+        .is_none()
+    );
+}
+
+#[test]
+fn costs_that_a_bound_allows_are_multiples_of_their_quantum() {
+    let incumbent = Incumbent::new(38.1, &Costs::default(), Operations::default());
+    assert!((incumbent.round_up(37.93) - 38.0).abs() < 1e-9);
+    assert!(incumbent.is_optimal(38.01) && !incumbent.is_optimal(37.99));
+    // Thirds, halves and ones are sixths.
+    let thirds = Costs {
+        split: 1.0 / 3.0,
+        ..Costs::default()
+    };
+    let round_up = |costs, operations| Incumbent::new(1.0, costs, operations).round_up(0.51);
+    assert!((round_up(&thirds, Operations::default()) - 2.0 / 3.0).abs() < 1e-9);
+    // The cost of an operation that is not allowed does not count; nothing divides 1 and its root of two.
+    assert!((round_up(&thirds, Operations::split_only()) - 2.0 / 3.0).abs() < 1e-9);
+    let roots = Costs {
+        split: 2f64.sqrt(),
+        ..Costs::default()
+    };
+    assert_eq!(round_up(&roots, Operations::default()), 0.51);
+}
