@@ -28,7 +28,7 @@ pub struct Placement {
     pub turn: f64,
     /// Of a template: its width, depth and height in metres. Of a non-terminal: one factor, three times.
     pub size: [f64; 3],
-    /// Identifier of the building that begins here.
+    /// Identifier of the building that this is, or is a part of.
     pub id: Option<String>,
     /// Further properties of that building.
     pub attributes: serde_json::Map<String, serde_json::Value>,
@@ -183,6 +183,7 @@ pub struct InstanceDerivation {
     pub instances: Vec<TemplateInstance>,
     /// Greatest number of rules applied one inside another.
     pub depth: usize,
+    index: FxHashMap<String, usize>,
 }
 
 impl InstanceGrammar {
@@ -434,10 +435,7 @@ impl Deriver<'_> {
         ];
         let turn = frame.turn + placed.turn;
         let building = match &placed.id {
-            Some(id) => {
-                out.buildings.push((id.clone(), placed.attributes.clone()));
-                Some(out.buildings.len() - 1)
-            }
+            Some(id) => Some(out.building(id, &placed.attributes)),
             None => building,
         };
         match self.symbols.get(symbol) {
@@ -468,6 +466,20 @@ impl Deriver<'_> {
 }
 
 impl InstanceDerivation {
+    /// The index of a building, which is new at its first placement.
+    fn building(
+        &mut self,
+        id: &str,
+        attributes: &serde_json::Map<String, serde_json::Value>,
+    ) -> usize {
+        if let Some(&known) = self.index.get(id) {
+            return known;
+        }
+        self.buildings.push((id.to_owned(), attributes.clone()));
+        self.index.insert(id.to_owned(), self.buildings.len() - 1);
+        self.buildings.len() - 1
+    }
+
     /// The triangles of each building; instances outside all buildings are buildings of their own.
     pub fn city(&self, grammar: &InstanceGrammar) -> crate::shape::solid::City {
         use crate::shape::solid::{City, CityBuilding};

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::components::Component;
+use super::parse_tree::ParseTree;
 use super::types::Types;
 use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
 use crate::shape::solid::{City, TriangleMesh, merge_coplanar};
@@ -18,25 +19,67 @@ const COPLANAR: f64 = 1e-3;
 /// Axiom of the grammar.
 pub const AXIOM: &str = "City";
 
-/// The grammar: a terminal for each type, a non-terminal for each arrangement of parts that buildings
-/// have, and the buildings in their places under the axiom.
-pub fn emit(city: &City, components: &[Component], types: &Types, merge: bool) -> InstanceGrammar {
-    let templates = types
-        .representatives
-        .iter()
-        .enumerate()
-        .map(|(kind, &c)| Template {
-            symbol: terminal(kind),
-            mesh: template(&components[c].mesh, merge),
-        });
-    let mut grammar = InstanceGrammar {
+/// The grammar of `paper`: the rules of the parse tree, its top under the axiom.
+pub fn emit_tree(
+    city: &City,
+    components: &[Component],
+    types: &Types,
+    tree: &ParseTree,
+) -> InstanceGrammar {
+    let mut grammar = terminals(city, components, types, false);
+    grammar.rules.push(InstanceRule {
+        symbol: AXIOM.to_owned(),
+        weight: 1.0,
+        successors: tree.top.clone(),
+    });
+    grammar.rules.extend(tree.rules.iter().cloned());
+    grammar
+}
+
+/// The components as placed terminals, each with its building's identifier, for the parse tree.
+pub fn placed_components(
+    city: &City,
+    components: &[Component],
+    types: &Types,
+) -> Vec<(usize, [f64; 3], Placement)> {
+    let one = |(i, c): (usize, &Component)| {
+        let mut placed = part(i, c, types, &Frame::WORLD);
+        let building = &city.buildings[c.building];
+        placed.id = Some(building.id.clone());
+        if i == 0 || components[i - 1].building != c.building {
+            placed.attributes = building.attributes.clone();
+        }
+        (types.uses[i].kind, c.frame.middle(), placed)
+    };
+    components.iter().enumerate().map(one).collect()
+}
+
+fn terminals(city: &City, components: &[Component], types: &Types, merge: bool) -> InstanceGrammar {
+    let templates = types.representatives.iter().enumerate();
+    let template = |(kind, &c): (usize, &usize)| Template {
+        symbol: terminal(kind),
+        mesh: template(&components[c].mesh, merge),
+    };
+    InstanceGrammar {
         name: city.name.clone(),
         reference_system: city.reference_system.clone(),
         origin: city.origin,
         axiom: AXIOM.to_owned(),
-        templates: templates.collect(),
+        templates: templates.map(template).collect(),
         rules: Vec::new(),
-    };
+    }
+}
+
+/// The grammar of `best`: a terminal for each type, a non-terminal for each arrangement of parts that buildings
+/// have, the buildings in their places under the axiom, and the rules of the parse tree as patterns: the axiom
+/// does not lead to them, synthesis draws from them.
+pub fn emit(
+    city: &City,
+    components: &[Component],
+    types: &Types,
+    patterns: &ParseTree,
+) -> InstanceGrammar {
+    let mut grammar = terminals(city, components, types, true);
     let mut start = InstanceRule {
         symbol: AXIOM.to_owned(),
         weight: 1.0,
@@ -71,6 +114,7 @@ pub fn emit(city: &City, components: &[Component], types: &Types, merge: bool) -
         start.successors.push(placed);
     }
     grammar.rules.insert(0, start);
+    grammar.rules.extend(patterns.rules.iter().cloned());
     grammar
 }
 

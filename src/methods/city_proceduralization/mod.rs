@@ -34,12 +34,14 @@
 pub mod components;
 pub mod emission;
 pub mod features;
+pub mod parse_tree;
 pub mod proceduralize;
+pub mod type_graph;
 pub mod types;
 
 pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use proceduralize::{
-    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, largest,
-    proceduralize, smallest,
+    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, from_components,
+    largest, proceduralize, smallest,
 };

@@ -1,7 +1,9 @@
 //! The whole pipeline.
 
 use super::components::{Decomposition, decompose};
-use super::emission::emit;
+use super::emission::{emit, emit_tree, placed_components};
+use super::parse_tree::{Detection, ParseTree, grow};
+use super::type_graph::DistanceWeights;
 use super::types::{Types, best_types, paper_types};
 use crate::cluster::WardError;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError};
@@ -47,6 +49,8 @@ pub struct Settings {
     pub weights: [f64; 11],
     /// What represents a type, in `paper`.
     pub representative: Representative,
+    /// Weights of Eq. 11.
+    pub distance: DistanceWeights,
     /// Seed of k-means, in `paper`.
     pub seed: u64,
 }
@@ -58,6 +62,7 @@ impl Default for Settings {
             budget: Budget::Level(4),
             weights: [1.0; 11],
             representative: Representative::Nearest,
+            distance: DistanceWeights::default(),
             seed: 1,
         }
     }
@@ -78,7 +83,7 @@ pub enum ProceduralizeError {
 }
 
 /// A city as a grammar, and what it was made from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Proceduralized {
     /// The grammar.
     pub grammar: InstanceGrammar,
@@ -86,6 +91,8 @@ pub struct Proceduralized {
     pub decomposition: Decomposition,
     /// Their types.
     pub types: Types,
+    /// Which types stand together.
+    pub tree: ParseTree,
 }
 
 /// Makes a grammar of a city.
@@ -129,13 +136,27 @@ pub fn from_components(
             settings.seed,
         ),
     };
-    let grammar = emit(city, components, &types, settings.mode == Mode::Best);
+    let placed = placed_components(city, components, &types);
+    let leaves = types.representatives.len();
+    let (detection, levels) = match settings.mode {
+        Mode::Paper => (Detection::GirvanNewman, usize::MAX),
+        Mode::Best => (Detection::Louvain, PATTERN_LEVELS),
+    };
+    let tree = grow(leaves, placed, detection, settings.distance, levels);
+    let grammar = match settings.mode {
+        Mode::Paper => emit_tree(city, components, &types, &tree),
+        Mode::Best => emit(city, components, &types, &tree),
+    };
     Ok(Proceduralized {
         grammar,
         decomposition,
         types,
+        tree,
     })
 }
+
+/// Levels of communities that become patterns in `best`.
+const PATTERN_LEVELS: usize = 1;
 
 /// Steps of the search for a number of templates.
 const SEARCH_STEPS: usize = 7;
