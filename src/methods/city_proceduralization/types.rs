@@ -118,9 +118,7 @@ const ROUNDS: usize = 3;
 /// Representatives that a component is compared with, nearest in features first.
 const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
-const TRIED: usize = 32;
-/// Mismatched volume that a triangle less of a template is worth, as a share of the city's volume.
-const TRIANGLE_PRICE: f64 = 2e-7;
+const TRIED: usize = 12;
 
 /// Ward's hierarchy of the geometric features, weighted by volume, equal components joined first, cut at `k`
 /// types; then rounds of Lloyd, and of medoids under the mismatched volume over the four quarter turns.
@@ -161,15 +159,6 @@ pub fn best_types(components: &[Component], k: usize) -> Result<Types, Procedura
         labels = lloyd(&rows, d, &weights, centres, LLOYD_STEPS).labels;
     }
     let (labels, count) = renumbered(&labels);
-    let whole: f64 = components.iter().map(|c| c.volume.max(0.0)).sum();
-    let price = if k < distinct.len() {
-        std::env::var("PRICE")
-            .map(|v| v.parse().unwrap())
-            .unwrap_or(TRIANGLE_PRICE)
-            * whole
-    } else {
-        0.0
-    };
     let table = Table {
         rows,
         d,
@@ -177,10 +166,6 @@ pub fn best_types(components: &[Component], k: usize) -> Result<Types, Procedura
         heights: distinct
             .iter()
             .map(|&i| components[i].heights.as_slice())
-            .collect(),
-        prices: distinct
-            .iter()
-            .map(|&i| price * components[i].mesh.triangles.len() as f64)
             .collect(),
     };
     let uses: Vec<Use> = labels
@@ -200,8 +185,6 @@ struct Table<'a> {
     d: usize,
     weights: Vec<f64>,
     heights: Vec<&'a [f32]>,
-    /// What each costs as a template, in cubic metres.
-    prices: Vec<f64>,
 }
 
 impl Table<'_> {
@@ -244,7 +227,7 @@ impl Table<'_> {
                     let turned = uses[i].quarter;
                     self.weights[i] * mismatch(self.heights[m], self.heights[i], turned)
                 };
-                list.iter().map(mismatch).sum::<f64>() + self.prices[m]
+                list.iter().map(mismatch).sum::<f64>()
             };
             let costs = near.iter().map(|&m| (cost(m), m));
             let best = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -27,7 +27,8 @@ pub fn section_lid(mesh: &TriangleMesh, z: f64) -> TriangleMesh {
     let above = clip_to_slabs(mesh, &[z]).pop().unwrap_or_default();
     let section: f64 = above.corners().map(|t| plan_area(&t)).sum();
     let far = |lid: &TriangleMesh| (lid.area() - section).abs();
-    if far(&chained) <= CLOSE * section.abs() {
+    // Without roofs A(z) says nothing.
+    if section <= LEAST_AREA || far(&chained) <= CLOSE * section {
         return chained;
     }
     let mut laid = TriangleMesh::default();
