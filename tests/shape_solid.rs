@@ -3,7 +3,7 @@
 use edifice::rng::{Stream, stream};
 use edifice::shape::solid::{
     OrientedBox, SectionProfile, SurfaceDistance, TriangleMesh, VolumeRaster, clip_to_slabs,
-    merge_coplanar, point_triangle_distance, polygon_triangles, repair, section_lid,
+    closing_lid, merge_coplanar, point_triangle_distance, polygon_triangles, repair, section_lid,
 };
 use rand::RngExt;
 
@@ -84,6 +84,35 @@ fn clipping_keeps_area_and_with_lids_volume() {
             "seed {seed}: {volume} {whole}"
         );
     }
+}
+
+#[test]
+fn cuts_at_faces_are_closed_once() {
+    let volume = |mesh: &TriangleMesh, z: f64| {
+        let mut parts = clip_to_slabs(mesh, &[z]);
+        let mut lid = closing_lid(mesh, z);
+        parts[0].append(&lid);
+        lid.flip();
+        parts[1].append(&lid);
+        // With every face the volume does not depend on the floor.
+        [0, 1].map(|i| [0.0, -7.0].map(|floor| parts[i].volume_above(floor)))
+    };
+    let close = |found: [[f64; 2]; 2], low: f64, high: f64| {
+        found[0].iter().all(|v| (v - low).abs() < 1e-6)
+            && found[1].iter().all(|v| (v - high).abs() < 1e-6)
+    };
+    // Two closed boxes, one on the other: nothing to close. Also where the upper one is wider.
+    for wide in [1.0, 3.0] {
+        let mut stacked = solid_box([-2.0, -2.0, 0.0], [2.0, 2.0, 5.0], 0.2);
+        stacked.append(&solid_box([-wide, -wide, 5.0], [wide, wide, 9.0], 0.2));
+        assert!(
+            close(volume(&stacked.welded(1e-9), 5.0), 80.0, 16.0 * wide * wide),
+            "{wide}"
+        );
+    }
+    // One box cut through.
+    let tall = solid_box([0.0; 3], [3.0, 2.0, 9.0], 0.0);
+    assert!(close(volume(&tall, 5.0), 30.0, 24.0));
 }
 
 #[test]

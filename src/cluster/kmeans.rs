@@ -50,8 +50,8 @@ pub fn kmeans<R: Rng>(
             break;
         };
         centres.extend_from_slice(row(chosen));
-        for i in 0..n {
-            nearest[i] = nearest[i].min(square(row(i), row(chosen)));
+        for (i, least) in nearest.iter_mut().enumerate() {
+            *least = least.min(square(row(i), row(chosen)));
         }
     }
     lloyd(points, dimension, weights, centres, steps)
@@ -114,10 +114,10 @@ pub fn means(
             sums[c * dimension + d] += weights[i] * points[i * dimension + d];
         }
     }
-    for c in 0..k {
+    for (c, &total) in totals.iter().enumerate() {
         for d in c * dimension..(c + 1) * dimension {
-            sums[d] = if totals[c] > 0.0 {
-                sums[d] / totals[c]
+            sums[d] = if total > 0.0 {
+                sums[d] / total
             } else {
                 before[d]
             };

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::shape::solid::{
-    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, height_map, repair,
-    section_lid,
+    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
+    height_map, repair,
 };
 
 /// Step of A(z), in metres.
@@ -56,8 +56,8 @@ pub struct Decomposition {
     pub empty: Vec<usize>,
 }
 
-/// Cuts every building of a city into components, on all threads. With `bottoms`, components above others get a
-/// bottom: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
+/// Cuts every building of a city into components, on all threads. With `bottoms`, components are closed
+/// below, too: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
 pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
     let parts: Vec<(Vec<Component>, MeshFaults)> = city
         .buildings
@@ -83,13 +83,18 @@ pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
 fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Component> {
     let cuts = cut_planes(mesh);
     let mut components = Vec::new();
-    let lids: Vec<TriangleMesh> = cuts.iter().map(|&z| section_lid(mesh, z)).collect();
+    let lids: Vec<TriangleMesh> = cuts.iter().map(|&z| closing_lid(mesh, z)).collect();
     for (slab, mut part) in clip_to_slabs(mesh, &cuts).into_iter().enumerate() {
         if let Some(lid) = lids.get(slab) {
             part.append(lid);
         }
-        if bottoms && slab > 0 {
-            let mut bottom = lids[slab - 1].clone();
+        if bottoms {
+            let mut bottom = match slab {
+                0 => mesh
+                    .bounds()
+                    .map_or_else(TriangleMesh::default, |b| closing_lid(mesh, b.0[2])),
+                _ => lids[slab - 1].clone(),
+            };
             bottom.flip();
             part.append(&bottom);
         }

@@ -148,7 +148,7 @@ impl Frame {
 fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Placement {
     let used = types.uses[index];
     let [w, d, h] = component.frame.size;
-    let size = if used.quarter % 2 == 0 {
+    let size = if used.quarter.is_multiple_of(2) {
         [w, d, h]
     } else {
         [d, w, h]

@@ -13,6 +13,8 @@ const LEAST_AREA: f64 = 1e-4;
 const WELD: f64 = 1e-3;
 /// A section may differ so much from A(z), as a share.
 const CLOSE: f64 = 0.01;
+/// Faces closer to the plane than this lie in it, in metres.
+const LEVEL: f64 = 1e-5;
 /// Open chains beyond this number are not joined.
 const MOST_CHAINS: usize = 64;
 
@@ -39,6 +41,37 @@ pub fn section_lid(mesh: &TriangleMesh, z: f64) -> TriangleMesh {
         true => laid.welded(1e-6),
         false => chained,
     }
+}
+
+/// What closes the part of a mesh below the cut at `z`, and, turned over, the part above it: the section there
+/// but for what horizontal faces at `z` close already.
+///
+/// With areas H of faces at `z` that look up and D of those that look down, A(z-) = A(z+) + H - D, and A(z+) - D is open.
+/// Stacked closed bodies leave nothing open; without faces that look down the section above is, without
+/// faces that look up the section below. Where both kinds meet in one plane the section above is taken.
+pub fn closing_lid(mesh: &TriangleMesh, z: f64) -> TriangleMesh {
+    let (mut up, mut down) = (0.0, 0.0);
+    for t in mesh.corners() {
+        if t.iter().all(|p| (p[2] - z).abs() <= LEVEL) {
+            let area = plan_area(&t);
+            up += area.max(0.0);
+            down -= area.min(0.0);
+        }
+    }
+    let lid = section_lid(mesh, z);
+    let little = CLOSE * lid.area();
+    if down <= little {
+        return lid;
+    }
+    if lid.area() - down <= little {
+        return TriangleMesh::default();
+    }
+    if up > little {
+        return lid;
+    }
+    let mut below = section_lid(mesh, z - 2.0 * LEVEL);
+    below.positions.iter_mut().for_each(|p| p[2] = z);
+    below
 }
 
 fn chained_lid(mesh: &TriangleMesh, z: f64) -> TriangleMesh {

@@ -4,7 +4,7 @@
 //! - [`repair`]: what is wrong with a mesh, and the repair that measuring needs.
 //! - [`SectionProfile`]: the area A(z) of horizontal sections, exact, without a bottom face.
 //! - [`clip_to_slabs`]: the parts of a mesh between horizontal planes.
-//! - [`section_lid`]: a horizontal section as triangles.
+//! - [`section_lid`], [`closing_lid`]: a horizontal section as triangles, and what of it closes a cut.
 //! - [`OrientedBox`]: the smallest rectangle around a plan, extruded.
 //! - [`merge_coplanar`]: the same surface with fewer triangles.
 //! - [`VolumeRaster`]: columns of solid material on a square grid; volumetric intersection over union.
@@ -26,7 +26,7 @@ pub use city::{City, CityBuilding};
 pub use clip::clip_to_slabs;
 pub use coplanar::merge_coplanar;
 pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
-pub use lid::section_lid;
+pub use lid::{closing_lid, section_lid};
 pub use mesh::{Corners, TriangleMesh, plan_area};
 pub use oriented_box::{OrientedBox, convex_hull};
 pub use profile::SectionProfile;

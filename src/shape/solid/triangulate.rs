@@ -75,9 +75,9 @@ pub fn polygon_triangles(rings: &[Vec<[f64; 3]>]) -> Vec<Corners> {
     let mut n = [0.0; 3];
     for (i, p) in outer.iter().enumerate() {
         let q = outer[(i + 1) % outer.len()];
-        for k in 0..3 {
+        for (k, sum) in n.iter_mut().enumerate() {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-            n[k] += (p[a] - q[a]) * (p[b] + q[b]);
+            *sum += (p[a] - q[a]) * (p[b] + q[b]);
         }
     }
     // Seen along the axis that the polygon faces most, the others in right-handed order.
