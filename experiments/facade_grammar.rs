@@ -3,8 +3,6 @@
 //! Settings stand here; each artefact is a file of its own. Seeds and facades for each budget are in
 //! `facade_grammar/compare.rs`.
 
-mod baseline_ranges;
-mod baseline_settings;
 mod city;
 mod compare;
 pub mod data;
@@ -18,6 +16,7 @@ mod judge;
 mod likeness;
 pub mod made;
 mod optimality;
+mod procedural_logic;
 mod projection;
 mod published;
 mod ratios;
@@ -27,6 +26,7 @@ mod regularization;
 mod room;
 mod runs;
 mod speed;
+pub mod study;
 mod table_1;
 mod table_2;
 mod table_3;
@@ -64,11 +64,7 @@ const ARTEFACTS: &[Artefact] = &[
         title: "cost of the automatic methods, split rule only",
         run: table_2::run,
     },
-    Artefact {
-        name: "baseline_ranges",
-        title: "procedural logic of Table 2 over the ranges of its parameters",
-        run: baseline_ranges::run,
-    },
+    procedural_logic::RANGES,
     Artefact {
         name: "table_3",
         title: "scores that people gave",

@@ -29,14 +29,19 @@
 
 mod frame;
 pub mod layouts;
+pub mod peers;
 mod picture;
+pub mod sweep;
 
 pub mod building_exteriors;
 pub mod city_proceduralization;
 pub mod facade_grammar;
 pub mod procedural_logic;
+pub mod structure_completion;
 
 use std::process::ExitCode;
+
+use sweep::Study;
 
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
 
@@ -46,7 +51,19 @@ pub const ALL: &[&Experiment] = &[
     &city_proceduralization::EXPERIMENT,
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
+    &structure_completion::EXPERIMENT,
 ];
+
+/// Every method that sweeps can run.
+const STUDIES: &[fn() -> Study] = &[
+    // One line each.
+    facade_grammar::study::infer,
+];
+
+/// Every method that sweeps can run.
+pub fn studies() -> Vec<Study> {
+    STUDIES.iter().map(|study| study()).collect()
+}
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.
 pub fn main(experiment: &'static Experiment) -> ExitCode {

@@ -20,7 +20,11 @@ pub mod trivial;
 pub mod words;
 
 use super::{Artefact, Experiment};
+use crate::grammar::Grammar;
+use crate::methods::procedural_logic::{Parameters, baseline_grammar};
 use crate::report::{Align, Row, Table};
+use crate::shape::Facade;
+use crate::{Error, Result};
 
 /// The paper's figures and the numbers of its text.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -28,6 +32,14 @@ pub const EXPERIMENT: Experiment = Experiment {
     paper: "Weissenberg, Riemenschneider, Prasad, Van Gool 2013: Is there a Procedural Logic to Architecture?",
     artefacts: ARTEFACTS,
 };
+
+/// The grammar of one facade with the parameters for compression, for comparisons with other papers.
+///
+/// # Errors
+/// Those of the method.
+pub fn grammar(facade: &Facade) -> Result<Grammar> {
+    baseline_grammar(facade, &Parameters::COMPRESSION).map_err(Error::method)
+}
 
 const ARTEFACTS: &[Artefact] = &[
     Artefact {

@@ -25,7 +25,10 @@
 //! | --- | --- |
 //! | `io` | [`io`]: file formats of facades, grammars, buildings and scenes |
 //! | `report` | [`report`]: tables and figures |
+//! | `linfa` (default) | [linfa]'s traits for Gaussian mixtures: [`model::gmm::linfa`] |
 //! | `cli` (default) | [`experiments`] and the programs; includes `io` and `report` |
+//!
+//! [linfa]: https://docs.rs/linfa
 
 pub mod cluster;
 pub mod error;

@@ -2,7 +2,12 @@
 //!
 //! A stream is found by `(seed, name, index)`, never by the order in which threads ask, so the same
 //! seed gives the same numbers with one thread or with many.
+//!
+//! Who takes a seed and who a generator: a *run* that owns all its randomness (an optimizer, learning with restarts, an
+//! experiment) takes a seed and names its own streams; a *draw* (sampling, a random start, a proposal) takes `&mut impl Rng`,
+//! so that the caller says which stream it comes from.
 
+use rand::{Rng, RngExt};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
@@ -28,6 +33,28 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
     }
     state = mix(state ^ index);
     Stream::seed_from_u64(state)
+}
+
+/// An index drawn in proportion to `weights`, which are not negative; the last of positive weight where rounding runs out,
+/// and 0 where none is positive.
+///
+/// # Examples
+/// ```
+/// use edifice::rng::{categorical, stream};
+/// assert_eq!(categorical(&[0.0, 2.0, 0.0], &mut stream(7, "index", 0)), 1);
+/// ```
+pub fn categorical<R: Rng + ?Sized>(weights: &[f64], rng: &mut R) -> usize {
+    let total: f64 = weights.iter().sum();
+    let mut at = rng.random::<f64>() * total;
+    let mut last = 0;
+    for (i, w) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+        last = i;
+        at -= w;
+        if at < 0.0 {
+            break;
+        }
+    }
+    last
 }
 
 /// Finalizer of SplitMix64 (Steele et al. 2014): a bijection that spreads every bit.

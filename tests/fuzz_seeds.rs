@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use edifice::io::facade_json::parse_json;
+use edifice::io::json::parse_json;
 use edifice::io::{
     LabelMap, building_csv, building_json, cmp_xml, coco, facade_json, grammar_cga, grammar_json,
     label_image, label_text, labelme,

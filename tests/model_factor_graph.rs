@@ -1,7 +1,7 @@
 //! Contrastive divergence against the exact gradient on a small Ising model.
 
 use edifice::model::factor_graph::{
-    Chain, Factor, Gibbs, Metropolis, Propose, Settings, gradient, learn, sample,
+    Chain, Factor, Gibbs, Metropolis, Propose, Settings, fit, gradient, sample,
 };
 use edifice::rng::{Stream, stream};
 use rand::RngExt;
@@ -152,12 +152,12 @@ fn shared_weights_are_recovered() {
         rate: 0.02,
         ..Settings::default()
     };
-    let learned = learn(&ising(), &data, &settings, 1).unwrap();
-    for (l, t) in learned.iter().zip(truth) {
-        assert!((l - t).abs() < 0.04, "{learned:?}");
+    let fitted = fit(&ising(), &data, &settings, 1).unwrap();
+    for (l, t) in fitted.iter().zip(truth) {
+        assert!((l - t).abs() < 0.04, "{fitted:?}");
     }
     // The exact gradient of the penalised likelihood nearly vanishes there.
-    let (_, expected) = ising().exact(&learned).unwrap();
+    let (_, expected) = ising().exact(&fitted).unwrap();
     for (t, e) in mean(&ising(), &data).iter().zip(&expected) {
         assert!((t - e).abs() < 0.25);
     }
@@ -166,7 +166,7 @@ fn shared_weights_are_recovered() {
 #[test]
 fn bad_input_is_named() {
     assert!(Gibbs::new(vec![2], Vec::new()).is_err());
-    assert!(learn(&ising(), &[], &Settings::default(), 1).is_err());
+    assert!(fit(&ising(), &[], &Settings::default(), 1).is_err());
     let wild = Gibbs::new(
         vec![2],
         vec![Factor {
@@ -176,5 +176,5 @@ fn bad_input_is_named() {
         }],
     )
     .unwrap();
-    assert!(learn(&wild, &[vec![0]], &Settings::default(), 1).is_err());
+    assert!(fit(&wild, &[vec![0]], &Settings::default(), 1).is_err());
 }

@@ -1,6 +1,6 @@
 //! Bayesian networks: every answer against enumeration of the joint, on random networks.
 
-use edifice::model::network::{Evidence, LearnSettings, Network, Variable};
+use edifice::model::network::{Evidence, FitSettings, Network, Variable};
 use edifice::model::{Cell, ModelError};
 use edifice::rng::stream;
 use proptest::prelude::*;
@@ -271,15 +271,15 @@ fn learns_what_made_the_data_with_holes_in_it() {
         Variable::continuous("y", 1, &["x", "w"]),
     ])
     .unwrap();
-    let settings = LearnSettings {
+    let settings = FitSettings {
         restarts: 1,
-        ..LearnSettings::default()
+        ..FitSettings::default()
     };
-    let trained = open.learn(&seen, &settings, &mut rng).unwrap();
-    assert!(trained.trace.windows(2).all(|w| w[1] >= w[0]));
-    let z = trained.network.probabilities("z").unwrap();
+    let fitted = open.fit(&seen, &settings, &mut rng).unwrap();
+    assert!(fitted.trace.windows(2).all(|w| w[1] >= w[0]));
+    let z = fitted.network.probabilities("z").unwrap();
     assert!((z[0] - 0.3).abs() < 0.03, "{z:?}");
-    let (b, s) = trained.network.regression("y", 0).unwrap();
+    let (b, s) = fitted.network.regression("y", 0).unwrap();
     assert!(
         (b[0] - 1.0).abs() < 0.1 && (b[1] - 2.0).abs() < 0.1,
         "{b:?}"

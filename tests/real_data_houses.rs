@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 
-use edifice::io::{building_csv, facade_json, read_bytes};
+use edifice::io::{building_csv, json, read_bytes};
 use edifice::methods::building_exteriors::data::Dataset;
 use edifice::methods::building_exteriors::schema::Schema;
 use edifice::model::hierarchy::{Constant, Settings, learn};
@@ -15,7 +15,7 @@ fn read(schema: &str, table: &str) -> Option<Dataset> {
     let schema = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("datasets/building_exteriors")
         .join(schema);
-    let schema: Schema = facade_json::parse_json(&read_bytes(&schema).unwrap(), &schema).unwrap();
+    let schema: Schema = json::parse_json(&read_bytes(&schema).unwrap(), &schema).unwrap();
     let text = building_csv::read(&folder.join(table)).unwrap();
     Some(schema.read(&text.header, &text.rows).unwrap())
 }

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::experiments::Context;
-use crate::io::{building_csv, building_json, facade_json, read_bytes};
+use crate::io::{building_csv, building_json, json, read_bytes};
 use crate::methods::building_exteriors::attributes::attributes;
 use crate::methods::building_exteriors::compare::split;
 use crate::methods::building_exteriors::data::{Dataset, dataset};
@@ -33,7 +33,7 @@ pub fn shipped(ctx: &mut Context) -> Result<Shipped> {
     let path = ctx.shipped("building_exteriors/houses.buildings.jsonl")?;
     let buildings = building_json::read(&path)?;
     let path = ctx.shipped("building_exteriors/truth.json")?;
-    let truth: Truth = facade_json::parse_json(&read_bytes(&path)?, &path)?;
+    let truth: Truth = json::parse_json(&read_bytes(&path)?, &path)?;
     let data = measure(&buildings)?;
     Ok(Shipped {
         buildings,
@@ -73,8 +73,8 @@ pub fn real(ctx: &mut Context, most: usize) -> Result<Vec<(&'static str, Dataset
             continue;
         };
         let bytes = read_bytes(&schema)?;
-        facade_json::check_header(&bytes, &schema, FORMAT, VERSION)?;
-        let schema: Schema = facade_json::parse_json(&bytes, &schema)?;
+        json::check_header(&bytes, &schema, FORMAT, VERSION)?;
+        let schema: Schema = json::parse_json(&bytes, &schema)?;
         let text = building_csv::read(&path)?;
         let all = schema
             .read(&text.header, &text.rows)

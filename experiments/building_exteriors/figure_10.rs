@@ -1,8 +1,8 @@
 //! Fig. 10: the styles found.
 
 use super::{data, settings};
+use crate::cluster::adjusted_rand_index;
 use crate::experiments::Context;
-use crate::methods::building_exteriors::agreement::adjusted_rand_index;
 use crate::methods::building_exteriors::attributes::COLUMNS;
 use crate::model::hierarchy::learn;
 use crate::model::{Cell, Table as Data};

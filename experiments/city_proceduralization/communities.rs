@@ -13,7 +13,8 @@ use crate::{Error, Result};
 struct Found {
     nodes: usize,
     edges: usize,
-    girvan_newman: f64,
+    /// `None` where the graph has more than [`MOST_EDGES`] edges.
+    girvan_newman: Option<f64>,
     louvain: f64,
     seconds: [f64; 2],
 }
@@ -26,29 +27,27 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let cities = data::cities(ctx)?;
     let units: Vec<usize> = (0..cities.len()).collect();
-    let results: Vec<Found> = ctx.units(
+    let results: Vec<Option<Found>> = ctx.units(
         &units,
         |c| cities[*c].0.clone(),
         |&c| {
             let made = proceduralize(&cities[c].1, &data::settings(Mode::Best, 4, seed))
                 .map_err(Error::method)?;
             let Some(level) = made.tree.levels.first() else {
-                return Err(Error::method("no two types stand together"));
+                return Ok(None);
             };
             let clock = std::time::Instant::now();
             let fast = louvain(&level.graph).modularity;
             let first = clock.elapsed().as_secs_f64();
-            let slow = match level.size.1 <= MOST_EDGES {
-                true => girvan_newman(&level.graph).modularity,
-                false => return Err(Error::method("the type graph has too many edges")),
-            };
-            Ok(Found {
+            let few = level.size.1 <= MOST_EDGES;
+            let slow = few.then(|| girvan_newman(&level.graph).modularity);
+            Ok(Some(Found {
                 nodes: level.size.0,
                 edges: level.size.1,
                 girvan_newman: slow,
                 louvain: fast,
                 seconds: [clock.elapsed().as_secs_f64() - first, first],
-            })
+            }))
         },
     )?;
     let mut table = Table::new("Modularity of the type graph's communities")
@@ -56,18 +55,24 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .numbers(["types", "edges", "Girvan-Newman", "Louvain"]);
     for (&c, f) in units.iter().zip(&results) {
         let name = &cities[c].0;
+        let Some(f) = f else {
+            ctx.note(format!("{name}: no two types stand together twice."));
+            continue;
+        };
         for (method, value, seconds) in [
             ("girvan_newman", f.girvan_newman, f.seconds[0]),
-            ("louvain", f.louvain, f.seconds[1]),
+            ("louvain", Some(f.louvain), f.seconds[1]),
         ] {
-            ctx.observe(data::row(name, method, "level_4", "modularity", value, ""));
-            ctx.observe(data::row(name, method, "level_4", "seconds", seconds, "s"));
+            if let Some(value) = value {
+                ctx.observe(data::row(name, method, "level_4", "modularity", value, ""));
+                ctx.observe(data::row(name, method, "level_4", "seconds", seconds, "s"));
+            }
         }
         table.row([
             name.clone(),
             f.nodes.to_string(),
             f.edges.to_string(),
-            format!("{:.3}", f.girvan_newman),
+            f.girvan_newman.map_or_else(|| "-".to_owned(), |q| format!("{q:.3}")),
             format!("{:.3}", f.louvain),
         ]);
     }

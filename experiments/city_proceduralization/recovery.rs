@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{data, synthetic};
+use crate::cluster::adjusted_rand_index;
 use crate::experiments::Context;
 use crate::methods::city_proceduralization::{Budget, Mode, Settings, decompose, from_components};
 use crate::report::{Align, Table};
@@ -147,19 +148,4 @@ fn purity(found: &[usize], labels: &[usize]) -> f64 {
         *m = m.max(n);
     }
     most.values().sum::<f64>() / found.len().max(1) as f64
-}
-
-/// Hubert and Arabie (1985).
-fn adjusted_rand_index(a: &[usize], b: &[usize]) -> f64 {
-    let pairs = |n: f64| n * (n - 1.0) / 2.0;
-    let joint: f64 = table(a, b).values().map(|&n| pairs(n)).sum();
-    let single = |x: &[usize]| -> f64 { table(x, x).values().map(|&n| pairs(n)).sum() };
-    let (p, q, all) = (single(a), single(b), pairs(a.len() as f64));
-    let expected = p * q / all;
-    let most = (p + q) / 2.0;
-    if most == expected {
-        1.0
-    } else {
-        (joint - expected) / (most - expected)
-    }
 }

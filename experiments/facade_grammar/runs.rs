@@ -4,9 +4,9 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
+use crate::experiments::peers;
 use crate::grammar::{Costs, Grammar, evaluate};
 use crate::methods::facade_grammar::{Method, Operations, Readings, Settings, infer};
-use crate::methods::procedural_logic::{Parameters, baseline_grammar};
 use crate::shape::Facade;
 use crate::{Error, Result};
 
@@ -107,9 +107,7 @@ pub struct Answer {
 pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer)> {
     let start = ThreadTime::now();
     let grammar = match (question.solver, facades) {
-        (Solver::ProceduralLogic, [facade]) => {
-            baseline_grammar(facade, &Parameters::COMPRESSION).map_err(Error::method)?
-        }
+        (Solver::ProceduralLogic, [facade]) => peers::grammar("procedural_logic", facade)?,
         (Solver::ProceduralLogic, _) => {
             return Err(Error::method("procedural logic takes one facade"));
         }

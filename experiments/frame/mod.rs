@@ -1,17 +1,18 @@
 //! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
 
 mod context;
-mod datasets;
+pub(super) mod datasets;
 mod document;
 mod journal;
-mod lock;
+pub(super) mod lock;
 mod options;
 mod progress;
-mod provenance;
+pub(super) mod provenance;
 mod run;
 
 pub use context::Context;
 pub use options::{Args, Budget, Options};
+pub use progress::Progress;
 pub use run::{Report, main, run, run_to_end};
 
 /// One table or figure of a paper.

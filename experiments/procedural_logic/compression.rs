@@ -4,7 +4,7 @@ use super::data::{Source, sources};
 use super::{data_table, row};
 use crate::experiments::{Budget, Context};
 use crate::methods::procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
-use crate::optim::grid::GridOutcome;
+use crate::optim::grid::points;
 use crate::report::{Figure, HeatMap};
 use crate::{Error, Result};
 
@@ -32,7 +32,10 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     for source in sources(ctx)? {
         for (dataset, grids) in source.sets() {
             let found = fewest_rules(grids, &axes).map_err(Error::method)?;
-            for (point, count) in &found.evaluated {
+            let evaluated: Vec<(Vec<f64>, f64)> = (points(&axes).zip(&found.trace))
+                .map(|(point, step)| (point, step.cost))
+                .collect();
+            for (point, count) in &evaluated {
                 ctx.observe(row(dataset, "inferred", name(point), "rules", *count));
             }
             let printed = Parameters::COMPRESSION;
@@ -59,9 +62,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             ctx.observe(row(dataset, "inferred", "best", "rules", found.cost));
             if dataset == source.dataset {
                 if source.is_paper() {
-                    compare(ctx, &found, &inference);
+                    compare(ctx, &evaluated, found.cost, &inference);
                 }
-                draw(ctx, &source, &found)?;
+                draw(ctx, &source, &evaluated, found.cost)?;
             }
         }
     }
@@ -84,11 +87,13 @@ fn name(point: &[f64]) -> String {
     format!("alpha={} b_p={} b_h={}", point[0], point[1], point[2])
 }
 
+/// The points of a search with their numbers of rules.
+type Evaluated = [(Vec<f64>, f64)];
+
 /// The paper's claim about the ranges.
-fn compare(ctx: &mut Context, found: &GridOutcome, inference: &Inference) {
+fn compare(ctx: &mut Context, evaluated: &Evaluated, fewest: f64, inference: &Inference) {
     let in_range = |p: &[f64]| p[0] >= 0.25 && p[1] <= 0.5 && p[2] >= 0.125;
-    let named: Vec<f64> = found
-        .evaluated
+    let named: Vec<f64> = evaluated
         .iter()
         .filter(|e| in_range(&e.0))
         .map(|e| e.1)
@@ -99,11 +104,7 @@ fn compare(ctx: &mut Context, found: &GridOutcome, inference: &Inference) {
         "68",
         inference.rules.len().to_string(),
     );
-    ctx.compare(
-        "fewest rules over the search",
-        "68",
-        format!("{}", found.cost),
-    );
+    ctx.compare("fewest rules over the search", "68", format!("{fewest}"));
     ctx.compare(
         "points of the search within alpha 0.25..1, b_p 0.0625..0.5, b_h 0.125..1 with 68 rules",
         "all",
@@ -120,23 +121,23 @@ fn compare(ctx: &mut Context, found: &GridOutcome, inference: &Inference) {
 }
 
 /// The number of rules over the grid, one map for each alpha.
-fn draw(ctx: &mut Context, source: &Source, found: &GridOutcome) -> Result<()> {
+fn draw(ctx: &mut Context, source: &Source, evaluated: &Evaluated, fewest: f64) -> Result<()> {
     let title = format!(
         "Number of rules on {} over b_p and b_h, for each alpha",
         source.dataset
     );
     let mut figure = Figure::new(title, 3);
     let values = |index: usize| {
-        let mut values: Vec<f64> = found.evaluated.iter().map(|e| e.0[index]).collect();
+        let mut values: Vec<f64> = evaluated.iter().map(|e| e.0[index]).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
         values
     };
     let (alphas, parental, horizontal) = (values(0), values(1), values(2));
-    let highest = found.evaluated.iter().map(|e| e.1).fold(0.0, f64::max);
+    let highest = evaluated.iter().map(|e| e.1).fold(0.0, f64::max);
     for alpha in alphas {
         let cell = |p: f64, h: f64| {
-            let at = found.evaluated.iter().find(|e| e.0 == [alpha, p, h]);
+            let at = evaluated.iter().find(|e| e.0 == [alpha, p, h]);
             at.map_or(f64::NAN, |e| e.1)
         };
         let matrix = parental
@@ -148,7 +149,7 @@ fn draw(ctx: &mut Context, source: &Source, found: &GridOutcome) -> Result<()> {
         figure = figure.panel(
             HeatMap::new(format!("alpha = {alpha}"), matrix, "rules")
                 .names(names("b_p", &parental), names("b_h", &horizontal))
-                .range(found.cost, highest.max(found.cost + 1.0)),
+                .range(fewest, highest.max(fewest + 1.0)),
         );
     }
     ctx.figure(&source.figure("compression"), &figure)

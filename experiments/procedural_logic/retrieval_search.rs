@@ -6,7 +6,7 @@ use super::gold::Doors;
 use super::{data_table, row};
 use crate::experiments::{Budget, Context};
 use crate::methods::procedural_logic::{Measure, Model, Parameters, search_axes};
-use crate::optim::grid::minimize;
+use crate::optim::grid::{minimize, points};
 use crate::{Error, Result};
 
 /// Searches the grid for the best curve of each measure.
@@ -27,14 +27,14 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         for measure in [Measure::Powerset, Measure::CommonRules] {
             let cost = |point: &[f64]| rates(&source, measure, point).map(|rates| -score(&rates));
             let found = minimize(&axes, cost).map_err(Error::method)?;
-            for (point, cost) in &found.evaluated {
+            for (point, step) in points(&axes).zip(&found.trace) {
                 let instance = format!("alpha={} b_p={} b_h={}", point[0], point[1], point[2]);
                 ctx.observe(row(
                     source.dataset,
                     measure.name(),
                     instance,
                     "score",
-                    -cost,
+                    -step.cost,
                 ));
             }
             let p = Parameters::RETRIEVAL;

@@ -2,7 +2,7 @@
 //! written and read back the same.
 #![no_main]
 
-use edifice::io::facade_json::{check_header, parse_json};
+use edifice::io::json::{check_header, parse_json};
 use edifice::methods::procedural_logic::{MODEL_FORMAT, MODEL_VERSION, Model, ModelFile};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -4,6 +4,7 @@ mod attributes;
 mod data;
 mod draw;
 mod evaluate;
+mod given;
 mod learn;
 mod show;
 

@@ -1,5 +1,14 @@
 //! Facade files on the command line.
 
+mod complete;
+mod hide;
+mod input;
+mod mask;
+mod overview;
+mod partial;
+mod score;
+mod train;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -31,6 +40,17 @@ Without one, the colours of the ECP and Graz databases and the numbers of the CM
 A colour or number that the map does not name is an error. With --nearest-colour such a colour is
 read as the nearest one of the map (without a map: of ECP and Graz), and the largest distance is told.")]
     Convert(Convert),
+    /// Learn from whole facades how partial ones are completed (Fan et al. 2014).
+    Train(train::Args),
+    /// Complete a facade of which only a part is seen.
+    Complete(complete::Args),
+    /// Hide a part of a whole facade, to see how it is completed.
+    #[command(
+        after_help = "Example:\n  edifice facade hide monge_42.png --task side50 --seed 1 -o partial.facade.json"
+    )]
+    Hide(hide::Args),
+    /// Score a facade by the statistical model of Fan et al. 2014, term by term.
+    Score(score::Args),
 }
 
 /// Options of `facade convert`.
@@ -56,6 +76,10 @@ pub struct Convert {
 pub fn run(command: Command) -> Result<()> {
     match command {
         Command::Convert(options) => convert(&options),
+        Command::Train(args) => train::run(&args),
+        Command::Complete(args) => complete::run(&args),
+        Command::Hide(args) => hide::run(&args),
+        Command::Score(args) => score::run(&args),
     }
 }
 

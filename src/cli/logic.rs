@@ -5,9 +5,11 @@ mod compare;
 mod fit;
 mod input;
 mod parse;
+mod show;
 mod synthesize;
 
 use clap::Subcommand;
+pub use show::LOGIC;
 
 /// Commands.
 #[derive(Subcommand)]

@@ -10,6 +10,7 @@ mod model;
 mod print;
 mod reading;
 mod reproduce;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -43,9 +44,17 @@ enum Command {
     /// Show and convert Bayesian networks and logic models.
     #[command(subcommand)]
     Model(model::Command),
+    /// Ablations and comparisons from one file, on this machine or a cluster.
+    #[command(subcommand)]
+    Sweep(sweep::Command),
     /// Run the experiments of the papers and write the report.
     Reproduce(reproduce::Args),
 }
+
+/// Kinds of models that `model show` knows besides Bayesian networks.
+const MODELS: &[model::Shown] = &[
+    logic::LOGIC, // one line each
+];
 
 /// Parses the arguments and runs the command.
 pub fn run() -> ExitCode {
@@ -56,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Building(command) => building::run(command),
         Command::City(command) => city::run(command),
         Command::Model(command) => model::run(command),
+        Command::Sweep(command) => sweep::run(command),
         Command::Reproduce(args) => reproduce::run(args),
     };
     match outcome {

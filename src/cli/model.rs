@@ -1,16 +1,15 @@
-//! Model files on the command line: Bayesian networks, and the procedural logic of facades.
+//! Model files on the command line: Bayesian networks, and the models of papers that have a [`Shown`].
 
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use edifice::file::{read_bytes, write_atomic};
-use edifice::io::facade_json::parse_json;
-use edifice::methods::procedural_logic::{MODEL_FORMAT, Model, ModelFile};
+use edifice::io::json::parse_json;
 use edifice::model::ModelError;
 use edifice::model::network::{FORMAT, Network};
 use edifice::{Error, Result};
 
-use super::print;
+use super::{MODELS, print};
 
 /// Commands.
 #[derive(Subcommand)]
@@ -42,17 +41,28 @@ pub enum Command {
 /// A model of one of the kinds that are read here.
 enum Any {
     Network(Network),
-    Logic(Box<Model>),
+    Other(&'static Shown, Vec<u8>),
+}
+
+/// A kind of model that a method of a paper has, and that `show` shows.
+pub struct Shown {
+    /// The value of the key `format` of its files.
+    pub format: &'static str,
+    /// The lines to print, from the bytes and the path of a file; as JSON when asked for.
+    pub show: fn(&[u8], &Path, bool) -> Result<Vec<String>>,
 }
 
 /// A file of another kind.
 #[derive(Debug, thiserror::Error)]
-#[error("unknown format {0:?}, expected a .bif file, {FORMAT:?} or {MODEL_FORMAT:?}")]
-struct UnknownFormat(String);
+#[error("unknown format {found:?}, expected a .bif file, {expected}")]
+struct UnknownFormat {
+    found: String,
+    expected: String,
+}
 
 /// A model where a network is needed.
 #[derive(Debug, thiserror::Error)]
-#[error("a logic model, expected a Bayesian network")]
+#[error("a model of another kind, expected a Bayesian network")]
 struct NotANetwork;
 
 /// Runs the command.
@@ -60,7 +70,7 @@ pub fn run(command: Command) -> Result<()> {
     let lines = match command {
         Command::Show { model, json } => match read(&model)? {
             Any::Network(network) => show_network(&network, json).map_err(at(&model))?,
-            Any::Logic(model) => show_logic(&model, json),
+            Any::Other(kind, bytes) => (kind.show)(&bytes, &model, json)?,
         },
         Command::Convert { network, output } => {
             convert(&network, &output)?;
@@ -91,14 +101,20 @@ fn read(path: &Path) -> Result<Any> {
         return Ok(Any::Network(network));
     }
     let header: Header = parse_json(&bytes, path)?;
-    match header.format.as_str() {
-        FORMAT => Ok(Any::Network(Network::from_json(text()?).map_err(at(path))?)),
-        MODEL_FORMAT => {
-            let file: ModelFile = parse_json(&bytes, path)?;
-            let model = Model::try_from(file).map_err(|e| Error::content(path, e))?;
-            Ok(Any::Logic(Box::new(model)))
+    if header.format == FORMAT {
+        return Ok(Any::Network(Network::from_json(text()?).map_err(at(path))?));
+    }
+    match MODELS.iter().find(|kind| kind.format == header.format) {
+        Some(kind) => Ok(Any::Other(kind, bytes)),
+        None => {
+            let formats = std::iter::once(FORMAT).chain(MODELS.iter().map(|kind| kind.format));
+            let formats: Vec<String> = formats.map(|format| format!("{format:?}")).collect();
+            let unknown = UnknownFormat {
+                found: header.format,
+                expected: formats.join(" or "),
+            };
+            Err(Error::content(path, unknown))
         }
-        _ => Err(Error::content(path, UnknownFormat(header.format))),
     }
 }
 
@@ -126,22 +142,6 @@ fn show_network(network: &Network, json: bool) -> Result<Vec<String>, ModelError
         ]),
         false => Ok(lines),
     }
-}
-
-fn show_logic(model: &Model, json: bool) -> Vec<String> {
-    let (labels, rules) = (model.alphabet.names(), &model.inference.rules);
-    let facades: Vec<&str> = model.facades.iter().map(|f| f.name.as_str()).collect();
-    if json {
-        let summary = serde_json::json!({
-            "labels": labels, "rules": rules.len(), "facades": facades,
-        });
-        return vec![summary.to_string()];
-    }
-    vec![
-        format!("{} labels: {}", labels.len(), labels.join(", ")),
-        format!("{} rules", rules.len()),
-        format!("{} facades: {}", facades.len(), facades.join(", ")),
-    ]
 }
 
 fn convert(from: &Path, to: &Path) -> Result<()> {

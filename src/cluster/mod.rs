@@ -5,8 +5,10 @@
 //! - [`ward()`]: Ward's hierarchy of points in near-linear time; [`kmeans()`] and [`lloyd`].
 //! - [`girvan_newman`], [`louvain`]: communities of graphs, and their [`modularity`].
 //! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
+//! - [`adjusted_rand_index`]: agreement of two partitions.
 
 mod agglomerative;
+mod agreement;
 mod chi_square;
 mod communities;
 mod kd_tree;
@@ -15,6 +17,7 @@ mod retrieval;
 mod ward;
 
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
+pub use agreement::adjusted_rand_index;
 pub use chi_square::{Histogram, chi_square};
 pub use communities::{
     Communities, WeightedGraph, girvan_newman, louvain, modularity, weighted_graph,

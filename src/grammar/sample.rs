@@ -1,12 +1,13 @@
 //! Derivation at any size, of stochastic grammars too (Wu et al. 2014, Sec. 5).
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 use rustc_hash::FxHashMap;
 
 use super::check::check_structure;
 use super::derive::{Fit, walk};
 use super::table::Table;
 use super::{Derivation, Grammar, GrammarError, Operation, summable};
+use crate::rng::categorical;
 
 /// Derives a grammar in a region of `width` x `height`, in the grammar's unit.
 ///
@@ -118,14 +119,6 @@ impl<'g> Sampler<'g> {
             .iter()
             .map(|&rule| self.grammar.rules[rule].weight.unwrap_or(1.0))
             .collect();
-        let weights = summable(&weights);
-        let mut rest = rng.random::<f64>() * weights.iter().sum::<f64>();
-        for (&rule, weight) in rules.iter().zip(weights) {
-            rest -= weight;
-            if rest < 0.0 {
-                return rule;
-            }
-        }
-        rules[rules.len() - 1]
+        rules[categorical(&summable(&weights), rng)]
     }
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::facade_json::{check_header, parse_json};
+use super::json::{check_header, parse_json};
 use super::packed::extension;
 use super::{read_bytes, write_atomic};
 use crate::shape::{Building, FacadePiece, MassBox, Special};

@@ -14,7 +14,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::annotation::{ImageBox, check_side};
-use super::facade_json::parse_json;
+use super::json::parse_json;
 use super::{file_stem, read_bytes};
 use crate::shape::Facade;
 use crate::{Error, Result};

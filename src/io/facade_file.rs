@@ -8,7 +8,9 @@ use serde::de::IgnoredAny;
 use super::nearest_colour::NearestColours;
 use super::packed::{extension, read_bytes};
 use super::pixels::JPEG_MAGIC;
-use super::{LabelMap, cmp_xml, coco, draw, facade_json, label_image, label_text, labelme, pixels};
+use super::{
+    LabelMap, cmp_xml, coco, draw, facade_json, json, label_image, label_text, labelme, pixels,
+};
 use crate::file::write_atomic;
 use crate::shape::{Facade, LabelGrid, decompose};
 use crate::{Error, Result};
@@ -148,7 +150,7 @@ struct Keys {
 
 /// A layout from JSON of any kind.
 fn json(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Source> {
-    let keys: Keys = facade_json::parse_json(bytes, path)?;
+    let keys: Keys = json::parse_json(bytes, path)?;
     let coco = keys.format.is_none() && keys.shapes.is_none() && keys.annotations.is_some();
     if options.image.is_some() && !coco {
         return Err(no_images(path));

@@ -21,7 +21,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::facade_json::{check_header, number, parse_json, quoted};
+use super::json::{check_header, number, parse_json, quoted};
 use super::{read_bytes, write_atomic};
 use crate::grammar::{Grammar, Operation, Rule, Size, Start, Successor, check};
 use crate::shape::Axis;

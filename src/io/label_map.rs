@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::{self, MapAccess, Visitor};
 
-use super::facade_json::parse_json;
+use super::json::parse_json;
 use super::read_bytes;
 use crate::{Error, Result};
 

@@ -18,6 +18,7 @@
 
 use statrs::function::gamma::ln_gamma;
 
+use super::error::ModelError;
 use super::linalg::{LN_2PI, cholesky, ln_gamma_d, lower_inverse};
 
 /// Most probable table under a symmetric Dirichlet(α) prior, α ≥ 1; uniform without any counts
@@ -285,5 +286,52 @@ impl Linear {
             }
         }
         scatter[0] * self.log_norm - 0.5 * trace
+    }
+}
+
+/// Priors of every parameter; real columns are on the standardised scale (mean 0, deviation 1).
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Priors {
+    /// α of every table, at least 1 (1 is uniform; greater keeps probabilities off zero).
+    pub dirichlet: f64,
+    /// Normal-inverse-Wishart prior of every real group.
+    pub linear: LinearPrior,
+}
+
+impl Default for Priors {
+    fn default() -> Self {
+        Self {
+            dirichlet: 1.2,
+            linear: LinearPrior {
+                intercept: 0.01,
+                slope: 1.0,
+                scatter: 0.1,
+                freedom: 3.0,
+            },
+        }
+    }
+}
+
+impl Priors {
+    /// Checks that every hyperparameter is in its range.
+    ///
+    /// # Errors
+    /// [`ModelError::Parameter`].
+    pub fn check(&self) -> Result<(), ModelError> {
+        if !(self.dirichlet >= 1.0 && self.dirichlet.is_finite()) {
+            return Err(ModelError::parameter("dirichlet", "must be at least 1"));
+        }
+        let l = &self.linear;
+        for (name, value) in [
+            ("intercept", l.intercept),
+            ("slope", l.slope),
+            ("scatter", l.scatter),
+            ("freedom", l.freedom),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ModelError::parameter(name, "must be positive and finite"));
+            }
+        }
+        Ok(())
     }
 }

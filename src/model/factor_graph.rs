@@ -1,10 +1,10 @@
-//! Factor graphs with log-linear features and shared weights, learned by contrastive divergence.
+//! Factor graphs with log-linear features and shared weights, fitted by contrastive divergence.
 //!
 //! `p(x; w) ∝ exp(wᵀ f(x))` over states x of any kind: f are features summed over all factors of a
 //! state, so that factors of one kind share a weight. A user supplies the features and a way to
 //! move ([`Chain`]); for discrete variables with local features [`Gibbs`] supplies the moves.
 //!
-//! Learning ([`learn`]) climbs `L(w) = mean_n log p(x_n; w) - λ/2 |w|²`. Its gradient is
+//! Learning ([`fit`]) climbs `L(w) = mean_n log p(x_n; w) - λ/2 |w|²`. Its gradient is
 //! `mean f(x_n) - E_w f - λ w`; contrastive divergence (Hinton 2002) replaces `E_w f` by the mean
 //! over chains of a few moves: started at the data in every round, or kept from round to round
 //! when persistent (Tieleman 2008), which removes the bias as the step shrinks.
@@ -22,7 +22,7 @@ use rand::RngExt;
 use rayon::prelude::*;
 
 use super::error::ModelError;
-use super::linalg::log_sum_exp;
+use super::linalg::{categorical_of_logs, log_sum_exp};
 use crate::rng::{Stream, stream};
 
 /// A model family: features of a state, and a way to move between states.
@@ -198,18 +198,12 @@ impl Chain for Gibbs {
                         .sum()
                 })
                 .collect();
-            let total = log_sum_exp(&logs);
-            let mut at = rng.random::<f64>();
-            let drawn = logs.iter().position(|l| {
-                at -= (l - total).exp();
-                at < 0.0
-            });
-            state[v] = drawn.unwrap_or(logs.len() - 1);
+            state[v] = categorical_of_logs(&logs, rng);
         }
     }
 }
 
-/// Settings of [`learn`].
+/// Settings of [`fit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Rounds of gradient ascent.
@@ -243,7 +237,7 @@ impl Default for Settings {
 /// `moves` moves, one from each example. As moves grow it tends to the exact gradient.
 ///
 /// # Errors
-/// As [`learn`].
+/// As [`fit`].
 pub fn gradient<C: Chain>(
     chain: &C,
     data: &[C::State],
@@ -258,7 +252,7 @@ pub fn gradient<C: Chain>(
     Ok(target.iter().zip(now).map(|(t, n)| t - n).collect())
 }
 
-/// Learns the weights from examples, starting at zero.
+/// Fits the weights to examples, starting at zero.
 ///
 /// Chains run in parallel, each with its own random stream, so that the result does not depend on
 /// the number of threads.
@@ -266,7 +260,7 @@ pub fn gradient<C: Chain>(
 /// # Errors
 /// [`ModelError::Empty`] without examples; [`ModelError::Parameter`] for a feature that is not
 /// finite or settings out of range.
-pub fn learn<C: Chain>(
+pub fn fit<C: Chain>(
     chain: &C,
     data: &[C::State],
     settings: &Settings,

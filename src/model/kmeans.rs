@@ -3,6 +3,8 @@
 
 use rand::{Rng, RngExt};
 
+use crate::rng::categorical;
+
 /// k-means++ seeding (Arthur and Vassilvitskii 2007) and `rounds` Lloyd rounds; the cluster of
 /// every point. Clusters may be empty when there are fewer distinct points than `k`.
 pub(crate) fn kmeans<R: Rng>(
@@ -19,14 +21,7 @@ pub(crate) fn kmeans<R: Rng>(
     let mut centres: Vec<Vec<f64>> = vec![point(rng.random_range(0..n)).to_vec()];
     let mut nearest: Vec<f64> = (0..n).map(|i| distance(point(i), &centres[0])).collect();
     while centres.len() < k {
-        let total: f64 = nearest.iter().sum();
-        let mut at = rng.random::<f64>() * total;
-        let chosen = (0..n)
-            .find(|&i| {
-                at -= nearest[i];
-                at < 0.0
-            })
-            .unwrap_or(n - 1);
+        let chosen = categorical(&nearest, rng);
         centres.push(point(chosen).to_vec());
         for (i, best) in nearest.iter_mut().enumerate() {
             *best = best.min(distance(point(i), point(chosen)));

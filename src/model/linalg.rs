@@ -1,5 +1,7 @@
 //! Small dense matrices in row-major slices: what the inner loops need and no more.
 
+use rand::{Rng, RngExt};
+
 /// Cholesky factor of the symmetric matrix whose lower triangle is in `a` (n x n), in place:
 /// afterwards the lower triangle holds L with L Lᵀ = a. False when `a` is not positive definite.
 pub(crate) fn cholesky(a: &mut [f64], n: usize) -> bool {
@@ -58,3 +60,22 @@ pub(crate) fn ln_gamma_d(d: usize, x: f64) -> f64 {
 
 /// `log 2π`.
 pub(crate) const LN_2PI: f64 = 1.837_877_066_409_345_3;
+
+/// An index drawn in proportion to `exp(logs)`; the last of positive weight where rounding runs out.
+pub(crate) fn categorical_of_logs<R: Rng>(logs: &[f64], rng: &mut R) -> usize {
+    let total = log_sum_exp(logs);
+    let mut at = rng.random::<f64>();
+    let mut last = 0;
+    for (i, l) in logs
+        .iter()
+        .enumerate()
+        .filter(|(_, l)| **l > f64::NEG_INFINITY)
+    {
+        last = i;
+        at -= (l - total).exp();
+        if at < 0.0 {
+            break;
+        }
+    }
+    last
+}

@@ -5,23 +5,40 @@
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
 //! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
+//! | [`density`] | mixtures, smoothed histograms, kernels, conditional densities | EM, counting |
+//! | [`boosting`] | probabilities from features by oblivious trees | gradient boosting |
+//! | [`low_rank`] | matrix completion | soft-impute |
 //! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
+//! | [`log_linear`] | the same for a user's features and negative sampler | contrastive divergence |
+//!
+//! One verb for one idea: *fit* estimates parameters of a given structure, *learn* structure and
+//! parameters, *select* a size by a criterion; *sample* draws, *complete* draws what is missing.
+//! `log_density` is of complete real points, `log_probability` of evidence, `log_likelihood` of the
+//! rows of a table with missing values integrated out. What draws takes a generator; what runs with
+//! restarts and streams of its own takes a seed ([`crate::rng`]).
 //!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
 //! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
 //! in log space, natural logarithms. Hidden variables and missing values are summed or integrated
 //! out, never imputed.
 
+pub mod boosting;
 pub(crate) mod chunks;
 pub mod conjugate;
+pub mod density;
 pub mod em;
 mod error;
 pub mod factor_graph;
+pub(crate) mod gaussian;
 pub mod gmm;
+pub(crate) mod graph;
 pub mod hierarchy;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
+pub mod log_linear;
+pub mod low_rank;
 pub mod network;
+pub(crate) mod standardize;
 mod table;
 
 pub use error::ModelError;

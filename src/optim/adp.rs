@@ -13,7 +13,9 @@
 //! of the value function, taking the action that minimizes `C + V`. After the walk the
 //! approximation learns from what was seen. `epsilon` decays exponentially (Sec. 4.2).
 //!
-//! Three traits say what the problem is: [`Process`], [`Heuristic`] and [`Approximation`].
+//! Three traits say what the problem is: [`Process`], [`Heuristic`] and [`Approximation`]. The process
+//! is theirs to change, so that what all three share (for example a table of states discovered so
+//! far) can live in it.
 //!
 //! # Examples
 //! ```
@@ -32,16 +34,16 @@
 //! }
 //! struct Coin;
 //! impl Heuristic<Stairs> for Coin {
-//!     fn sample<R: Rng>(&mut self, _: &Stairs, _: &usize, rng: &mut R) -> usize {
+//!     fn sample<R: Rng>(&mut self, _: &mut Stairs, _: &usize, rng: &mut R) -> usize {
 //!         if rng.random::<bool>() { 1 } else { 3 }
 //!     }
 //! }
 //! struct Table([f64; 13]);
 //! impl Approximation<Stairs> for Table {
-//!     fn best(&mut self, p: &Stairs, s: &usize) -> Option<usize> {
+//!     fn best(&mut self, p: &mut Stairs, s: &usize) -> Option<usize> {
 //!         [1, 3].into_iter().min_by(|a, b| (p.cost(s, a) + self.0[s + a]).total_cmp(&(p.cost(s, b) + self.0[s + b])))
 //!     }
-//!     fn learn(&mut self, _: &Stairs, walk: &[usize], costs: &[f64]) {
+//!     fn learn(&mut self, _: &mut Stairs, walk: &[usize], costs: &[f64]) {
 //!         let (mut state, mut rest): (usize, f64) = (0, costs.iter().sum());
 //!         for (a, c) in walk.iter().zip(costs) {
 //!             self.0[state] = self.0[state].min(rest);
@@ -51,18 +53,15 @@
 //!     }
 //! }
 //! let table = Table(std::array::from_fn(|s| if s >= 10 { 0.0 } else { 100.0 }));
-//! let mut adp = Adp::new(Coin, table, Epsilon::default(), 500, 7);
-//! let best = adp.run(Stairs).unwrap();
-//! assert_eq!(best.cost, 6.0); // 3 + 3 + 3 + 1 and its orders: 2 + 1 + 2 + 1
+//! let adp = Adp::new(Coin, table, Epsilon::default(), 500, 7);
+//! let run = adp.run(&mut Stairs, |_| {}).unwrap();
+//! assert_eq!(run.cost, 6.0); // 3 + 3 + 3 + 1 and its orders: 2 + 1 + 2 + 1
 //! ```
 
-use argmin::core::observers::ObserverMode;
-use argmin::core::{
-    Error as ArgminError, Executor, IterState, KV, Problem, Solver, State, TerminationReason,
-};
+use argmin::core::{Error as ArgminError, KV, Problem, Solver, State, TerminationReason};
 use rand::{Rng, RngExt};
 
-use super::run::{Step, Steps};
+use super::run::{Run, Search, Step, execute};
 use crate::rng::{Stream, stream};
 
 /// A finite decision process with additive costs.
@@ -89,17 +88,28 @@ pub trait Process {
 /// Where exploration draws its actions from.
 pub trait Heuristic<P: Process> {
     /// An action that is possible in `state`, usually with probability proportional to `exp(-H)`.
-    fn sample<R: Rng>(&mut self, process: &P, state: &P::State, rng: &mut R) -> P::Action;
+    fn sample<R: Rng>(&mut self, process: &mut P, state: &P::State, rng: &mut R) -> P::Action;
     /// Called before each walk, for choices that hold for a whole walk.
-    fn start_walk<R: Rng>(&mut self, _process: &P, _rng: &mut R) {}
+    fn start_walk<R: Rng>(&mut self, _process: &mut P, _rng: &mut R) {}
 }
 
 /// What was learnt about the value function.
 pub trait Approximation<P: Process> {
     /// The action that minimizes `C + V`, or `None` when nothing is known of `state` yet.
-    fn best(&mut self, process: &P, state: &P::State) -> Option<P::Action>;
+    fn best(&mut self, process: &mut P, state: &P::State) -> Option<P::Action>;
     /// Learns from a finished walk and the cost of each of its actions.
-    fn learn(&mut self, process: &P, walk: &[P::Action], costs: &[f64]);
+    fn learn(&mut self, process: &mut P, walk: &[P::Action], costs: &[f64]);
+}
+
+/// A borrowed approximation, to keep what it has learnt.
+impl<P: Process, V: Approximation<P>> Approximation<P> for &mut V {
+    fn best(&mut self, process: &mut P, state: &P::State) -> Option<P::Action> {
+        (**self).best(process, state)
+    }
+
+    fn learn(&mut self, process: &mut P, walk: &[P::Action], costs: &[f64]) {
+        (**self).learn(process, walk, costs);
+    }
 }
 
 /// Probability of exploring at iteration `n` of `N`: `start (end / start)^(n / (N - 1))`.
@@ -134,15 +144,6 @@ impl Epsilon {
     }
 }
 
-/// The best walk found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Walk<A> {
-    /// Its actions, in order.
-    pub actions: Vec<A>,
-    /// The sum of their costs.
-    pub cost: f64,
-}
-
 /// The solver.
 #[derive(Debug)]
 pub struct Adp<H, V> {
@@ -159,7 +160,7 @@ pub enum AdpError {
     /// Not a single iteration was asked for.
     #[error("approximate dynamic programming needs at least one iteration")]
     NoIterations,
-    /// The observer asked to stop before the first walk was complete, or argmin failed.
+    /// The cost of no walk was a number.
     #[error("approximate dynamic programming stopped: {0}")]
     Stopped(String),
 }
@@ -184,29 +185,16 @@ impl<H, V> Adp<H, V> {
 }
 
 impl<H, V> Adp<H, V> {
-    /// Runs all iterations by argmin's executor and returns the best walk.
+    /// Runs all iterations, telling `observer` of each; returns the actions of the cheapest walk.
+    /// Lend the approximation (`&mut`) to [`Adp::new`] to keep what it has learnt.
     ///
     /// # Errors
-    /// [`AdpError`] when there is no iteration to run or argmin stops before the first walk.
-    pub fn run<P>(self, process: P) -> Result<Walk<P::Action>, AdpError>
-    where
-        P: Process,
-        H: Heuristic<P>,
-        V: Approximation<P>,
-    {
-        self.run_observed(process, |_| {}).map(|(walk, _, _)| walk)
-    }
-
-    /// As [`Adp::run`], telling `observer` of every iteration; also returns the process and what
-    /// was learnt.
-    ///
-    /// # Errors
-    /// As [`Adp::run`].
-    pub fn run_observed<P>(
+    /// [`AdpError`] when there is no iteration to run or no walk has a cost that is a number.
+    pub fn run<P>(
         self,
-        process: P,
+        process: &mut P,
         observer: impl FnMut(Step) + 'static,
-    ) -> Result<(Walk<P::Action>, P, V), AdpError>
+    ) -> Result<Run<Vec<P::Action>>, AdpError>
     where
         P: Process,
         H: Heuristic<P>,
@@ -216,32 +204,14 @@ impl<H, V> Adp<H, V> {
             return Err(AdpError::NoIterations);
         }
         let iterations = self.iterations;
-        let result = Executor::new(process, self)
-            .configure(|state| state.max_iters(iterations))
-            .ctrlc(false)
-            .add_observer(Steps(observer), ObserverMode::Always)
-            .run()
+        let limits = |state: Search<Vec<P::Action>>| state.max_iters(iterations);
+        let (run, _) = execute(process, self, |e| e.configure(limits), observer)
             .map_err(|error| AdpError::Stopped(error.to_string()))?;
-        let walk = result
-            .state
-            .best_param
-            .ok_or_else(|| AdpError::Stopped("no walk was completed".into()))?;
-        let process = result
-            .problem
-            .problem
-            .ok_or_else(|| AdpError::Stopped("the process was lost".into()))?;
-        Ok((
-            Walk {
-                actions: walk,
-                cost: result.state.best_cost,
-            },
-            process,
-            result.solver.approximation,
-        ))
+        Ok(run)
     }
 
     /// One iteration of Sec. 4.2: from the initial to a final state.
-    fn walk<P>(&mut self, process: &P, epsilon: f64) -> (Vec<P::Action>, Vec<f64>)
+    fn walk<P>(&mut self, process: &mut P, epsilon: f64) -> (Vec<P::Action>, Vec<f64>)
     where
         P: Process,
         H: Heuristic<P>,
@@ -267,10 +237,7 @@ impl<H, V> Adp<H, V> {
     }
 }
 
-/// argmin's state for a walk: parameter and cost only.
-type WalkState<A> = IterState<Vec<A>, (), (), (), (), f64>;
-
-impl<P, H, V> Solver<P, WalkState<P::Action>> for Adp<H, V>
+impl<P, H, V> Solver<&mut P, Search<Vec<P::Action>>> for Adp<H, V>
 where
     P: Process,
     H: Heuristic<P>,
@@ -282,12 +249,12 @@ where
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<P>,
-        state: WalkState<P::Action>,
-    ) -> Result<(WalkState<P::Action>, Option<KV>), ArgminError> {
+        problem: &mut Problem<&mut P>,
+        state: Search<Vec<P::Action>>,
+    ) -> Result<(Search<Vec<P::Action>>, Option<KV>), ArgminError> {
         let process = problem
             .problem
-            .as_ref()
+            .as_deref_mut()
             .ok_or_else(|| ArgminError::msg("no process"))?;
         let epsilon = self.epsilon.at(state.get_iter(), self.iterations);
         let (walk, costs) = self.walk(process, epsilon);

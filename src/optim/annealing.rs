@@ -7,11 +7,10 @@
 //! A [`Landscape`] tries a move in place and then either keeps it or takes it back, so that a move
 //! costs what it changes and not what there is.
 
-use argmin::core::observers::ObserverMode;
-use argmin::core::{Error as ArgminError, Executor, IterState, KV, Problem, Solver, State};
+use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
-use super::run::{Step, Steps};
+use super::run::{Run, Search, Step, execute};
 use crate::rng::{Stream, stream};
 
 /// A solution that can be changed a little and changed back.
@@ -105,52 +104,40 @@ impl Annealing {
         Self { goal, ..self }
     }
 
-    /// Anneals and returns the best solution, its cost, and the landscape as it was left.
+    /// Anneals, telling `observer` of every round; the landscape is left where the last move led.
     ///
     /// # Errors
     /// [`AnnealingError::Stopped`] when argmin fails.
     pub fn run<L: Landscape>(
         self,
-        landscape: L,
+        landscape: &mut L,
         observer: impl FnMut(Step) + 'static,
-    ) -> Result<(L::Solution, f64, L), AnnealingError> {
-        let (iterations, start, cost) = (self.iterations, landscape.solution(), landscape.cost());
-        let goal = self.goal;
-        let result = Executor::new(landscape, self)
-            .configure(|state| {
-                let state = state.param(start.clone()).cost(cost);
-                state.max_iters(iterations).target_cost(goal)
-            })
-            .ctrlc(false)
-            .add_observer(Steps(observer), ObserverMode::Always)
-            .run()
+    ) -> Result<Run<L::Solution>, AnnealingError> {
+        let (iterations, goal) = (self.iterations, self.goal);
+        let (start, cost) = (landscape.solution(), landscape.cost());
+        let begin = |state: Search<L::Solution>| {
+            let state = state.param(start).cost(cost);
+            state.max_iters(iterations).target_cost(goal)
+        };
+        let (run, _) = execute(landscape, self, |e| e.configure(begin), observer)
             .map_err(|error| AnnealingError::Stopped(error.to_string()))?;
-        let landscape = result
-            .problem
-            .problem
-            .ok_or_else(|| AnnealingError::Stopped("no landscape".into()))?;
-        let best_cost = result.state.best_cost.min(cost);
-        Ok((
-            result.state.best_param.unwrap_or(start),
-            best_cost,
-            landscape,
-        ))
+        Ok(run)
     }
 }
 
-impl<L: Landscape> Solver<L, IterState<L::Solution, (), (), (), (), f64>> for Annealing {
+impl<L: Landscape> Solver<&mut L, Search<L::Solution>> for Annealing {
     fn name(&self) -> &str {
         "simulated annealing"
     }
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<L>,
-        mut state: IterState<L::Solution, (), (), (), (), f64>,
-    ) -> Result<(IterState<L::Solution, (), (), (), (), f64>, Option<KV>), ArgminError> {
+        problem: &mut Problem<&mut L>,
+        mut state: Search<L::Solution>,
+    ) -> Result<(Search<L::Solution>, Option<KV>), ArgminError> {
         let landscape = problem
             .problem
-            .as_mut()
+            .as_deref_mut()
             .ok_or_else(|| ArgminError::msg("no landscape"))?;
         let temperature = self.cooling.at(state.get_iter(), self.iterations);
         let mut round_best = f64::INFINITY;
@@ -186,10 +173,8 @@ impl<L: Landscape> Solver<L, IterState<L::Solution, (), (), (), (), f64>> for An
 
 #[cfg(test)]
 mod tests {
-    use std::cell::Cell;
-    use std::rc::Rc;
-
     use super::*;
+    use crate::optim::Outcome;
 
     /// Steps along a line with a shallow valley at 5, a barrier, and the optimum at 15.
     #[derive(Clone)]
@@ -221,32 +206,34 @@ mod tests {
 
     const VALLEY: Valleys = Valleys { at: 5, before: 5 };
 
-    /// The best solution from the shallow valley, and the rounds made.
-    fn run(start: f64, goal: f64, seed: u64) -> (i32, f64, u64) {
-        let rounds = Rc::new(Cell::new(0));
-        let seen = Rc::clone(&rounds);
+    /// A run from the shallow valley.
+    fn run(start: f64, goal: f64, seed: u64) -> Run<i32> {
         let cooling = Cooling { start, end: 0.01 };
         let annealing = Annealing::new(cooling, 200, 50, seed).unwrap().until(goal);
-        let found = annealing.run(VALLEY, move |_| seen.set(seen.get() + 1));
-        let (best, cost, _) = found.unwrap();
-        (best, cost, rounds.get())
+        annealing.run(&mut VALLEY.clone(), |_| {}).unwrap()
     }
 
     #[test]
     fn heat_crosses_a_barrier_that_cold_does_not() {
         for seed in 0..5 {
-            assert_eq!(run(5.0, f64::NEG_INFINITY, seed), (15, 0.0, 200));
-            assert_eq!(run(0.01, f64::NEG_INFINITY, seed), (5, 1.0, 200));
+            for (start, expected) in [(5.0, (15, 0.0)), (0.01, (5, 1.0))] {
+                let found = run(start, f64::NEG_INFINITY, seed);
+                assert_eq!((found.best, found.cost), expected);
+                assert_eq!(found.outcome, Outcome::MaxIterations);
+                assert_eq!(found.trace.len(), 200);
+            }
         }
     }
 
     #[test]
     fn a_goal_ends_the_run() {
-        let (best, cost, rounds) = run(5.0, 0.5, 0);
-        assert_eq!((best, cost), (15, 0.0));
-        assert!(rounds < 200, "{rounds}");
+        let found = run(5.0, 0.5, 0);
+        assert_eq!((found.best, found.cost), (15, 0.0));
+        assert_eq!(found.outcome, Outcome::TargetReached);
+        assert!(found.trace.len() < 200, "{}", found.trace.len());
+        assert!(found.trace.windows(2).all(|w| w[1].best <= w[0].best));
         // What it starts from may be good enough.
-        assert!(run(5.0, 1.0, 0).2 <= 1);
+        assert!(run(5.0, 1.0, 0).trace.len() <= 1);
     }
 
     #[test]

@@ -22,14 +22,10 @@
 
 use std::time::Duration;
 
-use argmin::core::observers::ObserverMode;
-use argmin::core::{
-    Error as ArgminError, Executor, IterState, KV, Problem, Solver, State, TerminationReason,
-    TerminationStatus,
-};
+use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
-use super::run::{Step, Steps};
+use super::run::{Run, Search, Step, execute};
 use crate::rng::{Stream, stream};
 
 /// What is bred: how genomes begin, cross, change, and what they cost.
@@ -87,31 +83,8 @@ impl Default for Settings {
     }
 }
 
-/// Why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Outcome {
-    /// All generations were bred.
-    MaxIterations,
-    /// A genome as good as asked for was found.
-    TargetReached,
-    /// Time was up.
-    TimeLimit,
-}
-
-/// Result of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Evolved<G> {
-    /// The genome of lowest cost.
-    pub best: G,
-    /// Its cost.
-    pub cost: f64,
-    /// The last population with its costs, from the best to the worst.
-    pub population: Vec<(G, f64)>,
-    /// Generations bred.
-    pub generations: u64,
-    /// Why the run ended.
-    pub outcome: Outcome,
-}
+/// Genomes with their costs, from the best to the worst.
+pub type Population<G> = Vec<(G, f64)>;
 
 /// What goes wrong in a run.
 #[derive(Debug, thiserror::Error)]
@@ -178,13 +151,10 @@ impl Settings {
 pub struct Genetic<G> {
     settings: Settings,
     /// Genomes and their costs, from the best to the worst.
-    population: Vec<(G, f64)>,
+    population: Population<G>,
     start: Vec<G>,
     rng: Stream,
 }
-
-/// argmin's state for a genome: parameter and cost only.
-type GenomeState<G> = IterState<G, (), (), (), (), f64>;
 
 impl<G: Clone> Genetic<G> {
     /// A solver that begins with the genomes of `start` (the first `population` of them) and as many
@@ -202,46 +172,31 @@ impl<G: Clone> Genetic<G> {
         })
     }
 
-    /// Breeds all generations by argmin's executor; returns the result and the problem.
+    /// Breeds all generations, telling `observer` of each; returns the last population besides.
     ///
     /// # Errors
     /// [`GeneticError::Stopped`] when argmin fails.
     pub fn run<B: Breed<Genome = G>>(
         self,
-        breed: B,
+        breed: &mut B,
         observer: impl FnMut(Step) + 'static,
-    ) -> Result<(Evolved<G>, B), GeneticError> {
+    ) -> Result<(Run<G>, Population<G>), GeneticError> {
         let settings = self.settings;
-        let executor = Executor::new(breed, self)
-            .configure(|state| {
-                state
-                    .max_iters(settings.generations)
-                    .target_cost(settings.goal)
-            })
-            .ctrlc(false)
-            .add_observer(Steps(observer), ObserverMode::Always);
-        let executor = match settings.time_limit {
-            Some(limit) => executor.timeout(limit),
-            None => executor,
+        let limits = |state: Search<G>| {
+            let state = state.max_iters(settings.generations);
+            state.target_cost(settings.goal)
         };
-        let result = executor.run().map_err(|e| stopped(&e.to_string()))?;
-        let outcome = match &result.state.termination_status {
-            TerminationStatus::Terminated(TerminationReason::TargetCostReached) => {
-                Outcome::TargetReached
-            }
-            TerminationStatus::Terminated(TerminationReason::Timeout) => Outcome::TimeLimit,
-            _ => Outcome::MaxIterations,
-        };
-        let breed = (result.problem.problem).ok_or_else(|| stopped("no problem"))?;
-        let best = (result.state.best_param).ok_or_else(|| stopped("no genome"))?;
-        let evolved = Evolved {
-            best,
-            cost: result.state.best_cost,
-            population: result.solver.population,
-            generations: result.state.iter,
-            outcome,
-        };
-        Ok((evolved, breed))
+        let (run, solver) = execute(
+            breed,
+            self,
+            |executor| match settings.time_limit {
+                Some(limit) => executor.configure(limits).timeout(limit),
+                None => executor.configure(limits),
+            },
+            observer,
+        )
+        .map_err(|error| GeneticError::Stopped(error.to_string()))?;
+        Ok((run, solver.population))
     }
 
     /// A parent: the best of a few genomes drawn at random; ranks are positions.
@@ -284,7 +239,7 @@ impl<G: Clone> Genetic<G> {
     }
 
     /// The state with the best of this generation, told to argmin only when it is the best so far.
-    fn tell(&self, state: GenomeState<G>) -> GenomeState<G> {
+    fn tell(&self, state: Search<G>) -> Search<G> {
         let (best, cost) = &self.population[0];
         let better = state.get_best_param().is_none() || *cost < state.get_best_cost();
         let state = if better {
@@ -296,21 +251,17 @@ impl<G: Clone> Genetic<G> {
     }
 }
 
-fn stopped(reason: &str) -> GeneticError {
-    GeneticError::Stopped(reason.into())
-}
-
-impl<B: Breed> Solver<B, GenomeState<B::Genome>> for Genetic<B::Genome> {
+impl<B: Breed> Solver<&mut B, Search<B::Genome>> for Genetic<B::Genome> {
     fn name(&self) -> &str {
         "genetic algorithm"
     }
 
     fn init(
         &mut self,
-        problem: &mut Problem<B>,
-        state: GenomeState<B::Genome>,
-    ) -> Result<(GenomeState<B::Genome>, Option<KV>), ArgminError> {
-        let breed = problem.problem.as_mut();
+        problem: &mut Problem<&mut B>,
+        state: Search<B::Genome>,
+    ) -> Result<(Search<B::Genome>, Option<KV>), ArgminError> {
+        let breed = problem.problem.as_deref_mut();
         let breed = breed.ok_or_else(|| ArgminError::msg("no problem"))?;
         let mut first = std::mem::take(&mut self.start);
         first.truncate(self.settings.population);
@@ -325,10 +276,10 @@ impl<B: Breed> Solver<B, GenomeState<B::Genome>> for Genetic<B::Genome> {
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<B>,
-        state: GenomeState<B::Genome>,
-    ) -> Result<(GenomeState<B::Genome>, Option<KV>), ArgminError> {
-        let breed = problem.problem.as_mut();
+        problem: &mut Problem<&mut B>,
+        state: Search<B::Genome>,
+    ) -> Result<(Search<B::Genome>, Option<KV>), ArgminError> {
+        let breed = problem.problem.as_deref_mut();
         let breed = breed.ok_or_else(|| ArgminError::msg("no problem"))?;
         let missing = self.settings.population - self.settings.elite;
         let children: Vec<B::Genome> = (0..missing).map(|_| self.child(breed)).collect();

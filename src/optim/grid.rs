@@ -3,23 +3,10 @@
 //! One iteration evaluates one point, the last variable fastest, so that limits, observers and
 //! statuses are those of every other optimizer here.
 
-use argmin::core::{
-    CostFunction, Error as ArgminError, Executor, IterState, KV, Problem, Solver, State,
-    TerminationReason, TerminationStatus,
-};
+use argmin::core::{CostFunction, Error as ArgminError, KV, Problem, Solver};
+use argmin::core::{TerminationReason, TerminationStatus};
 
-type GridState = IterState<Vec<f64>, (), (), (), (), f64>;
-
-/// What a search found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GridOutcome {
-    /// The first point of lowest cost.
-    pub best: Vec<f64>,
-    /// Its cost.
-    pub cost: f64,
-    /// Every point with its cost, in the order of evaluation.
-    pub evaluated: Vec<(Vec<f64>, f64)>,
-}
+use super::run::{Run, Search, execute};
 
 /// Why a search has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -30,15 +17,34 @@ pub enum GridError {
         /// Index of the variable.
         variable: usize,
     },
-    /// The cost could not be evaluated.
+    /// The cost could not be evaluated, or is a number nowhere.
     #[error("{0}")]
     Cost(String),
 }
 
-/// The grid as an argmin solver.
-struct Grid {
-    axes: Vec<Vec<f64>>,
-    evaluated: Vec<(Vec<f64>, f64)>,
+/// Every point of the grid spanned by `axes`, in the order of evaluation: the last variable fastest.
+pub fn points(axes: &[Vec<f64>]) -> impl Iterator<Item = Vec<f64>> {
+    let point = |mut number: usize| {
+        let value = |values: &Vec<f64>| {
+            let value = values[number % values.len()];
+            number /= values.len();
+            value
+        };
+        let mut point: Vec<f64> = axes.iter().rev().map(value).collect();
+        point.reverse();
+        point
+    };
+    (0..size(axes)).map(point)
+}
+
+fn size(axes: &[Vec<f64>]) -> usize {
+    axes.iter().map(Vec::len).product()
+}
+
+/// The points still to come.
+struct Grid<I> {
+    points: I,
+    left: usize,
 }
 
 struct Objective<F>(F);
@@ -52,54 +58,37 @@ impl<E: std::fmt::Display, F: Fn(&[f64]) -> Result<f64, E>> CostFunction for Obj
     }
 }
 
-impl Grid {
-    fn size(&self) -> usize {
-        self.axes.iter().map(Vec::len).product()
-    }
-
-    /// The point of the given number, the last variable fastest.
-    fn point(&self, mut number: usize) -> Vec<f64> {
-        let mut point: Vec<f64> = self
-            .axes
-            .iter()
-            .rev()
-            .map(|values| {
-                let value = values[number % values.len()];
-                number /= values.len();
-                value
-            })
-            .collect();
-        point.reverse();
-        point
-    }
-}
-
-impl<O: CostFunction<Param = Vec<f64>, Output = f64>> Solver<O, GridState> for Grid {
+impl<O, I> Solver<O, Search<Vec<f64>>> for Grid<I>
+where
+    O: CostFunction<Param = Vec<f64>, Output = f64>,
+    I: Iterator<Item = Vec<f64>>,
+{
     fn name(&self) -> &str {
-        "Grid search"
+        "grid search"
     }
 
     fn next_iter(
         &mut self,
         problem: &mut Problem<O>,
-        state: GridState,
-    ) -> Result<(GridState, Option<KV>), ArgminError> {
-        let point = self.point(self.evaluated.len());
+        state: Search<Vec<f64>>,
+    ) -> Result<(Search<Vec<f64>>, Option<KV>), ArgminError> {
+        let next = self.points.next();
+        let point = next.ok_or_else(|| ArgminError::msg("the grid has no further point"))?;
         let cost = problem.cost(&point)?;
-        self.evaluated.push((point.clone(), cost));
+        self.left -= 1;
         Ok((state.param(point).cost(cost), None))
     }
 
-    fn terminate(&mut self, _state: &GridState) -> TerminationStatus {
-        if self.evaluated.len() == self.size() {
-            TerminationStatus::Terminated(TerminationReason::SolverConverged)
-        } else {
-            TerminationStatus::NotTerminated
+    fn terminate(&mut self, _: &Search<Vec<f64>>) -> TerminationStatus {
+        match self.left {
+            0 => TerminationStatus::Terminated(TerminationReason::SolverConverged),
+            _ => TerminationStatus::NotTerminated,
         }
     }
 }
 
-/// Minimizes `cost` over the grid spanned by `axes`, one list of values per variable.
+/// Minimizes `cost` over the grid spanned by `axes`, one list of values per variable. The trace has
+/// the cost of each of its [`points`].
 ///
 /// Complexity: one evaluation per point, the product of the lengths.
 ///
@@ -113,53 +102,40 @@ impl<O: CostFunction<Param = Vec<f64>, Output = f64>> Solver<O, GridState> for G
 ///     Ok::<_, std::convert::Infallible>((p[0] - 1.0).abs() + p[1])
 /// })?;
 /// assert_eq!((found.best, found.cost), (vec![1.0, 3.0], 3.0));
-/// assert_eq!(found.evaluated.len(), 6);
+/// assert_eq!(found.trace.len(), 6);
 /// # Ok::<(), edifice::optim::grid::GridError>(())
 /// ```
 pub fn minimize<E: std::fmt::Display>(
     axes: &[Vec<f64>],
     cost: impl Fn(&[f64]) -> Result<f64, E>,
-) -> Result<GridOutcome, GridError> {
+) -> Result<Run<Vec<f64>>, GridError> {
     let empty = axes.iter().position(Vec::is_empty);
     if let Some(variable) = empty.or(axes.is_empty().then_some(0)) {
         return Err(GridError::Empty { variable });
     }
     let grid = Grid {
-        axes: axes.to_vec(),
-        evaluated: Vec::new(),
+        points: points(axes),
+        left: size(axes),
     };
-    let points = grid.size() as u64;
-    let run = Executor::new(Objective(cost), grid)
-        .configure(|state| state.max_iters(points))
-        .run()
+    let (run, _) = execute(Objective(cost), grid, |e| e, |_| {})
         .map_err(|error| GridError::Cost(error.to_string()))?;
-    let cost = run.state.get_best_cost();
-    Ok(GridOutcome {
-        best: run.state.get_best_param().cloned().unwrap_or_default(),
-        cost,
-        evaluated: run.solver.evaluated,
-    })
+    Ok(run)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optim::Outcome;
 
     #[test]
     fn finds_the_first_of_equal_points_and_passes_errors_on() {
         let axes = [vec![1.0, 2.0], vec![5.0, 6.0]];
         let flat = minimize(&axes, |_| Ok::<_, String>(1.0)).expect("a grid");
         assert_eq!(flat.best, vec![1.0, 5.0]);
-        let all: Vec<Vec<f64>> = flat.evaluated.into_iter().map(|point| point.0).collect();
-        assert_eq!(
-            all,
-            [
-                vec![1.0, 5.0],
-                vec![1.0, 6.0],
-                vec![2.0, 5.0],
-                vec![2.0, 6.0]
-            ]
-        );
+        assert_eq!(flat.outcome, Outcome::Converged);
+        assert_eq!(flat.trace.len(), 4);
+        let all = [[1.0, 5.0], [1.0, 6.0], [2.0, 5.0], [2.0, 6.0]];
+        assert!(points(&axes).eq(all.map(Vec::from)));
         let error = minimize(&axes, |_| Err::<f64, _>("no cost"));
         assert_eq!(error, Err(GridError::Cost("no cost".into())));
         let error = minimize(&[vec![1.0], vec![]], |_| Ok::<_, String>(1.0));

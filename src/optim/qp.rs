@@ -12,35 +12,14 @@
 
 use std::time::Duration;
 
-use argmin::core::{
-    CostFunction, Error as ArgminError, Executor, IterState, KV, Problem, Solver, State,
-    TerminationReason, TerminationStatus,
-};
+use argmin::core::{Error as ArgminError, Executor, KV, Problem, Solver, State, TerminationReason};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
 pub use super::qp_problem::{QpError, QuadraticProgram, Row};
-
-/// How a run ended. None of these is an error: the answer to a well-posed question.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum QpOutcome {
-    /// Solved to the tolerance asked for.
-    Converged,
-    /// Solved, but less exactly than asked for.
-    AlmostConverged,
-    /// No point satisfies the constraints.
-    Infeasible,
-    /// The cost has no lower bound on the feasible set.
-    Unbounded,
-    /// The iteration limit was reached.
-    MaxIterations,
-    /// The time limit was reached.
-    TimeLimit,
-    /// Numbers of too different sizes; no progress.
-    Stalled,
-}
+use super::run::{Outcome, Run, Search, Step};
 
 /// Limits of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,20 +42,8 @@ impl Default for QpOptions {
     }
 }
 
-/// Result of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct QpSolution {
-    /// How it ended.
-    pub outcome: QpOutcome,
-    /// The last point, n numbers; meaningful when the outcome is converged or almost so.
-    pub x: Vec<f64>,
-    /// 1/2 x' P x + q' x at that point.
-    pub cost: f64,
-    /// Interior-point iterations taken.
-    pub iterations: u32,
-}
-
-/// Solves a convex quadratic program.
+/// Solves a convex quadratic program. The solution means something where the outcome
+/// [is solved](Outcome::is_solved); the trace has one step, the last of the interior-point iterations.
 ///
 /// # Errors
 /// [`QpError`] when the program is not one: dimensions that do not fit, numbers that are not finite,
@@ -84,105 +51,84 @@ pub struct QpSolution {
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve};
+/// use edifice::optim::Outcome;
+/// use edifice::optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 /// // The point nearest to (3, 1) on the line x + y = 2, with x at most 1.5.
 /// let mut program = QuadraticProgram::new(2);
 /// program.pull(0, 3.0, 1.0).pull(1, 1.0, 1.0);
 /// program.equalities.push(Row::new([(0, 1.0), (1, 1.0)], 2.0));
 /// program.upper[0] = 1.5;
-/// let solution = solve(&program, QpOptions::default()).unwrap();
-/// assert_eq!(solution.outcome, QpOutcome::Converged);
-/// assert!((solution.x[0] - 1.5).abs() < 1e-6 && (solution.x[1] - 0.5).abs() < 1e-6);
+/// let run = solve(&program, QpOptions::default()).unwrap();
+/// assert_eq!(run.outcome, Outcome::Converged);
+/// assert!((run.best[0] - 1.5).abs() < 1e-6 && (run.best[1] - 0.5).abs() < 1e-6);
 /// ```
-pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<QpSolution, QpError> {
+pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<Run<Vec<f64>>, QpError> {
     program.check()?;
-    let solver = InteriorPoint::new(options);
-    let run = Executor::new(program.clone(), solver)
+    let solver = InteriorPoint {
+        options,
+        outcome: Outcome::Stalled,
+        iterations: 0,
+    };
+    let result = Executor::new(program, solver)
         .configure(|state| state.max_iters(1))
         .timer(false)
         .run()
         .map_err(|e| QpError::Solver(e.to_string()))?;
-    let solver = run.solver;
-    let mut state = run.state;
-    Ok(QpSolution {
-        outcome: solver.outcome,
-        cost: state.get_cost(),
-        iterations: solver.iterations,
-        x: state.take_param().unwrap_or_default(),
+    let mut state = result.state;
+    let cost = state.get_cost();
+    Ok(Run {
+        // argmin's best point has a cost that is a number; where there is no solution, the last may have none.
+        best: state.take_param().unwrap_or_default(),
+        cost,
+        outcome: result.solver.outcome,
+        trace: vec![Step {
+            iteration: u64::from(result.solver.iterations),
+            cost,
+            best: cost,
+        }],
     })
 }
 
 /// The interior-point method as an argmin solver: one argmin iteration is a whole run.
-pub struct InteriorPoint {
+struct InteriorPoint {
     options: QpOptions,
-    outcome: QpOutcome,
+    outcome: Outcome,
     iterations: u32,
 }
 
-impl InteriorPoint {
-    /// A solver with the given limits.
-    pub fn new(options: QpOptions) -> Self {
-        Self {
-            options,
-            outcome: QpOutcome::MaxIterations,
-            iterations: 0,
-        }
-    }
-}
-
-impl CostFunction for QuadraticProgram {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, x: &Vec<f64>) -> Result<f64, ArgminError> {
-        Ok(self.value(x))
-    }
-}
-
-type QpState = IterState<Vec<f64>, (), (), (), (), f64>;
-
-impl Solver<QuadraticProgram, QpState> for InteriorPoint {
+impl Solver<&QuadraticProgram, Search<Vec<f64>>> for InteriorPoint {
     fn name(&self) -> &str {
         "interior point (Clarabel)"
     }
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<QuadraticProgram>,
-        state: QpState,
-    ) -> Result<(QpState, Option<KV>), ArgminError> {
-        let Some(program) = problem.problem.as_ref() else {
-            return Err(QpError::Solver("no problem to solve".into()).into());
-        };
-        program.check()?;
+        problem: &mut Problem<&QuadraticProgram>,
+        state: Search<Vec<f64>>,
+    ) -> Result<(Search<Vec<f64>>, Option<KV>), ArgminError> {
+        let program = problem
+            .problem
+            .ok_or_else(|| ArgminError::msg("no program"))?;
         let (x, status, iterations) = run_clarabel(program, self.options)?;
         self.iterations = iterations;
-        self.outcome = match status {
-            SolverStatus::Solved => QpOutcome::Converged,
-            SolverStatus::AlmostSolved => QpOutcome::AlmostConverged,
-            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-                QpOutcome::Infeasible
-            }
-            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-                QpOutcome::Unbounded
-            }
-            SolverStatus::MaxIterations => QpOutcome::MaxIterations,
-            SolverStatus::MaxTime => QpOutcome::TimeLimit,
-            _ => QpOutcome::Stalled,
-        };
-        let reason = match self.outcome {
-            QpOutcome::Converged | QpOutcome::AlmostConverged => TerminationReason::SolverConverged,
-            QpOutcome::MaxIterations => TerminationReason::MaxItersReached,
-            QpOutcome::TimeLimit => TerminationReason::Timeout,
-            _ => TerminationReason::SolverExit(format!("{:?}", self.outcome)),
-        };
-        let cost = problem.cost(&x)?;
-        let state = state.param(x).cost(cost).terminate_with(reason);
-        Ok((state, Some(argmin::core::KV::new())))
+        self.outcome = outcome(status);
+        let cost = program.value(&x);
+        let done = TerminationReason::SolverConverged;
+        Ok((state.param(x).cost(cost).terminate_with(done), None))
     }
+}
 
-    fn terminate(&mut self, _state: &QpState) -> TerminationStatus {
-        TerminationStatus::NotTerminated
+fn outcome(status: SolverStatus) -> Outcome {
+    match status {
+        SolverStatus::Solved => Outcome::Converged,
+        SolverStatus::AlmostSolved => Outcome::AlmostConverged,
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            Outcome::Infeasible
+        }
+        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => Outcome::Unbounded,
+        SolverStatus::MaxIterations => Outcome::MaxIterations,
+        SolverStatus::MaxTime => Outcome::TimeLimit,
+        _ => Outcome::Stalled,
     }
 }
 
@@ -285,10 +231,10 @@ mod tests {
         let mut program = QuadraticProgram::new(1);
         program.linear[0] = 1.0;
         let run = |p: &QuadraticProgram| solve(p, QpOptions::default()).unwrap().outcome;
-        assert_eq!(run(&program), QpOutcome::Unbounded);
+        assert_eq!(run(&program), Outcome::Unbounded);
         program.inequalities.push(Row::new([(0, 1.0)], -1.0));
         program.lower[0] = 0.0;
-        assert_eq!(run(&program), QpOutcome::Infeasible);
+        assert_eq!(run(&program), Outcome::Infeasible);
         let mut far = QuadraticProgram::new(2);
         far.pull(0, 1.0, 3.0).pull(1, 2.0, 1.0);
         far.inequalities.push(Row::new([(0, 1.0), (1, 1.0)], 1.0));
@@ -298,7 +244,7 @@ mod tests {
         };
         assert_eq!(
             solve(&far, options).unwrap().outcome,
-            QpOutcome::MaxIterations
+            Outcome::MaxIterations
         );
     }
 
@@ -327,8 +273,8 @@ mod tests {
                 }
             }
             let solution = solve(&program, QpOptions::default()).unwrap();
-            prop_assert_eq!(solution.outcome, QpOutcome::Converged);
-            for (found, expected) in solution.x.iter().zip(x) {
+            prop_assert_eq!(solution.outcome, Outcome::Converged);
+            for (found, expected) in solution.best.iter().zip(x) {
                 prop_assert!((found - expected).abs() < 1e-4);
             }
         }

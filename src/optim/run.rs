@@ -1,7 +1,25 @@
-//! What a run tells of itself, the same for every optimizer.
+//! What every optimizer returns, and the one way in which argmin runs them.
 
-use argmin::core::observers::Observe;
-use argmin::core::{Error, KV, State};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use argmin::core::observers::{Observe, ObserverMode};
+use argmin::core::{
+    Error, Executor, IterState, KV, Solver, State, TerminationReason, TerminationStatus,
+};
+
+/// The result of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run<S> {
+    /// The solution of lowest cost, the first of several.
+    pub best: S,
+    /// Its cost.
+    pub cost: f64,
+    /// Why the run ended.
+    pub outcome: Outcome,
+    /// Every iteration, in order.
+    pub trace: Vec<Step>,
+}
 
 /// One iteration of a run.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -14,8 +32,92 @@ pub struct Step {
     pub best: f64,
 }
 
-/// Passes every iteration on to a closure.
-pub(super) struct Steps<F>(pub F);
+/// Why a run ended. None of these is an error: each is the answer to a well-posed question.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Outcome {
+    /// Solved: to the tolerance asked for, or because everything was tried.
+    Converged,
+    /// Solved, but less exactly than asked for.
+    AlmostConverged,
+    /// A solution as good as asked for was found.
+    TargetReached,
+    /// The iteration limit was reached.
+    MaxIterations,
+    /// The time limit was reached.
+    TimeLimit,
+    /// The problem asked to stop, for example because memory is used up.
+    Exhausted,
+    /// No point satisfies the constraints.
+    Infeasible,
+    /// The cost has no lower bound on the feasible set.
+    Unbounded,
+    /// No progress, for example with numbers of too different sizes.
+    Stalled,
+}
+
+impl Outcome {
+    /// Whether the solution is optimal to some tolerance.
+    pub fn is_solved(self) -> bool {
+        matches!(self, Self::Converged | Self::AlmostConverged)
+    }
+
+    /// What argmin tells of the end of a run.
+    fn of(status: &TerminationStatus) -> Self {
+        let TerminationStatus::Terminated(reason) = status else {
+            return Self::Stalled;
+        };
+        match reason {
+            TerminationReason::SolverConverged => Self::Converged,
+            TerminationReason::TargetCostReached => Self::TargetReached,
+            TerminationReason::MaxItersReached => Self::MaxIterations,
+            TerminationReason::Timeout => Self::TimeLimit,
+            // Our solvers exit by themselves for this reason only; no run listens to signals.
+            TerminationReason::SolverExit(_) | TerminationReason::Interrupt => Self::Exhausted,
+        }
+    }
+}
+
+/// argmin's state for solutions that have no gradient.
+pub(super) type Search<S> = IterState<S, (), (), (), (), f64>;
+
+/// Runs a solver on a problem (which may be borrowed) with argmin's executor, telling `observer` of
+/// every iteration; returns the solver besides. `configure` sets limits and where to start.
+///
+/// # Errors
+/// Those of the solver, and when it ends without a solution.
+pub(super) fn execute<O, M, S: Clone>(
+    problem: O,
+    solver: M,
+    configure: impl FnOnce(Executor<O, M, Search<S>>) -> Executor<O, M, Search<S>>,
+    observer: impl FnMut(Step) + 'static,
+) -> Result<(Run<S>, M), Error>
+where
+    M: Solver<O, Search<S>>,
+{
+    let trace = Rc::new(RefCell::new(Vec::new()));
+    let steps = Steps {
+        trace: Rc::clone(&trace),
+        observer,
+    };
+    let result = configure(Executor::new(problem, solver))
+        .ctrlc(false)
+        .add_observer(steps, ObserverMode::Always)
+        .run()?;
+    let state = result.state;
+    let run = Run {
+        best: (state.best_param).ok_or_else(|| Error::msg("no solution was found"))?,
+        cost: state.best_cost,
+        outcome: Outcome::of(&state.termination_status),
+        trace: trace.take(),
+    };
+    Ok((run, result.solver))
+}
+
+/// Records every iteration and passes it on.
+struct Steps<F> {
+    trace: Rc<RefCell<Vec<Step>>>,
+    observer: F,
+}
 
 impl<I, F> Observe<I> for Steps<F>
 where
@@ -23,11 +125,13 @@ where
     F: FnMut(Step),
 {
     fn observe_iter(&mut self, state: &I, _: &KV) -> Result<(), Error> {
-        (self.0)(Step {
+        let step = Step {
             iteration: state.get_iter(),
             cost: state.get_cost(),
             best: state.get_best_cost(),
-        });
+        };
+        self.trace.borrow_mut().push(step);
+        (self.observer)(step);
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::drawing::{Area, Drawing};
-use super::{Bars, Chart, Dendrogram, HeatMap, Tiles, render};
+use super::{Bars, Chart, Dendrogram, HeatMap, Ranking, Tiles, render};
 use crate::{Error, Result};
 
 /// One panel of a figure.
@@ -20,6 +20,8 @@ pub enum Panel {
     Dendrogram(Dendrogram),
     /// A layout.
     Tiles(Tiles),
+    /// A critical-difference diagram.
+    Ranking(Ranking),
 }
 
 impl Panel {
@@ -41,7 +43,7 @@ macro_rules! panel {
         }
     )*};
 }
-panel!(Chart, Bars, HeatMap, Dendrogram, Tiles);
+panel!(Chart, Bars, HeatMap, Dendrogram, Tiles, Ranking);
 
 /// Panels in a grid, filled row by row.
 #[derive(Debug, Clone)]
@@ -112,6 +114,7 @@ impl Figure {
                 Panel::HeatMap(p) => p.draw(&mut out, area),
                 Panel::Dendrogram(p) => p.draw(&mut out, area),
                 Panel::Tiles(p) => p.draw(&mut out, area),
+                Panel::Ranking(p) => p.draw(&mut out, area),
             }
         }
         out

@@ -2,7 +2,7 @@
 //!
 //! - [`Row`] and [`write_rows`]: observations, one a line.
 //! - [`Table`]: a Markdown table.
-//! - [`Figure`]: panels in a grid ([`Chart`], [`Bars`], [`HeatMap`], [`Dendrogram`], [`Tiles`]), drawn once as a list of
+//! - [`Figure`]: panels in a grid ([`Chart`], [`Bars`], [`HeatMap`], [`Dendrogram`], [`Tiles`], [`Ranking`]), drawn once as a list of
 //!   marks and rendered by plotters to SVG and to PNG at twice the resolution, with the font that the `dejavu` crate ships.
 //! - [`index`]: one page over everything.
 //!
@@ -19,6 +19,7 @@ mod frame;
 mod heat_map;
 mod html;
 mod markdown;
+mod ranking;
 mod render;
 mod rows;
 mod table;
@@ -32,6 +33,7 @@ pub use dendrogram::{Dendrogram, Merge};
 pub use figure::{Figure, MOST_SVG_BYTES, Panel, write_figure, write_report_figure};
 pub use heat_map::HeatMap;
 pub use html::{Page, Section, index};
+pub use ranking::Ranking;
 pub use rows::{Row, csv_bytes, write_rows};
 pub use table::{Align, Table};
 pub use tiles::{Outline, Tile, Tiles};

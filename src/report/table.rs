@@ -97,4 +97,49 @@ impl Table {
         lines.extend(self.rows.iter().map(|row| line(row)));
         lines.join("\n")
     }
+
+    /// The table for a LaTeX document that loads `booktabs`; the title is its caption.
+    pub fn latex(&self) -> String {
+        let letters: String = self
+            .columns
+            .iter()
+            .map(|(_, align)| if *align == Align::Right { 'r' } else { 'l' })
+            .collect();
+        let line = |cells: &mut dyn Iterator<Item = &str>| {
+            let cells: Vec<String> = cells.map(latex).collect();
+            format!("{} \\\\\n", cells.join(" & "))
+        };
+        let mut text = format!(
+            "\\begin{{table}}\n\\centering\n\\caption{{{}}}\n",
+            latex(&self.title)
+        );
+        text += &format!("\\begin{{tabular}}{{{letters}}}\n\\toprule\n");
+        text += &line(&mut self.columns.iter().map(|(name, _)| name.as_str()));
+        text += "\\midrule\n";
+        for row in &self.rows {
+            let cell = |i: usize| row.get(i).map_or("", String::as_str);
+            text += &line(&mut (0..self.columns.len()).map(cell));
+        }
+        text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n"
+    }
+}
+
+/// Text with LaTeX's special characters escaped.
+fn latex(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in text.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => escaped.extend(['\\', c]),
+            '\\' => escaped += "\\textbackslash{}",
+            '~' => escaped += "\\textasciitilde{}",
+            '^' => escaped += "\\textasciicircum{}",
+            '<' => escaped += "$<$",
+            '>' => escaped += "$>$",
+            '±' => escaped += "$\\pm$",
+            '×' => escaped += "$\\times$",
+            '−' => escaped += "$-$",
+            other => escaped.push(other),
+        }
+    }
+    escaped
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{building_csv, building_json, facade_json, read_bytes};
+use edifice::io::{building_csv, building_json, json, read_bytes};
 use edifice::methods::building_exteriors::attributes::attributes;
 use edifice::methods::building_exteriors::data::{Dataset, dataset};
 use edifice::methods::building_exteriors::model_file::ModelFile;
@@ -31,8 +31,8 @@ impl Input {
             return Err(Error::option("--schema", "a CSV table needs a schema"));
         };
         let bytes = read_bytes(schema)?;
-        facade_json::check_header(&bytes, schema, FORMAT, VERSION)?;
-        let schema: Schema = facade_json::parse_json(&bytes, schema)?;
+        json::check_header(&bytes, schema, FORMAT, VERSION)?;
+        let schema: Schema = json::parse_json(&bytes, schema)?;
         let text = building_csv::read(&self.input)?;
         let read = schema.read(&text.header, &text.rows);
         read.map_err(|e| Error::content(&self.input, e))

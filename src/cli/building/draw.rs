@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::methods::building_exteriors::given::evidence;
 use edifice::methods::building_exteriors::model_file::ModelFile;
 use edifice::model::Table;
 use edifice::rng::stream;
 use edifice::{Error, Result};
 
 use super::data::{self, Input, csv_lines};
+use super::given::evidence;
 use crate::cli::print;
 
 /// Samples among which the most probable are sought.

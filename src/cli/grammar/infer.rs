@@ -4,12 +4,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
+use edifice::experiments::peers;
 use edifice::grammar::{Costs, Evaluation, evaluate, listing};
 use edifice::io;
 use edifice::methods::facade_grammar::{
     Method, Operations, Outcome, Protect, Settings, infer_observed,
 };
-use edifice::methods::procedural_logic;
 use edifice::shape::Facade;
 use edifice::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -158,8 +158,7 @@ fn procedural_logic_grammar(facades: &[Facade]) -> Result<Outcome> {
             "takes one facade at a time",
         ));
     };
-    let parameters = procedural_logic::Parameters::COMPRESSION;
-    let grammar = procedural_logic::baseline_grammar(facade, &parameters).map_err(Error::method)?;
+    let grammar = peers::grammar("procedural_logic", facade)?;
     Ok(Outcome {
         grammar,
         iterations: 1,

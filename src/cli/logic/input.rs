@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{self, facade_json};
+use edifice::io::{self, json};
 use edifice::methods::procedural_logic::{
     MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters,
 };
@@ -148,8 +148,8 @@ impl Energy {
 /// Reads a model file.
 pub fn read_model(path: &Path) -> Result<Model> {
     let bytes = io::read_bytes(path)?;
-    facade_json::check_header(&bytes, path, MODEL_FORMAT, MODEL_VERSION)?;
-    let file: ModelFile = facade_json::parse_json(&bytes, path)?;
+    json::check_header(&bytes, path, MODEL_FORMAT, MODEL_VERSION)?;
+    let file: ModelFile = json::parse_json(&bytes, path)?;
     Model::try_from(file).map_err(|error| Error::content(path, error))
 }
 

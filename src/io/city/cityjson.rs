@@ -11,7 +11,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::CityError;
-use crate::io::facade_json::parse_json;
+use crate::io::json::parse_json;
 use crate::io::read_bytes;
 use crate::shape::solid::{City, CityBuilding, TriangleMesh, polygon_triangles};
 use crate::{Error, Result};

@@ -22,7 +22,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
-use crate::io::facade_json::{check_header, parse_json};
+use crate::io::json::{check_header, parse_json};
 use crate::io::{read_bytes, write_atomic};
 use crate::shape::solid::TriangleMesh;
 use crate::{Error, Result};

@@ -7,7 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::names::{SizeKey, constants, identifiers};
 use super::reserved;
 use crate::grammar::{Grammar, Operation, Rule, Size, Successor, size_independent};
-use crate::io::facade_json::quoted;
+use crate::io::json::quoted;
 use crate::io::palette::Palette;
 use crate::shape::Axis;
 

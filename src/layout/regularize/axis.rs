@@ -7,7 +7,7 @@ use super::equal::Cluster;
 use super::lattice::Lattice;
 use super::meeting::Groups;
 use super::strips::Strips;
-use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as solve_qp};
+use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 
 /// How much dearer it is to change the size of an element than one of the background.
 const ELEMENT: f64 = 8.0;
@@ -146,14 +146,11 @@ impl Axis<'_> {
             }
         }
         let found = solve_qp(&program, QpOptions::default())?;
-        let solved = matches!(
-            found.outcome,
-            QpOutcome::Converged | QpOutcome::AlmostConverged
-        );
-        if solved && found.x.iter().all(|v| v.is_finite()) {
+        let solved = found.outcome.is_solved();
+        if solved && found.best.iter().all(|v| v.is_finite()) {
             let positions = match self.lattice.whole {
-                true => round_together(&found.x),
-                false => found.x,
+                true => round_together(&found.best),
+                false => found.best,
             };
             if system.holds(&positions) {
                 return Ok(Some(positions));

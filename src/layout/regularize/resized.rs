@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::RegularizeError;
 use super::strips::Run;
-use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve as solve_qp};
+use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 
 /// Share of its derived size that every region keeps.
 const LEAST_SHARE: f64 = 0.5;
@@ -171,18 +171,15 @@ impl Lines<'_> {
             }
         }
         let found = solve_qp(&program, QpOptions::default())?;
-        let solved = matches!(
-            found.outcome,
-            QpOutcome::Converged | QpOutcome::AlmostConverged
-        );
-        if !solved || found.x.iter().any(|v| !v.is_finite()) {
+        let solved = found.outcome.is_solved();
+        if !solved || found.best.iter().any(|v| !v.is_finite()) {
             return Ok(None);
         }
         // Lines of a group are equal, and the sides stay, to the bit.
         let position = |&first: &usize| match first {
             0 => cuts[0],
             first if self.group[n - 1] == first => cuts[n - 1],
-            first => found.x[first],
+            first => found.best[first],
         };
         Ok(Some(self.group.iter().map(position).collect()))
     }

@@ -9,7 +9,6 @@ pub mod attributes;
 pub mod baseline;
 pub mod compare;
 pub mod data;
-pub mod given;
 pub mod model_file;
 pub mod network;
 pub mod schema;

@@ -105,7 +105,7 @@ impl Search<'_> {
         for (value, learnt) in values.iter_mut().zip(learnt) {
             *value = value.min(learnt);
         }
-        let set = NonterminalSet::new(
+        let mut set = NonterminalSet::new(
             Rc::clone(&self.types),
             pricer(),
             Rc::clone(&self.exploration),
@@ -114,8 +114,8 @@ impl Search<'_> {
         );
         let annealing =
             Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
-        let (rules, ..) = annealing.run(set, later(rounds, observer))?;
-        Ok((rules, lower))
+        let run = annealing.run(&mut set, later(rounds, observer))?;
+        Ok((run.best, lower))
     }
 
     /// The Lagrangian bound from the rules of a known grammar, with work in proportion to the iterations and facades; `None`

@@ -2,7 +2,8 @@
 
 use super::model::{FitError, Model};
 use super::parameters::Parameters;
-use crate::optim::grid::{GridError, GridOutcome, minimize};
+use crate::optim::Run;
+use crate::optim::grid::{GridError, minimize};
 use crate::shape::LabelGrid;
 
 /// The values of `alpha`, `b_p` and `b_h` that the search tries; they span the ranges of Sec. 5.3.
@@ -14,11 +15,11 @@ pub fn search_axes() -> [Vec<f64>; 3] {
 
 /// Minimizes `|R|` over `alpha`, `b_p` and `b_h` (Eq. 12), with the generic grid search.
 ///
-/// The points of the outcome are `[alpha, b_p, b_h]`.
+/// The points are `[alpha, b_p, b_h]`.
 ///
 /// # Errors
 /// [`GridError`] for an axis without values, no facades, or a value out of range.
-pub fn fewest_rules(grids: &[LabelGrid], axes: &[Vec<f64>; 3]) -> Result<GridOutcome, GridError> {
+pub fn fewest_rules(grids: &[LabelGrid], axes: &[Vec<f64>; 3]) -> Result<Run<Vec<f64>>, GridError> {
     minimize(axes, |point| {
         let parameters = Parameters::new(point[0], point[1], point[2])?;
         let model = Model::fit(grids, parameters)?;

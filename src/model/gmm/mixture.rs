@@ -5,7 +5,7 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
 use super::super::error::ModelError;
-use super::super::linalg::{LN_2PI, cholesky, log_sum_exp, lower_inverse};
+use super::super::linalg::{LN_2PI, categorical_of_logs, cholesky, log_sum_exp, lower_inverse};
 use super::{Covariance, Points};
 
 /// A Gaussian mixture.
@@ -125,7 +125,7 @@ impl Mixture {
     }
 
     /// `log (w_k N(x; μ_k, Σ_k))` of every component.
-    pub(super) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
+    pub(in crate::model) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
         let d = self.d;
         (0..self.components())
             .map(|k| {
@@ -227,17 +227,9 @@ impl Mixture {
             })
             .collect();
         let logs: Vec<f64> = parts.iter().map(|p| p.0).collect();
-        let total = log_sum_exp(&logs);
         let mut rows = Vec::with_capacity(count * d);
         for _ in 0..count {
-            let mut at = rng.random::<f64>();
-            let k = logs
-                .iter()
-                .position(|l| {
-                    at -= (l - total).exp();
-                    at < 0.0
-                })
-                .unwrap_or(logs.len() - 1);
+            let k = categorical_of_logs(&logs, rng);
             let (_, fixed_z, l) = &parts[k];
             let mut z = fixed_z.clone();
             z.extend((f..d).map(|_| rng.sample::<f64, _>(StandardNormal)));

@@ -21,6 +21,8 @@
 //!   [`Settings::restarts`]; the first of highest log posterior wins.
 
 mod block;
+#[cfg(feature = "linfa")]
+pub mod linfa;
 mod mixture;
 mod points;
 mod select;

@@ -6,9 +6,10 @@
 //! lacks a category is left out of that family: only for choosing edges, EM then integrates them.
 
 use super::super::conjugate::dirichlet_evidence;
+use super::super::graph::reaches;
 use super::super::table::MISSING;
 use super::search::Search;
-use super::structure::{Selector, Structure, configuration, reaches};
+use super::structure::{Selector, Structure, configuration};
 
 /// Most configurations of the categorical parents of one family.
 const MOST_CONFIGURATIONS: usize = 16;

@@ -1,17 +1,17 @@
 //! Rows drawn from a learned model: forward, given some of their values, and the most probable.
 
-use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
+use rand::Rng;
 
 use super::super::conjugate::Linear;
 use super::super::error::ModelError;
-use super::super::linalg::cholesky;
+use super::super::gaussian::gaussian;
 use super::super::table::{MISSING, Table};
+use super::Priors;
 use super::infer::{Scratch, joint};
-use super::params::Priors;
 use super::query::Hierarchy;
 use super::schema::Rows;
 use super::structure::configuration;
+use crate::rng::categorical;
 
 /// Rows drawn from a model.
 #[derive(Clone, Debug)]
@@ -147,7 +147,7 @@ impl Hierarchy {
             })?;
             for _ in 0..count {
                 let weights: Vec<f64> = ways.iter().map(|w| w.1).collect();
-                let codes = &ways[choose(&weights, rng)].0;
+                let codes = &ways[categorical(&weights, rng)].0;
                 scratch.infer(&self.shape, &self.params, rows.real(i), codes);
                 let (real, codes, s) =
                     self.complete_row(rows.real(i), codes, style, &mut scratch, rng);
@@ -179,7 +179,7 @@ impl Hierarchy {
     ) -> (Vec<f64>, Vec<u32>, usize) {
         let shape = &self.shape;
         let styles = self.styles();
-        let s = style.unwrap_or_else(|| choose(&scratch.style, rng));
+        let s = style.unwrap_or_else(|| categorical(&scratch.style, rng));
         let mut real = real.to_vec();
         let mut codes = codes.to_vec();
         // Only leaves are still missing, or (nothing observed) everything was enumerated.
@@ -190,7 +190,7 @@ impl Hierarchy {
                 let p: Vec<f64> = (0..size)
                     .map(|v| self.params.codes[c][(k * size + v) * styles + s])
                     .collect();
-                codes[c] = choose(&p, rng) as u32;
+                codes[c] = categorical(&p, rng) as u32;
             }
         }
         let mut only = vec![0.0; styles];
@@ -198,7 +198,7 @@ impl Hierarchy {
         for component in &scratch.components {
             let joint = joint(component, shape, &self.params, &only);
             let weights: Vec<f64> = joint.iter().map(|j| j[s]).collect();
-            let particle = &component.particles[choose(&weights, rng)];
+            let particle = &component.particles[categorical(&weights, rng)];
             let drawn = gaussian(&particle.mean, &particle.cov, rng);
             for (&c, v) in component.missing.iter().zip(drawn) {
                 real[c] = v;
@@ -206,7 +206,7 @@ impl Hierarchy {
         }
         for &g in &shape.order {
             if scratch.pattern.barren.contains(&g) {
-                let state = choose(&self.forward(g, &only, &codes), rng);
+                let state = categorical(&self.forward(g, &only, &codes), rng);
                 let linear = &self.params.linear[g][state];
                 draw_linear(linear, &shape.columns[g], &mut real, rng);
             }
@@ -222,21 +222,6 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     (sum / n).sqrt()
 }
 
-/// An index drawn in proportion to `weights`; the last of positive weight where rounding runs out.
-fn choose<R: Rng>(weights: &[f64], rng: &mut R) -> usize {
-    let total: f64 = weights.iter().sum();
-    let mut at = rng.random::<f64>() * total;
-    let mut last = 0;
-    for (i, w) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
-        last = i;
-        at -= w;
-        if at < 0.0 {
-            break;
-        }
-    }
-    last
-}
-
 /// Fills the own columns of a group from its linear Gaussian.
 fn draw_linear<R: Rng>(linear: &Linear, columns: &[usize], real: &mut [f64], rng: &mut R) {
     let mut u = vec![1.0];
@@ -247,22 +232,4 @@ fn draw_linear<R: Rng>(linear: &Linear, columns: &[usize], real: &mut [f64], rng
     for (&c, v) in columns[linear.p - 1..].iter().zip(drawn) {
         real[c] = v;
     }
-}
-
-/// A draw from N(mean, cov); directions in which `cov` is singular stay at the mean.
-pub(crate) fn gaussian<R: Rng>(mean: &[f64], cov: &[f64], rng: &mut R) -> Vec<f64> {
-    let n = mean.len();
-    let mut l = cov.to_vec();
-    let mut raise = 1e-14;
-    while !cholesky(&mut l, n) {
-        l.copy_from_slice(cov);
-        for i in 0..n {
-            l[i * n + i] += raise * (1.0 + cov[i * n + i].abs());
-        }
-        raise *= 100.0;
-    }
-    let z: Vec<f64> = (0..n).map(|_| rng.sample(StandardNormal)).collect();
-    (0..n)
-        .map(|i| mean[i] + (0..=i).map(|j| l[i * n + j] * z[j]).sum::<f64>())
-        .collect()
 }

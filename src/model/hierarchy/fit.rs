@@ -7,8 +7,9 @@ use super::super::em::{Em, Fit, Stopping, run};
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
 use super::super::table::MISSING;
+use super::Priors;
 use super::infer::{Scratch, assignments};
-use super::params::{Params, Priors, Shape, Stats};
+use super::params::{Params, Shape, Stats};
 use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure, configuration};
 

@@ -6,9 +6,10 @@
 //! are parents are enumerated; the others, and groups without observed values below them, drop out.
 
 use super::super::error::ModelError;
+use super::super::gaussian::add_scatter;
 use super::super::linalg::log_sum_exp;
 use super::super::table::MISSING;
-use super::component::{Component, Pattern, add_scatter};
+use super::component::{Component, Pattern};
 use super::params::{Params, Shape, Stats};
 use super::structure::{Selector, configuration};
 

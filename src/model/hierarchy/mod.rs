@@ -36,18 +36,18 @@
 //! - Lateral edges are proposed from the expected statistics of a fit (structural EM) and kept when
 //!   the Cheeseman-Stutz score after EM is higher; they are searched anew around every accepted
 //!   configuration, while a candidate inherits those of the configuration it grows from.
-//! - Lateral edges are added, taken out and turned round, not only added. The upward search is then
-//!   revised: an edge is taken out and its child's cardinality raised in its place, two values are
-//!   joined, and a second start raises all cardinalities before it looks for edges. All by the same
-//!   score; without this, edges found while cardinalities are still 2 stand for missing values and
-//!   stay.
+//! - Lateral edges are added, removed and reversed, not only added. The upward search is then
+//!   revised: an edge is removed and its child's cardinality raised instead, two states are
+//!   merged, and a second start raises all cardinalities before it searches edges, all by the same
+//!   score. Without this, edges added at low cardinality compensate for missing latent states and
+//!   are never removed.
 //! - The prior of an intercept is worth a hundredth of an observation. The prior is conjugate, so
 //!   that it counts in units of the residual: where an attribute is constant within a state (no
-//!   second floor), a stronger one is paid for by every row, and edges that say nothing but share
-//!   the intercept seem to gain.
+//!   second floor), a stronger one lowers the density of every row, and uninformative edges that
+//!   share the intercept raise the score.
 //! - After a sweep S gets new starts from the posteriors of all H_g. At the end every |S| is also
-//!   tried above the best second level found with any |S|, so that |S| is not chosen by the luck of
-//!   the local optima below it.
+//!   combined with the best second level found for any |S|, so that the choice of |S| does not
+//!   depend on the local optimum that the search of one |S| ended in.
 //!
 //! Source: Fan and Wonka 2016, Sec. 5; Koller and Friedman 2009, Ch. 19.
 
@@ -68,15 +68,14 @@ mod structure;
 
 use std::ops::RangeInclusive;
 
+pub use super::conjugate::Priors;
 use super::em::Stopping;
 use super::error::ModelError;
+pub use super::standardize::Constant;
 use super::table::Table;
 pub use draw::Draws;
-pub(crate) use draw::gaussian;
-pub use params::Priors;
 pub use query::Hierarchy;
-pub use schema::{Constant, Group};
-pub(crate) use structure::order;
+pub use schema::Group;
 
 /// Which of the paper's models to learn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -222,7 +221,7 @@ pub fn learn(
 
 /// Result of [`fit`].
 #[derive(Clone, Debug)]
-pub struct Fixed {
+pub struct Fitted {
     /// The model.
     pub model: Hierarchy,
     /// Cheeseman-Stutz score, nats, on standardised columns.
@@ -243,7 +242,7 @@ pub fn fit(
     priors: &Priors,
     stopping: &Stopping,
     seed: u64,
-) -> Result<Fixed, ModelError> {
+) -> Result<Fitted, ModelError> {
     priors.check()?;
     let schema = schema::Schema::learn(data, groups, Constant::Refuse)?;
     if styles == 0 || states.len() != schema.groups.len() || states.contains(&0) {
@@ -266,7 +265,7 @@ pub fn fit(
     let problem = fit::Problem::new(&schema, &rows, priors, structure)?;
     let start = problem.start(&mut crate::rng::stream(seed, "fixed", 0))?;
     let scored = problem.fit(start, stopping)?;
-    Ok(Fixed {
+    Ok(Fitted {
         score: scored.score,
         model: Hierarchy::new(
             schema.clone(),

@@ -1,58 +1,12 @@
 //! Parameters, sufficient statistics, the M step and the Cheeseman-Stutz score.
 
 use super::super::conjugate::{
-    Linear, LinearPrior, dirichlet_evidence, dirichlet_log_density, dirichlet_mode,
+    Linear, Priors, dirichlet_evidence, dirichlet_log_density, dirichlet_mode,
 };
 use super::super::error::ModelError;
+use super::super::graph;
 use super::schema::Schema;
 use super::structure::{Selector, Structure};
-
-/// Priors of every parameter; real columns are on the standardised scale (mean 0, deviation 1).
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Priors {
-    /// α of every table, at least 1 (1 is uniform; greater keeps probabilities off zero).
-    pub dirichlet: f64,
-    /// Normal-inverse-Wishart prior of every real group.
-    pub linear: LinearPrior,
-}
-
-impl Default for Priors {
-    fn default() -> Self {
-        Self {
-            dirichlet: 1.2,
-            linear: LinearPrior {
-                intercept: 0.01,
-                slope: 1.0,
-                scatter: 0.1,
-                freedom: 3.0,
-            },
-        }
-    }
-}
-
-impl Priors {
-    /// Checks that every hyperparameter is in its range.
-    ///
-    /// # Errors
-    /// [`ModelError::Parameter`].
-    pub fn check(&self) -> Result<(), ModelError> {
-        if !(self.dirichlet >= 1.0 && self.dirichlet.is_finite()) {
-            return Err(ModelError::parameter("dirichlet", "must be at least 1"));
-        }
-        let l = &self.linear;
-        for (name, value) in [
-            ("intercept", l.intercept),
-            ("slope", l.slope),
-            ("scatter", l.scatter),
-            ("freedom", l.freedom),
-        ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(ModelError::parameter(name, "must be positive and finite"));
-            }
-        }
-        Ok(())
-    }
-}
 
 /// Θ of a hierarchical model.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +53,7 @@ impl Shape {
     pub fn new(schema: &Schema, structure: Structure) -> Result<Self, ModelError> {
         let order = structure.order(&schema.groups)?;
         let names: Vec<String> = schema.codes.iter().map(|c| c.name.clone()).collect();
-        super::structure::order(&structure.code_parents, &names)?;
+        graph::order(&structure.code_parents, &names)?;
         let mut columns = Vec::new();
         let (mut p, mut d) = (Vec::new(), Vec::new());
         for g in 0..schema.groups.len() {

@@ -2,11 +2,12 @@
 
 use super::super::error::ModelError;
 use super::super::table::Table;
+use super::Priors;
 use super::Variant;
 use super::edges::states;
 use super::fit::{Problem, Scored};
 use super::infer::Scratch;
-use super::params::{Params, Priors, Shape};
+use super::params::{Params, Shape};
 use super::schema::{Rows, Schema};
 use super::structure::configuration;
 

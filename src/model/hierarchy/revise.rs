@@ -1,6 +1,6 @@
 //! Local search around a configuration: what the upward search of the paper cannot take back.
 //!
-//! While hidden variables have few values, a lateral edge may stand for a value that is still
+//! While hidden variables have few states, a lateral edge may compensate for a state that is still
 //! missing (which of two kinds a neighbour is says which of two kinds this one is), and the
 //! evidence for that value is gone once the edge is there. So, by the same score: an edge is taken
 //! out and its child given new values in its place; two values of a hidden variable are made one;

@@ -1,6 +1,7 @@
 //! From a table to standardised rows, by name, and back.
 
 use super::super::error::ModelError;
+use super::super::standardize::{Constant, moments};
 use super::super::table::{MISSING, Table, Values};
 
 /// Columns that belong together: all real (one vector-valued attribute), or all categorical (a
@@ -21,16 +22,6 @@ impl Group {
             columns: columns.iter().map(|c| (*c).to_owned()).collect(),
         }
     }
-}
-
-/// What to do with a column whose observed values are all equal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Constant {
-    /// [`ModelError::Constant`].
-    #[default]
-    Refuse,
-    /// Keep it, with unit scale: for training sets of very few rows.
-    Keep,
 }
 
 /// A real column of the model.
@@ -246,33 +237,6 @@ impl Rows {
     pub fn code(&self, row: usize) -> &[u32] {
         &self.codes[row * self.c..(row + 1) * self.c]
     }
-}
-
-/// Mean and standard deviation of the observed values.
-fn moments(name: &str, values: &[f64], constant: Constant) -> Result<(f64, f64), ModelError> {
-    let observed = || values.iter().copied().filter(|v| !v.is_nan());
-    let n = observed().count() as f64;
-    if n == 0.0 {
-        return Err(ModelError::AllMissing {
-            column: name.to_owned(),
-        });
-    }
-    let mean = observed().map(|v| v / n).sum::<f64>();
-    let spread = observed().map(|v| (v - mean).abs()).fold(0.0, f64::max);
-    let variance = observed()
-        .map(|v| ((v - mean) / spread).powi(2) / n)
-        .sum::<f64>();
-    // Rounding in the mean of a constant column leaves a spread of a few units in the last place.
-    if spread <= 1e-12 * mean.abs() || spread < f64::MIN_POSITIVE {
-        return match constant {
-            Constant::Refuse => Err(ModelError::Constant {
-                column: name.to_owned(),
-                value: observed().next().unwrap_or(mean).to_string(),
-            }),
-            Constant::Keep => Ok((mean, 1.0)),
-        };
-    }
-    Ok((mean, spread * variance.sqrt()))
 }
 
 fn check_codes(

@@ -1,6 +1,7 @@
 //! What the graph of a hierarchical model looks like.
 
 use super::super::error::ModelError;
+use super::super::graph::{order, reaches};
 
 /// What selects one of the linear Gaussians of a group of real columns.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -55,37 +56,6 @@ impl Structure {
     pub fn reaches(&self, from: usize, to: usize) -> bool {
         reaches(&self.parents, from, to)
     }
-}
-
-/// Topological order of a graph given by parents.
-pub(crate) fn order(parents: &[Vec<usize>], names: &[String]) -> Result<Vec<usize>, ModelError> {
-    let mut done = vec![false; parents.len()];
-    let mut order = Vec::with_capacity(parents.len());
-    while order.len() < parents.len() {
-        let ready = (0..parents.len()).find(|&g| !done[g] && parents[g].iter().all(|&p| done[p]));
-        match ready {
-            Some(g) => {
-                done[g] = true;
-                order.push(g);
-            }
-            None => {
-                // Every unfinished group has an unfinished parent: walking up ends on a cycle.
-                let mut g = (0..parents.len()).find(|&g| !done[g]).unwrap_or(0);
-                for _ in 0..parents.len() {
-                    g = parents[g].iter().copied().find(|&p| !done[p]).unwrap_or(g);
-                }
-                return Err(ModelError::Cycle {
-                    variable: names[g].clone(),
-                });
-            }
-        }
-    }
-    Ok(order)
-}
-
-/// Whether `to` is `from` or a descendant of it.
-pub(crate) fn reaches(parents: &[Vec<usize>], from: usize, to: usize) -> bool {
-    to == from || parents[to].iter().any(|&p| reaches(parents, from, p))
 }
 
 /// Index of the configuration of `columns` in a row of codes, first column slowest.

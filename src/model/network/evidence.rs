@@ -2,7 +2,7 @@
 
 use super::super::conjugate::Linear;
 use super::super::error::ModelError;
-use super::super::hierarchy::component::{Particle, extend};
+use super::super::gaussian::{Particle, extend};
 use super::factor::{Factor, advance};
 use super::{Cpd, Network};
 

@@ -4,11 +4,10 @@
 //! expected counts, and over every linked set of real vectors expected scatter matrices.
 
 use super::super::chunks;
-use super::super::conjugate::{LinearPrior, dirichlet_log_density, dirichlet_mode};
+use super::super::conjugate::{LinearPrior, Priors, dirichlet_log_density, dirichlet_mode};
 use super::super::em::Em;
 use super::super::error::ModelError;
-use super::super::hierarchy::Priors;
-use super::super::hierarchy::component::add_scatter;
+use super::super::gaussian::add_scatter;
 use super::evidence::Known;
 use super::factor::{Mode, advance};
 use super::query::distribution;

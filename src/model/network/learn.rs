@@ -4,18 +4,18 @@
 
 use rand::{Rng, RngExt};
 
-use super::super::conjugate::Linear;
+use super::super::conjugate::{Linear, Priors};
 use super::super::em::{Fit, Stopping, restarts};
 use super::super::error::ModelError;
-use super::super::hierarchy::Priors;
+use super::super::standardize::{Constant, moments};
 use super::super::table::{Cell, Table};
 use super::evidence::Known;
 use super::expect::Problem;
 use super::{Cpd, Network};
 
-/// Settings of [`Network::learn`].
+/// Settings of [`Network::fit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LearnSettings {
+pub struct FitSettings {
     /// Priors, on standardised columns.
     pub priors: Priors,
     /// Random starts.
@@ -24,7 +24,7 @@ pub struct LearnSettings {
     pub stopping: Stopping,
 }
 
-impl Default for LearnSettings {
+impl Default for FitSettings {
     fn default() -> Self {
         Self {
             priors: Priors::default(),
@@ -34,9 +34,9 @@ impl Default for LearnSettings {
     }
 }
 
-/// Result of [`Network::learn`].
+/// Result of [`Network::fit`].
 #[derive(Clone, Debug)]
-pub struct Trained {
+pub struct Fitted {
     /// The network with learned parameters.
     pub network: Network,
     /// `log p(data)`, nats, in the columns' own units.
@@ -55,12 +55,12 @@ impl Network {
     /// # Errors
     /// A column that is constant, all missing or of the wrong kind, an unseen category, a row
     /// that the structure makes impossible: each names its column and row.
-    pub fn learn<R: Rng>(
+    pub fn fit<R: Rng>(
         &self,
         data: &Table,
-        settings: &LearnSettings,
+        settings: &FitSettings,
         rng: &mut R,
-    ) -> Result<Trained, ModelError> {
+    ) -> Result<Fitted, ModelError> {
         settings.priors.check()?;
         let (rows, scales) = self.rows(data)?;
         let problem = Problem {
@@ -82,7 +82,7 @@ impl Network {
             let seen = row.real.iter().zip(&scales).filter(|(v, _)| !v.is_nan());
             log_likelihood -= seen.map(|(_, s)| s.1.ln()).sum::<f64>();
         }
-        Ok(Trained {
+        Ok(Fitted {
             network: model,
             log_likelihood,
             trace,
@@ -139,25 +139,11 @@ impl Network {
                         _ => None,
                     })
                     .collect();
-                if seen.is_empty() {
-                    return Err(ModelError::AllMissing { column: name });
-                }
-                let mean = seen.iter().sum::<f64>() / seen.len() as f64;
-                let spread = seen.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
-                if spread <= 1e-12 * mean.abs() || spread < f64::MIN_POSITIVE {
-                    return Err(ModelError::Constant {
-                        column: name,
-                        value: seen[0].to_string(),
-                    });
-                }
-                let variance = seen
-                    .iter()
-                    .map(|v| ((v - mean) / spread).powi(2))
-                    .sum::<f64>();
-                scales[c] = (mean, spread * (variance / seen.len() as f64).sqrt());
+                let (mean, deviation) = moments(&name, &seen, Constant::Refuse)?;
+                scales[c] = (mean, deviation);
                 for (r, row) in rows.iter_mut().enumerate() {
                     if let Cell::Real(v) = column.cell(r) {
-                        row.real[c] = (v - mean) / scales[c].1;
+                        row.real[c] = (v - mean) / deviation;
                     }
                 }
             }

@@ -22,8 +22,8 @@
 //! ```
 //!
 //! # Deviations and readings
-//! - A sigmoid or softmax needs its continuous parents observed, unless it says nothing about the
-//!   question (no evidence on or below it): the integral has no closed form.
+//! - A sigmoid or softmax needs its continuous parents observed, unless it is barren for the
+//!   question (no evidence on it or its descendants): the integral has no closed form.
 //! - The most probable explanations are over the discrete variables, continuous ones integrated.
 //! - Cost is exponential in the width of the elimination order; tables over 2²⁶ cells are refused.
 //!
@@ -43,10 +43,10 @@ use std::collections::{HashMap, HashSet};
 
 use super::conjugate::Linear;
 use super::error::ModelError;
-use super::hierarchy::order;
+use super::graph::order;
 use check::check;
 pub use evidence::Evidence;
-pub use learn::{LearnSettings, Trained};
+pub use learn::{FitSettings, Fitted};
 pub use query::{Answer, Explanation};
 pub use store::FORMAT;
 

@@ -4,11 +4,11 @@ use rand::Rng;
 use rand::rngs::SmallRng;
 
 use super::super::error::ModelError;
-use super::super::hierarchy::gaussian;
-use super::super::linalg::log_sum_exp;
+use super::super::gaussian::gaussian;
+use super::super::linalg::{categorical_of_logs, log_sum_exp};
 use super::evidence::{Evidence, Question, softmax};
 use super::factor::{Factor, Mode};
-use super::tree::{Tree, draw};
+use super::tree::Tree;
 use super::{Cpd, Network};
 
 /// Posterior of one variable.
@@ -325,11 +325,12 @@ impl Network {
             match &node.cpd {
                 Cpd::Softmax(weights) if open => {
                     let logs = softmax(weights, &node.regressors, &real, self.sizes[n]);
-                    assignment[n] = draw(&logs[from..from + self.sizes[n]], rng);
+                    assignment[n] = categorical_of_logs(&logs[from..from + self.sizes[n]], rng);
                 }
                 Cpd::Table(table) if open => {
                     let row = table[from..from + self.sizes[n]].iter();
-                    assignment[n] = draw(&row.map(|p| p.ln()).collect::<Vec<_>>(), rng);
+                    assignment[n] =
+                        categorical_of_logs(&row.map(|p| p.ln()).collect::<Vec<_>>(), rng);
                 }
                 Cpd::Linear(_) if question.free.contains(&n) => {
                     if let Some(linear) = self.state(n, &assignment) {

@@ -7,8 +7,9 @@
 
 use std::collections::BinaryHeap;
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 
+use super::super::linalg::categorical_of_logs;
 use super::factor::{Factor, Mode, product};
 
 /// Most cells of one table: beyond, exact inference is refused.
@@ -120,7 +121,7 @@ impl Tree {
         for bucket in self.buckets.iter().rev() {
             let logs = self.column(bucket, assignment);
             assignment[bucket.var] = match &mut rng {
-                Some(rng) => draw(logs, *rng),
+                Some(rng) => categorical_of_logs(logs, *rng),
                 None => (0..logs.len())
                     .rev()
                     .max_by(|&a, &b| logs[a].total_cmp(&logs[b]))
@@ -238,23 +239,4 @@ fn order(factors: &[Factor], vars: &[usize], sizes: &[usize]) -> Vec<usize> {
         order.push(v);
     }
     order
-}
-
-/// An index drawn in proportion to `exp(logs)`.
-pub(crate) fn draw<R: Rng>(logs: &[f64], rng: &mut R) -> usize {
-    let total = super::super::linalg::log_sum_exp(logs);
-    let mut at = rng.random::<f64>();
-    let mut last = 0;
-    for (i, l) in logs
-        .iter()
-        .enumerate()
-        .filter(|(_, l)| **l > f64::NEG_INFINITY)
-    {
-        last = i;
-        at -= (l - total).exp();
-        if at < 0.0 {
-            break;
-        }
-    }
-    last
 }

@@ -99,14 +99,20 @@ impl<'a> Search<'a> {
     pub fn walks<V: Approximation<Inference>>(
         &self,
         explore: Explore,
-        values: V,
+        mut values: V,
         epsilon: Epsilon,
         iterations: u64,
         observer: impl FnMut(Step) + 'static,
     ) -> Result<(Vec<AddRule>, V), InferError> {
-        let adp = Adp::new(explore, values, epsilon, iterations, self.settings.seed);
-        let (walk, _, values) = adp.run_observed(self.process(), observer)?;
-        Ok((walk.actions, values))
+        let adp = Adp::new(
+            explore,
+            &mut values,
+            epsilon,
+            iterations,
+            self.settings.seed,
+        );
+        let run = adp.run(&mut self.process(), observer)?;
+        Ok((run.best, values))
     }
 
     /// Always the best rule by the splitting heuristic.

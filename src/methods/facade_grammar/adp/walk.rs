@@ -127,7 +127,7 @@ impl Explore {
 }
 
 impl Heuristic<Inference> for Explore {
-    fn start_walk<R: Rng>(&mut self, _: &Inference, rng: &mut R) {
+    fn start_walk<R: Rng>(&mut self, _: &mut Inference, rng: &mut R) {
         let mut exploration = self.exploration.borrow_mut();
         let protection = exploration.protection();
         match self.protect {
@@ -139,7 +139,7 @@ impl Heuristic<Inference> for Explore {
         self.drawn = true;
     }
 
-    fn sample<R: Rng>(&mut self, _: &Inference, state: &Derivation, rng: &mut R) -> AddRule {
+    fn sample<R: Rng>(&mut self, _: &mut Inference, state: &Derivation, rng: &mut R) -> AddRule {
         let id = state.next();
         let candidate = self
             .exploration
@@ -209,7 +209,7 @@ impl ShortestPathRules {
 }
 
 impl Approximation<Inference> for ShortestPathRules {
-    fn best(&mut self, process: &Inference, state: &Derivation) -> Option<AddRule> {
+    fn best(&mut self, process: &mut Inference, state: &Derivation) -> Option<AddRule> {
         let id = state.next();
         let types = &mut process.types.borrow_mut();
         self.extend(types);
@@ -228,7 +228,7 @@ impl Approximation<Inference> for ShortestPathRules {
         })
     }
 
-    fn learn(&mut self, process: &Inference, walk: &[AddRule], costs: &[f64]) {
+    fn learn(&mut self, process: &mut Inference, walk: &[AddRule], costs: &[f64]) {
         self.extend(&process.types.borrow());
         for (action, value) in walk.iter().zip(self.estimates.costs(walk, costs)) {
             let known = &mut self.values[action.id as usize];

@@ -11,11 +11,11 @@ use crate::optim::adp::{Approximation, Epsilon};
 pub(crate) struct NothingKnown;
 
 impl Approximation<Inference> for NothingKnown {
-    fn best(&mut self, _: &Inference, _: &Derivation) -> Option<AddRule> {
+    fn best(&mut self, _: &mut Inference, _: &Derivation) -> Option<AddRule> {
         None
     }
 
-    fn learn(&mut self, _: &Inference, _: &[AddRule], _: &[f64]) {}
+    fn learn(&mut self, _: &mut Inference, _: &[AddRule], _: &[f64]) {}
 }
 
 impl Search<'_> {

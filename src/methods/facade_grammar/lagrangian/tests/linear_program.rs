@@ -1,7 +1,8 @@
 //! The linear program whose dual the multipliers climb, solved by Clarabel.
 
 use super::super::Program;
-use crate::optim::qp::{QpOptions, QpOutcome, QuadraticProgram, Row, solve};
+use crate::optim::Outcome;
+use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 
 /// Its optimum. Variables: how much each occurrence uses each item, then how much each type has it. What enters a
 /// occurrence leaves it by its operators, each operator's arcs are a flow, and a type has what the occurrences of any clique use.
@@ -68,6 +69,6 @@ pub fn optimum(program: &Program) -> f64 {
         lp.equalities.push(Row::new(terms, right));
     }
     let solution = solve(&lp, QpOptions::default()).unwrap();
-    assert_eq!(solution.outcome, QpOutcome::Converged);
+    assert_eq!(solution.outcome, Outcome::Converged);
     solution.cost
 }

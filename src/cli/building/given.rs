@@ -1,7 +1,7 @@
 //! Evidence in words: `garage=none`, `bbox.w=12`, `wwr=0.2,0.2,0.1,0.1`, `roof.hip=yes`.
 
-use super::model_file::ModelFile;
-use crate::model::{ModelError, Table};
+use edifice::methods::building_exteriors::model_file::ModelFile;
+use edifice::model::{ModelError, Table};
 
 /// What is wrong with a piece of evidence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::BEST;
-use super::likeness::likeness;
-use super::runs::{Question, Solver, mean, solve};
+use super::super::BEST;
+use super::super::likeness::likeness;
+use super::super::runs::{Question, Solver, mean, solve};
 use crate::grammar::{Costs, evaluate};
 use crate::methods::facade_grammar::{Method, Operations};
 use crate::methods::procedural_logic::{

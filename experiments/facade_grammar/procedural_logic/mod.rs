@@ -1,14 +1,23 @@
 //! Table 2's column PL over the ranges of its parameters, and where it coincides with BGL.
 
-use super::baseline_settings::{JOININGS, Measured, Pick, measure, place, settings, text};
+mod settings;
+
+use self::settings::{JOININGS, Measured, Pick, measure, place, settings, text};
 use super::data::{self, FIGURE_9, Instance};
 use super::iterations;
 use super::published::Published;
 use super::runs::mean;
-use crate::experiments::{Budget, Context};
+use crate::experiments::{Artefact, Budget, Context};
 use crate::methods::procedural_logic::Parameters;
 use crate::report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 use crate::{Error, Result};
+
+/// The artefact.
+pub const RANGES: Artefact = Artefact {
+    name: "baseline_ranges",
+    title: "procedural logic of Table 2 over the ranges of its parameters",
+    run,
+};
 
 /// Two costs that differ by less are one.
 const SAME: f64 = 1e-6;
@@ -24,7 +33,7 @@ struct Found {
 }
 
 /// Procedural logic with every setting on every facade.
-pub fn run(ctx: &mut Context) -> Result<()> {
+fn run(ctx: &mut Context) -> Result<()> {
     let (few, _) = iterations(ctx.budget());
     let settings = settings();
     ctx.setting("iterations", few);

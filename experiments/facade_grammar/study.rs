@@ -1,0 +1,185 @@
+//! The studies of this paper, for sweeps.
+
+use std::cell::RefCell;
+use std::path::Path;
+use std::rc::Rc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::experiments::sweep::{Better, Outcome, Study};
+use crate::grammar::{Costs, evaluate};
+use crate::io::{ReadOptions, read_facade};
+use crate::methods::facade_grammar::{
+    self, Exploit, Method, Operations, Protect, Readings, infer_observed,
+};
+use crate::{Error, Result};
+
+/// How to search.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum MethodName {
+    Best,
+    AdpPaper,
+    Importance,
+    Greedy,
+    Bayesian,
+    Symmetry,
+}
+
+/// Operations of rules beside the split.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Operation {
+    Repeat,
+    RepeatAba,
+    SymSplit,
+    GridSplit,
+}
+
+/// Whether important regions are protected (Sec. 4.7).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Protection {
+    Never,
+    Walk,
+    Run,
+}
+
+/// Settings of grammar inference.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+struct Infer {
+    /// Method of inference.
+    method: MethodName,
+    /// Walks, of the methods that repeat them; of `best` a measure of work.
+    iterations: u64,
+    /// Runs with different chance, of which the cheapest grammar counts.
+    restarts: u64,
+    /// Operations that rules may use beside the split.
+    ops: Vec<Operation>,
+    /// Cost of a split.
+    split_cost: f64,
+    /// Cost of a repeat.
+    repeat_cost: f64,
+    /// `lambda_1` of Eq. 5.
+    lambda_rule: f64,
+    /// `lambda_2` of Eq. 5.
+    lambda_lines: f64,
+    /// Protection of important regions (Sec. 4.7), of `adp-paper` and `importance`.
+    protection: Protection,
+    /// Exploitation from this many rules tried before, of `adp-paper`; 0 for all reasonable rules (Eq. 4).
+    remembered: usize,
+}
+
+impl Default for Infer {
+    fn default() -> Self {
+        let settings = facade_grammar::Settings::default();
+        Self {
+            method: MethodName::Best,
+            iterations: settings.iterations,
+            restarts: 1,
+            ops: vec![Operation::Repeat],
+            split_cost: settings.costs.split,
+            repeat_cost: settings.costs.repeat,
+            lambda_rule: settings.lambda_rule,
+            lambda_lines: settings.lambda_lines,
+            protection: Protection::Walk,
+            remembered: 0,
+        }
+    }
+}
+
+/// Grammar inference on one facade.
+pub fn infer() -> Study {
+    const METRICS: &[(&str, Better)] = &[("cost", Better::Lower), ("rules", Better::Lower)];
+    let about = "grammar inference on facade layouts (Wu et al. 2014)";
+    Study::new(
+        "facade_grammar/infer",
+        about,
+        "facade_grammar",
+        METRICS,
+        run,
+    )
+}
+
+fn run(settings: &Infer, path: &Path, seed: u64) -> Result<Outcome> {
+    let facade = read_facade(path, &ReadOptions::default())?;
+    let costs = Costs {
+        split: settings.split_cost,
+        repeat: settings.repeat_cost,
+        ..Costs::default()
+    };
+    let mut found = Outcome::default();
+    let mut best = f64::INFINITY;
+    let mut evaluations = 0.0;
+    for restart in 0..settings.restarts.max(1) {
+        let trace: Rc<RefCell<Vec<[f64; 2]>>> = Rc::default();
+        let told = Rc::clone(&trace);
+        let observer = move |step: crate::optim::Step| {
+            told.borrow_mut().push([step.iteration as f64, step.best])
+        };
+        let seed = seed
+            .wrapping_mul(settings.restarts.max(1))
+            .wrapping_add(restart);
+        let asked = asked(settings, costs, seed);
+        let outcome = infer_observed(std::slice::from_ref(&facade), &asked, observer)
+            .map_err(Error::method)?;
+        // The one evaluator, not the method, says what the grammar costs.
+        let report = evaluate(&outcome.grammar, std::slice::from_ref(&facade), &costs)
+            .map_err(Error::method)?;
+        for &[steps, value] in trace.borrow().iter() {
+            if found.trace.last().is_none_or(|last| value < last[1]) {
+                found.trace.push([evaluations + steps, value]);
+            }
+        }
+        evaluations += asked.steps() as f64;
+        if report.cost < best {
+            best = report.cost;
+            found.metrics.insert("cost".into(), report.cost);
+            found
+                .metrics
+                .insert("rules".into(), outcome.grammar.rules.len() as f64);
+        }
+        found.bound = outcome.lower_bound.or(found.bound);
+    }
+    Ok(found)
+}
+
+fn asked(settings: &Infer, costs: Costs, seed: u64) -> facade_grammar::Settings {
+    let has = |operation| settings.ops.contains(&operation);
+    let readings = Readings::default();
+    facade_grammar::Settings {
+        method: match settings.method {
+            MethodName::Best => Method::AdpBest,
+            MethodName::AdpPaper => Method::AdpPaper,
+            MethodName::Importance => Method::Importance,
+            MethodName::Greedy => Method::Greedy,
+            MethodName::Bayesian => Method::Bayesian,
+            MethodName::Symmetry => Method::Symmetry,
+        },
+        iterations: settings.iterations,
+        seed,
+        costs,
+        operations: Operations {
+            repeat: has(Operation::Repeat),
+            repeat_aba: has(Operation::RepeatAba),
+            sym_split: has(Operation::SymSplit),
+            grid_split: has(Operation::GridSplit),
+        },
+        lambda_rule: settings.lambda_rule,
+        lambda_lines: settings.lambda_lines,
+        readings: Readings {
+            protection: match settings.protection {
+                Protection::Never => Protect::Never,
+                Protection::Walk => readings.protection,
+                Protection::Run => Protect::Run,
+            },
+            exploitation: match settings.remembered {
+                0 => Exploit::AllRules,
+                most => Exploit::Remembered(most),
+            },
+            ..readings
+        },
+    }
+}

@@ -1,0 +1,25 @@
+//! Methods that find a grammar of one facade and are compared with those of Wu et al. 2014: the list that both sides know, so
+//! that neither names the other.
+
+use crate::grammar::Grammar;
+use crate::shape::Facade;
+use crate::{Error, Result};
+
+/// Finds a grammar of one facade.
+type Infer = fn(&Facade) -> Result<Grammar>;
+
+/// By name.
+const GRAMMARS: &[(&str, Infer)] = &[
+    ("procedural_logic", super::procedural_logic::grammar), // one line each
+];
+
+/// The grammar that a method finds of a facade.
+///
+/// # Errors
+/// Those of the method, and when no method has this name.
+pub fn grammar(method: &str, facade: &Facade) -> Result<Grammar> {
+    match GRAMMARS.iter().find(|(name, _)| *name == method) {
+        Some((_, infer)) => infer(facade),
+        None => Err(Error::method(format!("there is no method {method}"))),
+    }
+}

@@ -1,0 +1,95 @@
+//! The element layouts that the experiments run on.
+
+use std::path::{Path, PathBuf};
+
+use crate::experiments::{Budget, Context, layouts};
+use crate::io::{ReadOptions, Source, read_source};
+use crate::methods::structure_completion::layout::{Layout, extract, scope};
+use crate::shape::Facade;
+use crate::{Error, Result};
+
+/// A facade of a data set.
+#[derive(Debug, Clone)]
+pub struct Item {
+    /// `shipped`, `ecp2011`, `graz50` or `cmp`.
+    pub dataset: &'static str,
+    /// Its elements.
+    pub layout: Layout,
+    /// Whether it has a lattice of windows, and is one facade.
+    pub in_scope: bool,
+}
+
+/// The element layout of a facade of any source; `path` names the file in errors.
+///
+/// # Errors
+/// [`Error::Content`] for a source that has no elements as it cannot be read as a grid.
+pub fn elements(source: Source, path: &Path) -> Result<Layout> {
+    match source {
+        Source::Layout(facade) => extract::of_facade(&facade),
+        Source::Picture(grid) => extract::of_picture(&grid),
+        Source::Cmp(cmp, width, height) => extract::of_facade(&cmp.layout(width, height)?),
+    }
+    .map_err(|e| Error::content(path, e))
+}
+
+/// The real facades of ECP, Graz and CMP that the user has; without them the shipped layouts. Fewer at the smoke
+/// budget.
+pub fn items(ctx: &mut Context) -> Result<Vec<Item>> {
+    let mut items = Vec::new();
+    for (dataset, folder, ending) in [
+        ("ecp2011", "facades/ecp2011/labels", ".png"),
+        ("graz50", "facades/graz50/labels", ".png"),
+        ("cmp", "facades/cmp", ".xml"),
+    ] {
+        if let Some(folder) = ctx.real(folder)? {
+            items.extend(read(dataset, &layouts::files(&folder, ending)?)?);
+        }
+    }
+    if items.is_empty() {
+        items = shipped(ctx)?;
+    }
+    if ctx.budget() == Budget::Smoke {
+        let every = items.len().div_ceil(SMOKE);
+        items = items.into_iter().step_by(every.max(1)).collect();
+    }
+    Ok(items)
+}
+
+/// Facades at the smoke budget.
+const SMOKE: usize = 12;
+
+/// The shipped layouts.
+pub fn shipped(ctx: &mut Context) -> Result<Vec<Item>> {
+    let folder = layouts::folder(ctx)?;
+    read("shipped", &layouts::made(&folder)?)
+}
+
+fn read(dataset: &'static str, files: &[PathBuf]) -> Result<Vec<Item>> {
+    let item = |path: &PathBuf| {
+        let source = read_source(path, &ReadOptions::default())?;
+        let one = match &source {
+            // A photograph of several facades has no outline to complete.
+            Source::Cmp(cmp, ..) => cmp.objects.iter().filter(|o| o.label == "facade").count() == 1,
+            _ => true,
+        };
+        let layout = elements(source, path)?;
+        let in_scope = one && scope::in_scope(&layout);
+        Ok(Item {
+            dataset,
+            layout,
+            in_scope,
+        })
+    };
+    files.iter().map(item).collect()
+}
+
+/// A layout as a facade of element regions.
+pub fn facade(layout: &Layout) -> Result<Facade> {
+    let regions = layout.elements.iter().map(|e| crate::shape::Region {
+        label: e.class.name().to_string(),
+        rect: e.rect,
+    });
+    let name = layout.name.clone();
+    Facade::new(name, "px", layout.width, layout.height, regions.collect())
+        .map_err(|e| Error::content(layout.name.as_ref(), e))
+}

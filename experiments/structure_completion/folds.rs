@@ -1,0 +1,29 @@
+//! Cross-validation by building: near-twins are in one fold, and a model never sees its fold.
+
+use rand::seq::SliceRandom;
+
+use super::data::Item;
+use crate::methods::structure_completion::best::learn::twins;
+use crate::methods::structure_completion::layout::Layout;
+use crate::methods::structure_completion::model::Model;
+use crate::rng::stream;
+use crate::{Error, Result};
+
+/// The fold of each item: groups of near-twins in random order, dealt in turn.
+pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
+    let layouts: Vec<Layout> = items.iter().map(|i| i.layout.clone()).collect();
+    let groups = twins(&layouts);
+    let mut order: Vec<usize> = groups.clone();
+    order.sort_unstable();
+    order.dedup();
+    order.shuffle(&mut stream(seed, "structure completion: folds", 0));
+    let fold = |group: &usize| order.iter().position(|g| g == group).unwrap_or(0) % count;
+    groups.iter().map(fold).collect()
+}
+
+/// A model of the items that `keep` keeps.
+pub fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
+    let kept = (0..items.len()).filter(|&i| keep(i));
+    let layouts = kept.map(|i| items[i].layout.clone()).collect();
+    Model::train(layouts, seed).map_err(Error::method)
+}

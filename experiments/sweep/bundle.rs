@@ -1,0 +1,173 @@
+//! A sweep as one file: what was asked, what was planned, what was found, and by which program; and a check of it.
+
+use std::io::{Cursor, Read, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
+
+use super::collect::{RESULTS, TIMES, collect};
+use super::journal::read_all;
+use super::plan::{PLAN, Plan, program};
+use super::run::entry;
+use super::study::Study;
+use crate::experiments::frame::provenance::{self, Machine};
+use crate::{Error, Result, file};
+
+/// What is in a bundle.
+#[derive(Debug, Serialize, Deserialize)]
+struct Manifest {
+    format: String,
+    version: u32,
+    program: String,
+    machine: Machine,
+    /// Name in the bundle and SHA-256 of each file.
+    files: Vec<(String, String)>,
+}
+
+/// What is wrong with a bundle.
+#[derive(Debug, thiserror::Error)]
+enum BundleError {
+    #[error("this is no bundle of a sweep: {0}")]
+    NotABundle(String),
+    #[error("`{0}` is not what the manifest says: the bundle was changed")]
+    Changed(String),
+    #[error("it was made by version {made} of the program, this is {ours}: a rerun could differ")]
+    Program { made: String, ours: String },
+}
+
+/// What a check found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Verified {
+    /// Tasks that were run again.
+    pub rerun: usize,
+    /// Those that found something else: arm, instance, seed.
+    pub different: Vec<String>,
+}
+
+/// Packs a sweep's file, plan, results, journals and instances.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize> {
+    collect(plan, out)?;
+    let mut files: Vec<(String, PathBuf)> = vec![("sweep.toml".into(), sweep.to_path_buf())];
+    for name in [PLAN, RESULTS, TIMES] {
+        files.push((name.into(), out.join(name)));
+    }
+    for (index, instance) in plan.head.instances.iter().enumerate() {
+        let path = out.join(&instance.path);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        files.push((format!("instances/{index}/{name}"), path.clone()));
+    }
+    let mut listed = Vec::new();
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    // A fixed date: the same content is the same bytes.
+    let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
+    let fail =
+        |e: &dyn std::fmt::Display| Error::content(to, BundleError::NotABundle(e.to_string()));
+    for (name, path) in &files {
+        let bytes = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+        archive.start_file(name, options).map_err(|e| fail(&e))?;
+        archive.write_all(&bytes).map_err(|e| fail(&e))?;
+        listed.push((name.clone(), provenance::digest(path)?));
+    }
+    let manifest = Manifest {
+        format: "edifice/sweep-bundle".into(),
+        version: 1,
+        program: program().into(),
+        machine: Machine::this(rayon::current_num_threads()),
+        files: listed,
+    };
+    archive
+        .start_file("manifest.json", options)
+        .map_err(|e| fail(&e))?;
+    let text = serde_json::to_vec_pretty(&manifest).map_err(Error::method)?;
+    archive.write_all(&text).map_err(|e| fail(&e))?;
+    let bytes = archive.finish().map_err(|e| fail(&e))?.into_inner();
+    file::write_atomic(to, &bytes)?;
+    Ok(files.len() + 1)
+}
+
+/// Unpacks a bundle into an empty folder, checks its digests, and runs `sample` of its finished tasks again, evenly spread.
+///
+/// # Errors
+/// [`Error::Content`] when it is no bundle, was changed, or is of another version; [`Error::Io`].
+pub fn verify(bundle: &Path, folder: &Path, studies: &[Study], sample: usize) -> Result<Verified> {
+    let bytes = std::fs::read(bundle).map_err(|e| Error::io(bundle, "read", e))?;
+    let not =
+        |e: &dyn std::fmt::Display| Error::content(bundle, BundleError::NotABundle(e.to_string()));
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| not(&e))?;
+    let mut manifest = String::new();
+    let mut entry_of = archive.by_name("manifest.json").map_err(|e| not(&e))?;
+    entry_of
+        .read_to_string(&mut manifest)
+        .map_err(|e| not(&e))?;
+    drop(entry_of);
+    let manifest: Manifest = serde_json::from_str(&manifest).map_err(|e| not(&e))?;
+    if manifest.program != program() {
+        let (made, ours) = (manifest.program, program().to_owned());
+        return Err(Error::content(bundle, BundleError::Program { made, ours }));
+    }
+    for (name, digest) in &manifest.files {
+        let mut inside = archive.by_name(name).map_err(|e| not(&e))?;
+        let place = inside
+            .enclosed_name()
+            .ok_or_else(|| not(&format!("`{name}` leads out of it")))?;
+        let mut content = Vec::new();
+        inside.read_to_end(&mut content).map_err(|e| not(&e))?;
+        let path = folder.join(place);
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(|e| Error::io(parent, "create", e))?;
+        }
+        file::write_atomic(&path, &content)?;
+        if provenance::digest(&path)? != *digest {
+            return Err(Error::content(bundle, BundleError::Changed(name.clone())));
+        }
+    }
+    let mut plan = Plan::read(folder)?;
+    for (index, instance) in plan.head.instances.iter_mut().enumerate() {
+        let name = instance.path.file_name().unwrap_or_default().to_owned();
+        instance.path = PathBuf::from(format!("instances/{index}")).join(name);
+    }
+    rerun(&plan, folder, plan.study(studies)?, sample)
+}
+
+/// Compares the results in the folder's table with those of a sample that is run again.
+fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Verified> {
+    let path = folder.join(RESULTS);
+    let table = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+    let again = folder.join("again");
+    let chosen = sample.min(plan.tasks.len());
+    let mut different = Vec::new();
+    let journal = super::journal::Journal::open(&again, (0, 1))?;
+    for k in 0..chosen {
+        let task = &plan.tasks[k * plan.tasks.len() / chosen];
+        journal.put(&entry(plan, folder, study, task))?;
+    }
+    let known = read_all(&again)?;
+    let sampled = Plan {
+        head: plan.head.clone(),
+        tasks: plan
+            .tasks
+            .iter()
+            .filter(|task| known.entries.contains_key(&task.key))
+            .cloned()
+            .collect(),
+    };
+    collect(&sampled, &again)?;
+    let path = again.join(RESULTS);
+    let found = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+    let before: std::collections::HashSet<&str> = table.lines().collect();
+    different.extend(
+        found
+            .lines()
+            .filter(|line| !before.contains(line))
+            .map(str::to_owned),
+    );
+    Ok(Verified {
+        rerun: sampled.tasks.len(),
+        different,
+    })
+}

@@ -1,0 +1,219 @@
+//! Reading a sweep file. Every mistake is named with its line and column, and the nearest right word.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::place::{place, suggestion};
+use crate::experiments::sweep::study::{Better, Study};
+use crate::{Error, Result};
+
+/// Settings by name, each with its place in the file.
+pub(super) type Settings = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
+/// Lists of settings by name.
+pub(super) type Lists = BTreeMap<Spanned<String>, Spanned<Vec<toml::Value>>>;
+
+/// The file as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct File {
+    study: Spanned<String>,
+    data: Spanned<Vec<String>>,
+    seeds: Option<Spanned<Seeds>>,
+    pair: Option<Spanned<Vec<String>>>,
+    #[serde(default)]
+    pub base: Settings,
+    #[serde(default)]
+    pub arm: Vec<ArmEntry>,
+    #[serde(default)]
+    pub grid: Vec<GridEntry>,
+    #[serde(default)]
+    pub exclude: Vec<Settings>,
+    #[serde(default)]
+    report: ReportOptions,
+    #[serde(default)]
+    task: TaskOptions,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArmEntry {
+    pub name: Spanned<String>,
+    #[serde(default)]
+    pub set: Settings,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GridEntry {
+    /// Every combination of these.
+    #[serde(default)]
+    pub set: Lists,
+    /// The first of each, the second of each, ...
+    #[serde(default)]
+    pub zip: Lists,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Seeds {
+    Count(u32),
+    List(Vec<u64>),
+}
+
+/// What the report is about.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReportOptions {
+    /// Metric; the study's first unless given.
+    pub metric: Option<String>,
+    /// Which values are better.
+    pub better: Option<Better>,
+    /// Name of the arm that the others are compared with; the first unless given.
+    pub reference: Option<String>,
+    /// Abscissa of anytime curves: `evaluations`.
+    pub anytime: Option<String>,
+    /// Targets of runtime distributions, as multiples of the best value known of an instance.
+    #[serde(default)]
+    pub targets: Vec<f64>,
+}
+
+/// What a task needs of a machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TaskOptions {
+    /// Processors.
+    pub cpus: u32,
+    /// Memory, as Slurm writes it.
+    pub mem: String,
+    /// Tasks are packed into jobs of about this long, such as `30min`.
+    pub pack: String,
+}
+
+impl Default for TaskOptions {
+    fn default() -> Self {
+        Self {
+            cpus: 1,
+            mem: "1G".into(),
+            pack: "30min".into(),
+        }
+    }
+}
+
+/// A checked sweep file, its arms still as written.
+pub struct Definition {
+    /// Index among the studies.
+    pub study: usize,
+    /// Patterns of instances.
+    pub data: Vec<String>,
+    /// Seeds.
+    pub seeds: Vec<u64>,
+    /// Whether all arms meet the same chance on an instance and seed.
+    pub paired_seeds: bool,
+    /// What the report is about.
+    pub report: ReportOptions,
+    /// What a task needs.
+    pub task: TaskOptions,
+    pub(super) file: File,
+    pub(super) text: String,
+}
+
+/// What is wrong in a sweep file.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct Wrong(String);
+
+impl Definition {
+    /// An error at a place of the file.
+    pub(super) fn wrong(&self, path: &Path, at: &std::ops::Range<usize>, message: String) -> Error {
+        wrong(path, &self.text, at, message)
+    }
+}
+
+fn wrong(path: &Path, text: &str, at: &std::ops::Range<usize>, message: String) -> Error {
+    Error::input(path, place(text, at), Wrong(message))
+}
+
+/// Reads and checks a sweep file.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] with line, column and the nearest right word.
+pub fn read(path: &Path, studies: &[Study]) -> Result<Definition> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", e))?;
+    let file: File = toml::from_str(&text).map_err(|e| {
+        let at = e.span().unwrap_or(0..0);
+        wrong(path, &text, &at, explained(e.message()))
+    })?;
+    let named = file.study.get_ref();
+    let Some(study) = studies.iter().position(|study| study.name == named) else {
+        let names = studies.iter().map(|study| study.name);
+        let message = format!("there is no study `{named}`{}", suggestion(named, names));
+        return Err(wrong(path, &text, &file.study.span(), message));
+    };
+    if file.data.get_ref().is_empty() {
+        return Err(wrong(
+            path,
+            &text,
+            &file.data.span(),
+            "no instances are named".into(),
+        ));
+    }
+    let seeds = match file.seeds.as_ref().map(Spanned::get_ref) {
+        None => vec![0],
+        Some(Seeds::Count(count)) => (0..u64::from(*count)).collect(),
+        Some(Seeds::List(list)) => list.clone(),
+    };
+    let mut distinct = seeds.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    if seeds.is_empty() || distinct.len() < seeds.len() {
+        let span = file.seeds.as_ref().map_or(0..0, Spanned::span);
+        let message = "seeds are a number of at least 1, or a list without repetition".to_owned();
+        return Err(wrong(path, &text, &span, message));
+    }
+    if let Some(pair) = &file.pair {
+        for word in pair.get_ref() {
+            if !["instance", "facade", "house", "city", "seed"].contains(&word.as_str()) {
+                let message = format!("arms are paired by `instance` and `seed`, not by `{word}`");
+                return Err(wrong(path, &text, &pair.span(), message));
+            }
+        }
+    }
+    let paired_seeds = match &file.pair {
+        None => true,
+        Some(pair) => pair.get_ref().iter().any(|word| word == "seed"),
+    };
+    let metrics = studies[study].metrics;
+    if let Some(metric) = &file.report.metric
+        && metrics.iter().all(|(name, _)| name != metric)
+    {
+        let message = format!(
+            "[report]: the study has no metric `{metric}`{}",
+            suggestion(metric, metrics.iter().map(|(name, _)| *name))
+        );
+        return Err(wrong(path, &text, &(0..0), message));
+    }
+    Ok(Definition {
+        study,
+        data: file.data.get_ref().clone(),
+        seeds,
+        paired_seeds,
+        report: file.report.clone(),
+        task: file.task.clone(),
+        file,
+        text,
+    })
+}
+
+/// serde's message about an unknown key, with the nearest right one.
+fn explained(message: &str) -> String {
+    let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match words.split_first() {
+        Some((word, expected)) if message.starts_with("unknown field") => {
+            format!("{message}{}", suggestion(word, expected.iter().copied()))
+        }
+        _ => message.trim_end().to_owned(),
+    }
+}

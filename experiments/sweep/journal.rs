@@ -1,0 +1,167 @@
+//! Results of tasks: one file per shard, one JSON line per task, appended in one write.
+//!
+//! A process that is killed, or a disk that is full, leaves half a line at most, which is cut off when the file is opened again; a line that
+//! was damaged otherwise is left where it is and named, and its task counts as missing.
+
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use serde::{Deserialize, Serialize};
+
+use super::plan::program;
+use super::study::Outcome;
+use crate::experiments::frame::lock;
+use crate::{Error, Result};
+
+/// Folder of the journals in a sweep's folder.
+const FOLDER: &str = "journal";
+
+/// What became of a task.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// The task's key.
+    pub key: String,
+    /// Version of the program that ran it.
+    pub program: String,
+    /// What it found; none where it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<Outcome>,
+    /// Why it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// Processor seconds.
+    pub seconds: f64,
+}
+
+/// The journal of one shard, open for appending.
+pub struct Journal {
+    path: PathBuf,
+    file: Mutex<File>,
+}
+
+/// A shard that another process runs.
+#[derive(Debug, thiserror::Error)]
+#[error("another process runs this shard")]
+struct Busy;
+
+impl Journal {
+    /// Opens the journal of a shard, `i` of `n`; cuts off half a line at its end.
+    ///
+    /// # Errors
+    /// [`Error::Content`] when another process runs the shard, [`Error::Io`].
+    pub fn open(out: &Path, shard: (usize, usize)) -> Result<Self> {
+        let folder = out.join(FOLDER);
+        std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create", e))?;
+        let path = folder.join(format!("{}-of-{}.jsonl", shard.0, shard.1));
+        let io = |e| Error::io(&path, "write", e);
+        let mut file = OpenOptions::new()
+            .create(true)
+            .read(true)
+            .append(true)
+            .open(&path)
+            .map_err(io)?;
+        lock::exclusive(&file, &path).map_err(|_| Error::content(&path, Busy))?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)
+            .map_err(|e| Error::io(&path, "read", e))?;
+        let whole = bytes
+            .iter()
+            .rposition(|b| *b == b'\n')
+            .map_or(0, |at| at + 1);
+        if whole < bytes.len() {
+            file.set_len(whole as u64).map_err(io)?;
+        }
+        Ok(Self {
+            path,
+            file: Mutex::new(file),
+        })
+    }
+
+    /// Appends an entry; where that fails, none of it stays.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn put(&self, entry: &Entry) -> Result<()> {
+        let mut line = serde_json::to_vec(entry).map_err(Error::method)?;
+        line.push(b'\n');
+        let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
+        let io = |e| Error::io(&self.path, "write", e);
+        let end = file.seek(SeekFrom::End(0)).map_err(io)?;
+        file.write_all(&line).map_err(|e| {
+            // What was written of the line must not stand before the next one.
+            let cut = file.set_len(end);
+            io(cut.err().unwrap_or(e))
+        })
+    }
+}
+
+/// A line of a journal that is none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Damaged {
+    /// The journal.
+    pub path: PathBuf,
+    /// Its line, from 1.
+    pub line: usize,
+}
+
+/// Everything that is known of a sweep's tasks, by key; of several entries of a task a success counts, of several such the first.
+#[derive(Debug, Default)]
+pub struct Known {
+    /// By key.
+    pub entries: HashMap<String, Entry>,
+    /// Lines that could not be read.
+    pub damaged: Vec<Damaged>,
+    /// Entries of other versions of the program, which do not count.
+    pub foreign: usize,
+}
+
+/// Reads all journals of a sweep's folder, whether or not they are being written.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn read_all(out: &Path) -> Result<Known> {
+    let folder = out.join(FOLDER);
+    let mut known = Known::default();
+    let listed = match std::fs::read_dir(&folder) {
+        Ok(listed) => listed,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(known),
+        Err(e) => return Err(Error::io(&folder, "read", e)),
+    };
+    let paths: std::io::Result<Vec<PathBuf>> =
+        listed.map(|entry| entry.map(|e| e.path())).collect();
+    let mut paths = paths.map_err(|e| Error::io(&folder, "read", e))?;
+    paths.retain(|path| path.extension().is_some_and(|e| e == "jsonl"));
+    paths.sort();
+    for path in paths {
+        let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, "read", e))?;
+        for (index, line) in bytes.split_inclusive(|b| *b == b'\n').enumerate() {
+            // The last line of a journal in use may be half written.
+            if line.last() != Some(&b'\n') {
+                break;
+            }
+            match serde_json::from_slice::<Entry>(line) {
+                Ok(entry) if entry.program != program() => known.foreign += 1,
+                Ok(entry) => known.add(entry),
+                Err(_) => known.damaged.push(Damaged {
+                    path: path.clone(),
+                    line: index + 1,
+                }),
+            }
+        }
+    }
+    Ok(known)
+}
+
+impl Known {
+    fn add(&mut self, entry: Entry) {
+        match self.entries.get(&entry.key) {
+            Some(before) if before.outcome.is_some() || entry.outcome.is_none() => {}
+            _ => {
+                self.entries.insert(entry.key.clone(), entry);
+            }
+        }
+    }
+}

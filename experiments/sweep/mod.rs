@@ -1,0 +1,30 @@
+//! Sweeps: ablations and comparisons from one file, on one machine or a cluster.
+//!
+//! A sweep file (TOML) names a [`Study`], what is varied, the instances and the seeds ([`definition`]). From it come a [`Plan`] of
+//! tasks that are keyed by their content, results in one [`journal`] per shard, and tables, tests and figures ([`report`]).
+//! A folder holds everything of a sweep:
+//!
+//! | file | what |
+//! | --- | --- |
+//! | `plan.jsonl` | arms, instances, tasks |
+//! | `journal/I-of-N.jsonl` | what shard `I` of `N` found, a line per task |
+//! | `results.csv`, `times.csv` | the same as tables; the first is the same bytes however the tasks were run |
+//! | `report/` | tables and figures |
+//! | `data/` | unpacked data sets |
+//!
+//! A key is a hash of study, settings, instance, seed and version of the program. So a changed arm is run alone, and results
+//! of another version are not mixed in.
+
+pub mod bundle;
+pub mod collect;
+pub mod definition;
+pub mod journal;
+pub mod plan;
+pub mod report;
+pub mod run;
+pub mod statistics;
+pub mod study;
+pub mod submit;
+
+pub use plan::Plan;
+pub use study::{Better, Outcome, Study};

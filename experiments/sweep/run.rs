@@ -1,0 +1,126 @@
+//! Running a shard of a plan on this machine.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use cpu_time::ThreadTime;
+use rayon::prelude::*;
+
+use super::journal::{Entry, Journal, read_all};
+use super::plan::{Plan, Task, program};
+use super::study::Study;
+use crate::experiments::frame::Progress;
+use crate::rng::stream;
+use crate::{Error, Result};
+
+/// Which tasks of a shard to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// Those without a result.
+    Missing,
+    /// Those without a result, and those that failed.
+    MissingAndFailed,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ran {
+    /// Tasks that were run and found something.
+    pub finished: usize,
+    /// Tasks that were run and failed.
+    pub failed: usize,
+    /// Tasks of the shard that had a result before.
+    pub before: usize,
+}
+
+/// A shard that there is not.
+#[derive(Debug, thiserror::Error)]
+#[error("shards are counted from 0: `i/n` with i below n")]
+struct NoShard;
+
+/// Reads `i/n`.
+///
+/// # Errors
+/// [`Error::Option`].
+pub fn shard(text: &str) -> Result<(usize, usize)> {
+    let bad = || Error::option("--shard", NoShard.to_string());
+    let (i, n) = text.split_once('/').ok_or_else(bad)?;
+    match (i.parse(), n.parse()) {
+        (Ok(i), Ok(n)) if i < n => Ok((i, n)),
+        _ => Err(bad()),
+    }
+}
+
+/// Runs the tasks of a shard on all threads; every `n`th task belongs to it, from the `i`th. Stops when `stop` is set; what is finished is kept.
+///
+/// # Errors
+/// [`Error::Io`] when a result cannot be kept, [`Error::Interrupted`]. A task that fails is a result.
+pub fn run(
+    plan: &Plan,
+    out: &Path,
+    study: &Study,
+    shard: (usize, usize),
+    wanted: Wanted,
+    stop: &AtomicBool,
+) -> Result<Ran> {
+    let journal = Journal::open(out, shard)?;
+    let known = read_all(out)?.entries;
+    let ours: Vec<&Task> = plan.tasks.iter().skip(shard.0).step_by(shard.1).collect();
+    let open = |task: &&&Task| match known.get(&task.key) {
+        None => true,
+        Some(entry) => entry.outcome.is_none() && wanted == Wanted::MissingAndFailed,
+    };
+    let tasks: Vec<&Task> = ours.iter().filter(open).copied().collect();
+    let before = ours.len() - tasks.len();
+    let progress = Progress::new(&plan.head.study, ours.len() as u64, before as u64);
+    let (finished, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let outcome: Result<()> = tasks.par_iter().try_for_each(|task| {
+        if stop.load(Ordering::Relaxed) {
+            return Err(Error::Interrupted);
+        }
+        let entry = entry(plan, out, study, task);
+        journal.put(&entry)?;
+        let counted = if entry.outcome.is_some() {
+            &finished
+        } else {
+            &failed
+        };
+        counted.fetch_add(1, Ordering::Relaxed);
+        progress.step();
+        Ok(())
+    });
+    outcome?;
+    Ok(Ran {
+        finished: finished.into_inner(),
+        failed: failed.into_inner(),
+        before,
+    })
+}
+
+/// Runs one task.
+pub fn entry(plan: &Plan, out: &Path, study: &Study, task: &Task) -> Entry {
+    let arm = &plan.head.arms[task.arm];
+    let start = ThreadTime::now();
+    let found = study.run(&arm.settings, &plan.path(out, task), chance(plan, task));
+    let seconds = start.elapsed().as_secs_f64();
+    let (outcome, failure) = match found {
+        Ok(outcome) => (Some(outcome), None),
+        Err(error) => (None, Some(error.to_string())),
+    };
+    Entry {
+        key: task.key.clone(),
+        program: program().into(),
+        outcome,
+        failure,
+        seconds,
+    }
+}
+
+/// The seed that a task hands on: the same for all arms where they are paired.
+fn chance(plan: &Plan, task: &Task) -> u64 {
+    use rand::RngExt;
+    match plan.head.paired_seeds {
+        true => task.seed,
+        false => stream(task.seed, &plan.head.arms[task.arm].name, 0).random(),
+    }
+}

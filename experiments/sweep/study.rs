@@ -1,0 +1,190 @@
+//! Studies: methods with typed settings, which a sweep can vary.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use schemars::{JsonSchema, schema_for};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::{Error, Result};
+
+/// Which values of a metric are better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Better {
+    /// Smaller ones.
+    Lower,
+    /// Larger ones.
+    Higher,
+}
+
+/// What one task found.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Value of each metric; the same task gives the same values, so times do not belong here.
+    pub metrics: BTreeMap<String, f64>,
+    /// The best value of the first metric after so many evaluations, where the method says so: `[evaluations, value]`, rising.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trace: Vec<[f64; 2]>,
+    /// No value of the first metric is better, as far as it is proven.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+}
+
+/// A setting, as `edifice sweep studies` lists it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Setting {
+    /// Name in the sweep file.
+    pub name: String,
+    /// Its type, in words.
+    pub kind: String,
+    /// Value when nothing is said.
+    pub default: Value,
+    /// What it means.
+    pub meaning: String,
+}
+
+type Run = Box<dyn Fn(&Map<String, Value>, &Path, u64) -> Result<Outcome> + Send + Sync>;
+type Check = Box<dyn Fn(&Map<String, Value>) -> std::result::Result<(), String> + Send + Sync>;
+
+/// A method that sweeps can run: a function and the type of its settings.
+pub struct Study {
+    /// `<paper>/<method>`.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub about: &'static str,
+    /// Folder of `datasets/` that `data` is relative to.
+    pub data: &'static str,
+    /// Its metrics; the first is what a report is about unless the file says otherwise.
+    pub metrics: &'static [(&'static str, Better)],
+    settings: Vec<Setting>,
+    defaults: Map<String, Value>,
+    check: Check,
+    run: Run,
+}
+
+impl Study {
+    /// A study of settings `S`, whose doc comments are their meanings. `run` is given the settings, the file of an instance and
+    /// a seed, and finds the same for the same.
+    pub fn new<S>(
+        name: &'static str,
+        about: &'static str,
+        data: &'static str,
+        metrics: &'static [(&'static str, Better)],
+        run: fn(&S, &Path, u64) -> Result<Outcome>,
+    ) -> Self
+    where
+        S: Serialize + DeserializeOwned + JsonSchema + Default + 'static,
+    {
+        let defaults = match serde_json::to_value(S::default()) {
+            Ok(Value::Object(defaults)) => defaults,
+            _ => Map::new(),
+        };
+        let typed = |settings: &Map<String, Value>| {
+            serde_json::from_value::<S>(Value::Object(settings.clone())).map_err(|e| e.to_string())
+        };
+        Self {
+            name,
+            about,
+            data,
+            metrics,
+            settings: settings(&schema_for!(S).to_value(), &defaults),
+            defaults,
+            check: Box::new(move |settings| typed(settings).map(|_| ())),
+            run: Box::new(move |settings, instance, seed| {
+                let settings = typed(settings).map_err(Error::method)?;
+                run(&settings, instance, seed)
+            }),
+        }
+    }
+
+    /// Every setting, in the order of its type.
+    pub fn settings(&self) -> &[Setting] {
+        &self.settings
+    }
+
+    /// All settings, those that are not given at their defaults.
+    pub fn complete(&self, given: &Map<String, Value>) -> Map<String, Value> {
+        let mut all = self.defaults.clone();
+        all.extend(
+            given
+                .iter()
+                .map(|(name, value)| (name.clone(), value.clone())),
+        );
+        all
+    }
+
+    /// Whether one setting has a value of its type; else why not.
+    pub fn check(&self, name: &str, value: &Value) -> std::result::Result<(), String> {
+        let one = Map::from_iter([(name.to_owned(), value.clone())]);
+        (self.check)(&self.complete(&one))
+    }
+
+    /// Runs one task.
+    ///
+    /// # Errors
+    /// What the method says.
+    pub fn run(
+        &self,
+        settings: &Map<String, Value>,
+        instance: &Path,
+        seed: u64,
+    ) -> Result<Outcome> {
+        (self.run)(settings, instance, seed)
+    }
+}
+
+/// The properties of a JSON schema with their defaults.
+fn settings(schema: &Value, defaults: &Map<String, Value>) -> Vec<Setting> {
+    let none = Map::new();
+    let properties = schema["properties"].as_object().unwrap_or(&none);
+    let setting = |(name, default): (&String, &Value)| {
+        let property = &properties.get(name).unwrap_or(&Value::Null);
+        Setting {
+            name: name.clone(),
+            kind: kind(property, schema),
+            default: default.clone(),
+            meaning: property["description"]
+                .as_str()
+                .unwrap_or_default()
+                .replace('\n', " "),
+        }
+    };
+    defaults.iter().map(setting).collect()
+}
+
+/// A type in words: `integer`, `one of "a", "b"`, `list of ...`.
+fn kind(property: &Value, schema: &Value) -> String {
+    if let Some(path) = property["$ref"].as_str() {
+        let target = path.trim_start_matches('#');
+        return schema
+            .pointer(target)
+            .map_or_else(|| "value".into(), |target| kind(target, schema));
+    }
+    for list in ["oneOf", "anyOf"] {
+        if let Some(choices) = property[list].as_array() {
+            let words: Vec<String> = choices.iter().map(|choice| kind(choice, schema)).collect();
+            return words.join(" or ");
+        }
+    }
+    if let Some(choices) = property["enum"].as_array() {
+        let words: Vec<String> = choices.iter().map(Value::to_string).collect();
+        return words.join(" or ");
+    }
+    if !property["const"].is_null() {
+        return property["const"].to_string();
+    }
+    match property["type"].as_str() {
+        Some("array") => format!("list of {}", kind(&property["items"], schema)),
+        Some(name) => name.to_owned(),
+        None => match property["type"].as_array() {
+            Some(names) => {
+                let words: Vec<&str> = names.iter().filter_map(Value::as_str).collect();
+                words.join(" or ")
+            }
+            None => "value".to_owned(),
+        },
+    }
+}

@@ -1,0 +1,81 @@
+//! `edifice facade hide`.
+
+use std::path::PathBuf;
+
+use edifice::io::{facade_json, write_atomic};
+use edifice::methods::structure_completion::task::Task;
+use edifice::shape::{AnnotatedFacade, Facade, Rect};
+use edifice::{Error, Result, rng};
+
+use super::input;
+use crate::cli::print;
+use crate::cli::reading::Reading;
+
+/// Options of `facade hide`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Whole facade: any format that `facade convert` reads
+    input: PathBuf,
+    /// What is hidden: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
+    /// corner of 0.6 x 0.6 (corner36), the lowest 40 % (bottom40)
+    #[arg(long, value_parser = Task::ALL.map(Task::name))]
+    task: String,
+    /// Seed
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Partial layout to write
+    #[arg(short, long, value_name = "PARTIAL.facade.json")]
+    output: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
+    /// End standard output with one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let Some(task) = Task::named(&args.task) else {
+        return Err(Error::option("--task", "unknown task"));
+    };
+    let whole = input::annotated(&args.input, &args.reading)?;
+    let facade = &whole.facade;
+    if facade.regions.is_empty() {
+        return Err(Error::content(
+            &args.input,
+            "the facade has no elements to hide",
+        ));
+    }
+    let rects: Vec<Rect> = facade.regions.iter().map(|r| r.rect).collect();
+    let mut stream = rng::stream(args.seed, "facade hide", 0);
+    let (hidden, unknown) = task.split(facade.width, facade.height, &rects, &mut stream);
+    let mut partial = AnnotatedFacade {
+        facade: Facade {
+            regions: Vec::new(),
+            ..facade.clone()
+        },
+        notes: Vec::new(),
+        unknown,
+    };
+    for ((region, note), hidden) in facade.regions.iter().zip(&whole.notes).zip(&hidden) {
+        if !hidden {
+            partial.facade.regions.push(region.clone());
+            partial.notes.push(note.clone());
+        }
+    }
+    write_atomic(
+        &args.output,
+        facade_json::annotated_to_string(&partial).as_bytes(),
+    )?;
+    let (seen, all) = (partial.facade.regions.len(), rects.len());
+    if args.json {
+        let about = serde_json::json!({
+            "task": task.name(), "observed": seen, "hidden": all - seen, "seed": args.seed,
+        });
+        return print::line(&about.to_string());
+    }
+    print::line(&format!(
+        "{}: {seen} of {all} elements observed",
+        args.output.display()
+    ))
+}

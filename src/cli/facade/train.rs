@@ -1,0 +1,66 @@
+//! `edifice facade train`.
+
+use std::path::PathBuf;
+
+use edifice::io::write_atomic;
+use edifice::methods::structure_completion::layout::scope::in_scope;
+use edifice::methods::structure_completion::model::Model;
+use edifice::{Error, Result};
+
+use super::input;
+use crate::cli::print;
+use crate::cli::reading::Reading;
+
+/// Options of `facade train`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  edifice facade train layouts/ -o paris.completion.json\n  edifice facade train a.facade.json b.facade.json cmp_b0001.xml -o mine.completion.json"
+)]
+pub struct Args {
+    /// Whole facades, and folders of them (.facade.json, .xml, .png)
+    #[arg(required = true, value_name = "LAYOUT")]
+    inputs: Vec<PathBuf>,
+    /// Model to write
+    #[arg(short, long, value_name = "MODEL.completion.json")]
+    output: PathBuf,
+    /// Seed
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    reading: Reading,
+    /// End standard output with one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let start = std::time::Instant::now();
+    let layouts = input::layouts(&args.inputs, &args.reading)?;
+    let read = layouts.len();
+    let regular = layouts.iter().filter(|l| in_scope(l)).count();
+    let model = Model::train(layouts, args.seed).map_err(Error::method)?;
+    let used = model.examples.len();
+    write_atomic(&args.output, model.to_json().as_bytes())?;
+    if used < read {
+        print::message(&format!(
+            "warning: {} facades without windows were left out",
+            read - used
+        ));
+    }
+    if used == 1 {
+        print::message(
+            "warning: one facade says how its lines are spaced, but not how probable a completed element is; give several",
+        );
+    }
+    if args.json {
+        let about = serde_json::json!({
+            "facades": used, "regular": regular, "seconds": start.elapsed().as_secs_f64(), "seed": args.seed,
+        });
+        return print::line(&about.to_string());
+    }
+    print::line(&format!(
+        "{}: learnt from {used} facades, {regular} of them with a regular lattice of windows",
+        args.output.display()
+    ))
+}

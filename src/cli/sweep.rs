@@ -1,0 +1,289 @@
+//! `edifice sweep`: ablations and comparisons from one file.
+
+mod studies;
+mod submit;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::{Args, Subcommand};
+use edifice::experiments::studies as all_studies;
+use edifice::experiments::sweep::collect::{ArmState, RESULTS, collect, state};
+use edifice::experiments::sweep::plan::{PLAN, Plan};
+use edifice::experiments::sweep::run::{Wanted, run as run_shard, shard};
+use edifice::experiments::sweep::{Study, bundle, report};
+use edifice::{Error, Result};
+
+use super::print;
+
+/// Commands of sweeps.
+#[derive(Subcommand)]
+pub enum Command {
+    /// List the studies with every setting, its type, default and meaning
+    Studies(studies::Options),
+    /// Write the plan: arms, instances, tasks
+    #[command(after_help = "Example: edifice sweep plan ablation.toml --out ablation")]
+    Plan(Common),
+    /// Run the tasks that have no result yet, here
+    #[command(after_help = "Example: edifice sweep run ablation.toml --out ablation --shard 0/3")]
+    Run(Run),
+    /// Run the tasks that failed or have no result, here
+    Retry(Run),
+    /// Write the scripts of a cluster, and submit them
+    Submit(submit::Options),
+    /// Say what is finished, failed and missing
+    Status(Common),
+    /// Write results.csv
+    Collect(Common),
+    /// Write tables, tests and figures
+    Report(Report),
+    /// Pack file, plan, instances and results into one zip
+    Bundle(Bundle),
+    /// Check a bundle: its digests, and a sample of its tasks run again
+    Verify(Verify),
+}
+
+/// What all commands are told.
+#[derive(Args)]
+pub struct Common {
+    /// Sweep file
+    sweep: PathBuf,
+    /// Folder of the sweep's plan and results
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print one JSON object as the last line
+    #[arg(long)]
+    json: bool,
+}
+
+/// Options of `run` and `retry`.
+#[derive(Args)]
+pub struct Run {
+    #[command(flatten)]
+    common: Common,
+    /// Run only every Nth task, from the Ith: `I/N`, counted from 0
+    #[arg(long, default_value = "0/1", value_name = "I/N")]
+    shard: String,
+    /// Threads; 0 for one per core
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+}
+
+/// Options of `report`.
+#[derive(Args)]
+pub struct Report {
+    #[command(flatten)]
+    common: Common,
+    /// Compare on what all arms have, though tasks are missing or failed
+    #[arg(long)]
+    allow_missing: bool,
+}
+
+/// Options of `bundle`.
+#[derive(Args)]
+pub struct Bundle {
+    #[command(flatten)]
+    common: Common,
+    /// File to write
+    #[arg(short, value_name = "ZIP")]
+    output: PathBuf,
+}
+
+/// Options of `verify`.
+#[derive(Args)]
+pub struct Verify {
+    /// Bundle
+    bundle: PathBuf,
+    /// Tasks to run again
+    #[arg(long, default_value_t = 10)]
+    sample: usize,
+    /// Print one JSON object as the last line
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs a command.
+pub fn run(command: Command) -> Result<()> {
+    let studies = all_studies();
+    match command {
+        Command::Studies(options) => studies::list(&studies, &options),
+        Command::Plan(common) => plan(&common, &studies),
+        Command::Run(options) => tasks(&options, &studies, Wanted::Missing),
+        Command::Retry(options) => tasks(&options, &studies, Wanted::MissingAndFailed),
+        Command::Submit(options) => submit::submit(&options, &studies),
+        Command::Status(common) => status(&common),
+        Command::Collect(common) => {
+            let plan = Plan::read(&common.out)?;
+            let (rows, tasks) = collect(&plan, &common.out)?;
+            print::message(&format!(
+                "{rows} rows of {tasks} finished tasks in {}",
+                common.out.join(RESULTS).display()
+            ));
+            json(
+                &common,
+                &serde_json::json!({ "rows": rows, "finished": tasks, "tasks": plan.tasks.len() }),
+            )
+        }
+        Command::Report(options) => {
+            let plan = Plan::read(&options.common.out)?;
+            collect(&plan, &options.common.out)?;
+            let study = plan.study(&studies)?;
+            let text = report::report(&plan, &options.common.out, study, options.allow_missing)?;
+            print::line(text.trim_end())
+        }
+        Command::Bundle(options) => {
+            let plan = Plan::read(&options.common.out)?;
+            let files = bundle::bundle(
+                &plan,
+                &options.common.sweep,
+                &options.common.out,
+                &options.output,
+            )?;
+            print::message(&format!("{files} files in {}", options.output.display()));
+            json(&options.common, &serde_json::json!({ "files": files }))
+        }
+        Command::Verify(options) => verify(&options, &studies),
+    }
+}
+
+fn json(common: &Common, value: &serde_json::Value) -> Result<()> {
+    match common.json {
+        true => print::line(&value.to_string()),
+        false => Ok(()),
+    }
+}
+
+fn make(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))
+}
+
+fn plan(common: &Common, studies: &[Study]) -> Result<()> {
+    make(&common.out)?;
+    let plan = Plan::make(&common.sweep, &common.out, studies)?;
+    plan.write(&common.out)?;
+    let state = state(&plan, &common.out)?;
+    let finished: usize = state.arms.iter().map(|arm| arm.finished).sum();
+    let left = plan.tasks.len() - finished;
+    for arm in &plan.head.arms {
+        print::line(&arm.name)?;
+    }
+    let time = state.mean_seconds.map_or_else(String::new, |mean| {
+        format!(
+            ", {} of work left by the mean of those finished",
+            words(mean * left as f64)
+        )
+    });
+    print::message(&format!(
+        "{} arms x {} instances x {} seeds = {} tasks, {finished} finished before{time}; plan in {}",
+        plan.head.arms.len(),
+        plan.head.instances.len(),
+        plan.tasks.len() / (plan.head.arms.len() * plan.head.instances.len()),
+        plan.tasks.len(),
+        common.out.join(PLAN).display()
+    ));
+    let estimate = state.mean_seconds.map(|mean| mean * left as f64);
+    json(
+        common,
+        &serde_json::json!({ "tasks": plan.tasks.len(), "finished": finished, "seconds_left": estimate }),
+    )
+}
+
+fn tasks(options: &Run, studies: &[Study], wanted: Wanted) -> Result<()> {
+    let common = &options.common;
+    let shard = shard(&options.shard)?;
+    make(&common.out)?;
+    let plan = Plan::of(&common.sweep, &common.out, studies)?;
+    let study = plan.study(studies)?;
+    static STOP: AtomicBool = AtomicBool::new(false);
+    // A second handler is refused only where one is set already.
+    let _ = ctrlc::set_handler(|| STOP.store(true, std::sync::atomic::Ordering::Relaxed));
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build();
+    let pool = pool.map_err(Error::method)?;
+    let ran = pool.install(|| run_shard(&plan, &common.out, study, shard, wanted, &STOP))?;
+    print::message(&format!(
+        "{} tasks finished, {} failed, {} had a result before",
+        ran.finished, ran.failed, ran.before
+    ));
+    json(
+        common,
+        &serde_json::json!({ "finished": ran.finished, "failed": ran.failed, "before": ran.before }),
+    )
+}
+
+fn status(common: &Common) -> Result<()> {
+    let plan = Plan::read(&common.out)?;
+    let state = state(&plan, &common.out)?;
+    print::line("finished  failed  missing  arm")?;
+    let mut left = 0;
+    for ArmState {
+        arm,
+        finished,
+        failed,
+        missing,
+    } in &state.arms
+    {
+        print::line(&format!("{finished:>8}{failed:>8}{missing:>9}  {arm}"))?;
+        left += missing + failed;
+    }
+    for (reason, count) in &state.failures {
+        print::message(&format!("failed {count} times: {reason}"));
+    }
+    for damaged in &state.damaged {
+        print::message(&format!(
+            "warning: {}: line {} cannot be read; its task counts as missing",
+            damaged.path.display(),
+            damaged.line
+        ));
+    }
+    if state.foreign > 0 {
+        print::message(&format!(
+            "warning: {} results of other versions of the program do not count",
+            state.foreign
+        ));
+    }
+    if let Some(mean) = state.mean_seconds {
+        print::message(&format!(
+            "{} per task, {} of work left",
+            words(mean),
+            words(mean * left as f64)
+        ));
+    }
+    json(
+        common,
+        &serde_json::json!({ "arms": state.arms, "seconds_per_task": state.mean_seconds }),
+    )
+}
+
+fn verify(options: &Verify, studies: &[Study]) -> Result<()> {
+    let folder = tempfile::tempdir().map_err(|e| Error::io(&options.bundle, "unpack", e))?;
+    let found = bundle::verify(&options.bundle, folder.path(), studies, options.sample)?;
+    for line in &found.different {
+        print::message(&format!("different: {line}"));
+    }
+    print::message(&format!(
+        "digests agree; {} tasks were run again, {} rows differ",
+        found.rerun,
+        found.different.len()
+    ));
+    if options.json {
+        print::line(&serde_json::to_string(&found).map_err(Error::method)?)?;
+    }
+    match found.different.is_empty() {
+        true => Ok(()),
+        false => Err(Error::method(format!(
+            "{} rows differ from the bundle's",
+            found.different.len()
+        ))),
+    }
+}
+
+/// A time in words.
+fn words(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{s:.2} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}

@@ -1,0 +1,123 @@
+//! `edifice sweep submit`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use clap::{Args, ValueEnum};
+use edifice::experiments::sweep::submit::{array_limit, packing, scripts, snakefile};
+use edifice::experiments::sweep::{Plan, Study};
+use edifice::{Error, Result, file};
+
+use super::super::print;
+use super::Common;
+
+/// Who runs the jobs.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Engine {
+    /// Slurm's job arrays
+    Slurm,
+    /// Snakemake
+    Snakemake,
+}
+
+/// Options of `submit`.
+#[derive(Args)]
+#[command(
+    after_help = "Example: edifice sweep submit ablation.toml --out ablation --engine slurm --dry-run"
+)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    /// Who runs the jobs
+    #[arg(long, value_enum)]
+    engine: Engine,
+    /// Write the scripts and start nothing
+    #[arg(long)]
+    dry_run: bool,
+}
+
+/// Writes the scripts, and starts them.
+pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
+    let common = &options.common;
+    super::make(&common.out)?;
+    let plan = Plan::of(&common.sweep, &common.out, studies)?;
+    let absolute = |path: &Path| std::path::absolute(path).map_err(|e| Error::io(path, "find", e));
+    let (sweep, out) = (absolute(&common.sweep)?, absolute(&common.out)?);
+    let program = std::env::current_exe().map_err(|e| Error::io("edifice".as_ref(), "find", e))?;
+    let packing = packing(&plan, &out)?;
+    let mut written: Vec<PathBuf> = Vec::new();
+    let mut write = |name: &str, text: &str| {
+        let path = out.join(name);
+        written.push(path.clone());
+        file::write_atomic(&path, text.as_bytes())
+    };
+    match options.engine {
+        Engine::Slurm => {
+            let limit = array_limit();
+            if !limit.asked {
+                print::message(
+                    "note: no answer from scontrol; arrays are split at Slurm's default MaxArraySize of 1001",
+                );
+            }
+            for (name, text) in scripts(&plan, &sweep, &out, &program, packing, limit.size) {
+                write(&name, &text)?;
+            }
+        }
+        Engine::Snakemake => write(
+            "Snakefile",
+            &snakefile(&plan, &sweep, &out, &program, packing),
+        )?,
+    }
+    for path in &written {
+        print::line(&path.display().to_string())?;
+    }
+    print::message(&format!(
+        "{} tasks in {} jobs",
+        plan.tasks.len(),
+        packing.shards
+    ));
+    if !options.dry_run {
+        match options.engine {
+            Engine::Slurm => sbatch(&written)?,
+            Engine::Snakemake => print::message(
+                "run snakemake with the file above, for example: snakemake --cores 2 --snakefile Snakefile",
+            ),
+        }
+    }
+    super::json(
+        common,
+        &serde_json::json!({ "tasks": plan.tasks.len(), "jobs": packing.shards, "files": written }),
+    )
+}
+
+/// Submits the arrays, then what collects when they have ended.
+fn sbatch(scripts: &[PathBuf]) -> Result<()> {
+    let mut ids: Vec<String> = Vec::new();
+    for (index, script) in scripts.iter().enumerate() {
+        let mut command = Command::new("sbatch");
+        command.arg("--parsable");
+        if index + 1 == scripts.len() {
+            command.arg(format!("--dependency=afterany:{}", ids.join(":")));
+        }
+        let output = command
+            .arg(script)
+            .output()
+            .map_err(|e| Error::io("sbatch".as_ref(), "run", e))?;
+        if !output.status.success() {
+            return Err(Error::method(format!(
+                "sbatch refused {}: {}",
+                script.display(),
+                String::from_utf8_lossy(&output.stderr).trim()
+            )));
+        }
+        let id = String::from_utf8_lossy(&output.stdout)
+            .trim()
+            .split(';')
+            .next()
+            .unwrap_or_default()
+            .to_owned();
+        print::message(&format!("submitted {} as job {id}", script.display()));
+        ids.push(id);
+    }
+    Ok(())
+}

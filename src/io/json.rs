@@ -1,0 +1,67 @@
+//! What all JSON formats share: errors that name the place, and the keys `format` and `version`.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use crate::{Error, Result};
+
+/// A text as JSON.
+pub(super) fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// A number as JSON; it reads back to the same bits.
+pub(super) fn number(value: f64) -> String {
+    serde_json::Value::from(value).to_string()
+}
+
+/// Parses a whole JSON file into `T`, with the JSON path, line and column in errors.
+///
+/// # Errors
+/// [`Error::Input`] for malformed JSON, wrong types, missing or duplicate keys, numbers that do not
+/// fit, and text after the value.
+pub fn parse_json<T: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<T> {
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let value = serde_path_to_error::deserialize(&mut json).map_err(|e| {
+        let place = match e.path().to_string() {
+            unknown if unknown == "." || unknown.contains('?') => {
+                format!("line {}, column {}", e.inner().line(), e.inner().column())
+            }
+            place => place,
+        };
+        Error::input(path, place, e.into_inner())
+    })?;
+    json.end().map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        Error::input(path, place, e)
+    })?;
+    Ok(value)
+}
+
+/// Checks the keys `format` and `version` before anything else, so that a file of another kind is
+/// called that, and not "missing field".
+///
+/// # Errors
+/// [`Error::Input`] at `format` or `version`.
+pub fn check_header(bytes: &[u8], path: &Path, format: &str, version: u64) -> Result<()> {
+    let header: Header = parse_json(bytes, path)?;
+    if header.format != format {
+        let found = header.format;
+        let message = format!("unknown format {found:?}, expected {format:?}");
+        return Err(Error::input(path, "format", message));
+    }
+    if header.version != version {
+        let found = header.version;
+        let message = format!("unknown version {found}, expected {version}");
+        return Err(Error::input(path, "version", message));
+    }
+    Ok(())
+}
+
+#[derive(Deserialize)]
+struct Header {
+    format: String,
+    version: u64,
+}

@@ -1,0 +1,60 @@
+//! The lattice of the observed elements, continued at its typical spacing.
+
+use super::completion;
+use crate::methods::structure_completion::completion::{Completion, Reason};
+use crate::methods::structure_completion::layout::lines::{Line, lines, median};
+use crate::methods::structure_completion::layout::{Class, Element};
+use crate::methods::structure_completion::partial::PartialLayout;
+use crate::shape::{Axis, Rect};
+
+/// Continues the columns and rows of each class that has at least two of one of them, at their median gap, to the
+/// borders; with `fill` also in gaps wide enough for further lines. Every free cell that may hold an
+/// element gets one.
+pub fn lattice(partial: &PartialLayout, fill: bool) -> Completion {
+    let mut elements = Vec::new();
+    for class in Class::ALL {
+        let rects: Vec<Rect> = partial.of(class).map(|e| e.rect).collect();
+        if rects.len() < 2 {
+            continue;
+        }
+        let columns = continued(&lines(&rects, Axis::X).0, partial.width, fill);
+        let rows = continued(&lines(&rects, Axis::Y).0, partial.height, fill);
+        for row in &rows {
+            for column in &columns {
+                let (x, y) = (column.at - column.size / 2.0, row.at - row.size / 2.0);
+                elements.push(Element::new(class, Rect::new(x, y, column.size, row.size)));
+            }
+        }
+    }
+    completion(partial, elements, Reason::Lattice)
+}
+
+/// Lines with further ones at the median gap, as long as they fit.
+fn continued(lines: &[Line], length: f64, fill: bool) -> Vec<Line> {
+    let gaps: Vec<f64> = lines.windows(2).map(|w| w[1].at - w[0].at).collect();
+    let mut all = lines.to_vec();
+    let (Some(gap), Some(first), Some(last)) =
+        (median(gaps.iter().copied()), lines.first(), lines.last())
+    else {
+        return all;
+    };
+    let mut step = |from: &Line, direction: f64| {
+        let mut at = from.at + direction * gap;
+        while at - from.size / 2.0 >= 0.0 && at + from.size / 2.0 <= length {
+            all.push(Line { at, ..*from });
+            at += direction * gap;
+        }
+    };
+    step(first, -1.0);
+    step(last, 1.0);
+    if fill {
+        for (pair, wide) in lines.windows(2).zip(&gaps) {
+            let parts = (wide / gap).round() as usize;
+            for k in 1..parts {
+                let at = pair[0].at + wide * k as f64 / parts as f64;
+                all.push(Line { at, ..pair[0] });
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,44 @@
+//! Low-rank completion of the matrix of cells (Fig. 19).
+
+use super::completion;
+use crate::methods::structure_completion::completion::{Completion, Reason};
+use crate::methods::structure_completion::layout::lines::lines;
+use crate::methods::structure_completion::layout::{Class, Element};
+use crate::methods::structure_completion::partial::PartialLayout;
+use crate::model::low_rank::{Limits, soft_impute};
+use crate::shape::{Axis, Rect};
+
+/// Penalty of the nuclear norm.
+const LAMBDA: f64 = 0.5;
+/// A cell is filled where its completed value is above this.
+const FILLED: f64 = 0.5;
+
+/// For each class the matrix over the observed columns and rows: 1 where an element is observed, 0 on known wall,
+/// otherwise unknown; completed by soft-impute. It has no lines but the observed ones.
+pub fn low_rank(partial: &PartialLayout) -> Completion {
+    let mut elements = Vec::new();
+    for class in Class::ALL {
+        let rects: Vec<Rect> = partial.of(class).map(|e| e.rect).collect();
+        let (columns, column) = lines(&rects, Axis::X);
+        let (rows, row) = lines(&rects, Axis::Y);
+        let mut known: Vec<Option<f64>> = Vec::with_capacity(columns.len() * rows.len());
+        for r in &rows {
+            for c in &columns {
+                known.push((!partial.is_unknown(c.at, r.at)).then_some(0.0));
+            }
+        }
+        for (r, c) in row.iter().zip(&column) {
+            known[r * columns.len() + c] = Some(1.0);
+        }
+        let values = soft_impute(rows.len(), columns.len(), &known, LAMBDA, Limits::default());
+        for (r, row) in rows.iter().enumerate() {
+            for (c, column) in columns.iter().enumerate() {
+                if values[(r, c)] > FILLED {
+                    let (x, y) = (column.at - column.size / 2.0, row.at - row.size / 2.0);
+                    elements.push(Element::new(class, Rect::new(x, y, column.size, row.size)));
+                }
+            }
+        }
+    }
+    completion(partial, elements, Reason::LowRank)
+}

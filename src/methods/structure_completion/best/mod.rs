@@ -1,0 +1,36 @@
+//! Completion by the choice of elements from a pool of exact draws, mirrored layouts and transfers.
+//!
+//! 1. [`pool`]: layouts by the exact [`chain`] over grid lines, the same with [`symmetry`], with [`transfer`] from the
+//!    database below the lowest seen row, and database facades warped to the seen lines.
+//! 2. [`candidates`]: every distinct element, with the share of the pool that supports it and features of its place.
+//! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
+//! 4. [`select`]: the set of elements with the largest expected F1.
+
+pub mod candidates;
+pub mod chain;
+pub mod density;
+pub mod fill;
+pub mod learn;
+pub mod modes;
+pub mod pool;
+pub mod scene;
+pub mod select;
+pub mod symmetry;
+pub mod transfer;
+
+use rand::{Rng, RngExt};
+
+/// Draws an index with the given weights; 0 where all are zero.
+fn categorical<R: Rng>(weights: &[f64], rng: &mut R) -> usize {
+    let total: f64 = weights.iter().sum();
+    let mut left = rng.random::<f64>() * total;
+    let mut last = 0;
+    for (index, &weight) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+        last = index;
+        left -= weight;
+        if left < 0.0 {
+            break;
+        }
+    }
+    last
+}

@@ -1,0 +1,332 @@
+//! A pool of weighted layouts: exact draws of lines, mirrored layouts, transfers from the database.
+
+use rand::Rng;
+
+use super::categorical;
+use super::chain::{Chain, LineProblem};
+use super::density::Spacing;
+use super::fill::{fill, lines_at};
+use super::scene::Scene;
+use super::symmetry;
+use super::transfer;
+use crate::methods::structure_completion::baselines::lattice;
+use crate::methods::structure_completion::completion::Reason;
+use crate::methods::structure_completion::layout::Element;
+use crate::methods::structure_completion::model::{Example, Model};
+use crate::methods::structure_completion::partial::PartialLayout;
+use crate::rng::Stream;
+use crate::shape::Axis;
+
+/// Draws of each kind.
+pub const DRAWS: usize = 16;
+/// Bins of the chain for the extent of an element.
+const BINS_PER_SIZE: f64 = 8.0;
+/// Most bins of an axis.
+const MOST_BINS: usize = 480;
+
+/// Where a layout of the pool comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Lines by the chain.
+    Chain,
+    /// Mirrored, then lines by the chain.
+    Mirrored,
+    /// Lines by the chain, the part below the lowest seen row from the database.
+    Below,
+    /// Mirrored, and the part below from the database.
+    MirroredBelow,
+    /// A database facade warped to the seen lines.
+    Warped,
+    /// Mirror images alone.
+    Mirror,
+    /// The lattice of each class, continued at its typical gap.
+    Lattice,
+}
+
+impl Origin {
+    /// All origins.
+    pub const ALL: [Origin; 7] = [
+        Origin::Chain,
+        Origin::Mirrored,
+        Origin::Below,
+        Origin::MirroredBelow,
+        Origin::Warped,
+        Origin::Mirror,
+        Origin::Lattice,
+    ];
+
+    /// Whether a layout of this origin is a draw of a whole completion.
+    pub fn is_whole(self) -> bool {
+        !matches!(self, Origin::Mirror | Origin::Lattice)
+    }
+}
+
+/// A layout of the pool.
+#[derive(Debug, Clone)]
+pub struct Draw {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Share among the layouts of its origin.
+    pub weight: f64,
+    /// Added elements with their reasons.
+    pub added: Vec<(Element, Reason)>,
+    /// Columns and rows of its lattice.
+    pub lattice: (usize, usize),
+}
+
+/// The database, and how its rows compare with the lowest seen one.
+struct Database<'a> {
+    examples: &'a [(usize, &'a Example)],
+    rows: transfer::Surroundings,
+}
+
+/// Makes the pool; database facades in `without` are left out.
+pub fn pool(
+    partial: &PartialLayout,
+    model: &Model,
+    without: &[usize],
+    rng: &mut Stream,
+) -> Vec<Draw> {
+    let examples: Vec<(usize, &Example)> = (model.examples.iter().enumerate())
+        .filter(|(index, _)| !without.contains(index))
+        .collect();
+    let fallback = model.window_size(partial.width, partial.height);
+    let scene = Scene::new(partial, partial.observed.clone(), fallback);
+    let database = Database {
+        rows: transfer::Surroundings::new(&scene, &examples),
+        examples: &examples,
+    };
+    let mut draws = Vec::new();
+    let rows = row_draws(&scene, &model.rows, 4 * DRAWS, rng);
+    let columns = column_draws(&scene, &model.columns, 2 * DRAWS, rng);
+    let (plain, lower) = columns.split_at(columns.len() / 2);
+    let mut rows = rows.iter().cycle();
+    let mut next_rows = || rows.next().cloned().unwrap_or_default();
+    for invented in plain {
+        draws.push(whole(
+            &scene,
+            invented,
+            &next_rows(),
+            None,
+            Origin::Chain,
+            rng,
+        ));
+    }
+    for invented in lower {
+        let below = Some(&database);
+        draws.push(whole(
+            &scene,
+            invented,
+            &next_rows(),
+            below,
+            Origin::Below,
+            rng,
+        ));
+    }
+    if !scene.elements.is_empty() {
+        for (axis, count) in sampled_axes(&scene, &model.columns, DRAWS, rng) {
+            let added = symmetry::additions(&scene, axis);
+            let mut elements = scene.elements.clone();
+            elements.extend(&added);
+            let mirrored = Scene::new(partial, elements, fallback);
+            let images: Vec<(Element, Reason)> =
+                added.iter().map(|e| (*e, Reason::Symmetry)).collect();
+            draws.push(Draw {
+                origin: Origin::Mirror,
+                weight: count as f64,
+                added: images.clone(),
+                lattice: (mirrored.columns.len(), mirrored.rows.len()),
+            });
+            for (k, invented) in column_draws(&mirrored, &model.columns, 2 * count, rng)
+                .iter()
+                .enumerate()
+            {
+                let below = (k % 2 == 1).then_some(&database);
+                let origin = if k % 2 == 1 {
+                    Origin::MirroredBelow
+                } else {
+                    Origin::Mirrored
+                };
+                let mut draw = whole(&mirrored, invented, &next_rows(), below, origin, rng);
+                draw.added.extend(images.iter().copied());
+                draws.push(draw);
+            }
+        }
+    }
+    draws.extend(warped(&scene, &examples));
+    let open = lattice(partial, false);
+    draws.push(Draw {
+        origin: Origin::Lattice,
+        weight: 1.0,
+        added: open.added.iter().map(|a| (a.element, a.reason)).collect(),
+        lattice: (scene.columns.len(), scene.rows.len()),
+    });
+    for origin in Origin::ALL {
+        let total: f64 = draws
+            .iter()
+            .filter(|d| d.origin == origin)
+            .map(|d| d.weight)
+            .sum();
+        for draw in draws.iter_mut().filter(|d| d.origin == origin) {
+            draw.weight /= total;
+        }
+    }
+    draws
+}
+
+/// Axes with the number of draws for each.
+fn sampled_axes<R: Rng>(
+    scene: &Scene,
+    spacing: &Spacing,
+    count: usize,
+    rng: &mut R,
+) -> Vec<(f64, usize)> {
+    let axes = symmetry::axes(scene, spacing);
+    let weights: Vec<f64> = axes.iter().map(|a| a.1).collect();
+    let mut counts = vec![0; axes.len()];
+    for _ in 0..count {
+        counts[categorical(&weights, rng)] += 1;
+    }
+    let drawn = axes.iter().zip(counts).filter(|(_, count)| *count > 0);
+    drawn.map(|(axis, count)| (axis.0, count)).collect()
+}
+
+/// One layout from invented columns and rows; with a database, what lies below the lowest seen row comes from there.
+fn whole<R: Rng>(
+    scene: &Scene,
+    columns: &[f64],
+    rows: &[f64],
+    database: Option<&Database>,
+    origin: Origin,
+    rng: &mut R,
+) -> Draw {
+    let columns = lines_at(&scene.columns, columns, scene.size.0);
+    let mut transferred = Vec::new();
+    let mut invented = rows.to_vec();
+    let mut count = None;
+    if let (Some(database), Some(last)) = (database, scene.rows.first()) {
+        let choices = database.rows.choices(&columns, scene.size.0);
+        let weights: Vec<f64> = choices.iter().map(|b| b.weight).collect();
+        if !choices.is_empty() {
+            let choice = choices[categorical(&weights, rng)];
+            let example = database.examples[choice.example].1;
+            transferred = transfer::below_elements(scene, &columns, example, choice.row);
+            invented.retain(|&y| y > last.at);
+            count = Some(choice.row);
+        }
+    }
+    let rows = lines_at(&scene.rows, &invented, scene.size.1);
+    let mut added: Vec<(Element, Reason)> = fill(scene, &columns, &rows, rng)
+        .into_iter()
+        .map(|e| (e, Reason::Lattice))
+        .collect();
+    let (width, height) = (scene.partial.width, scene.partial.height);
+    for mut element in transferred {
+        element.rect = transfer::inside(element.rect, width, height);
+        let others = scene.elements.iter().chain(added.iter().map(|(e, _)| e));
+        let taken = others.into_iter().any(|e| e.excludes(&element));
+        if !taken && scene.partial.allows(&element) {
+            added.push((element, Reason::Database));
+        }
+    }
+    Draw {
+        origin,
+        weight: 1.0,
+        lattice: (columns.len(), rows.len() + count.unwrap_or(0)),
+        added,
+    }
+}
+
+/// The best warped facades.
+fn warped(scene: &Scene, examples: &[(usize, &Example)]) -> Vec<Draw> {
+    let mut found: Vec<(transfer::Warped, (usize, usize))> = examples
+        .iter()
+        .filter_map(|(_, e)| Some((transfer::warp(scene, e)?, (e.columns.len(), e.rows.len()))))
+        .collect();
+    found.sort_by(|a, b| b.0.log_weight.total_cmp(&a.0.log_weight));
+    found.truncate(DRAWS);
+    let top = found.first().map_or(0.0, |f| f.0.log_weight);
+    let draw = |(warped, lattice): (transfer::Warped, (usize, usize))| Draw {
+        origin: Origin::Warped,
+        weight: (warped.log_weight - top).exp(),
+        added: warped
+            .elements
+            .iter()
+            .map(|e| (*e, Reason::Database))
+            .collect(),
+        lattice,
+    };
+    found.into_iter().map(draw).collect()
+}
+
+/// Positions of invented columns.
+fn column_draws<R: Rng>(
+    scene: &Scene,
+    spacing: &Spacing,
+    count: usize,
+    rng: &mut R,
+) -> Vec<Vec<f64>> {
+    draws(scene, Axis::X, spacing, count, rng)
+}
+
+/// Positions of invented rows; the chain runs from the top down.
+fn row_draws<R: Rng>(scene: &Scene, spacing: &Spacing, count: usize, rng: &mut R) -> Vec<Vec<f64>> {
+    draws(scene, Axis::Y, spacing, count, rng)
+}
+
+fn draws<R: Rng>(
+    scene: &Scene,
+    axis: Axis,
+    spacing: &Spacing,
+    count: usize,
+    rng: &mut R,
+) -> Vec<Vec<f64>> {
+    let length = scene.length(axis);
+    let (problem, bin) = line_problem(scene, axis);
+    let drawn = Chain::new(&problem, spacing, false).draw(count, rng);
+    if drawn.is_empty() {
+        return vec![Vec::new(); count];
+    }
+    let position = |bins: usize| {
+        let at = (bins as f64 + 0.5) * bin;
+        if axis == Axis::X { at } else { length - at }
+    };
+    let invented = |lines: Vec<usize>| {
+        let new = lines
+            .into_iter()
+            .filter(|b| problem.observed.binary_search(b).is_err());
+        new.map(position).collect()
+    };
+    drawn.into_iter().map(invented).collect()
+}
+
+/// The lines of a scene along an axis as a problem of the chain, and the length of a bin. Rows run down.
+pub fn line_problem(scene: &Scene, axis: Axis) -> (LineProblem, f64) {
+    let (length, size) = (scene.length(axis), scene.extent(axis));
+    let bins = (length / size * BINS_PER_SIZE)
+        .ceil()
+        .clamp(8.0, MOST_BINS as f64) as usize;
+    let bin = length / bins as f64;
+    let along = |at: f64| if axis == Axis::X { at } else { length - at };
+    let mut observed: Vec<usize> = (scene.lines(axis).iter())
+        .map(|l| ((along(l.at) / bin) as usize).min(bins - 1))
+        .collect();
+    observed.sort_unstable();
+    observed.dedup();
+    let closest = observed.windows(2).map(|w| w[1] - w[0]).min();
+    let widest = observed.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+    let size = size / bin;
+    let least = (1.05 * size).ceil() as usize;
+    let evidence = (0..bins)
+        .map(|b| scene.evidence(axis, along((b as f64 + 0.5) * bin)))
+        .collect();
+    let problem = LineProblem {
+        bins,
+        size,
+        least: least.min(closest.unwrap_or(least)).max(1),
+        most: ((6.0 * size) as usize).max(widest).min(bins),
+        observed,
+        evidence,
+    };
+    (problem, bin)
+}

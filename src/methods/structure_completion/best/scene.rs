@@ -1,0 +1,107 @@
+//! What a partial layout says of its lattice: lines of its windows, how much of them is seen, typical sizes.
+
+use crate::methods::structure_completion::layout::lines::{Line, lines, median};
+use crate::methods::structure_completion::layout::{Class, Element};
+use crate::methods::structure_completion::partial::PartialLayout;
+use crate::shape::{Axis, Rect};
+
+/// Share of the cells of a lattice that hold a window, where nothing else is known.
+const OCCUPANCY: f64 = 0.9;
+
+/// A partial layout with the lattice of its elements.
+#[derive(Debug, Clone)]
+pub struct Scene<'a> {
+    /// The input.
+    pub partial: &'a PartialLayout,
+    /// Observed elements, and those that are taken as observed (mirrored ones).
+    pub elements: Vec<Element>,
+    /// Columns of the windows.
+    pub columns: Vec<Line>,
+    /// Rows of the windows, from the bottom.
+    pub rows: Vec<Line>,
+    /// Typical width and height of a window.
+    pub size: (f64, f64),
+    /// Share of the cells of the observed lattice that hold an observed window.
+    pub seen: f64,
+}
+
+impl<'a> Scene<'a> {
+    /// The lattice of `elements`; `fallback` is a typical window size where there is no window.
+    pub fn new(partial: &'a PartialLayout, elements: Vec<Element>, fallback: (f64, f64)) -> Self {
+        let windows: Vec<Rect> = of(&elements, Class::Window).map(|e| e.rect).collect();
+        let wide = median(windows.iter().map(|r| r.width)).unwrap_or(fallback.0);
+        let high = median(windows.iter().map(|r| r.height)).unwrap_or(fallback.1);
+        let (rows, _) = lines(&windows, Axis::Y);
+        // A balcony of one window stands for a window that may be hidden itself.
+        let narrow = of(&elements, Class::Balcony).filter(|b| b.rect.width < 2.0 * wide);
+        let across: Vec<Rect> = narrow
+            .map(|b| {
+                let x = b.rect.centre().0;
+                Rect::new(x - wide / 2.0, b.rect.y, wide, high)
+            })
+            .chain(windows.iter().copied())
+            .collect();
+        let (columns, _) = lines(&across, Axis::X);
+        let cells = (columns.len() * rows.len()) as f64;
+        let seen = if cells > 0.0 {
+            windows.len() as f64 / cells
+        } else {
+            0.0
+        };
+        Self {
+            partial,
+            elements,
+            columns,
+            rows,
+            size: (wide, high),
+            seen,
+        }
+    }
+
+    /// The lines along an axis.
+    pub fn lines(&self, axis: Axis) -> &[Line] {
+        match axis {
+            Axis::X => &self.columns,
+            Axis::Y => &self.rows,
+        }
+    }
+
+    /// Typical extent of a window along an axis.
+    pub fn extent(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::X => self.size.0,
+            Axis::Y => self.size.1,
+        }
+    }
+
+    /// Length of the facade along an axis.
+    pub fn length(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::X => self.partial.width,
+            Axis::Y => self.partial.height,
+        }
+    }
+
+    /// Factor of an invented line at `at` along `axis`: for each crossing line, how probable it is that its
+    /// cell shows no window though there is one.
+    pub fn evidence(&self, axis: Axis, at: f64) -> f64 {
+        let crossing = self.lines(axis.other());
+        let factor = |line: &Line| {
+            let (x, y) = match axis {
+                Axis::X => (at, line.at),
+                Axis::Y => (line.at, at),
+            };
+            match &self.partial.unknown {
+                None => 1.0 - OCCUPANCY * self.seen.min(0.95),
+                Some(_) if self.partial.is_unknown(x, y) => 1.0,
+                Some(_) => 1.0 - OCCUPANCY,
+            }
+        };
+        crossing.iter().map(factor).product::<f64>().max(1e-12)
+    }
+}
+
+/// The elements of a class.
+pub fn of(elements: &[Element], class: Class) -> impl Iterator<Item = &Element> {
+    elements.iter().filter(move |e| e.class == class)
+}

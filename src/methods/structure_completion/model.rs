@@ -1,0 +1,151 @@
+//! What is learnt from a database of whole layouts.
+
+use serde::{Deserialize, Serialize};
+
+use super::best::density::Spacing;
+use super::best::learn::learn;
+use super::layout::lines::{Line, lines, median};
+use super::layout::{Class, Layout};
+use super::model_file::ModelFileError;
+use super::policy::PaperModel;
+use crate::model::ModelError;
+use crate::model::boosting::{Boosting, BoostingError};
+use crate::shape::{Axis, Rect};
+
+/// A whole layout of the database, with its lattice.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Example {
+    /// The layout.
+    pub layout: Layout,
+    /// Columns of its windows.
+    pub columns: Vec<Line>,
+    /// Rows of its windows, from the bottom.
+    pub rows: Vec<Line>,
+    /// Median width and height of its windows.
+    pub size: (f64, f64),
+}
+
+impl Example {
+    /// A layout with its lattice; `None` without windows.
+    pub fn new(layout: Layout) -> Option<Self> {
+        let windows: Vec<Rect> = layout.of(Class::Window).map(|e| e.rect).collect();
+        let size = (
+            median(windows.iter().map(|r| r.width))?,
+            median(windows.iter().map(|r| r.height))?,
+        );
+        Some(Self {
+            columns: lines(&windows, Axis::X).0,
+            rows: lines(&windows, Axis::Y).0,
+            size,
+            layout,
+        })
+    }
+}
+
+/// A learnt model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// The database.
+    pub examples: Vec<Example>,
+    /// Columns from left to right.
+    pub columns: Spacing,
+    /// Rows from the top down.
+    pub rows: Spacing,
+    /// Probability that a candidate element is true, given its features; `None` before it is learnt.
+    pub elements: Option<Boosting>,
+    /// What the paper's own method learns; `None` before it is learnt.
+    pub paper: Option<PaperModel>,
+}
+
+/// Why nothing can be learnt.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TrainError {
+    /// No layout has a window.
+    #[error("none of the layouts has a window: nothing to learn from")]
+    Empty,
+    /// The element probabilities.
+    #[error("element probabilities: {0}")]
+    Elements(#[from] BoostingError),
+    /// The scoring functions, their weights or the policies.
+    #[error("scoring functions: {0}")]
+    Score(#[from] ModelError),
+}
+
+/// The parts of a model that a file holds.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Stored {
+    pub format: String,
+    pub version: u64,
+    pub layouts: Vec<Layout>,
+    pub columns: Spacing,
+    pub rows: Spacing,
+    pub elements: Option<Boosting>,
+    #[serde(default)]
+    pub paper: Option<PaperModel>,
+}
+
+impl Model {
+    /// Learns everything from a database of whole layouts; those without windows are left out.
+    ///
+    /// # Errors
+    /// [`TrainError`] without any window.
+    pub fn train(layouts: Vec<Layout>, seed: u64) -> Result<Self, TrainError> {
+        let mut model = Self::of_spacing(layouts);
+        match model.examples.len() {
+            0 => return Err(TrainError::Empty),
+            // Nothing to learn from what the rest of the database says of one facade.
+            1 => {}
+            _ => model.elements = Some(learn(&model, seed)?),
+        }
+        model.paper = Some(PaperModel::train(&model.layouts(), seed)?);
+        Ok(model)
+    }
+
+    /// Learns the spacing of lines; element probabilities are not learnt yet.
+    pub fn of_spacing(layouts: Vec<Layout>) -> Self {
+        let examples: Vec<Example> = layouts.into_iter().filter_map(Example::new).collect();
+        let (mut columns, mut rows) = (Vec::new(), Vec::new());
+        for e in &examples {
+            let (width, height) = (e.layout.width, e.layout.height);
+            let at: Vec<f64> = e.columns.iter().map(|l| l.at).collect();
+            // A facade and its mirror image are equally probable.
+            let mirrored: Vec<f64> = at.iter().rev().map(|x| width - x).collect();
+            columns.push((at, e.size.0, width));
+            columns.push((mirrored, e.size.0, width));
+            let down = e.rows.iter().rev().map(|l| height - l.at).collect();
+            rows.push((down, e.size.1, height));
+        }
+        Self {
+            columns: Spacing::learn(&columns),
+            rows: Spacing::learn(&rows),
+            elements: None,
+            paper: None,
+            examples,
+        }
+    }
+
+    /// The layouts of the database.
+    pub fn layouts(&self) -> Vec<Layout> {
+        self.examples.iter().map(|e| e.layout.clone()).collect()
+    }
+
+    /// Typical width and height of a window on a facade of this size.
+    pub fn window_size(&self, width: f64, height: f64) -> (f64, f64) {
+        let wide = self.examples.iter().map(|e| e.size.0 / e.layout.width);
+        let high = self.examples.iter().map(|e| e.size.1 / e.layout.height);
+        (
+            median(wide).unwrap_or(0.1) * width,
+            median(high).unwrap_or(0.1) * height,
+        )
+    }
+}
+
+/// The model that ships with the project, learnt from the shipped layouts by `edifice facade train`.
+///
+/// # Errors
+/// [`ModelFileError`]; a test keeps it readable.
+pub fn shipped_model() -> Result<Model, ModelFileError> {
+    Model::from_json(include_str!(
+        "../../../datasets/structure_completion/default.completion.json"
+    ))
+}

@@ -1,0 +1,162 @@
+//! What the paper's method learns from a database: densities, weights, policies, labels and spacings.
+
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+
+use super::optimize::{Budget, optimize};
+use super::{PARAMETERS, Policy, Scene};
+use crate::methods::structure_completion::layout::{Class, Layout};
+use crate::methods::structure_completion::score::{
+    ScoreModel, Sites, Training, grids, learn_weights,
+};
+use crate::methods::structure_completion::task::Task;
+use crate::model::ModelError;
+use crate::model::factor_graph::Settings;
+use crate::rng::stream;
+
+/// Facades that weights are learnt from, and facades that policies are learnt on.
+const WEIGHT_FACADES: usize = 100;
+const POLICY_FACADES: usize = 20;
+/// Policies that each optimization starts from (Sec. 5.2).
+const POLICIES: usize = 10;
+/// Labels with sizes, and ratios of spacing to size, that are kept.
+const EXEMPLARS: usize = 400;
+
+/// A label with a size: relative to the mean window in the model, absolute in a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Exemplar {
+    pub class: Class,
+    pub size: [f64; 2],
+}
+
+/// The learnt model of the paper's method.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PaperModel {
+    /// Densities and weights of the scoring functions.
+    pub score: ScoreModel,
+    /// Policies to start from.
+    pub policies: Vec<Policy>,
+    pub(super) exemplars: Vec<Exemplar>,
+    /// Spacing over size, along each axis.
+    pub(super) spacings: [Vec<f64>; 2],
+}
+
+impl PaperModel {
+    /// Learns densities, weights and initial policies from whole layouts.
+    ///
+    /// # Errors
+    /// As [`ScoreModel::train`] and [`learn_weights`].
+    pub fn train(layouts: &[Layout], seed: u64) -> Result<Self, ModelError> {
+        let mut model = Self::of_densities(layouts, seed)?;
+        let mut chosen: Vec<&Layout> = layouts.iter().filter(|l| !l.elements.is_empty()).collect();
+        chosen.shuffle(&mut stream(seed, "database", 0));
+        let states: Vec<Sites> = (chosen.iter().take(WEIGHT_FACADES).enumerate())
+            .map(|(i, l)| Sites::of_layout(l, &mut stream(seed, "sites", i as u64)))
+            .collect();
+        model.score.weights =
+            learn_weights(&model.score, &states, None, &Self::weight_settings(), seed)?;
+        model.learn_policies(&chosen, seed);
+        Ok(model)
+    }
+
+    /// Settings of the contrastive divergence that [`PaperModel::train`] uses.
+    pub fn weight_settings() -> Settings {
+        Settings {
+            rounds: 80,
+            moves: 1,
+            persistent: false,
+            rate: 0.3,
+            decay: 30.0,
+            penalty: 1e-3,
+        }
+    }
+
+    /// Densities only: weights of 1, and no initial policies.
+    ///
+    /// # Errors
+    /// As [`ScoreModel::train`].
+    pub fn of_densities(layouts: &[Layout], seed: u64) -> Result<Self, ModelError> {
+        let training = Training {
+            seed,
+            ..Training::default()
+        };
+        let score = ScoreModel::train(layouts, &training)?;
+        let (mut exemplars, mut spacings) = (Vec::new(), [Vec::new(), Vec::new()]);
+        for layout in layouts {
+            let windows = layout.count(Class::Window).max(1) as f64;
+            let sum = |f: &dyn Fn(&crate::shape::Rect) -> f64| {
+                layout.of(Class::Window).map(|e| f(&e.rect)).sum::<f64>() / windows
+            };
+            let (width, height) = (sum(&|r| r.width), sum(&|r| r.height));
+            if width > 0.0 {
+                exemplars.extend(layout.elements.iter().map(|e| Exemplar {
+                    class: e.class,
+                    size: [e.rect.width / width, e.rect.height / height],
+                }));
+            }
+            for grid in grids(layout.width, &layout.elements) {
+                for axis in 0..2 {
+                    spacings[axis].extend(grid.spacing[axis].map(|d| d / grid.size[axis]));
+                }
+            }
+        }
+        let mut rng = stream(seed, "exemplars", 0);
+        exemplars.shuffle(&mut rng);
+        exemplars.truncate(EXEMPLARS);
+        for ratios in &mut spacings {
+            ratios.shuffle(&mut rng);
+            ratios.truncate(EXEMPLARS);
+        }
+        Ok(Self {
+            score,
+            policies: Vec::new(),
+            exemplars,
+            spacings,
+        })
+    }
+
+    /// Optimizes a policy for some facades of the database, parts of which are hidden, and keeps the most
+    /// different ones (Sec. 5.2): the first, then always the one farthest from those kept.
+    fn learn_policies(&mut self, layouts: &[&Layout], seed: u64) {
+        let mut learnt = Vec::new();
+        for (i, layout) in layouts.iter().take(POLICY_FACADES).enumerate() {
+            let mut rng = stream(seed, "policies", i as u64);
+            let task = Task::ALL[rng.random_range(0..Task::ALL.len())];
+            let (partial, _) = task.hide(layout, &mut rng);
+            let scene = Scene::new(self, &partial);
+            let found = optimize(&scene, &Budget::SMALL, 1, rng.random());
+            learnt.extend(found.map(|f| f.policy));
+        }
+        while self.policies.len() < POLICIES && !learnt.is_empty() {
+            let distance = |p: &Policy| {
+                let to = |q: &Policy| -> f64 {
+                    (0..PARAMETERS).map(|i| (p.0[i] - q.0[i]).powi(2)).sum()
+                };
+                self.policies.iter().map(to).fold(f64::INFINITY, f64::min)
+            };
+            let all = learnt.iter().enumerate();
+            let farthest =
+                all.max_by(|a, b| distance(a.1).total_cmp(&distance(b.1)).then(b.0.cmp(&a.0)));
+            let at = farthest.map_or(0, |(i, _)| i);
+            self.policies.push(learnt.swap_remove(at));
+        }
+    }
+
+    /// Checks what a file may hold wrongly.
+    ///
+    /// # Errors
+    /// [`ModelError::Parameter`].
+    pub fn check(&self) -> Result<(), ModelError> {
+        self.score.check()?;
+        let sizes = self.exemplars.iter().flat_map(|e| e.size);
+        let mut lengths = sizes.chain(self.spacings.iter().flatten().copied());
+        let policies = self.policies.iter().flat_map(|p| p.0);
+        let fine = lengths.all(|v| v.is_finite() && v > 0.0)
+            && policies.into_iter().all(|v| (0.0..=1.0).contains(&v));
+        match fine {
+            true => Ok(()),
+            false => Err(ModelError::parameter("policies", "are out of range")),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! What the actions of a policy look up: the observed layout, its spacings, labels and grids.
+
+use rand::{Rng, RngExt};
+
+use super::model::{Exemplar, PaperModel};
+use crate::methods::structure_completion::layout::{Class, Element};
+use crate::methods::structure_completion::partial::PartialLayout;
+use crate::methods::structure_completion::score::grids;
+
+/// Bounding box of a grid as it grows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    pub low: [f64; 2],
+    pub high: [f64; 2],
+}
+
+/// An element of a candidate, or a place that stays empty.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Item {
+    pub element: Element,
+    pub centre: [f64; 2],
+    /// Index of its grid.
+    pub grid: u32,
+    pub empty: bool,
+}
+
+/// A partial layout, prepared for candidates.
+#[derive(Debug, Clone)]
+pub struct Scene<'a> {
+    /// The model that rewards and that knows the database.
+    pub model: &'a PaperModel,
+    /// Extent of the facade.
+    pub facade: [f64; 2],
+    /// Where elements may be added; without the observed elements, which are among the items.
+    pub(super) open: PartialLayout,
+    pub(super) items: Vec<Item>,
+    pub(super) grids: Vec<Extent>,
+    /// Observed spacings along each axis.
+    pub(super) spacings: [Vec<f64>; 2],
+    /// Observed elements as (class, width, height), those of the database scaled to this facade.
+    pub(super) observed: Vec<Exemplar>,
+    pub(super) database: Vec<Exemplar>,
+}
+
+impl Extent {
+    pub fn of(element: &Element) -> Self {
+        let r = element.rect;
+        Self {
+            low: [r.x, r.y],
+            high: [r.right(), r.top()],
+        }
+    }
+
+    pub fn include(&mut self, element: &Element) {
+        let other = Self::of(element);
+        for axis in 0..2 {
+            self.low[axis] = self.low[axis].min(other.low[axis]);
+            self.high[axis] = self.high[axis].max(other.high[axis]);
+        }
+    }
+
+    pub fn area(&self) -> f64 {
+        (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
+    }
+
+    /// Whether a point is inside.
+    pub fn holds(&self, at: [f64; 2]) -> bool {
+        (0..2).all(|axis| self.low[axis] < at[axis] && at[axis] < self.high[axis])
+    }
+}
+
+impl Item {
+    pub fn new(element: Element, grid: u32, empty: bool) -> Self {
+        let (x, y) = element.rect.centre();
+        Self {
+            element,
+            centre: [x, y],
+            grid,
+            empty,
+        }
+    }
+
+    pub fn size(&self) -> [f64; 2] {
+        [self.element.rect.width, self.element.rect.height]
+    }
+}
+
+impl Scene<'_> {
+    /// Class and size of an observed element or of one of the database, each with probability one half.
+    pub fn random_label<R: Rng>(&self, rng: &mut R) -> Option<(Class, [f64; 2])> {
+        let from = match rng.random::<bool>() && !self.observed.is_empty() {
+            true => &self.observed,
+            false => &self.database,
+        };
+        let at = rng.random_range(0..from.len().max(1));
+        from.get(at).map(|e| (e.class, e.size))
+    }
+}
+
+impl<'a> Scene<'a> {
+    /// Prepares a partial layout. Without observed elements nothing can be extended: candidates are empty.
+    pub fn new(model: &'a PaperModel, partial: &PartialLayout) -> Self {
+        let (mut items, mut extents): (Vec<Item>, Vec<Extent>) = (Vec::new(), Vec::new());
+        let mut spacings = [Vec::new(), Vec::new()];
+        for (index, grid) in grids(partial.width, &partial.observed).iter().enumerate() {
+            extents.push(Extent {
+                low: grid.low,
+                high: grid.high,
+            });
+            for &member in &grid.members {
+                let element = partial.observed[member as usize];
+                items.push(Item::new(element, index as u32, false));
+            }
+            for (axis, spacings) in spacings.iter_mut().enumerate() {
+                spacings.extend(grid.lines[axis].windows(2).map(|w| w[1] - w[0]));
+            }
+        }
+        let exemplar = |e: &Element| Exemplar {
+            class: e.class,
+            size: [e.rect.width, e.rect.height],
+        };
+        let observed: Vec<Exemplar> = partial.observed.iter().map(exemplar).collect();
+        let windows = observed.iter().filter(|e| e.class == Class::Window);
+        let of: Vec<&Exemplar> = match windows.clone().next() {
+            Some(_) => windows.collect(),
+            None => observed.iter().collect(),
+        };
+        let mean =
+            |axis: usize| of.iter().map(|e| e.size[axis]).sum::<f64>() / of.len().max(1) as f64;
+        let unit = [mean(0), mean(1)];
+        let scaled = |e: &Exemplar| Exemplar {
+            class: e.class,
+            size: [e.size[0] * unit[0], e.size[1] * unit[1]],
+        };
+        Self {
+            model,
+            facade: [partial.width, partial.height],
+            open: PartialLayout {
+                observed: Vec::new(),
+                ..partial.clone()
+            },
+            items,
+            grids: extents,
+            spacings,
+            observed,
+            database: model.exemplars.iter().map(scaled).collect(),
+        }
+    }
+}

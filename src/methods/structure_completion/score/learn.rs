@@ -1,0 +1,198 @@
+//! Learning the weights (Sec. 4.4): contrastive divergence through [`log_linear`](crate::model::log_linear).
+//!
+//! The states of a facade are finite, so that the model is a proper distribution: each element of the
+//! layout, and as many spurious ones as a fifth of them at random places, is a *site* that is present or
+//! not, in one of 5 x 5 offsets (tenths of its size), three sizes and four classes. In the data, the
+//! elements are present with no offset, and the spurious ones absent.
+//!
+//! The unbiased sampler takes a block of a tenth of the sites and resamples its attributes one by one
+//! given all else, by Metropolis with uniform proposals, which leaves `p(x; w)` invariant.
+
+use rand::RngExt;
+use rand::seq::SliceRandom;
+
+use super::{Change, ScoreModel, Scored, TERMS};
+use crate::methods::structure_completion::layout::{Class, Element, Layout};
+use crate::model::ModelError;
+use crate::model::factor_graph::Settings;
+use crate::model::log_linear::LogLinear;
+use crate::rng::Stream;
+use crate::shape::Rect;
+
+/// Offsets along each axis, in tenths of the size.
+const OFFSETS: [f64; 5] = [0.0, -0.2, -0.1, 0.1, 0.2];
+/// Sizes relative to the data's.
+const SIZES: [f64; 3] = [1.0, 0.7, 1.4];
+/// Share of spurious sites, and of the sites in a block.
+const SPURIOUS: f64 = 0.2;
+const BLOCK: f64 = 0.1;
+
+/// A place where an element may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Site {
+    data: Element,
+    present: bool,
+    /// Index of the offset along x, along y, of the size and of the class's shift.
+    attributes: [u8; 4],
+}
+
+/// A layout as a state of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sites {
+    facade: [f64; 2],
+    sites: Vec<Site>,
+}
+
+/// How negatives are drawn.
+pub type Sampler<'a> = dyn Fn(&mut Sites, &[f64; TERMS], &mut Stream) + Sync + 'a;
+
+impl Site {
+    fn element(&self, facade: [f64; 2]) -> Element {
+        let r = self.data.rect;
+        let [dx, dy, size, shift] = self.attributes.map(usize::from);
+        let (width, height) = (r.width * SIZES[size], r.height * SIZES[size]);
+        let (x, y) = r.centre();
+        let x = x + OFFSETS[dx] * r.width - width / 2.0;
+        let y = y + OFFSETS[dy] * r.height - height / 2.0;
+        let x = x.clamp(0.0, (facade[0] - width).max(0.0));
+        let y = y.clamp(0.0, (facade[1] - height).max(0.0));
+        let class = Class::ALL[(self.data.class.index() + shift) % 4];
+        match self.attributes[..3] {
+            // As it is, without rounding.
+            [0, 0, 0] => Element::new(class, r),
+            _ => Element::new(class, Rect::new(x, y, width, height)),
+        }
+    }
+}
+
+impl Sites {
+    /// The state that a whole layout is, with its spurious sites.
+    pub fn of_layout(layout: &Layout, rng: &mut Stream) -> Self {
+        let site = |data: Element, present| Site {
+            data,
+            present,
+            attributes: [0; 4],
+        };
+        let mut sites: Vec<Site> = layout.elements.iter().map(|e| site(*e, true)).collect();
+        let count = (SPURIOUS * sites.len() as f64).ceil() as usize;
+        for _ in 0..count.min(sites.len() * layout.elements.len()) {
+            let mut data = layout.elements[rng.random_range(0..layout.elements.len())];
+            let r = &mut data.rect;
+            r.x = rng.random::<f64>() * (layout.width - r.width).max(0.0);
+            r.y = rng.random::<f64>() * (layout.height - r.height).max(0.0);
+            sites.push(site(data, false));
+        }
+        Self {
+            facade: [layout.width, layout.height],
+            sites,
+        }
+    }
+
+    /// The elements that are present.
+    pub fn elements(&self) -> Vec<Element> {
+        let present = self.sites.iter().filter(|s| s.present);
+        present.map(|s| s.element(self.facade)).collect()
+    }
+
+    /// Extent of the facade.
+    pub fn facade(&self) -> [f64; 2] {
+        self.facade
+    }
+
+    /// The state in which other elements are present at the data's places; those that are near no site stay
+    /// out. For samplers that complete a layout instead of moving within the states.
+    pub fn set_present(&mut self, elements: &[Element]) {
+        for site in &mut self.sites {
+            let own = site.data;
+            site.attributes = [0; 4];
+            site.present = elements
+                .iter()
+                .any(|e| e.class == own.class && e.rect.iou(&own.rect) > 0.5);
+        }
+    }
+
+    /// Resamples a block of a tenth of the sites given the rest, `sweeps` times each attribute.
+    pub fn resample_block(
+        &mut self,
+        model: &ScoreModel,
+        weights: &[f64; TERMS],
+        sweeps: usize,
+        rng: &mut Stream,
+    ) {
+        let mut order: Vec<usize> = (0..self.sites.len()).collect();
+        order.shuffle(rng);
+        order.truncate((BLOCK * order.len() as f64).ceil() as usize);
+        // Index of each site's element in the layout that is scored, and back.
+        let mut of_element: Vec<usize> = (0..self.sites.len())
+            .filter(|&s| self.sites[s].present)
+            .collect();
+        let mut index = vec![0; self.sites.len()];
+        for (i, &site) in of_element.iter().enumerate() {
+            index[site] = i;
+        }
+        let mut scored = Scored::weighted(model, *weights, self.facade, self.elements());
+        for _ in 0..sweeps {
+            for &at in &order {
+                for attribute in 0..5 {
+                    let old = self.sites[at];
+                    let site = &mut self.sites[at];
+                    match attribute {
+                        4 => site.present = !site.present,
+                        a => site.attributes[a] = rng.random_range(0..[5, 5, 3, 4][a]),
+                    }
+                    let before = scored.score();
+                    let new = self.sites[at];
+                    let after = match (old.present, new.present) {
+                        (false, false) => before,
+                        (true, true) => {
+                            scored.apply(Change::Set(index[at], new.element(self.facade)))
+                        }
+                        (false, true) => scored.apply(Change::Add(new.element(self.facade))),
+                        (true, false) => scored.apply(Change::Remove(index[at])),
+                    };
+                    if rng.random::<f64>().ln() >= after - before {
+                        if old.present || new.present {
+                            scored.undo();
+                        }
+                        self.sites[at] = old;
+                    } else if new.present && !old.present {
+                        index[at] = of_element.len();
+                        of_element.push(at);
+                    } else if old.present && !new.present {
+                        of_element.swap_remove(index[at]);
+                        if let Some(&moved) = of_element.get(index[at]) {
+                            index[moved] = index[at];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Weights from their differences to 1.
+fn from_prior(differences: &[f64]) -> [f64; TERMS] {
+    std::array::from_fn(|k| 1.0 + differences[k])
+}
+
+/// Learns the weights of `model` from states; `sampler` draws the negatives, [`Sites::resample_block`] with
+/// two sweeps unless another one is given. The penalty of `settings` draws each weight to 1, at which the score is
+/// the sum of the log densities.
+///
+/// # Errors
+/// As [`learn`](crate::model::factor_graph::learn).
+pub fn learn_weights(
+    model: &ScoreModel,
+    data: &[Sites],
+    sampler: Option<&Sampler>,
+    settings: &Settings,
+    seed: u64,
+) -> Result<[f64; TERMS], ModelError> {
+    let features = |x: &Sites| model.evaluate(x.facade, &x.elements()).features.to_vec();
+    let step = |x: &mut Sites, weights: &[f64], rng: &mut Stream| match sampler {
+        Some(sampler) => sampler(x, &from_prior(weights), rng),
+        None => x.resample_block(model, &from_prior(weights), 2, rng),
+    };
+    let weights = LogLinear::new(TERMS, features, step).fit(data, settings, seed)?;
+    Ok(from_prior(&weights))
+}

@@ -1,0 +1,92 @@
+//! Log-linear models `p(x; w) ∝ exp(wᵀ f(x))` whose negative sampler the user supplies.
+//!
+//! [`LogLinear`] makes a [`Chain`] of two closures: the features f, and a sampler that changes a state. It is
+//! learned by [`learn`](super::factor_graph::learn), the code that also learns factor graphs of
+//! discrete variables. The sampler decides what is learned:
+//!
+//! - one that leaves `p(x; w)` invariant, for instance by resampling a part of the state given the rest, makes
+//!   the update unbiased as its moves grow or, persistent, as the step shrinks;
+//! - another one (for instance the best of some candidates) makes it a heuristic.
+//!
+//! [`fit`] divides each feature by its standard deviation over the data before the ascent, so that one
+//! rate serves for all and the weights do not depend on the features' units.
+
+use super::ModelError;
+use super::factor_graph::{Chain, Settings, learn};
+use crate::rng::Stream;
+
+/// A model by its features and its negative sampler.
+pub struct LogLinear<X, F, S> {
+    weights: usize,
+    scales: Vec<f64>,
+    features: F,
+    sampler: S,
+    state: std::marker::PhantomData<fn() -> X>,
+}
+
+impl<X, F, S> LogLinear<X, F, S>
+where
+    X: Clone + Send + Sync,
+    F: Fn(&X) -> Vec<f64> + Sync,
+    S: Fn(&mut X, &[f64], &mut Stream) + Sync,
+{
+    /// A model of so many weights, its features and its sampler, which gets a state and the weights.
+    pub fn new(weights: usize, features: F, sampler: S) -> Self {
+        Self {
+            weights,
+            scales: vec![1.0; weights],
+            features,
+            sampler,
+            state: std::marker::PhantomData,
+        }
+    }
+
+    /// Learns the weights from examples; see the module's page.
+    ///
+    /// # Errors
+    /// As [`learn`].
+    pub fn fit(
+        mut self,
+        data: &[X],
+        settings: &Settings,
+        seed: u64,
+    ) -> Result<Vec<f64>, ModelError> {
+        let all: Vec<Vec<f64>> = data.iter().map(&self.features).collect();
+        for (i, scale) in self.scales.iter_mut().enumerate() {
+            let (_, deviation) = super::density::moments(all.iter().map(|f| f[i]));
+            // A feature that never varies says nothing of its weight; its scale is arbitrary.
+            *scale = if deviation > 0.0 { deviation } else { 1.0 };
+        }
+        let scaled = learn(&self, data, settings, seed)?;
+        Ok(self.unscaled(&scaled))
+    }
+
+    fn unscaled(&self, weights: &[f64]) -> Vec<f64> {
+        let pairs = weights.iter().zip(&self.scales);
+        pairs.map(|(w, s)| w / s).collect()
+    }
+}
+
+impl<X, F, S> Chain for LogLinear<X, F, S>
+where
+    X: Clone + Send + Sync,
+    F: Fn(&X) -> Vec<f64> + Sync,
+    S: Fn(&mut X, &[f64], &mut Stream) + Sync,
+{
+    type State = X;
+
+    fn weights(&self) -> usize {
+        self.weights
+    }
+    fn features(&self, state: &X) -> Vec<f64> {
+        let features = (self.features)(state);
+        features
+            .iter()
+            .zip(&self.scales)
+            .map(|(f, s)| f / s)
+            .collect()
+    }
+    fn step(&self, state: &mut X, weights: &[f64], rng: &mut Stream) {
+        (self.sampler)(state, &self.unscaled(weights), rng);
+    }
+}

@@ -1,0 +1,469 @@
+//! `edifice facade train`, `complete` and `hide` from files to files.
+
+use std::path::Path;
+
+use assert_cmd::Command;
+
+fn edifice(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("edifice").expect("the program");
+    command.current_dir(folder).args(words);
+    command
+}
+
+fn output(folder: &Path, words: &[&str]) -> String {
+    let done = edifice(folder, words).assert().success();
+    String::from_utf8_lossy(&done.get_output().stdout).into_owned()
+}
+
+fn messages(folder: &Path, words: &[&str]) -> String {
+    let done = edifice(folder, words).assert().success();
+    String::from_utf8_lossy(&done.get_output().stderr).into_owned()
+}
+
+fn complaint(folder: &Path, words: &[&str], code: i32) -> String {
+    let done = edifice(folder, words).assert().failure().code(code);
+    String::from_utf8_lossy(&done.get_output().stderr).into_owned()
+}
+
+fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+fn read(path: &Path) -> serde_json::Value {
+    json(&std::fs::read_to_string(path).expect("a file"))
+}
+
+fn shipped(name: &str) -> String {
+    format!(
+        "{}/datasets/facade_grammar/layouts/{name}.facade.json",
+        env!("CARGO_MANIFEST_DIR")
+    )
+}
+
+/// A partial layout of a few windows with ids; `extra` regions and keys are put in.
+fn partial(folder: &Path, regions: &str, keys: &str) {
+    let windows: Vec<String> = (0..9)
+        .map(|k| {
+            let (x, y) = (10.25 + 40.0 * f64::from(k % 3), 60.5 + 50.0 * f64::from(k / 3));
+            format!("{{ \"label\": \"window\", \"x\": {x}, \"y\": {y}, \"width\": 20.125, \"height\": 30.5, \"id\": \"w{k}\" }}")
+        })
+        .collect();
+    let text = format!(
+        "{{ \"format\": \"edifice/facade\", \"version\": 1, \"name\": \"p\", \"unit\": \"px\", \"width\": 240, \"height\": 220,\n\"regions\": [ {}{regions} ]{keys} }}",
+        windows.join(",\n")
+    );
+    std::fs::write(folder.join("p.facade.json"), text).expect("written");
+}
+
+#[test]
+fn a_hidden_facade_is_completed_and_observed_elements_come_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let layout = shipped("tenement_1");
+    output(
+        at,
+        &[
+            "facade",
+            "hide",
+            &layout,
+            "--task",
+            "side50",
+            "--seed",
+            "3",
+            "-o",
+            "p.facade.json",
+        ],
+    );
+    let words = [
+        "facade",
+        "complete",
+        "p.facade.json",
+        "--count",
+        "5",
+        "--seed",
+        "4",
+        "-o",
+        "out",
+        "--svg",
+        "o.svg",
+        "--json",
+    ];
+    let printed = output(at, &words);
+    let about = json(printed.lines().last().expect("a line"));
+    let completions = about["completions"].as_array().expect("completions");
+    assert!(completions.len() >= 2 && about["seed"] == 4);
+    let observed = read(&at.join("p.facade.json"))["regions"]
+        .as_array()
+        .expect("regions")
+        .clone();
+    for completion in completions {
+        let file = at.join(completion["file"].as_str().expect("a file"));
+        let regions = read(&file)["regions"].as_array().expect("regions").clone();
+        assert_eq!(completion["elements"], regions.len());
+        for (region, given) in regions.iter().zip(&observed) {
+            assert_eq!(region["observed"], true);
+            for key in ["label", "x", "y", "width", "height"] {
+                assert_eq!(region[key], given[key]);
+            }
+        }
+        for added in &regions[observed.len()..] {
+            assert_eq!(added["observed"], false);
+            assert!(added["probability"].is_number() && added["reason"].is_string());
+        }
+    }
+    assert!(
+        std::fs::read_to_string(at.join("o.svg"))
+            .expect("a sheet")
+            .starts_with("<svg")
+    );
+    let first = std::fs::read(at.join("out/completion_1.facade.json")).expect("a file");
+    std::fs::remove_dir_all(at.join("out")).expect("removed");
+    edifice(at, &words)
+        .env("RAYON_NUM_THREADS", "1")
+        .assert()
+        .success();
+    assert_eq!(
+        std::fs::read(at.join("out/completion_1.facade.json")).expect("a file"),
+        first
+    );
+    output(
+        at,
+        &[
+            "facade",
+            "convert",
+            "out/completion_1.facade.json",
+            "-o",
+            "a.svg",
+        ],
+    );
+}
+
+#[test]
+fn options_change_what_is_completed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let half = ", \"unknown\": [ { \"x\": 125, \"y\": 0, \"width\": 115, \"height\": 220 } ]";
+    partial(at, "", half);
+    output(
+        at,
+        &["facade", "complete", "p.facade.json", "-o", "a.facade.json"],
+    );
+    let whole = read(&at.join("a.facade.json"));
+    let added: Vec<_> = whole["regions"]
+        .as_array()
+        .expect("regions")
+        .iter()
+        .filter(|r| r["observed"] == false)
+        .cloned()
+        .collect();
+    assert!(!added.is_empty());
+    // Completed again from its own completion, one of the added ones pinned.
+    let id = added[0]["id"].as_str().expect("an id");
+    output(
+        at,
+        &[
+            "facade",
+            "complete",
+            "a.facade.json",
+            "--pin",
+            id,
+            "--seed",
+            "9",
+            "-o",
+            "b.facade.json",
+        ],
+    );
+    let again = read(&at.join("b.facade.json"));
+    let pinned = again["regions"]
+        .as_array()
+        .expect("regions")
+        .iter()
+        .find(|r| r["id"] == id)
+        .cloned();
+    assert_eq!(pinned.expect("kept")["x"], added[0]["x"]);
+    let message = complaint(
+        at,
+        &[
+            "facade",
+            "complete",
+            "a.facade.json",
+            "--pin",
+            "nobody",
+            "-o",
+            "c.facade.json",
+        ],
+        1,
+    );
+    assert!(message.contains("no region has the id"), "{message}");
+    let message = complaint(
+        at,
+        &[
+            "facade",
+            "complete",
+            "a.facade.json",
+            "--pin",
+            id,
+            "--forbid",
+            "0,0,240,220",
+            "-o",
+            "c.facade.json",
+        ],
+        1,
+    );
+    assert!(message.contains("cannot stay"), "{message}");
+    assert!(!at.join("c.facade.json").exists());
+    output(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--forbid",
+            "125,0,115,220",
+            "-o",
+            "d.facade.json",
+        ],
+    );
+    assert_eq!(
+        read(&at.join("d.facade.json"))["regions"]
+            .as_array()
+            .expect("regions")
+            .len(),
+        9
+    );
+    output(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--width",
+            "400",
+            "--height",
+            "300",
+            "-o",
+            "e.facade.json",
+        ],
+    );
+    assert_eq!(read(&at.join("e.facade.json"))["width"], 400.0);
+    for method in ["low-rank", "lattice", "lattice-open", "mirror", "nearest"] {
+        output(
+            at,
+            &[
+                "facade",
+                "complete",
+                "p.facade.json",
+                "--method",
+                method,
+                "-o",
+                "m.facade.json",
+            ],
+        );
+    }
+}
+
+#[test]
+fn a_mask_image_says_what_is_unknown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    partial(at, "", "");
+    // The right half is white.
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 24, 22);
+    encoder.set_color(png::ColorType::Grayscale);
+    let pixels: Vec<u8> = (0..24 * 22)
+        .map(|k| if k % 24 >= 13 { 255 } else { 0 })
+        .collect();
+    encoder
+        .write_header()
+        .and_then(|mut w| w.write_image_data(&pixels))
+        .expect("encoded");
+    std::fs::write(at.join("mask.png"), bytes).expect("written");
+    output(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--mask",
+            "mask.png",
+            "-o",
+            "a.facade.json",
+        ],
+    );
+    let whole = read(&at.join("a.facade.json"));
+    let unknown = whole["unknown"].as_array().expect("unknown");
+    assert_eq!(unknown.len(), 1);
+    assert_eq!(
+        (unknown[0]["x"].as_f64(), unknown[0]["width"].as_f64()),
+        (Some(130.0), Some(110.0))
+    );
+}
+
+#[test]
+fn bad_input_is_told_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let complete = ["facade", "complete", "p.facade.json", "-o", "a.facade.json"];
+    let region = |label: &str, x: i32, width: i32| {
+        format!(
+            ", {{ \"label\": \"{label}\", \"x\": {x}, \"y\": 5, \"width\": {width}, \"height\": 20 }}"
+        )
+    };
+    let cases = [
+        (region("door", 230, 40), "", "reaches outside"),
+        (
+            region("door", 100, 20),
+            ", \"unknown\": [ { \"x\": 90, \"y\": 0, \"width\": 60, \"height\": 40 } ]",
+            "lies in unknown[0]",
+        ),
+        (
+            format!("{}{}", region("door", 100, 20), region("door", 105, 20)),
+            "",
+            "overlap",
+        ),
+        (
+            region("door", 100, 20),
+            ", \"unknown\": [ { \"x\": 90, \"y\": 0, \"width\": -60, \"height\": 40 } ]",
+            "unknown[0]",
+        ),
+    ];
+    for (regions, keys, expected) in &cases {
+        partial(at, regions, keys);
+        let message = complaint(at, &complete, 1);
+        assert!(message.contains(expected), "{message}");
+        assert!(!at.join("a.facade.json").exists());
+    }
+    partial(at, &region("gargoyle", 100, 20), "");
+    assert!(messages(at, &complete).contains("kept, but not completed: gargoyle"));
+    partial(at, "", ", \"unknown\": []");
+    assert!(messages(at, &complete).contains("nothing is unknown"));
+    assert_eq!(
+        read(&at.join("a.facade.json"))["regions"]
+            .as_array()
+            .expect("regions")
+            .len(),
+        9
+    );
+    let empty = "{ \"format\": \"edifice/facade\", \"version\": 1, \"name\": \"e\", \"unit\": \"m\", \"width\": 12, \"height\": 9, \"regions\": [] }";
+    std::fs::write(at.join("p.facade.json"), empty).expect("written");
+    assert!(messages(at, &complete).contains("nothing is observed"));
+    assert!(
+        complaint(
+            at,
+            &[
+                "facade",
+                "hide",
+                "p.facade.json",
+                "--task",
+                "r20",
+                "-o",
+                "h.facade.json"
+            ],
+            1
+        )
+        .contains("no elements")
+    );
+    assert!(
+        complaint(
+            at,
+            &[
+                "facade",
+                "train",
+                "p.facade.json",
+                "-o",
+                "m.completion.json"
+            ],
+            1
+        )
+        .contains("none of the layouts has a window")
+    );
+    assert!(!at.join("m.completion.json").exists());
+    complaint(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--unknown",
+            "1,2,3",
+            "-o",
+            "a.facade.json",
+        ],
+        2,
+    );
+    complaint(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--method",
+            "magic",
+            "-o",
+            "a.facade.json",
+        ],
+        2,
+    );
+    std::fs::write(at.join("m.completion.json"), "{}").expect("written");
+    let message = complaint(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--model",
+            "m.completion.json",
+            "-o",
+            "b.facade.json",
+        ],
+        1,
+    );
+    assert!(
+        message.contains("m.completion.json") && !at.join("b.facade.json").exists(),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_model_is_learnt_from_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let layouts = [
+        shipped("terrace_a"),
+        shipped("terrace_b"),
+        shipped("terrace_c"),
+    ];
+    let train = [
+        "facade",
+        "train",
+        &layouts[0],
+        &layouts[1],
+        &layouts[2],
+        "-o",
+        "m.completion.json",
+        "--json",
+    ];
+    let about = json(output(at, &train).lines().last().expect("a line"));
+    assert_eq!(about["facades"], 3);
+    partial(at, "", "");
+    output(
+        at,
+        &[
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--model",
+            "m.completion.json",
+            "-o",
+            "a.facade.json",
+        ],
+    );
+    assert!(
+        messages(
+            at,
+            &["facade", "train", &layouts[0], "-o", "one.completion.json"]
+        )
+        .contains("one facade")
+    );
+}
