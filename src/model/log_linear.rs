@@ -1,7 +1,7 @@
 //! Log-linear models `p(x; w) ∝ exp(wᵀ f(x))` whose negative sampler the user supplies.
 //!
 //! [`LogLinear`] makes a [`Chain`] of two closures: the features f, and a sampler that changes a state. It is
-//! learned by [`learn`](super::factor_graph::learn), the code that also learns factor graphs of
+//! fitted by [`fit`](super::factor_graph::fit), the code that also learns factor graphs of
 //! discrete variables. The sampler decides what is learned:
 //!
 //! - one that leaves `p(x; w)` invariant, for instance by resampling a part of the state given the rest, makes
@@ -12,7 +12,7 @@
 //! rate serves for all and the weights do not depend on the features' units.
 
 use super::ModelError;
-use super::factor_graph::{Chain, Settings, learn};
+use super::factor_graph::{Chain, Settings, fit};
 use crate::rng::Stream;
 
 /// A model by its features and its negative sampler.
@@ -44,7 +44,7 @@ where
     /// Learns the weights from examples; see the module's page.
     ///
     /// # Errors
-    /// As [`learn`].
+    /// As [`fit`].
     pub fn fit(
         mut self,
         data: &[X],
@@ -57,7 +57,7 @@ where
             // A feature that never varies says nothing of its weight; its scale is arbitrary.
             *scale = if deviation > 0.0 { deviation } else { 1.0 };
         }
-        let scaled = learn(&self, data, settings, seed)?;
+        let scaled = fit(&self, data, settings, seed)?;
         Ok(self.unscaled(&scaled))
     }
 
