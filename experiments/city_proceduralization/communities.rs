@@ -72,7 +72,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             name.clone(),
             f.nodes.to_string(),
             f.edges.to_string(),
-            f.girvan_newman.map_or_else(|| "-".to_owned(), |q| format!("{q:.3}")),
+            f.girvan_newman
+                .map_or_else(|| "-".to_owned(), |q| format!("{q:.3}")),
             format!("{:.3}", f.louvain),
         ]);
     }
