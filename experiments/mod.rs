@@ -34,6 +34,7 @@ mod picture;
 pub mod sweep;
 
 pub mod building_exteriors;
+pub mod city_proceduralization;
 pub mod facade_grammar;
 pub mod procedural_logic;
 pub mod structure_completion;
@@ -48,6 +49,7 @@ pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, ru
 /// Every paper's experiment, in the order of the report.
 pub const ALL: &[&Experiment] = &[
     &building_exteriors::EXPERIMENT,
+    &city_proceduralization::EXPERIMENT,
     &facade_grammar::EXPERIMENT,
     &procedural_logic::EXPERIMENT,
     &structure_completion::EXPERIMENT,

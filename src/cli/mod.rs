@@ -2,6 +2,7 @@
 //! error; exit code 0 on success, 2 for bad usage, 1 for bad input or failure.
 
 mod building;
+mod city;
 mod facade;
 mod grammar;
 mod logic;
@@ -37,6 +38,9 @@ enum Command {
     /// Learn how houses look (Fan and Wonka 2016).
     #[command(subcommand)]
     Building(building::Command),
+    /// Cities as grammars of instances (Demir et al. 2014).
+    #[command(subcommand)]
+    City(city::Command),
     /// Show and convert Bayesian networks and logic models.
     #[command(subcommand)]
     Model(model::Command),
@@ -59,6 +63,7 @@ pub fn run() -> ExitCode {
         Command::Facade(command) => facade::run(command),
         Command::Logic(command) => logic::run(command),
         Command::Building(command) => building::run(command),
+        Command::City(command) => city::run(command),
         Command::Model(command) => model::run(command),
         Command::Sweep(command) => sweep::run(command),
         Command::Reproduce(args) => reproduce::run(args),

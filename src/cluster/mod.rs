@@ -2,17 +2,28 @@
 //!
 //! - [`chi_square`]: distance between two histograms.
 //! - [`agglomerate`]: hierarchical clustering of a distance matrix, with its [`Dendrogram`].
+//! - [`ward()`]: Ward's hierarchy of points in near-linear time; [`kmeans()`] and [`lloyd`].
+//! - [`girvan_newman`], [`louvain`]: communities of graphs, and their [`modularity`].
 //! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
 //! - [`adjusted_rand_index`]: agreement of two partitions.
 
 mod agglomerative;
 mod agreement;
 mod chi_square;
+mod communities;
+mod kd_tree;
+mod kmeans;
 mod retrieval;
+mod ward;
 
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
 pub use agreement::adjusted_rand_index;
 pub use chi_square::{Histogram, chi_square};
+pub use communities::{
+    Communities, WeightedGraph, girvan_newman, louvain, modularity, weighted_graph,
+};
+pub use kmeans::{KMeans, kmeans, lloyd, means, sum_of_squares};
 pub use retrieval::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,
 };
+pub use ward::{WardError, WardMerge, WardTree, ward};

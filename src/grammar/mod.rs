@@ -11,6 +11,7 @@ mod cost;
 mod derive;
 mod error;
 mod evaluate;
+pub mod instance;
 mod listing;
 mod place;
 mod resize;

@@ -7,6 +7,7 @@
 mod annotation;
 pub mod building_csv;
 pub mod building_json;
+pub mod city;
 pub mod cmp_xml;
 pub mod coco;
 pub mod draw;

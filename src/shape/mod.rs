@@ -3,6 +3,8 @@
 //! - [`Rect`]: an axis-parallel rectangle, origin at the lower left, y up.
 //! - [`Facade`]: labelled rectangles inside a rectangular domain (Wu et al. 2014, Sec. 3.1).
 //! - [`Building`]: boxes, roofs and facade pieces (Fan and Wonka 2016, Sec. 4.1).
+//! - [`solid`]: houses as unions of prisms, and their closed surface.
+//! - [`triangles`]: cities and buildings as triangles, and what is measured on them.
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
 mod annotated;
@@ -22,6 +24,7 @@ mod splittable;
 #[cfg(test)]
 mod tests;
 mod tiling;
+pub mod triangles;
 
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{

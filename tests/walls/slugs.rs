@@ -13,6 +13,7 @@ const OWN: &[(&str, &str)] = &[
     ("procedural_logic", "src/cli/logic"),
     ("building_exteriors", "src/cli/building"),
     ("structure_completion", "src/cli/facade/"),
+    ("city_proceduralization", "src/cli/city"),
 ];
 
 /// Lists of methods: what is dropped with a method are single lines.

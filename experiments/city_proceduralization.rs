@@ -1,0 +1,59 @@
+//! Demir, Aliaga and Benes 2014, *Proceduralization of Buildings at City Scale*: cities as grammars of
+//! instances, on a made city with a known grammar and on real ones.
+
+mod clustering;
+mod communities;
+mod data;
+mod figure_7;
+mod figure_8;
+mod recovery;
+mod scaling;
+pub mod synthetic;
+mod table_1;
+
+use super::{Artefact, Experiment};
+
+/// The paper's tables and figures, and what goes beyond them.
+pub const EXPERIMENT: Experiment = Experiment {
+    slug: "city_proceduralization",
+    paper: "Demir, Aliaga, Benes 2014: Proceduralization of Buildings at City Scale",
+    artefacts: ARTEFACTS,
+};
+
+const ARTEFACTS: &[Artefact] = &[
+    Artefact {
+        name: "table_1",
+        title: "sizes of four levels, both modes",
+        run: table_1::run,
+    },
+    Artefact {
+        name: "figure_7",
+        title: "quality against compression",
+        run: figure_7::run,
+    },
+    Artefact {
+        name: "figure_8",
+        title: "a city beside its grammar's",
+        run: figure_8::run,
+    },
+    Artefact {
+        name: "recovery",
+        title: "cuts, types and motifs of a known grammar",
+        run: recovery::run,
+    },
+    Artefact {
+        name: "clustering",
+        title: "Ward's hierarchy against k-means",
+        run: clustering::run,
+    },
+    Artefact {
+        name: "communities",
+        title: "Girvan-Newman against Louvain",
+        run: communities::run,
+    },
+    Artefact {
+        name: "scaling",
+        title: "seconds by buildings",
+        run: scaling::run,
+    },
+];

@@ -1,0 +1,154 @@
+//! The cities, and how a result is judged.
+
+use serde::{Deserialize, Serialize};
+
+use super::synthetic;
+use crate::experiments::Context;
+use crate::io::city;
+use crate::methods::city_proceduralization::{
+    Budget, Mode, Proceduralized, Settings, proceduralize,
+};
+use crate::report::Row;
+use crate::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
+use crate::{Error, Result};
+
+/// Cells of the raster that judges, in metres.
+pub const RESOLUTION: f64 = 1.0;
+
+/// Real cities below the data folder.
+const REAL: [(&str, &str); 1] = [("midtown", "city/nyc_midtown4500.npz")];
+
+/// The cities of a run: the made one, and with `--data` the real ones, each cut down to `most` buildings.
+pub fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+    let motifs = ctx.budget().choose(16, 500, 500);
+    ctx.setting("motifs", motifs);
+    let mut found = vec![(
+        "synthetic".to_owned(),
+        synthetic::city(motifs, 0.0, ctx.seed()).0,
+    )];
+    if ctx.budget() > crate::experiments::Budget::Smoke {
+        for (name, file) in REAL {
+            if let Some(path) = ctx.real(file)? {
+                found.push((name.to_owned(), city::read(&path)?));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// A result's measures.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Measures {
+    /// Triangles of the templates.
+    pub polygons: f64,
+    /// Components.
+    pub components: f64,
+    /// Triangles of all components, as cut.
+    pub soup: f64,
+    /// Terminals.
+    pub terminals: f64,
+    /// Non-terminals.
+    pub non_terminals: f64,
+    /// Volumetric intersection over union.
+    pub iou: f64,
+    /// Gzipped grammar without attributes.
+    pub bytes: f64,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+/// Names of modes.
+pub fn name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Best => "best",
+        Mode::Paper => "paper",
+    }
+}
+
+/// Proceduralizes a city and measures the result by its derived triangles.
+pub fn measure(city: &City, settings: &Settings) -> Result<Measures> {
+    let start = std::time::Instant::now();
+    let made = proceduralize(city, settings).map_err(Error::method)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let grammar = &made.grammar;
+    Ok(Measures {
+        polygons: grammar
+            .templates
+            .iter()
+            .map(|t| t.mesh.triangles.len() as f64)
+            .sum(),
+        components: made.decomposition.components.len() as f64,
+        soup: made
+            .decomposition
+            .components
+            .iter()
+            .map(|c| c.mesh.triangles.len() as f64)
+            .sum(),
+        terminals: grammar.templates.len() as f64,
+        non_terminals: grammar.non_terminals() as f64,
+        iou: iou(city, &made)?,
+        bytes: city::grammar_json::packed_bytes(&without_attributes(&made))
+            .map_err(Error::method)? as f64,
+        seconds,
+    })
+}
+
+fn without_attributes(made: &Proceduralized) -> crate::grammar::instance::InstanceGrammar {
+    fn clear(p: &mut crate::grammar::instance::Placement) {
+        p.attributes.clear();
+        p.parts.iter_mut().flatten().for_each(clear);
+    }
+    let mut grammar = made.grammar.clone();
+    grammar
+        .rules
+        .iter_mut()
+        .flat_map(|r| &mut r.successors)
+        .for_each(clear);
+    grammar
+}
+
+/// Volumetric intersection over union of the derived triangles with the input's.
+pub fn iou(city: &City, made: &Proceduralized) -> Result<f64> {
+    let derivation = made.grammar.derive().map_err(Error::method)?;
+    let derived = derivation.city(&made.grammar);
+    let repaired: Vec<TriangleMesh> = city.buildings.iter().map(|b| repair(&b.mesh).0).collect();
+    let first: Vec<&TriangleMesh> = repaired.iter().collect();
+    let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();
+    Ok(VolumeRaster { size: RESOLUTION }
+        .compare(&first, &second)
+        .iou())
+}
+
+/// Settings of a mode at a level; level 0 is a template for each component.
+pub fn settings(mode: Mode, level: u32, seed: u64) -> Settings {
+    Settings {
+        mode,
+        budget: if level == 0 {
+            Budget::All
+        } else {
+            Budget::Level(level)
+        },
+        seed,
+        ..Settings::default()
+    }
+}
+
+/// A row of the CSV.
+pub fn row(
+    dataset: &str,
+    method: &str,
+    instance: &str,
+    metric: &str,
+    value: f64,
+    unit: &str,
+) -> Row {
+    Row {
+        dataset: dataset.to_owned(),
+        method: method.to_owned(),
+        instance: instance.to_owned(),
+        metric: metric.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        ..Row::default()
+    }
+}

@@ -1,0 +1,151 @@
+//! What is found again of a known grammar, without and with noise.
+
+use serde::{Deserialize, Serialize};
+
+use super::{data, synthetic};
+use crate::cluster::adjusted_rand_index;
+use crate::experiments::Context;
+use crate::methods::city_proceduralization::{Budget, Mode, Settings, decompose, from_components};
+use crate::report::{Align, Table};
+use crate::{Error, Result};
+
+#[derive(Serialize, Deserialize)]
+struct Found {
+    cuts: f64,
+    purity: f64,
+    ari: f64,
+    motifs: f64,
+}
+
+/// Noise in per cent.
+const NOISE: [u32; 3] = [0, 1, 3];
+/// A cut found is right within so many metres.
+const CLOSE: f64 = 0.3;
+
+/// Runs both modes at each noise.
+pub fn run(ctx: &mut Context) -> Result<()> {
+    let seed = ctx.seed();
+    let motifs = ctx.budget().choose(60, 500, 500);
+    ctx.setting("motifs", motifs);
+    let mut units = Vec::new();
+    for mode in [Mode::Paper, Mode::Best] {
+        units.extend(NOISE.map(|noise| (mode, noise)));
+    }
+    let key = |u: &(Mode, u32)| format!("{}/{}", data::name(u.0), u.1);
+    let results: Vec<Found> = ctx.units(&units, key, |u| recover(u.0, u.1, motifs, seed))?;
+    let mut table = Table::new("Recovery of a city of 48 types and 8 motifs")
+        .column("mode", Align::Left)
+        .numbers([
+            "noise, %",
+            "cuts",
+            "purity",
+            "adjusted Rand index",
+            "motifs",
+        ]);
+    for ((mode, noise), f) in units.iter().zip(&results) {
+        for (metric, value) in [
+            ("cuts", f.cuts),
+            ("purity", f.purity),
+            ("adjusted_rand_index", f.ari),
+            ("motifs", f.motifs),
+        ] {
+            ctx.observe(data::row(
+                "synthetic",
+                data::name(*mode),
+                &noise.to_string(),
+                metric,
+                value,
+                "",
+            ));
+        }
+        table.row([
+            data::name(*mode).to_owned(),
+            noise.to_string(),
+            format!("{:.3}", f.cuts),
+            format!("{:.3}", f.purity),
+            format!("{:.3}", f.ari),
+            format!("{:.0}", f.motifs),
+        ]);
+    }
+    ctx.table(&table);
+    ctx.note("The number of component types is given: the known grammar's. A motif is found when a rule's successors are types of its six building types alone, at least one of each.");
+    Ok(())
+}
+
+fn recover(mode: Mode, noise: u32, motifs: usize, seed: u64) -> Result<Found> {
+    let (city, truth) = synthetic::city(motifs, f64::from(noise) / 100.0, seed);
+    let decomposition = decompose(&city, true);
+    let components = &decomposition.components;
+    let mut right = 0;
+    for (b, t) in truth.iter().enumerate() {
+        let own: Vec<_> = components.iter().filter(|c| c.building == b).collect();
+        let found: Vec<f64> = own.iter().skip(1).map(|c| c.frame.base[2]).collect();
+        let close = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE;
+        right += usize::from(found.len() == t.cuts.len() && found.iter().zip(&t.cuts).all(close));
+    }
+    // The truth of a component: its building's type and its slab.
+    let labels: Vec<usize> = components
+        .iter()
+        .map(|c| truth[c.building].kind * 3 + c.slab.min(2))
+        .collect();
+    let mut distinct = labels.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let settings = Settings {
+        mode,
+        budget: Budget::Templates(distinct.len()),
+        seed,
+        ..Settings::default()
+    };
+    let made = from_components(&city, decomposition.clone(), &settings).map_err(Error::method)?;
+    let found: Vec<usize> = made.types.uses.iter().map(|u| u.kind).collect();
+    // The motif of a type found: that of most of its components.
+    let mut votes = vec![[0usize; synthetic::TYPES]; made.types.representatives.len()];
+    for (u, c) in made.types.uses.iter().zip(components) {
+        votes[u.kind][truth[c.building].kind] += 1;
+    }
+    let kind_of = |t: usize| {
+        (0..synthetic::TYPES)
+            .max_by_key(|&k| votes[t][k])
+            .unwrap_or(0)
+    };
+    let members = synthetic::TYPES / synthetic::MOTIFS;
+    let mut seen = [false; synthetic::MOTIFS];
+    for children in &made.tree.children {
+        let mut kinds: Vec<usize> = children
+            .iter()
+            .filter(|&&c| c < votes.len())
+            .map(|&c| kind_of(c))
+            .collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let motif = kinds.first().map_or(0, |k| k / members);
+        if kinds.len() == members && kinds.iter().all(|k| k / members == motif) {
+            seen[motif] = true;
+        }
+    }
+    Ok(Found {
+        cuts: right as f64 / truth.len() as f64,
+        purity: purity(&found, &labels),
+        ari: adjusted_rand_index(&found, &labels),
+        motifs: seen.iter().filter(|s| **s).count() as f64,
+    })
+}
+
+fn table(a: &[usize], b: &[usize]) -> std::collections::BTreeMap<(usize, usize), f64> {
+    let mut counts = std::collections::BTreeMap::new();
+    for (&x, &y) in a.iter().zip(b) {
+        *counts.entry((x, y)).or_insert(0.0) += 1.0;
+    }
+    counts
+}
+
+/// Share of items whose cluster's most frequent label is theirs.
+fn purity(found: &[usize], labels: &[usize]) -> f64 {
+    let mut most = std::collections::BTreeMap::new();
+    for ((cluster, _), n) in table(found, labels) {
+        let m: &mut f64 = most.entry(cluster).or_insert(0.0);
+        *m = m.max(n);
+    }
+    most.values().sum::<f64>() / found.len().max(1) as f64
+}

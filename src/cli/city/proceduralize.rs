@@ -1,0 +1,262 @@
+//! `edifice city proceduralize`.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use edifice::io::city::{self, glb, grammar_json};
+use edifice::methods::city_proceduralization::{
+    self as method, Budget, PAPER_FEATURES, Proceduralized, Representative, Settings,
+};
+use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
+use edifice::{Error, Result};
+
+use crate::cli::print;
+
+/// Cells of the raster that judges the result, in metres.
+const RESOLUTION: f64 = 1.0;
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Mode {
+    /// Geometric features, Ward, medoids.
+    Best,
+    /// As the paper writes.
+    Paper,
+}
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Cities; buildings of several files are put together.
+    #[arg(required = true)]
+    input: Vec<PathBuf>,
+    /// How types are found.
+    #[arg(long, value_enum, default_value = "best")]
+    mode: Mode,
+    /// Number of templates, or `all`.
+    #[arg(long, value_name = "K", group = "budget")]
+    templates: Option<String>,
+    /// Most bytes of the gzipped grammar.
+    #[arg(long, value_name = "N", group = "budget")]
+    bytes: Option<usize>,
+    /// Least volumetric intersection over union with the input.
+    #[arg(long, value_name = "X", group = "budget")]
+    iou: Option<f64>,
+    /// Halvings of the number of components [default: 4].
+    #[arg(long, value_name = "L", group = "budget")]
+    level: Option<u32>,
+    /// Weights of the paper's features, `F=W,...`; others are 1.
+    #[arg(long, value_name = "F=W,...")]
+    weights: Option<String>,
+    /// With `--mode paper`, represent a type by its member of fewest polygons.
+    #[arg(long)]
+    poly: bool,
+    /// Seed of k-means.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The grammar to write (`*.city-grammar.json`, or with `.gz`).
+    #[arg(short, long)]
+    output: PathBuf,
+    /// Also write the derived city as binary glTF.
+    #[arg(long)]
+    glb: Option<PathBuf>,
+    /// End with a line of JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let settings = settings(args)?;
+    let start = Instant::now();
+    print::message("reading");
+    let input = read(&args.input)?;
+    print::message(&format!(
+        "{} buildings, {} triangles",
+        input.buildings.len(),
+        input.triangles()
+    ));
+    let made = match (args.bytes, args.iou) {
+        (Some(bytes), _) => {
+            let small = |p: &Proceduralized| Ok(packed(p)? <= bytes);
+            method::largest(&input, &settings, small).map_err(|e| failure(e, args))?
+        }
+        (_, Some(least)) => {
+            let good = |p: &Proceduralized| Ok(iou(&input, p)? >= least);
+            method::smallest(&input, &settings, good).map_err(|e| failure(e, args))?
+        }
+        _ => Some(method::proceduralize(&input, &settings).map_err(|e| failure(e.into(), args))?),
+    };
+    let option = if args.bytes.is_some() {
+        "--bytes"
+    } else {
+        "--iou"
+    };
+    let made = made.ok_or_else(|| Error::option(option, "no number of templates reaches it"))?;
+    warn(&input, &made);
+    let seconds = start.elapsed().as_secs_f64();
+    let derivation = made.grammar.derive().map_err(Error::method)?;
+    if let Some(path) = &args.glb {
+        let bytes = glb::to_bytes(&made.grammar, &derivation, true);
+        let bytes = bytes.map_err(|e| Error::content(path, e))?;
+        edifice::io::write_atomic(path, &bytes)?;
+    }
+    grammar_json::write(&made.grammar, &args.output)?;
+    let iou = iou(&input, &made).map_err(|e| failure(e, args))?;
+    let rules = made.grammar.rules.len();
+    let non_terminals = made.grammar.non_terminals();
+    let bytes = packed(&made).map_err(|e| failure(e, args))?;
+    let (components, templates) = (
+        made.decomposition.components.len(),
+        made.grammar.templates.len(),
+    );
+    if args.json {
+        let summary = serde_json::json!({
+            "buildings": input.buildings.len(), "components": components, "templates": templates,
+            "rules": rules, "terminals": templates, "non_terminals": non_terminals,
+            "bytes": bytes, "iou": iou, "seconds": seconds, "seed": args.seed,
+        });
+        return print::line(&summary.to_string());
+    }
+    print::line(&format!(
+        "{} buildings, {components} components -> {templates} templates, {rules} rules\n\
+         {bytes} bytes gzipped, volumetric IoU {iou:.4}, {seconds:.1} s",
+        input.buildings.len()
+    ))
+}
+
+fn settings(args: &Args) -> Result<Settings> {
+    let mut settings = Settings {
+        mode: match args.mode {
+            Mode::Best => method::Mode::Best,
+            Mode::Paper => method::Mode::Paper,
+        },
+        representative: match args.poly {
+            true => Representative::FewestPolygons,
+            false => Representative::Nearest,
+        },
+        seed: args.seed,
+        ..Settings::default()
+    };
+    if let Some(level) = args.level {
+        settings.budget = Budget::Level(level);
+    }
+    match args.templates.as_deref() {
+        Some("all") => settings.budget = Budget::All,
+        Some(text) => match text.parse() {
+            Ok(k) if k > 0 => settings.budget = Budget::Templates(k),
+            _ => {
+                return Err(Error::option(
+                    "--templates",
+                    format!("{text:?} is no number above 0, nor `all`"),
+                ));
+            }
+        },
+        None => {}
+    }
+    if let Some(x) = args.iou
+        && !(0.0..=1.0).contains(&x)
+    {
+        return Err(Error::option(
+            "--iou",
+            format!("{x} is not between 0 and 1"),
+        ));
+    }
+    for pair in args.weights.iter().flat_map(|text| text.split(',')) {
+        let known = pair.split_once('=').and_then(|(name, weight)| {
+            let at = PAPER_FEATURES.iter().position(|f| *f == name.trim())?;
+            let weight: f64 = weight.trim().parse().ok()?;
+            (weight.is_finite() && weight >= 0.0).then_some((at, weight))
+        });
+        let Some((at, weight)) = known else {
+            let message = format!(
+                "{pair:?} is not F=W with F of {}",
+                PAPER_FEATURES.join(", ")
+            );
+            return Err(Error::option("--weights", message));
+        };
+        settings.weights[at] = weight;
+    }
+    Ok(settings)
+}
+
+/// Reads all inputs; an identifier that occurs again gets a number.
+fn read(paths: &[PathBuf]) -> Result<City> {
+    let mut all: Option<City> = None;
+    for path in paths {
+        let next = city::read(path)?;
+        match &mut all {
+            None => all = Some(next),
+            Some(city) => city.merge(next),
+        }
+    }
+    let mut all = all.unwrap_or_default();
+    all.number_duplicates();
+    Ok(all)
+}
+
+fn packed(made: &Proceduralized) -> Result<usize, edifice::error::Cause> {
+    Ok(grammar_json::packed_bytes(&made.grammar)?)
+}
+
+/// Volumetric intersection over union of the derived triangles with the input's.
+fn iou(input: &City, made: &Proceduralized) -> Result<f64, edifice::error::Cause> {
+    let derived = made.grammar.derive()?.city(&made.grammar);
+    let repaired: Vec<TriangleMesh> = input.buildings.iter().map(|b| repair(&b.mesh).0).collect();
+    let first: Vec<&TriangleMesh> = repaired.iter().collect();
+    let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();
+    Ok(VolumeRaster { size: RESOLUTION }
+        .compare(&first, &second)
+        .iou())
+}
+
+fn failure(error: edifice::error::Cause, args: &Args) -> Error {
+    match args.input.first() {
+        Some(path) => Error::content(path, error),
+        None => Error::method(error),
+    }
+}
+
+/// Buildings named in a warning.
+const NAMED: usize = 3;
+
+/// Tells what is wrong with the meshes.
+fn warn(input: &City, made: &Proceduralized) {
+    let faults = &made.decomposition.faults;
+    let names = |indices: &[usize]| {
+        let named = indices
+            .iter()
+            .take(NAMED)
+            .map(|&b| input.buildings[b].id.as_str());
+        let more = if indices.len() > NAMED { ", ..." } else { "" };
+        format!("{}{more}", named.collect::<Vec<_>>().join(", "))
+    };
+    let kinds: [(&str, fn(&edifice::shape::triangles::MeshFaults) -> bool); 5] = [
+        ("are open", |f| f.open_edges > 0),
+        ("have edges of more than two triangles", |f| {
+            f.non_manifold_edges > 0
+        }),
+        ("have triangles without area", |f| f.degenerate > 0),
+        ("have triangles more than once", |f| f.duplicated > 0),
+        ("were inside out", |f| f.inverted),
+    ];
+    let all = input.buildings.len();
+    for (what, has) in kinds {
+        let found: Vec<usize> = (0..faults.len()).filter(|&b| has(&faults[b])).collect();
+        if !found.is_empty() {
+            let n = found.len();
+            print::message(&format!(
+                "warning: {n} of {all} buildings {what}: {}",
+                names(&found)
+            ));
+        }
+    }
+    let empty = &made.decomposition.empty;
+    if !empty.is_empty() {
+        let n = empty.len();
+        print::message(&format!(
+            "warning: {n} of {all} buildings left out, without area: {}",
+            names(empty)
+        ));
+    }
+}

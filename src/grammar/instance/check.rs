@@ -1,0 +1,175 @@
+//! What holds for every instance grammar that is derived.
+
+use rustc_hash::FxHashMap;
+
+use super::{InstanceGrammar, InstanceGrammarError, Placement};
+
+/// Deepest nesting of rules.
+pub(super) const DEEPEST: usize = 64;
+
+impl InstanceGrammar {
+    /// Number of symbols with rules.
+    pub fn non_terminals(&self) -> usize {
+        let mut symbols: Vec<&str> = self.rules.iter().map(|r| r.symbol.as_str()).collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        symbols.len()
+    }
+
+    /// Checks numbers, references and nesting.
+    ///
+    /// # Errors
+    /// [`InstanceGrammarError`].
+    pub fn check(&self) -> Result<(), InstanceGrammarError> {
+        let symbols = self.symbols()?;
+        match symbols.get(self.axiom.as_str()) {
+            Some(Symbol::Rule(_)) => Ok(()),
+            _ => Err(InstanceGrammarError::NoAxiom(self.axiom.clone())),
+        }
+    }
+
+    /// Names every symbol, and checks numbers, references and nesting.
+    pub(super) fn symbols(&self) -> Result<FxHashMap<&str, Symbol>, InstanceGrammarError> {
+        let mut symbols = FxHashMap::default();
+        for (i, template) in self.templates.iter().enumerate() {
+            if symbols
+                .insert(template.symbol.as_str(), Symbol::Template(i))
+                .is_some()
+            {
+                return Err(InstanceGrammarError::Ambiguous(template.symbol.clone()));
+            }
+            let count = template.mesh.positions.len();
+            let mut indices = template.mesh.triangles.iter().flatten();
+            if let Some(&index) = indices.find(|&&i| i as usize >= count) {
+                let template = i;
+                return Err(InstanceGrammarError::Dangling {
+                    template,
+                    index,
+                    count,
+                });
+            }
+            let place = || format!("templates[{i}].positions");
+            let mut values = template.mesh.positions.iter().flatten();
+            values.try_for_each(|&v| number(v, "coordinate", v.is_finite(), place))?;
+        }
+        for (i, rule) in self.rules.iter().enumerate() {
+            match symbols.get(rule.symbol.as_str()) {
+                Some(Symbol::Template(_)) => {
+                    return Err(InstanceGrammarError::Ambiguous(rule.symbol.clone()));
+                }
+                Some(Symbol::Rule(_)) => {}
+                None => {
+                    symbols.insert(rule.symbol.as_str(), Symbol::Rule(i));
+                }
+            }
+            let usable = rule.weight.is_finite() && rule.weight >= 0.0;
+            number(rule.weight, "weight", usable, || {
+                format!("rules[{i}].weight")
+            })?;
+        }
+        for (rule, r) in self.rules.iter().enumerate() {
+            for (successor, s) in r.successors.iter().enumerate() {
+                if !symbols.contains_key(s.symbol.as_str()) {
+                    let symbol = s.symbol.clone();
+                    return Err(InstanceGrammarError::UnknownSymbol {
+                        rule,
+                        successor,
+                        symbol,
+                    });
+                }
+                let place = || format!("rules[{rule}].successors[{successor}]");
+                check_placement(s, &symbols, &place)?;
+            }
+        }
+        self.check_cycles(&symbols)?;
+        Ok(symbols)
+    }
+
+    /// Depth-first search over the rules; an open rule met again is a cycle.
+    fn check_cycles(&self, symbols: &FxHashMap<&str, Symbol>) -> Result<(), InstanceGrammarError> {
+        let mut by_symbol: FxHashMap<&str, Vec<usize>> = FxHashMap::default();
+        for (i, rule) in self.rules.iter().enumerate() {
+            by_symbol.entry(rule.symbol.as_str()).or_default().push(i);
+        }
+        let mut state: FxHashMap<&str, bool> = FxHashMap::default();
+        for rule in &self.rules {
+            let mut stack = vec![(rule.symbol.as_str(), true)];
+            while let Some((symbol, enter)) = stack.pop() {
+                if !enter {
+                    state.insert(symbol, true);
+                    continue;
+                }
+                match state.get(symbol) {
+                    Some(true) => continue,
+                    Some(false) => return Err(InstanceGrammarError::Cyclic(symbol.to_owned())),
+                    None => {}
+                }
+                state.insert(symbol, false);
+                stack.push((symbol, false));
+                if stack.iter().filter(|s| !s.1).count() > DEEPEST {
+                    return Err(InstanceGrammarError::TooDeep(symbol.to_owned()));
+                }
+                let mut inner: Vec<&str> = by_symbol
+                    .get(symbol)
+                    .into_iter()
+                    .flatten()
+                    .flat_map(|&i| &self.rules[i].successors)
+                    .map(|s| s.symbol.as_str())
+                    .filter(|s| matches!(symbols.get(s), Some(Symbol::Rule(_))))
+                    .collect();
+                inner.sort_unstable();
+                inner.dedup();
+                stack.extend(inner.into_iter().map(|s| (s, true)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a symbol names, by index.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Symbol {
+    Template(usize),
+    Rule(usize),
+}
+
+fn number(
+    value: f64,
+    what: &'static str,
+    usable: bool,
+    place: impl Fn() -> String,
+) -> Result<(), InstanceGrammarError> {
+    match usable {
+        true => Ok(()),
+        false => Err(InstanceGrammarError::Number {
+            place: place(),
+            what,
+            value,
+        }),
+    }
+}
+
+fn check_placement(
+    placement: &Placement,
+    symbols: &FxHashMap<&str, Symbol>,
+    place: &dyn Fn() -> String,
+) -> Result<(), InstanceGrammarError> {
+    for v in placement.at {
+        number(v, "shift", v.is_finite(), || format!("{}.at", place()))?;
+    }
+    let turn = placement.turn;
+    number(turn, "turn", turn.is_finite(), || {
+        format!("{}.turn", place())
+    })?;
+    let [w, d, h] = placement.size;
+    for v in [w, d, h] {
+        let usable = v.is_finite() && v > 0.0;
+        number(v, "size", usable, || format!("{}.size", place()))?;
+    }
+    if let Some(Symbol::Rule(_)) = symbols.get(placement.symbol.as_str()) {
+        let what = "size of a non-terminal, which takes one factor for all axes";
+        number(d, what, w == d && d == h, || format!("{}.size", place()))?;
+    }
+    let mut parts = placement.parts.iter().flatten();
+    parts.try_for_each(|part| check_placement(part, symbols, place))
+}

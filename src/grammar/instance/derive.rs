@@ -1,0 +1,210 @@
+//! From the axiom to placed templates, and to triangles.
+
+use rustc_hash::FxHashMap;
+
+use super::check::Symbol;
+use super::{InstanceGrammar, InstanceGrammarError, Placement};
+use crate::shape::triangles::TriangleMesh;
+
+/// Most placed templates that a derivation may have.
+pub const INSTANCE_LIMIT: usize = 20_000_000;
+
+/// A template in its final place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TemplateInstance {
+    /// Index of the template.
+    pub template: usize,
+    /// Index of the building, if any.
+    pub building: Option<usize>,
+    /// Middle of the base.
+    pub at: [f64; 3],
+    /// Turn about the vertical in degrees.
+    pub turn: f64,
+    /// Width, depth and height.
+    pub size: [f64; 3],
+}
+
+impl TemplateInstance {
+    /// Where a point of the template goes.
+    pub fn place(&self, p: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = [0, 1, 2].map(|i| p[i] * self.size[i]);
+        let (sin, cos) = self.turn.to_radians().sin_cos();
+        let [a, b, c] = self.at;
+        [a + x * cos - y * sin, b + x * sin + y * cos, c + z]
+    }
+}
+
+/// Everything that a grammar's axiom derives to.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct InstanceDerivation {
+    /// Identifier and properties of each building.
+    pub buildings: Vec<(String, serde_json::Map<String, serde_json::Value>)>,
+    /// Templates in place.
+    pub instances: Vec<TemplateInstance>,
+    /// Greatest number of rules applied one inside another.
+    pub depth: usize,
+    index: FxHashMap<String, usize>,
+}
+
+impl InstanceGrammar {
+    /// Replaces non-terminals from the axiom until only templates are left.
+    ///
+    /// # Errors
+    /// [`InstanceGrammarError`]; the grammar is checked whole first.
+    pub fn derive(&self) -> Result<InstanceDerivation, InstanceGrammarError> {
+        let symbols = self.symbols()?;
+        let Some(&Symbol::Rule(start)) = symbols.get(self.axiom.as_str()) else {
+            return Err(InstanceGrammarError::NoAxiom(self.axiom.clone()));
+        };
+        let mut out = InstanceDerivation::default();
+        let frame = Frame {
+            at: [0.0; 3],
+            turn: 0.0,
+            scale: 1.0,
+        };
+        let derivation = Deriver {
+            grammar: self,
+            symbols: &symbols,
+        };
+        derivation.rule(start, &[], &frame, None, 1, &mut out)?;
+        Ok(out)
+    }
+}
+
+/// The frame of a non-terminal.
+struct Frame {
+    at: [f64; 3],
+    turn: f64,
+    scale: f64,
+}
+
+struct Deriver<'a> {
+    grammar: &'a InstanceGrammar,
+    symbols: &'a FxHashMap<&'a str, Symbol>,
+}
+
+impl Deriver<'_> {
+    fn rule(
+        &self,
+        rule: usize,
+        parts: &[Option<Placement>],
+        frame: &Frame,
+        building: Option<usize>,
+        depth: usize,
+        out: &mut InstanceDerivation,
+    ) -> Result<(), InstanceGrammarError> {
+        let rule = &self.grammar.rules[rule];
+        out.depth = out.depth.max(depth);
+        if !parts.is_empty() && parts.len() != rule.successors.len() {
+            return Err(InstanceGrammarError::Parts {
+                symbol: rule.symbol.clone(),
+                found: parts.len(),
+                expected: rule.successors.len(),
+            });
+        }
+        for (i, successor) in rule.successors.iter().enumerate() {
+            let placed = match parts.get(i) {
+                None => successor,
+                Some(None) => continue,
+                Some(Some(part)) => part,
+            };
+            self.place(placed, &successor.symbol, frame, building, depth, out)?;
+        }
+        Ok(())
+    }
+
+    fn place(
+        &self,
+        placed: &Placement,
+        symbol: &str,
+        frame: &Frame,
+        building: Option<usize>,
+        depth: usize,
+        out: &mut InstanceDerivation,
+    ) -> Result<(), InstanceGrammarError> {
+        let (sin, cos) = frame.turn.to_radians().sin_cos();
+        let [x, y, z] = placed.at.map(|v| v * frame.scale);
+        let at = [
+            frame.at[0] + x * cos - y * sin,
+            frame.at[1] + x * sin + y * cos,
+            frame.at[2] + z,
+        ];
+        let turn = frame.turn + placed.turn;
+        let building = match &placed.id {
+            Some(id) => Some(out.building(id, &placed.attributes)),
+            None => building,
+        };
+        match self.symbols.get(symbol) {
+            Some(&Symbol::Template(template)) => {
+                if out.instances.len() >= INSTANCE_LIMIT {
+                    return Err(InstanceGrammarError::TooLarge);
+                }
+                out.instances.push(TemplateInstance {
+                    template,
+                    building,
+                    at,
+                    turn,
+                    size: placed.size.map(|v| v * frame.scale),
+                });
+                Ok(())
+            }
+            Some(&Symbol::Rule(rule)) => {
+                let frame = Frame {
+                    at,
+                    turn,
+                    scale: frame.scale * placed.size[0],
+                };
+                self.rule(rule, &placed.parts, &frame, building, depth + 1, out)
+            }
+            None => Err(InstanceGrammarError::NoAxiom(symbol.to_owned())),
+        }
+    }
+}
+
+impl InstanceDerivation {
+    /// The index of a building, which is new at its first placement.
+    fn building(
+        &mut self,
+        id: &str,
+        attributes: &serde_json::Map<String, serde_json::Value>,
+    ) -> usize {
+        if let Some(&known) = self.index.get(id) {
+            return known;
+        }
+        self.buildings.push((id.to_owned(), attributes.clone()));
+        self.index.insert(id.to_owned(), self.buildings.len() - 1);
+        self.buildings.len() - 1
+    }
+
+    /// The triangles of each building; instances outside all buildings are buildings of their own.
+    pub fn city(&self, grammar: &InstanceGrammar) -> crate::shape::triangles::City {
+        use crate::shape::triangles::{City, CityBuilding};
+        let named = self.buildings.iter().map(|(id, attributes)| CityBuilding {
+            id: id.clone(),
+            attributes: attributes.clone(),
+            mesh: TriangleMesh::default(),
+        });
+        let mut buildings: Vec<CityBuilding> = named.collect();
+        for (i, instance) in self.instances.iter().enumerate() {
+            let building = instance.building.unwrap_or_else(|| {
+                buildings.push(CityBuilding {
+                    id: format!("instance-{i}"),
+                    ..CityBuilding::default()
+                });
+                buildings.len() - 1
+            });
+            let template = &grammar.templates[instance.template].mesh;
+            let positions = template.positions.iter().map(|&p| instance.place(p));
+            buildings[building].mesh.append(&TriangleMesh {
+                positions: positions.collect(),
+                triangles: template.triangles.clone(),
+            });
+        }
+        City {
+            name: grammar.name.clone(),
+            reference_system: grammar.reference_system.clone(),
+            origin: grammar.origin,
+            buildings,
+        }
+    }
+}

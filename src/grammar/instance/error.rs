@@ -1,0 +1,64 @@
+//! Why an instance grammar cannot be derived.
+
+use super::check::DEEPEST;
+use super::derive::INSTANCE_LIMIT;
+
+/// Why a grammar cannot be derived.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum InstanceGrammarError {
+    /// A symbol is neither template nor non-terminal.
+    #[error("rules[{rule}].successors[{successor}]: unknown symbol {symbol:?}")]
+    UnknownSymbol {
+        /// Index of the rule.
+        rule: usize,
+        /// Index of the successor.
+        successor: usize,
+        /// The symbol.
+        symbol: String,
+    },
+    /// A symbol names two things.
+    #[error("{0:?} names two templates, or a template and a non-terminal")]
+    Ambiguous(String),
+    /// The axiom has no rule.
+    #[error("the axiom {0:?} has no rule")]
+    NoAxiom(String),
+    /// A non-terminal contains itself.
+    #[error("{0:?} contains itself")]
+    Cyclic(String),
+    /// Rules nest too deeply.
+    #[error("rules nest more than {DEEPEST} deep at {0:?}")]
+    TooDeep(String),
+    /// A number is not usable.
+    #[error("{place}: {value} is not a usable {what}")]
+    Number {
+        /// Where.
+        place: String,
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A template's triangle names a position that it does not have.
+    #[error("templates[{template}].triangles: index {index} of {count} positions")]
+    Dangling {
+        /// Index of the template.
+        template: usize,
+        /// The index.
+        index: u32,
+        /// How many positions there are.
+        count: usize,
+    },
+    /// Parts do not follow the rule.
+    #[error("an instance of {symbol:?} has {found} parts where its rule has {expected}")]
+    Parts {
+        /// The non-terminal.
+        symbol: String,
+        /// Parts given.
+        found: usize,
+        /// Successors of its rule.
+        expected: usize,
+    },
+    /// A derivation is too large.
+    #[error("the derivation has more than {INSTANCE_LIMIT} instances")]
+    TooLarge,
+}

@@ -1,0 +1,90 @@
+//! Instance grammars: symbols with transforms (Demir et al. 2014, Eq. 5 to 7).
+//!
+//! A terminal is a template: a mesh in the unit box (x and y from -1/2 to 1/2, z from 0 to 1). A rule
+//! `N → ⊕ E_l N_l` puts its successors, each by a transform E_l, into the frame of N. The axiom's
+//! derivation is the city.
+//!
+//! A placed non-terminal may carry `parts`: where each successor of its rule stands in this instance, or
+//! that it is absent. Without them the successors stand where the rule, with its mean transforms, puts
+//! them.
+
+mod check;
+mod derive;
+mod error;
+
+pub use derive::{INSTANCE_LIMIT, InstanceDerivation, TemplateInstance};
+pub use error::InstanceGrammarError;
+
+use crate::shape::triangles::TriangleMesh;
+
+/// A symbol in its place: scaled, turned about the vertical, shifted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placement {
+    /// Template or non-terminal.
+    pub symbol: String,
+    /// Shift, in metres, in the frame of the rule's symbol.
+    pub at: [f64; 3],
+    /// Turn about the vertical in degrees, counterclockwise seen from above.
+    pub turn: f64,
+    /// Of a template: its width, depth and height in metres. Of a non-terminal: one factor, three times.
+    pub size: [f64; 3],
+    /// Identifier of the building that this is, or is a part of.
+    pub id: Option<String>,
+    /// Further properties of that building.
+    pub attributes: serde_json::Map<String, serde_json::Value>,
+    /// Where this instance's successors stand, in the order of the rule; `None` is absent. Empty: where
+    /// the rule says.
+    pub parts: Vec<Option<Placement>>,
+}
+
+impl Placement {
+    /// A symbol at a place.
+    pub fn new(symbol: impl Into<String>, at: [f64; 3], turn: f64, size: [f64; 3]) -> Self {
+        Self {
+            symbol: symbol.into(),
+            at,
+            turn,
+            size,
+            id: None,
+            attributes: serde_json::Map::new(),
+            parts: Vec::new(),
+        }
+    }
+}
+
+/// A terminal: a mesh in the unit box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Template {
+    /// Symbol.
+    pub symbol: String,
+    /// The mesh.
+    pub mesh: TriangleMesh,
+}
+
+/// One way to replace a non-terminal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InstanceRule {
+    /// The non-terminal.
+    pub symbol: String,
+    /// How often, against the other rules of the symbol.
+    pub weight: f64,
+    /// What replaces it.
+    pub successors: Vec<Placement>,
+}
+
+/// A city as rules over templates.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct InstanceGrammar {
+    /// Name.
+    pub name: String,
+    /// Coordinate reference system.
+    pub reference_system: Option<String>,
+    /// What to add to every coordinate to be in the reference system.
+    pub origin: [f64; 3],
+    /// Start symbol.
+    pub axiom: String,
+    /// Terminals.
+    pub templates: Vec<Template>,
+    /// Rules; of several with one symbol, a derivation takes the first, sampling draws by weight.
+    pub rules: Vec<InstanceRule>,
+}

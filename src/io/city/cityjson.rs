@@ -1,0 +1,229 @@
+//! Cities as CityJSON 1.0 to 2.0 (`.city.json`) and CityJSONSeq (`.city.jsonl`): z up, metres.
+//!
+//! A first-level city object with its parts is a building. Read are MultiSurface, CompositeSurface, Solid,
+//! MultiSolid and CompositeSolid of the highest level of detail; polygons with holes are triangulated.
+//! Written is CityJSON 2.0 with a MultiSurface of triangles for each building.
+
+use std::path::Path;
+
+use rustc_hash::FxHashMap;
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+use super::CityError;
+use crate::io::json::parse_json;
+use crate::io::read_bytes;
+use crate::shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
+use crate::{Error, Result};
+
+#[derive(Deserialize)]
+struct Document {
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(default)]
+    transform: Option<Transform>,
+    #[serde(default)]
+    metadata: Map<String, Value>,
+    #[serde(rename = "CityObjects", default)]
+    objects: Map<String, Value>,
+    #[serde(default)]
+    vertices: Vec<[f64; 3]>,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+struct Transform {
+    scale: [f64; 3],
+    translate: [f64; 3],
+}
+
+/// Reads a file; the first line of a CityJSONSeq carries the transform, each further line a feature.
+///
+/// # Errors
+/// Names the file and the element that is wrong.
+pub fn read(path: &Path) -> Result<City> {
+    parse(&read_bytes(path)?, path)
+}
+
+/// Parses the bytes of a file; `path` only names it in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
+    let sequence = crate::io::packed::extension(path) == "jsonl";
+    let mut parts: Vec<&[u8]> = match sequence {
+        true => bytes.split(|&b| b == b'\n').collect(),
+        false => vec![bytes],
+    };
+    parts.retain(|line| !line.trim_ascii().is_empty());
+    let mut city = City {
+        name: crate::io::file_stem(path),
+        ..City::default()
+    };
+    let mut transform = Transform {
+        scale: [1.0; 3],
+        translate: [0.0; 3],
+    };
+    for (line, part) in parts.into_iter().enumerate() {
+        let place = |inner: &str| match sequence {
+            true => format!("line {}, {inner}", line + 1),
+            false => inner.to_owned(),
+        };
+        let document: Document = parse_json(part, path)?;
+        let expected = if line == 0 {
+            "CityJSON"
+        } else {
+            "CityJSONFeature"
+        };
+        if document.kind != expected {
+            let text = format!("{:?}, expected {expected:?}", document.kind);
+            return Err(Error::input(path, place("type"), CityError::Format(text)));
+        }
+        if line == 0 {
+            transform = document.transform.unwrap_or(transform);
+            city.origin = transform.translate;
+            let system = document.metadata.get("referenceSystem");
+            city.reference_system = system.and_then(Value::as_str).map(str::to_owned);
+        }
+        let scaled = |v: &[f64; 3]| [0, 1, 2].map(|k| v[k] * transform.scale[k]);
+        let vertices: Vec<[f64; 3]> = document.vertices.iter().map(scaled).collect();
+        read_objects(&document.objects, &vertices, &mut city).map_err(|(id, error)| {
+            Error::input(path, place(&format!("CityObjects.{id}")), error)
+        })?;
+    }
+    Ok(city)
+}
+
+fn read_objects(
+    objects: &Map<String, Value>,
+    vertices: &[[f64; 3]],
+    city: &mut City,
+) -> std::result::Result<(), (String, CityError)> {
+    let mut index: FxHashMap<&str, usize> = FxHashMap::default();
+    for (id, object) in objects {
+        if first_parent(object).is_none() {
+            index.insert(id, city.buildings.len());
+            let attributes = object.get("attributes").and_then(Value::as_object);
+            city.buildings.push(CityBuilding {
+                id: id.clone(),
+                attributes: attributes.cloned().unwrap_or_default(),
+                mesh: TriangleMesh::default(),
+            });
+        }
+    }
+    for (id, object) in objects {
+        // Parts may have parts; a circle of parents ends after as many steps as there are objects.
+        let mut root = id.as_str();
+        for _ in 0..objects.len() {
+            match objects.get(root).and_then(first_parent) {
+                Some(parent) => root = parent,
+                None => break,
+            }
+        }
+        let Some(&building) = index.get(root) else {
+            let text = format!("its parent {root:?} does not exist");
+            return Err((id.clone(), CityError::Format(text)));
+        };
+        let mut mesh = TriangleMesh::default();
+        if let Some(geometry) = highest(object) {
+            let boundaries = geometry.get("boundaries").unwrap_or(&Value::Null);
+            surfaces(boundaries, vertices, &mut mesh).map_err(|e| (id.clone(), e))?;
+        }
+        city.buildings[building].mesh.append(&mesh.welded(1e-6));
+    }
+    city.buildings.retain(|b| !b.mesh.triangles.is_empty());
+    Ok(())
+}
+
+fn first_parent(object: &Value) -> Option<&str> {
+    object.get("parents")?.get(0)?.as_str()
+}
+
+/// The geometry with surfaces of the highest level of detail.
+fn highest(object: &Value) -> Option<&Value> {
+    let lod = |g: &&Value| match g.get("lod") {
+        Some(Value::String(text)) => text.parse().unwrap_or(0.0),
+        Some(number) => number.as_f64().unwrap_or(0.0),
+        None => 0.0,
+    };
+    let solid = |g: &&Value| {
+        let kind = g.get("type").and_then(Value::as_str).unwrap_or_default();
+        kind.ends_with("Surface") || kind.ends_with("Solid")
+    };
+    let list = object.get("geometry")?.as_array()?;
+    list.iter()
+        .filter(solid)
+        .max_by(|a, b| lod(a).total_cmp(&lod(b)))
+}
+
+/// Surfaces at any depth of nesting: a surface is a list of rings, a ring a list of indices.
+fn surfaces(
+    value: &Value,
+    vertices: &[[f64; 3]],
+    mesh: &mut TriangleMesh,
+) -> std::result::Result<(), CityError> {
+    let wrong = || CityError::Format("boundaries are not nested lists of indices".to_owned());
+    let list = value.as_array().ok_or_else(wrong)?;
+    let is_surface = list
+        .first()
+        .and_then(Value::as_array)
+        .and_then(|ring| ring.first())
+        .is_some_and(Value::is_number);
+    if !is_surface {
+        return list
+            .iter()
+            .try_for_each(|inner| surfaces(inner, vertices, mesh));
+    }
+    let mut rings: Vec<Vec<[f64; 3]>> = Vec::new();
+    for ring in list {
+        let mut corners = Vec::new();
+        for index in ring.as_array().ok_or_else(wrong)? {
+            let index = index.as_u64().ok_or_else(wrong)?;
+            let count = vertices.len();
+            let vertex = usize::try_from(index).ok().and_then(|i| vertices.get(i));
+            corners.push(*vertex.ok_or(CityError::Dangling { index, count })?);
+        }
+        rings.push(corners);
+    }
+    polygon_triangles(&rings)
+        .into_iter()
+        .for_each(|t| mesh.push(t));
+    Ok(())
+}
+
+/// Millimetres: coordinates are written as integers.
+const SCALE: f64 = 0.001;
+
+/// The text of a CityJSON 2.0 file.
+pub fn to_string(city: &City) -> String {
+    let mut known: FxHashMap<[i64; 3], usize> = FxHashMap::default();
+    let mut vertices: Vec<[i64; 3]> = Vec::new();
+    let mut objects = Map::new();
+    for b in &city.buildings {
+        let mut boundaries = Vec::new();
+        for t in b.mesh.corners() {
+            let ring = t.map(|p| {
+                let key = p.map(|v| (v / SCALE).round() as i64);
+                *known.entry(key).or_insert_with(|| {
+                    vertices.push(key);
+                    vertices.len() - 1
+                })
+            });
+            if ring[0] != ring[1] && ring[1] != ring[2] && ring[2] != ring[0] {
+                boundaries.push(json!([ring]));
+            }
+        }
+        let mut object = json!({ "type": "Building", "geometry": [
+            { "type": "MultiSurface", "lod": "2", "boundaries": boundaries } ] });
+        if !b.attributes.is_empty() {
+            object["attributes"] = Value::Object(b.attributes.clone());
+        }
+        objects.insert(b.id.clone(), object);
+    }
+    let mut document = json!({ "type": "CityJSON", "version": "2.0",
+        "transform": { "scale": [SCALE, SCALE, SCALE], "translate": city.origin },
+        "CityObjects": objects, "vertices": vertices });
+    if let Some(system) = &city.reference_system {
+        document["metadata"] = json!({ "referenceSystem": system });
+    }
+    document.to_string()
+}

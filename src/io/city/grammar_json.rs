@@ -1,0 +1,326 @@
+//! Instance grammars as JSON: `*.city-grammar.json`, format `edifice/city-grammar`, version 1.
+//!
+//! ```json
+//! { "format": "edifice/city-grammar", "version": 1, "name": "midtown", "unit": "m", "up": "z",
+//!   "reference_system": null, "origin": [0, 0, 0], "axiom": "City", "steps": 4095,
+//!   "templates": [ { "symbol": "T1", "positions": [0, 0, 0, 4095, 0, 0, 0, 4095, 4095], "triangles": [0, 1, 2] } ],
+//!   "rules": [
+//!     { "symbol": "City", "weight": 1, "successors": [
+//!       { "symbol": "B1", "at": [10.5, 3, 0], "turn": 30, "id": "b17", "attributes": { "year": 1931 } } ] },
+//!     { "symbol": "B1", "weight": 1, "successors": [
+//!       { "symbol": "T1", "size": [20, 12, 30] }, { "symbol": "T1", "at": [1, 0, 30], "size": [8, 8, 5] } ] } ] }
+//! ```
+//! A symbol with a rule is a non-terminal. Positions of templates are in steps of the unit box, of which x and
+//! y are then shifted by -1/2; `size` is a template's width, depth and height in metres, or one factor for a
+//! non-terminal; `turn` is in degrees, counterclockwise from above. Left out are `at` and `turn` where they are 0 and
+//! `size` where it is 1. `parts`, on an instance of a non-terminal, lists where its successors really stand
+//! (`null`: absent). With several rules for a symbol a derivation takes the first one; synthesis draws
+//! by weight.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
+use crate::io::json::{check_header, parse_json};
+use crate::io::{read_bytes, write_atomic};
+use crate::shape::triangles::TriangleMesh;
+use crate::{Error, Result};
+
+/// The value of the key `format`.
+pub const FORMAT: &str = "edifice/city-grammar";
+/// The version written, and the only one read.
+pub const VERSION: u64 = 1;
+/// Steps of the unit box.
+const STEPS: f64 = 4095.0;
+
+/// Reads a grammar and checks that it derives.
+///
+/// # Errors
+/// Names the file and the element that is wrong.
+pub fn read(path: &Path) -> Result<InstanceGrammar> {
+    parse(&read_bytes(path)?, path)
+}
+
+/// Parses the bytes of a grammar; `path` only names the file in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(bytes: &[u8], path: &Path) -> Result<InstanceGrammar> {
+    check_header(bytes, path, FORMAT, VERSION)?;
+    let file: File = parse_json(bytes, path)?;
+    for (key, found, expected) in [("unit", &file.unit, "m"), ("up", &file.up, "z")] {
+        if found != expected {
+            let text = format!("{found:?}, expected {expected:?}");
+            return Err(Error::input(path, key, text));
+        }
+    }
+    if !(file.steps.is_finite() && file.steps > 0.0) {
+        return Err(Error::input(path, "steps", format!("{} steps", file.steps)));
+    }
+    let mut templates = Vec::new();
+    for (i, t) in file.templates.into_iter().enumerate() {
+        for (key, length) in [
+            ("positions", t.positions.len()),
+            ("triangles", t.triangles.len()),
+        ] {
+            if length % 3 != 0 {
+                let place = format!("templates[{i}].{key}");
+                return Err(Error::input(
+                    path,
+                    place,
+                    format!("{length} numbers, not threes"),
+                ));
+            }
+        }
+        let unit = |v: f64| v / file.steps;
+        let positions = t.positions.chunks_exact(3);
+        let triangles = t.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]);
+        templates.push(Template {
+            symbol: t.symbol,
+            mesh: TriangleMesh {
+                positions: positions
+                    .map(|p| [unit(p[0]) - 0.5, unit(p[1]) - 0.5, unit(p[2])])
+                    .collect(),
+                triangles: triangles.collect(),
+            },
+        });
+    }
+    let grammar = InstanceGrammar {
+        name: file.name,
+        reference_system: file.reference_system,
+        origin: file.origin,
+        axiom: file.axiom,
+        templates,
+        rules: file.rules.into_iter().map(rule_of).collect(),
+    };
+    grammar.check().map_err(|e| Error::content(path, e))?;
+    Ok(grammar)
+}
+
+/// Writes a grammar, whole or not at all; gzipped when the name ends in `.gz`.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be written.
+pub fn write(grammar: &InstanceGrammar, path: &Path) -> Result<()> {
+    let text = to_string(grammar).map_err(|e| Error::content(path, e))?;
+    let bytes = match path.extension().is_some_and(|e| e == "gz") {
+        true => packed(text.as_bytes()),
+        false => text.into_bytes(),
+    };
+    write_atomic(path, &bytes)
+}
+
+/// Bytes of the gzipped text: what storing and sending a grammar takes.
+///
+/// # Errors
+/// Those of the JSON writer, on numbers that are not finite.
+pub fn packed_bytes(grammar: &InstanceGrammar) -> serde_json::Result<usize> {
+    Ok(packed(to_string(grammar)?.as_bytes()).len())
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    // Writing to memory does not fail.
+    let _ = encoder.write_all(bytes);
+    encoder.finish().unwrap_or_default()
+}
+
+/// The text of a grammar: a template, and a successor, a line.
+///
+/// # Errors
+/// As [`packed_bytes`].
+pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
+    let mut out = format!(
+        "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {}, \"unit\": \"m\", \"up\": \"z\",\n  \
+         \"reference_system\": {}, \"origin\": {}, \"axiom\": {}, \"steps\": {},\n  \"templates\": [",
+        serde_json::to_string(&grammar.name)?,
+        serde_json::to_string(&grammar.reference_system)?,
+        serde_json::to_string(&grammar.origin.map(Number))?,
+        serde_json::to_string(&grammar.axiom)?,
+        serde_json::to_string(&Number(STEPS))?,
+    );
+    for (i, t) in grammar.templates.iter().enumerate() {
+        let step = |v: f64| Number(v * STEPS);
+        let positions = t.mesh.positions.iter();
+        let positions = positions.flat_map(|p| [step(p[0] + 0.5), step(p[1] + 0.5), step(p[2])]);
+        let template = FileTemplate {
+            symbol: t.symbol.clone(),
+            positions: positions.map(Number::near).collect(),
+            triangles: t.mesh.triangles.concat(),
+        };
+        out.push_str(if i == 0 { "\n    " } else { ",\n    " });
+        out.push_str(&serde_json::to_string(&template)?);
+    }
+    out.push_str("\n  ],\n  \"rules\": [");
+    for (i, rule) in grammar.rules.iter().enumerate() {
+        out.push_str(if i == 0 { "\n    " } else { ",\n    " });
+        let (symbol, weight) = (
+            serde_json::to_string(&rule.symbol)?,
+            serde_json::to_string(&Number(rule.weight))?,
+        );
+        out.push_str(&format!(
+            "{{\"symbol\":{symbol},\"weight\":{weight},\"successors\":["
+        ));
+        for (k, s) in rule.successors.iter().enumerate() {
+            out.push_str(if k == 0 { "\n      " } else { ",\n      " });
+            out.push_str(&serde_json::to_string(&placement_file(s))?);
+        }
+        out.push_str("]}");
+    }
+    out.push_str("\n  ] }\n");
+    Ok(out)
+}
+
+/// A number that is written as an integer where it is one.
+#[derive(Clone, Copy, PartialEq)]
+struct Number(f64);
+
+impl Number {
+    /// Rounded where it is a whole number of steps but for rounding.
+    fn near(self) -> f64 {
+        let whole = self.0.round();
+        if (self.0 - whole).abs() < 1e-6 {
+            whole
+        } else {
+            self.0
+        }
+    }
+}
+
+impl Serialize for Number {
+    fn serialize<S: serde::Serializer>(
+        &self,
+        serializer: S,
+    ) -> std::result::Result<S::Ok, S::Error> {
+        match self.0.fract() == 0.0 && self.0.abs() < 1e15 {
+            true => serializer.serialize_i64(self.0 as i64),
+            false => serializer.serialize_f64(self.0),
+        }
+    }
+}
+
+fn numbers<S: serde::Serializer>(
+    values: &[f64],
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_seq(values.iter().map(|&v| Number(v)))
+}
+
+fn triple<S: serde::Serializer>(
+    v: &[f64; 3],
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    numbers(v, serializer)
+}
+
+fn number<S: serde::Serializer>(v: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    Number(*v).serialize(serializer)
+}
+
+#[derive(Deserialize)]
+struct File {
+    name: String,
+    unit: String,
+    up: String,
+    reference_system: Option<String>,
+    origin: [f64; 3],
+    axiom: String,
+    steps: f64,
+    templates: Vec<FileTemplate>,
+    rules: Vec<FileRule>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FileTemplate {
+    symbol: String,
+    #[serde(serialize_with = "numbers")]
+    positions: Vec<f64>,
+    triangles: Vec<u32>,
+}
+
+#[derive(Deserialize)]
+struct FileRule {
+    symbol: String,
+    #[serde(default = "one")]
+    weight: f64,
+    successors: Vec<FilePlacement>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FilePlacement {
+    symbol: String,
+    #[serde(default, skip_serializing_if = "is_zero", serialize_with = "triple")]
+    at: [f64; 3],
+    #[serde(default, skip_serializing_if = "is_still", serialize_with = "number")]
+    turn: f64,
+    #[serde(
+        default = "ones",
+        skip_serializing_if = "is_one",
+        serialize_with = "triple"
+    )]
+    size: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    id: Option<String>,
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    attributes: serde_json::Map<String, serde_json::Value>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<Option<FilePlacement>>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn ones() -> [f64; 3] {
+    [1.0; 3]
+}
+
+fn is_zero(at: &[f64; 3]) -> bool {
+    *at == [0.0; 3]
+}
+
+fn is_still(turn: &f64) -> bool {
+    *turn == 0.0
+}
+
+fn is_one(size: &[f64; 3]) -> bool {
+    *size == [1.0; 3]
+}
+
+fn rule_of(rule: FileRule) -> InstanceRule {
+    InstanceRule {
+        symbol: rule.symbol,
+        weight: rule.weight,
+        successors: rule.successors.into_iter().map(placement_of).collect(),
+    }
+}
+
+fn placement_of(p: FilePlacement) -> Placement {
+    let parts = p.parts.into_iter();
+    Placement {
+        symbol: p.symbol,
+        at: p.at,
+        turn: p.turn,
+        size: p.size,
+        id: p.id,
+        attributes: p.attributes,
+        parts: parts.map(|part| part.map(placement_of)).collect(),
+    }
+}
+
+fn placement_file(p: &Placement) -> FilePlacement {
+    let parts = p.parts.iter();
+    FilePlacement {
+        symbol: p.symbol.clone(),
+        at: p.at,
+        turn: p.turn,
+        size: p.size,
+        id: p.id.clone(),
+        attributes: p.attributes.clone(),
+        parts: parts
+            .map(|part| part.as_ref().map(placement_file))
+            .collect(),
+    }
+}

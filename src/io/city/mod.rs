@@ -1,0 +1,95 @@
+//! Cities: buildings as triangles, in and out.
+//!
+//! | extension | read | written |
+//! | --- | --- | --- |
+//! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
+//! | `.obj` | [`obj`]: an object or group is a building | yes |
+//! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
+//! | `.glb` | no | [`glb`]: a node with instances for each template |
+//! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
+
+pub mod cityjson;
+pub mod glb;
+pub mod grammar_json;
+pub mod npz;
+pub mod obj;
+pub mod picture;
+
+use std::path::Path;
+
+use super::packed;
+use crate::shape::triangles::City;
+use crate::{Error, Result};
+
+/// Coordinates beyond this are no metres.
+const FARTHEST: f64 = 1e8;
+
+/// Why a file holds no city.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CityError {
+    /// There is no building, or none has a triangle.
+    #[error("no buildings with triangles")]
+    NoBuildings,
+    /// An extension that is no city format.
+    #[error("unknown city format; expected .npz, .obj, .city.json or .city.jsonl")]
+    UnknownFormat,
+    /// Coordinates look like degrees.
+    #[error(
+        "all coordinates lie within {0:.4} units: degrees, not metres? project them to metres first"
+    )]
+    Degrees(f64),
+    /// A coordinate is not finite, or too large to be metres.
+    #[error("coordinate {0} is no length in metres")]
+    Coordinate(f64),
+    /// A triangle's index leads nowhere.
+    #[error("index {index} does not exist, there are {count} positions")]
+    Dangling {
+        /// The index.
+        index: u64,
+        /// How many positions there are.
+        count: usize,
+    },
+    /// Anything else that the format does not allow.
+    #[error("{0}")]
+    Format(String),
+}
+
+/// Reads a city; the extension tells the format, and every text format may be gzipped.
+///
+/// # Errors
+/// Names the file and the element that is wrong.
+pub fn read(path: &Path) -> Result<City> {
+    let city = match packed::extension(path).as_str() {
+        "npz" => npz::read(path)?,
+        "obj" => obj::read(path)?,
+        "json" | "jsonl" => cityjson::read(path)?,
+        _ => return Err(Error::content(path, CityError::UnknownFormat)),
+    };
+    check(city, path)
+}
+
+/// What holds for every format: a building with triangles, finite metres.
+fn check(city: City, path: &Path) -> Result<City> {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for building in &city.buildings {
+        for p in &building.mesh.positions {
+            if let Some(&v) = p.iter().find(|v| !v.is_finite() || v.abs() > FARTHEST) {
+                let place = format!("building {:?}", building.id);
+                return Err(Error::input(path, place, CityError::Coordinate(v)));
+            }
+            for k in 0..2 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+    }
+    if city.triangles() == 0 {
+        return Err(Error::content(path, CityError::NoBuildings));
+    }
+    // Several buildings within a metre are degrees of longitude and latitude.
+    let extent = (high[0] - low[0]).max(high[1] - low[1]);
+    if extent < 1.0 {
+        return Err(Error::content(path, CityError::Degrees(extent)));
+    }
+    Ok(city)
+}

@@ -1,0 +1,125 @@
+//! Pictures of cities, one beside the other, from one place.
+
+use crate::scene::render::{Camera, render};
+use crate::scene::{Group, Instance, Material, Mesh, Scene};
+use crate::shape::triangles::City;
+
+/// Space between pictures, in pixels.
+const GAP: usize = 8;
+
+/// Draws cities from one place, as a PNG of one row; each picture is `width` x `height` pixels.
+///
+/// # Errors
+/// Those of the PNG encoder, which writes to memory.
+pub fn side_by_side(
+    cities: &[&City],
+    width: usize,
+    height: usize,
+) -> Result<Vec<u8>, png::EncodingError> {
+    let camera = camera(cities);
+    let whole = cities.len() * (width + GAP) - GAP.min(cities.len() * (width + GAP));
+    let mut rgb = vec![255; whole * height * 3];
+    for (i, city) in cities.iter().enumerate() {
+        let picture = render(&scene(city), &camera, width, height);
+        for (y, row) in picture.rgb.chunks_exact(width * 3).enumerate() {
+            let from = (y * whole + i * (width + GAP)) * 3;
+            rgb[from..from + row.len()].copy_from_slice(row);
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, whole as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_filter(png::Filter::Adaptive);
+    encoder.set_compression(png::Compression::Balanced);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// z up to y up.
+fn turned(p: [f64; 3]) -> [f32; 3] {
+    [p[0] as f32, p[2] as f32, -p[1] as f32]
+}
+
+/// From the south-west, as high as wide.
+fn camera(cities: &[&City]) -> Camera {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (l, h) in cities
+        .iter()
+        .flat_map(|c| &c.buildings)
+        .filter_map(|b| b.mesh.bounds())
+    {
+        for k in 0..3 {
+            low[k] = low[k].min(l[k]);
+            high[k] = high[k].max(h[k]);
+        }
+    }
+    let middle = [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0);
+    let extent = (high[0] - low[0]).max(high[1] - low[1]).max(10.0);
+    let eye = [
+        middle[0] - 0.35 * extent,
+        middle[1] - 0.75 * extent,
+        low[2] + 0.55 * extent,
+    ];
+    Camera {
+        eye: turned(eye),
+        target: turned([middle[0], middle[1], low[2]]),
+        angle: 45.0,
+    }
+}
+
+/// A mesh a building, on a ground.
+fn scene(city: &City) -> Scene {
+    let material = |name: &str, color| Material {
+        name: name.to_owned(),
+        color,
+        roughness: 0.9,
+    };
+    let mut scene = Scene {
+        materials: vec![
+            material("building", [214, 208, 198]),
+            material("ground", [150, 152, 150]),
+        ],
+        ..Scene::default()
+    };
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for b in city
+        .buildings
+        .iter()
+        .filter(|b| !b.mesh.triangles.is_empty())
+    {
+        if let Some((l, h)) = b.mesh.bounds() {
+            for k in 0..3 {
+                low[k] = low[k].min(l[k]);
+                high[k] = high[k].max(h[k]);
+            }
+        }
+        scene.meshes.push(Mesh {
+            name: b.id.clone(),
+            positions: b.mesh.positions.iter().map(|&p| turned(p)).collect(),
+            parts: vec![(0, b.mesh.triangles.concat())],
+        });
+    }
+    let margin = 50.0;
+    let corner = |x: f64, y: f64| turned([x, y, low[2]]);
+    scene.meshes.push(Mesh {
+        name: "ground".to_owned(),
+        positions: vec![
+            corner(low[0] - margin, low[1] - margin),
+            corner(high[0] + margin, low[1] - margin),
+            corner(high[0] + margin, high[1] + margin),
+            corner(low[0] - margin, high[1] + margin),
+        ],
+        parts: vec![(1, vec![0, 1, 2, 0, 2, 3])],
+    });
+    scene.groups.push(Group {
+        name: city.name.clone(),
+        yaw: 0.0,
+        translation: [0.0; 3],
+        instances: (0..scene.meshes.len())
+            .map(|m| Instance::at(m, [0.0; 3]))
+            .collect(),
+    });
+    scene
+}

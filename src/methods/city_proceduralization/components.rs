@@ -1,0 +1,197 @@
+//! Cut planes and components (Sec. IV.A and B).
+
+use rayon::prelude::*;
+
+use crate::shape::triangles::{
+    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
+    height_map, repair,
+};
+
+/// Step of A(z), in metres.
+const STEP: f64 = 0.25;
+/// Buildings below this height are differenced at [`FINE`] steps, others at [`COARSE`].
+const LOW: f64 = 15.0;
+/// Steps of a difference in low buildings: 0.5 m.
+const FINE: usize = 2;
+/// Steps of a difference in others: 1 m.
+const COARSE: usize = 4;
+/// Second difference that makes a cut, as a share of the largest area.
+const THRESHOLD: f64 = 0.05;
+/// Least height of a component, in metres.
+const LEAST_HEIGHT: f64 = 2.0;
+/// Most samples of A(z): 4 km.
+const MOST_SAMPLES: usize = 16_000;
+/// Cells along a side of the height map.
+pub const CELLS: usize = 16;
+/// Columns per cell along a side.
+const SAMPLES: usize = 2;
+/// First moments below this share of the mean say nothing about the orientation.
+const SYMMETRIC: f64 = 0.004;
+
+/// The volume of a building between two cut planes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Component {
+    /// Index of the building.
+    pub building: usize,
+    /// Index of the slab in the building, from the ground up.
+    pub slab: usize,
+    /// The oriented box; its angle, from 0 to 2π, includes the canonical half turn.
+    pub frame: OrientedBox,
+    /// The slab with its lid, in unit coordinates of the box.
+    pub mesh: TriangleMesh,
+    /// How much of each column of the box is solid, 16 x 16.
+    pub heights: Vec<f32>,
+    /// Volume in cubic metres.
+    pub volume: f64,
+}
+
+/// All components of a city.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Decomposition {
+    /// Components, building after building, from the ground up.
+    pub components: Vec<Component>,
+    /// What was wrong with each building's mesh.
+    pub faults: Vec<MeshFaults>,
+    /// Buildings without a component: no triangle has an area.
+    pub empty: Vec<usize>,
+}
+
+/// Cuts every building of a city into components, on all threads. With `bottoms`, components are closed
+/// below, too: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
+pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
+    let parts: Vec<(Vec<Component>, MeshFaults)> = city
+        .buildings
+        .par_iter()
+        .enumerate()
+        .map(|(b, building)| {
+            let (mesh, faults) = repair(&building.mesh);
+            (components_of(&mesh, b, bottoms), faults)
+        })
+        .collect();
+    let mut out = Decomposition::default();
+    for (b, (components, faults)) in parts.into_iter().enumerate() {
+        if components.is_empty() {
+            out.empty.push(b);
+        }
+        out.components.extend(components);
+        out.faults.push(faults);
+    }
+    out
+}
+
+/// The components of a repaired building.
+fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Component> {
+    let cuts = cut_planes(mesh);
+    let mut components = Vec::new();
+    let lids: Vec<TriangleMesh> = cuts.iter().map(|&z| closing_lid(mesh, z)).collect();
+    for (slab, mut part) in clip_to_slabs(mesh, &cuts).into_iter().enumerate() {
+        if let Some(lid) = lids.get(slab) {
+            part.append(lid);
+        }
+        if bottoms {
+            let mut bottom = match slab {
+                0 => mesh
+                    .bounds()
+                    .map_or_else(TriangleMesh::default, |b| closing_lid(mesh, b.0[2])),
+                _ => lids[slab - 1].clone(),
+            };
+            bottom.flip();
+            part.append(&bottom);
+        }
+        part = part.welded(1e-6);
+        let Some(mut frame) = OrientedBox::around(&part) else {
+            continue;
+        };
+        let volume = part.volume_above(frame.base[2]);
+        let mut unit = in_unit_box(&part, &frame);
+        let mut heights = height_map(&unit, CELLS, SAMPLES);
+        if upside_down(&heights) {
+            frame.angle += std::f64::consts::PI;
+            unit = in_unit_box(&part, &frame);
+            heights.reverse();
+        }
+        components.push(Component {
+            building,
+            slab,
+            frame,
+            mesh: unit,
+            heights,
+            volume,
+        });
+    }
+    components
+}
+
+/// The heights at which a building is cut, increasing.
+///
+/// With S_i = A(z_i) - A(z_{i+1}), a cut is where |S_i - S_{i-1}| exceeds 5 % of the largest area.
+pub fn cut_planes(mesh: &TriangleMesh) -> Vec<f64> {
+    let Some(profile) = SectionProfile::new(mesh, STEP, MOST_SAMPLES) else {
+        return Vec::new();
+    };
+    let stride = if profile.top - profile.base < LOW {
+        FINE
+    } else {
+        COARSE
+    };
+    let area = |i: usize| profile.areas.get(i).copied().unwrap_or(0.0);
+    let steps = profile.areas.len().div_ceil(stride);
+    let fall = |i: usize| area(i * stride) - area((i + 1) * stride);
+    let largest = profile.areas.iter().copied().fold(0.0, f64::max);
+    let hit = |i: &usize| (fall(*i) - fall(*i - 1)).abs() > THRESHOLD * largest;
+    let hits: Vec<usize> = (1..steps).filter(hit).collect();
+    let mut cuts: Vec<f64> = Vec::new();
+    for run in hits.chunk_by(|a, b| a + 1 == *b) {
+        // The change lies in the steps that the differences of the run compare.
+        let (first, last) = ((run[0] - 1) * stride, (run[run.len() - 1] + 1) * stride);
+        let change = |j: usize| (area(j) - area(j + 1)).abs();
+        let largest = (first..last).fold(first, |a, b| if change(b) > change(a) { b } else { a });
+        let z = exact_height(&profile, largest);
+        let clear = z - cuts.last().copied().unwrap_or(profile.base) >= LEAST_HEIGHT;
+        if clear && profile.top - z >= LEAST_HEIGHT {
+            cuts.push(z);
+        }
+    }
+    cuts
+}
+
+/// The height of the largest horizontal face between samples `i` and `i + 1`, or the middle.
+fn exact_height(profile: &SectionProfile, i: usize) -> f64 {
+    let low = profile.base + i as f64 * profile.step;
+    let high = low + profile.step;
+    let faces = &profile.faces;
+    let first = faces.partition_point(|f| f.0 < low - 1e-3);
+    let last = faces.partition_point(|f| f.0 <= high + 1e-3);
+    let mut best = (0.0, (low + high) / 2.0);
+    for level in faces[first..last].chunk_by(|a, b| b.0 - a.0 < 1e-3) {
+        let area = level.iter().map(|f| f.1).sum::<f64>().abs();
+        if area > best.0 {
+            best = (area, level[0].0);
+        }
+    }
+    best.1
+}
+
+fn in_unit_box(mesh: &TriangleMesh, frame: &OrientedBox) -> TriangleMesh {
+    TriangleMesh {
+        positions: mesh.positions.iter().map(|&p| frame.to_unit(p)).collect(),
+        triangles: mesh.triangles.clone(),
+    }
+}
+
+/// Whether the half turn puts more of the volume at positive x; at positive y, where x does not tell.
+fn upside_down(heights: &[f32]) -> bool {
+    let middle = (CELLS as f64 - 1.0) / 2.0;
+    let (mut x, mut y, mut total) = (0.0, 0.0, 0.0);
+    for (i, &h) in heights.iter().enumerate() {
+        let h = f64::from(h);
+        x += h * ((i % CELLS) as f64 - middle);
+        y += h * ((i / CELLS) as f64 - middle);
+        total += h;
+    }
+    let least = SYMMETRIC * total * CELLS as f64;
+    match x.abs() > least {
+        true => x < 0.0,
+        false => y < -least,
+    }
+}

@@ -1,0 +1,159 @@
+//! What components are compared by.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+use rayon::prelude::*;
+
+use super::components::Component;
+use crate::shape::triangles::convex_hull;
+
+/// Names of the eleven features of the paper, in order; the names that weights are given by.
+pub const PAPER_FEATURES: [&str; 11] = [
+    "vertices",
+    "window_width",
+    "window_height",
+    "x_spacing",
+    "y_spacing",
+    "emptiness",
+    "intensity",
+    "width",
+    "height",
+    "depth",
+    "rotation",
+];
+
+/// Tolerance of the simplified outline, as a share of the box's diagonal.
+const SIMPLIFY: f64 = 0.02;
+
+/// A table of points, row after row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    /// Values.
+    pub values: Vec<f64>,
+    /// Values per row.
+    pub dimension: usize,
+}
+
+impl Points {
+    /// A row.
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.values[i * self.dimension..(i + 1) * self.dimension]
+    }
+}
+
+/// The eleven features of the paper (Sec. IV.C), standardized and multiplied by `weights` (Eq. 1). Components
+/// carry no textures, so that the six window features are equal and fall out.
+pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
+    let raw: Vec<[f64; 11]> = components
+        .par_iter()
+        .map(|c| {
+            let [w, d, h] = c.frame.size;
+            let mut row = [0.0; 11];
+            row[0] = outline_vertices(c) as f64;
+            row[7] = w;
+            row[8] = h;
+            row[9] = d;
+            row[10] = c.frame.angle.rem_euclid(std::f64::consts::PI);
+            row
+        })
+        .collect();
+    let n = raw.len().max(1) as f64;
+    let mut columns: Vec<(usize, f64, f64)> = Vec::new();
+    for k in 0..11 {
+        let mean = raw.iter().map(|r| r[k]).sum::<f64>() / n;
+        let variance = raw.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>() / n;
+        if variance > 0.0 && weights[k] != 0.0 {
+            columns.push((k, mean, weights[k] / variance.sqrt()));
+        }
+    }
+    if columns.is_empty() {
+        columns.push((0, 0.0, 0.0));
+    }
+    let dimension = columns.len();
+    let value = |r: &[f64; 11], &(k, mean, factor): &(usize, f64, f64)| (r[k] - mean) * factor;
+    let values = raw
+        .iter()
+        .flat_map(|r| columns.iter().map(move |c| value(r, c)));
+    Points {
+        values: values.collect(),
+        dimension,
+    }
+}
+
+/// Vertices of the plan's hull after Douglas and Peucker (1973).
+fn outline_vertices(component: &Component) -> usize {
+    let [w, d, _] = component.frame.size;
+    let plan = component
+        .mesh
+        .positions
+        .iter()
+        .map(|p| [p[0] * w, p[1] * d]);
+    let hull = convex_hull(plan.collect());
+    let tolerance = SIMPLIFY * w.hypot(d);
+    if hull.len() < 4 {
+        return hull.len();
+    }
+    // A closed ring is two chains between its first corner and the one farthest from it.
+    let far = |i: &usize| (hull[*i][0] - hull[0][0]).hypot(hull[*i][1] - hull[0][1]);
+    let split = (1..hull.len())
+        .max_by(|a, b| far(a).total_cmp(&far(b)))
+        .unwrap_or(1);
+    let mut ring = hull.clone();
+    ring.push(hull[0]);
+    inner_vertices(&ring[..=split], tolerance) + inner_vertices(&ring[split..], tolerance) + 2
+}
+
+/// Vertices that Douglas-Peucker keeps between the ends of a chain.
+fn inner_vertices(chain: &[[f64; 2]], tolerance: f64) -> usize {
+    let (a, b) = (chain[0], chain[chain.len() - 1]);
+    let length = (b[0] - a[0]).hypot(b[1] - a[1]).max(1e-12);
+    let off = |p: &[f64; 2]| {
+        ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).abs() / length
+    };
+    let inner = 1..chain.len().saturating_sub(1);
+    match inner.max_by(|&i, &j| off(&chain[i]).total_cmp(&off(&chain[j]))) {
+        Some(i) if off(&chain[i]) > tolerance => {
+            1 + inner_vertices(&chain[..=i], tolerance) + inner_vertices(&chain[i..], tolerance)
+        }
+        _ => 0,
+    }
+}
+
+/// Components of the covariance that are kept.
+const PRINCIPAL: usize = 12;
+/// The covariance is taken over at most so many components, evenly spread over them.
+const SAMPLE: usize = 20_000;
+
+/// Height maps projected on their 12 principal components.
+pub fn geometric_features(components: &[Component]) -> Points {
+    let d = components.first().map_or(1, |c| c.heights.len());
+    let stride = components.len().div_ceil(SAMPLE).max(1);
+    let sample: Vec<&Component> = components.iter().step_by(stride).collect();
+    let n = sample.len().max(1) as f64;
+    let mut mean = vec![0.0; d];
+    for c in &sample {
+        for (m, &h) in mean.iter_mut().zip(&c.heights) {
+            *m += f64::from(h) / n;
+        }
+    }
+    let table = DMatrix::from_fn(d, sample.len(), |i, j| {
+        f64::from(sample[j].heights[i]) - mean[i]
+    });
+    let covariance = &table * table.transpose() / n;
+    let eigen = SymmetricEigen::new(covariance);
+    let mut order: Vec<usize> = (0..d).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    order.truncate(PRINCIPAL);
+    let project = |c: &Component| -> Vec<f64> {
+        let along = |&k: &usize| {
+            let axis = eigen.eigenvectors.column(k);
+            let heights = c.heights.iter().zip(&mean).zip(axis.iter());
+            heights.map(|((&h, m), a)| (f64::from(h) - m) * a).sum()
+        };
+        order.iter().map(along).collect()
+    };
+    let rows: Vec<Vec<f64>> = components.par_iter().map(project).collect();
+    Points {
+        values: rows.concat(),
+        dimension: order.len(),
+    }
+}

@@ -1,0 +1,225 @@
+//! The whole pipeline.
+
+use super::components::{Decomposition, decompose};
+use super::emission::{emit, emit_tree, placed_components};
+use super::parse_tree::{Detection, ParseTree, grow};
+use super::type_graph::DistanceWeights;
+use super::types::{Types, best_types, paper_types};
+use crate::cluster::WardError;
+use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError};
+use crate::shape::triangles::City;
+
+/// How types are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// As the paper writes.
+    Paper,
+    /// Geometric features, Ward, medoids.
+    Best,
+}
+
+/// How many templates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Budget {
+    /// One for each distinct component.
+    All,
+    /// So many.
+    Templates(usize),
+    /// The components' number halved so many times.
+    Level(u32),
+}
+
+/// What represents a type in `paper`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Representative {
+    /// The member nearest to the mean.
+    Nearest,
+    /// The member of fewest polygons ("-poly").
+    FewestPolygons,
+}
+
+/// Settings of the method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// How types are found.
+    pub mode: Mode,
+    /// How many templates.
+    pub budget: Budget,
+    /// Weights W of the eleven features, in `paper`.
+    pub weights: [f64; 11],
+    /// What represents a type, in `paper`.
+    pub representative: Representative,
+    /// Weights of Eq. 11.
+    pub distance: DistanceWeights,
+    /// Seed of k-means, in `paper`.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Best,
+            budget: Budget::Level(4),
+            weights: [1.0; 11],
+            representative: Representative::Nearest,
+            distance: DistanceWeights::default(),
+            seed: 1,
+        }
+    }
+}
+
+/// Why a city cannot be proceduralized.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ProceduralizeError {
+    /// There is nothing to proceduralize.
+    #[error("no building has a triangle with an area")]
+    Empty,
+    /// Features cannot be clustered.
+    #[error("features: {0}")]
+    Ward(#[from] WardError),
+    /// The grammar made is not sound: an error of this program.
+    #[error("the grammar is not sound: {0}")]
+    Grammar(#[from] InstanceGrammarError),
+}
+
+/// A city as a grammar, and what it was made from.
+#[derive(Debug, Clone)]
+pub struct Proceduralized {
+    /// The grammar.
+    pub grammar: InstanceGrammar,
+    /// The components.
+    pub decomposition: Decomposition,
+    /// Their types.
+    pub types: Types,
+    /// Which types stand together.
+    pub tree: ParseTree,
+}
+
+/// Makes a grammar of a city.
+///
+/// # Errors
+/// [`ProceduralizeError`].
+pub fn proceduralize(
+    city: &City,
+    settings: &Settings,
+) -> Result<Proceduralized, ProceduralizeError> {
+    let decomposition = decompose(city, settings.budget != Budget::All);
+    from_components(city, decomposition, settings)
+}
+
+/// Makes a grammar of a city that is already cut.
+///
+/// # Errors
+/// [`ProceduralizeError`].
+pub fn from_components(
+    city: &City,
+    decomposition: Decomposition,
+    settings: &Settings,
+) -> Result<Proceduralized, ProceduralizeError> {
+    let components = &decomposition.components;
+    if components.is_empty() {
+        return Err(ProceduralizeError::Empty);
+    }
+    let n = components.len();
+    let k = match settings.budget {
+        Budget::All => n,
+        Budget::Templates(k) => k.clamp(1, n),
+        Budget::Level(level) => n.checked_shr(level).unwrap_or(0).max(1),
+    };
+    let types = match settings.mode {
+        Mode::Best => best_types(components, k)?,
+        Mode::Paper => paper_types(
+            components,
+            k,
+            &settings.weights,
+            settings.representative,
+            settings.seed,
+        ),
+    };
+    let placed = placed_components(city, components, &types);
+    let leaves = types.representatives.len();
+    let (detection, levels) = match settings.mode {
+        Mode::Paper => (Detection::GirvanNewman, usize::MAX),
+        Mode::Best => (Detection::Louvain, PATTERN_LEVELS),
+    };
+    let tree = grow(leaves, placed, detection, settings.distance, levels);
+    let grammar = match settings.mode {
+        Mode::Paper => emit_tree(city, components, &types, &tree),
+        Mode::Best => emit(city, components, &types, &tree),
+    };
+    Ok(Proceduralized {
+        grammar,
+        decomposition,
+        types,
+        tree,
+    })
+}
+
+/// Levels of communities that become patterns in `best`.
+const PATTERN_LEVELS: usize = 1;
+
+/// Steps of the search for a number of templates.
+const SEARCH_STEPS: usize = 7;
+
+/// The grammar of the most templates that `fits`, on the assumption that fewer templates fit as well; `None`
+/// when one template does not fit.
+///
+/// # Errors
+/// [`ProceduralizeError`], or those of `fits`.
+pub fn largest<E: From<ProceduralizeError>>(
+    city: &City,
+    settings: &Settings,
+    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+) -> Result<Option<Proceduralized>, E> {
+    search(city, settings, fits, true)
+}
+
+/// The grammar of the fewest templates that `fits`, on the assumption that more templates fit as well; `None`
+/// when a template for each component does not fit.
+///
+/// # Errors
+/// [`ProceduralizeError`], or those of `fits`.
+pub fn smallest<E: From<ProceduralizeError>>(
+    city: &City,
+    settings: &Settings,
+    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+) -> Result<Option<Proceduralized>, E> {
+    search(city, settings, fits, false)
+}
+
+/// Bisection over the logarithm of the number of templates.
+fn search<E: From<ProceduralizeError>>(
+    city: &City,
+    settings: &Settings,
+    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+    many: bool,
+) -> Result<Option<Proceduralized>, E> {
+    let decomposition = decompose(city, true);
+    let at = |k: usize| {
+        let settings = Settings {
+            budget: Budget::Templates(k),
+            ..settings.clone()
+        };
+        from_components(city, decomposition.clone(), &settings)
+    };
+    let (mut low, mut high) = (1, decomposition.components.len().max(1));
+    let sure = at(if many { low } else { high })?;
+    let mut best = fits(&sure)?.then_some(sure);
+    for _ in 0..SEARCH_STEPS {
+        let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
+        if best.is_none() || middle == low || middle == high {
+            break;
+        }
+        let made = at(middle)?;
+        let fit = fits(&made)?;
+        if fit {
+            best = Some(made);
+        }
+        if fit == many {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(best)
+}

@@ -1,0 +1,35 @@
+//! Buildings as triangles, and what is measured on them. All lengths are in metres, z up.
+//!
+//! - [`TriangleMesh`], [`City`]: the data.
+//! - [`repair`]: what is wrong with a mesh, and the repair that measuring needs.
+//! - [`SectionProfile`]: the area A(z) of horizontal sections, exact, without a bottom face.
+//! - [`clip_to_slabs`]: the parts of a mesh between horizontal planes.
+//! - [`section_lid`], [`closing_lid`]: a horizontal section as triangles, and what of it closes a cut.
+//! - [`OrientedBox`]: the smallest rectangle around a plan, extruded.
+//! - [`merge_coplanar`]: the same surface with fewer triangles.
+//! - [`VolumeRaster`]: columns of solid material on a square grid; volumetric intersection over union.
+//! - [`SurfaceDistance`]: exact distances from points to triangles.
+
+mod city;
+mod clip;
+mod coplanar;
+mod distance;
+mod lid;
+mod mesh;
+mod oriented_box;
+mod profile;
+mod raster;
+mod repair;
+mod triangulate;
+
+pub use city::{City, CityBuilding};
+pub use clip::clip_to_slabs;
+pub use coplanar::merge_coplanar;
+pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
+pub use lid::{closing_lid, section_lid};
+pub use mesh::{Corners, TriangleMesh, plan_area};
+pub use oriented_box::{OrientedBox, convex_hull};
+pub use profile::SectionProfile;
+pub use raster::{Overlap, VolumeRaster, height_map, solid_intervals};
+pub use repair::{MeshFaults, repair};
+pub use triangulate::polygon_triangles;
