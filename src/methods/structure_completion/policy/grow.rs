@@ -16,8 +16,8 @@ const SNAP: f64 = 0.3;
 const OFFSET: f64 = 0.1;
 /// Ratio of sizes up to which a new element belongs to a grid of its class.
 const SAME_SIZE: f64 = 1.35;
-/// Elements and empty places beyond which a candidate is complete.
-const MOST: usize = 6000;
+/// A candidate is complete at this many elements and empty places for each observed one, and some more.
+const MOST: (usize, usize) = (8, 60);
 
 /// A layout as it grows.
 #[derive(Debug, Clone)]
@@ -70,7 +70,7 @@ pub(super) fn next<R: Rng>(
     policy: &Policy,
     rng: &mut R,
 ) -> Option<Item> {
-    if growing.items.is_empty() || growing.items.len() >= MOST {
+    if growing.items.is_empty() || growing.items.len() >= MOST.0 * scene.items.len() + MOST.1 {
         return None;
     }
     (0..FAILURES).find_map(|_| action(scene, growing, policy, rng))
