@@ -22,7 +22,7 @@ fn layout(index: u64) -> Layout {
         for row in 1..=rows {
             let rect = Rect::new(x, dy * f64::from(row), w, h);
             elements.push(Element::new(Class::Window, rect));
-            if row == rows && index % 3 == 0 {
+            if row == rows && index.is_multiple_of(3) {
                 let rect = Rect::new(x - 0.1, rect.y - 0.2, w + 0.2, 0.5);
                 elements.push(Element::new(Class::Balcony, rect));
             }

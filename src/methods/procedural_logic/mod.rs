@@ -56,23 +56,19 @@
 //!   ([`clean`](crate::shape::clean)), when asked: the method itself stays lossless.
 
 mod affinity;
-mod alphabet;
-mod baseline;
-mod canvas;
 mod features;
 mod inference;
-mod joining;
-mod lines;
 mod model;
 mod model_file;
-mod nary;
 mod parameters;
-mod parse;
+mod parsing;
 mod rules;
 mod search;
-mod similar;
 mod split_grammar;
 mod synthesis;
+
+use parsing::{alphabet, canvas, lines, nary, parse};
+use split_grammar::{baseline, joining};
 
 pub use affinity::{Affinity, Coefficients};
 pub use alphabet::Alphabet;
@@ -85,7 +81,7 @@ pub use model::{FitError, Known, Model, ProfileError};
 pub use model_file::{MODEL_FORMAT, MODEL_VERSION, ModelFile, ModelFileError};
 pub use nary::{NaryNode, NaryTree};
 pub use parameters::{Extent, Facing, ParameterError, Parameters};
-pub use parse::{BinaryNode, BinaryTree, NoSplit, parse};
+pub use parsing::parse::{BinaryNode, BinaryTree, NoSplit, parse};
 pub use rules::{Call, Instance, InstanceError, ParametricRule, RuleSet};
 pub use search::{fewest_rules, search_axes};
 pub use split_grammar::split_grammar;

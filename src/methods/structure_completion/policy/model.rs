@@ -101,8 +101,8 @@ impl PaperModel {
                 }));
             }
             for grid in grids(layout.width, &layout.elements) {
-                for axis in 0..2 {
-                    spacings[axis].extend(grid.spacing[axis].map(|d| d / grid.size[axis]));
+                for (axis, ratios) in spacings.iter_mut().enumerate() {
+                    ratios.extend(grid.spacing[axis].map(|d| d / grid.size[axis]));
                 }
             }
         }

@@ -41,10 +41,10 @@ impl Seen {
                 self.regularity[axis]
                     .extend(g.deviation[axis].map(|s| (s / g.extent(axis), count)));
             }
-            for axis in 0..2 {
+            for (axis, extent) in facade.iter().enumerate() {
                 let share = count / (2 * g.ends[axis].len()) as f64;
                 for [low, high] in &g.ends[axis] {
-                    let border = [*low, facade[axis] - high];
+                    let border = [*low, extent - high];
                     self.border[axis].extend(border.map(|b| (b / g.size[axis], share)));
                 }
             }

@@ -1,7 +1,7 @@
 //! Transformation to n-ary split nodes (Sec. 4.1.1, Eq. 9).
 
-use super::alphabet::Alphabet;
-use super::parse::{BinaryNode, BinaryTree};
+use crate::methods::procedural_logic::alphabet::Alphabet;
+use crate::methods::procedural_logic::parse::{BinaryNode, BinaryTree};
 use crate::shape::{Axis, Rect, Region};
 
 /// A node of an n-ary split tree.
@@ -39,7 +39,10 @@ impl NaryTree {
 
     /// As [`NaryTree::from_binary`], but only the nodes that `join` picks are joined with a split of the same direction
     /// around them.
-    pub(super) fn joined(tree: &BinaryTree, join: impl Fn(usize) -> bool) -> Self {
+    pub(in crate::methods::procedural_logic) fn joined(
+        tree: &BinaryTree,
+        join: impl Fn(usize) -> bool,
+    ) -> Self {
         let mut nodes = vec![NaryNode::Insert(0)];
         let mut todo = vec![(0_usize, 0_usize)];
         while let Some((from, to)) = todo.pop() {
@@ -66,7 +69,7 @@ impl NaryTree {
     }
 
     /// The binary tree as it stands, node by node.
-    pub(super) fn unjoined(tree: &BinaryTree) -> Self {
+    pub(in crate::methods::procedural_logic) fn unjoined(tree: &BinaryTree) -> Self {
         let node = |node: &BinaryNode| match *node {
             BinaryNode::Insert(label) => NaryNode::Insert(label),
             BinaryNode::Split {
@@ -87,7 +90,7 @@ impl NaryTree {
     }
 
     /// Width and height of each node.
-    pub(super) fn extents(&self) -> Vec<[f64; 2]> {
+    pub(in crate::methods::procedural_logic) fn extents(&self) -> Vec<[f64; 2]> {
         let mut extents = vec![[self.width, self.height]; self.nodes.len()];
         for (node, content) in self.nodes.iter().enumerate() {
             if let NaryNode::Split {
@@ -106,7 +109,7 @@ impl NaryTree {
     }
 
     /// The regions that the inserts fill.
-    pub(super) fn regions(&self, alphabet: &Alphabet) -> Vec<Region> {
+    pub(in crate::methods::procedural_logic) fn regions(&self, alphabet: &Alphabet) -> Vec<Region> {
         let mut regions = Vec::new();
         let mut todo = vec![(0_u32, Rect::new(0.0, 0.0, self.width, self.height))];
         while let Some((node, rect)) = todo.pop() {

@@ -1,10 +1,13 @@
 //! A parsed facade as a split grammar of its own.
 
+pub(super) mod baseline;
+pub(super) mod joining;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::alphabet::Alphabet;
-use super::nary::{NaryNode, NaryTree};
 use crate::grammar::{Grammar, Operation, Rule, Start, Successor};
+use crate::methods::procedural_logic::alphabet::Alphabet;
+use crate::methods::procedural_logic::nary::{NaryNode, NaryTree};
 use crate::shape::Axis;
 
 /// What a region holds: its label; or its split, its extent across the split, and its parts with
@@ -36,7 +39,7 @@ pub fn split_grammar(tree: &NaryTree, alphabet: &Alphabet, name: &str, unit: &st
 }
 
 /// Regions of identical content.
-pub(super) struct Classes {
+pub(in crate::methods::procedural_logic) struct Classes {
     /// Class of each node.
     pub class: Vec<usize>,
     /// A node of each class.
@@ -44,7 +47,7 @@ pub(super) struct Classes {
 }
 
 /// Numbers regions of identical content: label, offset and size (bottom-up hash-consing).
-pub(super) fn classes(tree: &NaryTree) -> Classes {
+pub(in crate::methods::procedural_logic) fn classes(tree: &NaryTree) -> Classes {
     let tolerance = 1e-7 * tree.width.max(tree.height);
     let extents = tree.extents();
     let mut ids: FxHashMap<Content, usize> = FxHashMap::default();

@@ -1,9 +1,9 @@
 //! Facade parse tree generation (Sec. 3.3): split lines of least energy, recursively.
 
-use super::affinity::Coefficients;
-use super::canvas::Canvas;
-use super::lines::{Lines, Proposal, Rule, Scope};
-use super::parameters::Parameters;
+use crate::methods::procedural_logic::affinity::Coefficients;
+use crate::methods::procedural_logic::canvas::Canvas;
+use crate::methods::procedural_logic::lines::{Lines, Proposal, Rule, Scope};
+use crate::methods::procedural_logic::parameters::Parameters;
 use crate::shape::{Axis, Rect};
 
 /// A node of a binary split tree.

@@ -6,13 +6,15 @@
 //! too, and so does every sample `v = mean + sigma sum_k sqrt(lambda_k) z_k u_k`, `z_k ~ N(0, 1)`:
 //! it fills the facade by construction. What remains to be ensured is that all sizes are positive.
 
+mod similar;
+
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use super::model::{Known, Model};
-use super::rules::{Call, Instance, InstanceError};
-use super::similar::Structure;
+use crate::methods::procedural_logic::model::{Known, Model};
+use crate::methods::procedural_logic::rules::{Call, Instance, InstanceError};
+use similar::Structure;
 
 /// Facades of similar structure that a starting rule of one facade borrows from, at most.
 const NEIGHBOURS: usize = 10;

@@ -1,13 +1,13 @@
 //! The split-only baseline of Wu et al. 2014, Table 2: procedural logic for one facade.
 
-use super::affinity::Affinity;
-use super::alphabet::Alphabet;
-use super::canvas::Canvas;
-use super::joining::Joining;
-use super::parameters::{ParameterError, Parameters};
-use super::parse::{NoSplit, parse};
-use super::split_grammar::split_grammar;
 use crate::grammar::Grammar;
+use crate::methods::procedural_logic::affinity::Affinity;
+use crate::methods::procedural_logic::alphabet::Alphabet;
+use crate::methods::procedural_logic::canvas::Canvas;
+use crate::methods::procedural_logic::joining::Joining;
+use crate::methods::procedural_logic::parameters::{ParameterError, Parameters};
+use crate::methods::procedural_logic::parse::{NoSplit, parse};
+use crate::methods::procedural_logic::split_grammar::split_grammar;
 use crate::shape::{Facade, LayoutError};
 
 /// Why a facade has no baseline grammar.

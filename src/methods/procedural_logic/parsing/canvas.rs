@@ -1,6 +1,6 @@
 //! A facade as the parser sees it: an irregular grid of labelled assets.
 
-use super::alphabet::Alphabet;
+use crate::methods::procedural_logic::alphabet::Alphabet;
 use crate::shape::{Axis, Facade, LabelGrid, LayoutError};
 
 /// Labelled cells between sorted coordinates; an edge runs wherever two neighbouring cells belong
@@ -110,7 +110,7 @@ impl Canvas {
     }
 
     /// The facade seen along `axis`.
-    pub(super) fn view(&self, axis: Axis) -> View<'_> {
+    pub(in crate::methods::procedural_logic) fn view(&self, axis: Axis) -> View<'_> {
         let columns = self.columns();
         match axis {
             Axis::X => View {
@@ -134,7 +134,7 @@ impl Canvas {
 /// A canvas seen along one axis: `k` counts the cells along the axis, so that lines run between
 /// `k - 1` and `k`, and `t` counts the cells along a line.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
+pub(in crate::methods::procedural_logic) struct View<'a> {
     canvas: &'a Canvas,
     /// Coordinates of the lines.
     pub cuts: &'a [f64],
