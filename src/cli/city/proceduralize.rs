@@ -8,6 +8,7 @@ use edifice::io::city::{self, glb, grammar_json};
 use edifice::methods::city_proceduralization::{
     self as method, Budget, PAPER_FEATURES, Proceduralized, Representative, Settings,
 };
+use edifice::shape::triangles::MeshFaults;
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
 use edifice::{Error, Result};
 
@@ -220,6 +221,9 @@ fn failure(error: edifice::error::Cause, args: &Args) -> Error {
 /// Buildings named in a warning.
 const NAMED: usize = 3;
 
+/// Whether a mesh has a fault.
+type HasFault = fn(&MeshFaults) -> bool;
+
 /// Tells what is wrong with the meshes.
 fn warn(input: &City, made: &Proceduralized) {
     let faults = &made.decomposition.faults;
@@ -231,7 +235,7 @@ fn warn(input: &City, made: &Proceduralized) {
         let more = if indices.len() > NAMED { ", ..." } else { "" };
         format!("{}{more}", named.collect::<Vec<_>>().join(", "))
     };
-    let kinds: [(&str, fn(&edifice::shape::triangles::MeshFaults) -> bool); 5] = [
+    let kinds: [(&str, HasFault); 5] = [
         ("are open", |f| f.open_edges > 0),
         ("have edges of more than two triangles", |f| {
             f.non_manifold_edges > 0
