@@ -8,6 +8,7 @@ mod figure_11;
 mod figure_12;
 mod figure_14;
 mod generation;
+mod generation_figures;
 pub mod houses;
 mod learning;
 mod reasons;
@@ -27,12 +28,12 @@ const ARTEFACTS: &[Artefact] = &[
     Artefact {
         name: "figure_6",
         title: "energy of mass models against iterations",
-        run: generation::figure_6,
+        run: generation_figures::figure_6,
     },
     Artefact {
         name: "figure_15",
         title: "six synthesized houses",
-        run: generation::figure_15,
+        run: generation_figures::figure_15,
     },
     Artefact {
         name: "generation",
