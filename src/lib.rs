@@ -10,6 +10,8 @@
 //! | --- | --- | --- |
 //! | Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts* | [`methods::facade_grammar`] | `experiments/facade_grammar.rs` |
 //! | Weissenberg et al. 2013, *Is there a Procedural Logic to Architecture?* | [`methods::procedural_logic`] | `experiments/procedural_logic.rs` |
+//! | Fan et al. 2014, *Structure Completion for Facade Layouts* | [`methods::structure_completion`] | `experiments/structure_completion.rs` |
+//! | Demir et al. 2014, *Proceduralization of Buildings at City Scale* | [`methods::city_proceduralization`] | `experiments/city_proceduralization.rs` |
 //! | Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings* | [`methods::building_exteriors`] | `experiments/building_exteriors.rs` |
 //!
 //! ## Conventions

@@ -146,8 +146,8 @@ impl TryFrom<Parts> for ScalarMixture {
     type Error = ModelError;
 
     fn try_from(parts: Parts) -> Result<Self, ModelError> {
-        let k = parts.weights.len();
-        let sized = k > 0 && parts.means.len() == k && parts.deviations.len() == k;
+        let count = parts.weights.len();
+        let sized = count > 0 && parts.means.len() == count && parts.deviations.len() == count;
         let sum: f64 = parts.weights.iter().sum();
         let fine = parts.weights.iter().all(|w| *w >= 0.0)
             && (sum - 1.0).abs() < 1e-6
@@ -165,8 +165,8 @@ impl TryFrom<Parts> for ScalarMixture {
             log_max: f64::NEG_INFINITY,
         };
         // Modes lie between the least and the greatest mean, near a mean.
-        for k in 0..k {
-            for j in 0..k {
+        for k in 0..count {
+            for j in 0..count {
                 let (from, to) = (mixture.parts.means[k], mixture.parts.means[j]);
                 for step in 0..16 {
                     let x = from + (to - from) * (f64::from(step) / 16.0).powi(2);

@@ -3,13 +3,12 @@
 //!
 //! ```
 //! use edifice::model::gmm::linfa::{Components, LinfaError, Parameters};
-//! use edifice::model::gmm::Criterion;
 //! use linfa::DatasetBase;
 //! use linfa::traits::{Fit, Predict};
 //! use ndarray::Array2;
 //!
 //! let values = Array2::from_shape_fn((40, 1), |(i, _)| if i < 20 { 0.0 } else { 9.0 } + (i % 5) as f64 / 10.0);
-//! let parameters = Parameters { components: Components::AtMost(4, Criterion::Mdl), ..Parameters::new(2) };
+//! let parameters = Parameters { components: Components::Exactly(2), ..Parameters::new(2) };
 //! let mixture = parameters.fit(&DatasetBase::from(values.clone()))?;
 //! let clusters = mixture.predict(&values);
 //! assert_eq!(mixture.components(), 2);
