@@ -3,7 +3,7 @@
 //! - [`Row`] and [`write_rows`]: observations, one a line.
 //! - [`Table`]: a Markdown table.
 //! - [`Figure`]: panels in a grid ([`Chart`], [`Bars`], [`HeatMap`], [`Dendrogram`], [`Tiles`], [`Ranking`]), drawn once as a list of
-//!   marks and rendered by plotters to SVG and to PNG at twice the resolution, with the font that the `dejavu` crate ships.
+//!   marks and rendered by plotters to SVG and to PNG (256 colours) at twice the resolution, with the font that the `dejavu` crate ships.
 //! - [`index`]: one page over everything.
 //!
 //! Every file appears whole or not at all ([`crate::file::write_atomic`]).
@@ -18,6 +18,7 @@ mod figure;
 mod frame;
 mod heat_map;
 mod html;
+mod indexed;
 mod markdown;
 mod ranking;
 mod render;

@@ -2,14 +2,13 @@
 //! Feature `linfa`.
 //!
 //! ```
-//! use edifice::model::gmm::linfa::{Components, LinfaError, Parameters};
+//! use edifice::model::gmm::linfa::{LinfaError, Parameters};
 //! use linfa::DatasetBase;
 //! use linfa::traits::{Fit, Predict};
 //! use ndarray::Array2;
 //!
 //! let values = Array2::from_shape_fn((40, 1), |(i, _)| if i < 20 { 0.0 } else { 9.0 } + (i % 5) as f64 / 10.0);
-//! let parameters = Parameters { components: Components::Exactly(2), ..Parameters::new(2) };
-//! let mixture = parameters.fit(&DatasetBase::from(values.clone()))?;
+//! let mixture = Parameters::new(2).fit(&DatasetBase::from(values.clone()))?;
 //! let clusters = mixture.predict(&values);
 //! assert_eq!(mixture.components(), 2);
 //! assert!((0..40).all(|i| (clusters[i] == clusters[0]) == (i < 20)));
