@@ -1,7 +1,7 @@
 //! Log-linear models `p(x; w) ∝ exp(wᵀ f(x))` whose negative sampler the user supplies.
 //!
 //! [`LogLinear`] makes a [`Chain`] of two closures: the features f, and a sampler that changes a state. It is
-//! fitted by [`fit`](super::factor_graph::fit), the code that also learns factor graphs of
+//! fitted by [`fit`], the code that also learns factor graphs of
 //! discrete variables. The sampler decides what is learned:
 //!
 //! - one that leaves `p(x; w)` invariant, for instance by resampling a part of the state given the rest, makes

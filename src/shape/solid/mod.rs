@@ -6,8 +6,8 @@
 //!
 //! 1. [`arrangement`]: the sides of all regions, and the lines where two planes over one place cross, cut the
 //!    plan into convex cells. Over a cell the order of all planes is fixed, and the union is a stack of intervals.
-//! 2. [`segments`]: cells meet along segments; every vertex on a segment splits both of its cells.
-//! 3. [`faces`]: tops and bottoms of the intervals, and walls where the intervals on the two sides of a segment
+//! 2. `segments`: cells meet along segments; every vertex on a segment splits both of its cells.
+//! 3. `faces`: tops and bottoms of the intervals, and walls where the intervals on the two sides of a segment
 //!    differ; coplanar neighbours are merged, vertices that bend nothing go.
 //! 4. [`openings`](Faces::cut): windows and doors are cut into walls as niches, so that the surface stays closed.
 //! 5. [`triangles`](Faces::triangulated): constrained Delaunay triangulation of each face (spade), no vertex added.

@@ -18,7 +18,7 @@ const DOORS: f64 = 0.1;
 /// Windows, and the balconies that go with them, in the cells that are not known.
 ///
 /// A cell holds a window with the share of windows in the known cells of its row and of its column (with two
-/// pseudo-observations of [`OCCUPANCY`]). Its width is its column's, its height its row's. A window has a balcony
+/// pseudo-observations of `OCCUPANCY`). Its width is its column's, its height its row's. A window has a balcony
 /// with the share of windows with balconies in its row and its column, placed as the nearest one of them.
 pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R) -> Vec<Element> {
     let lattice = Lattice::new(scene, columns, rows);
