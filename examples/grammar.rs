@@ -1,16 +1,17 @@
 //! Shapes and grammars: a facade, a split grammar that derives it, and what the grammar costs.
 //! `cargo run --example grammar --no-default-features`
 
-use edifice::grammar::{
-    Costs, Grammar, Operation, Rule, Start, Successor, derive, evaluate, listing,
-};
+use edifice::grammar::{Costs, Grammar, Operation, Rule, Start, Successor};
+use edifice::grammar::{derive, evaluate, listing};
 use edifice::shape::{Axis, Facade, Rect, Region};
 
-fn rule(symbol: &str, operation: Operation) -> Rule {
+fn repeat(symbol: &str, axis: Axis, successors: &[(&str, f64)]) -> Rule {
+    let successors = successors.iter().map(|&(s, size)| Successor::new(s, size));
+    let successors = successors.collect();
     Rule {
         symbol: symbol.into(),
         weight: None,
-        operation,
+        operation: Operation::Repeat { axis, successors },
     }
 }
 
@@ -28,11 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let facade = Facade::new("house", "m", 9.0, 12.0, regions)?;
 
-    let floors = Operation::Repeat {
-        axis: Axis::Y,
-        successors: vec![Successor::new("Floor", 3.0)],
-    };
-    let tiles = vec![Successor::new("wall", 2.0), Successor::new("window", 1.0)];
+    let tiles = [("wall", 2.0), ("window", 1.0)];
     let grammar = Grammar {
         unit: "m".into(),
         starts: vec![Start {
@@ -42,26 +39,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             height: 12.0,
         }],
         rules: vec![
-            rule("House", floors),
-            rule(
-                "Floor",
-                Operation::Repeat {
-                    axis: Axis::X,
-                    successors: tiles,
-                },
-            ),
+            repeat("House", Axis::Y, &[("Floor", 3.0)]),
+            repeat("Floor", Axis::X, &tiles),
         ],
     };
-    listing(&grammar, true)
-        .iter()
-        .for_each(|line| println!("{line}"));
-    let derived = derive(&grammar, 0)?;
+    for line in listing(&grammar, true) {
+        println!("{line}");
+    }
+    let regions = derive(&grammar, 0)?.regions.len();
     let found = evaluate(&grammar, &[facade], &Costs::default())?;
     println!(
-        "{} regions from {} rules, cost {:.1}",
-        derived.regions.len(),
-        found.rules,
-        found.cost
+        "{regions} regions, {} rules, cost {}",
+        found.rules, found.cost
     );
     Ok(())
 }

@@ -43,20 +43,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         end: 0.01,
     };
     let run = Annealing::new(cooling, 100, 50, 1)?.run(&mut floors, |_| {})?;
+    let rounds = run.trace.len();
     println!(
-        "annealing: {:?}, cost {}, {:?} after {} rounds",
-        run.best,
-        run.cost,
-        run.outcome,
-        run.trace.len()
+        "annealing: {:?}, {:?} after {rounds} rounds",
+        run.best, run.outcome
     );
     assert_eq!(run.cost, 3.0); // sorted, up or down
 
     // Four widths that have to fill a wall of 10, none narrower than 1.
     let wall = BoundedSimplex::new(vec![1.0; 4], 10.0, vec![1.0; 4], vec![f64::INFINITY; 4])?;
-    println!(
-        "projection: {:?}",
-        wall.project(&[4.0, 3.0, 0.5, 4.0], &[1.0; 4])?
-    );
+    let widths = wall.project(&[4.0, 3.0, 0.5, 4.0], &[1.0; 4])?;
+    println!("projection: {widths:?}");
     Ok(())
 }

@@ -6,10 +6,11 @@
 //! rises by 4 otherwise. With fewer residuals than variables the steps stay short where the residuals do not care.
 
 use argmin::core::{
-    CostFunction, Error as ArgminError, Executor, IterState, KV, Problem, Solver,
-    TerminationReason, TerminationStatus,
+    Error as ArgminError, KV, Problem, Solver, TerminationReason, TerminationStatus,
 };
 use nalgebra::{DMatrix, DVector};
+
+use super::run::{Run, Search, Step, execute};
 
 /// A vector of residuals that depends on a vector of variables.
 pub trait Residuals {
@@ -30,70 +31,38 @@ pub struct Limits {
     pub difference: f64,
 }
 
-/// What was found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fit {
-    /// The variables.
-    pub x: Vec<f64>,
-    /// Sum of squared residuals there.
-    pub cost: f64,
-    /// How often the residuals were computed.
-    pub evaluations: u64,
-}
-
 /// A run failed.
 #[derive(Debug, thiserror::Error)]
 #[error("least squares stopped: {0}")]
 pub struct LeastSquaresError(String);
 
-/// Minimises the sum of squares from `start`. Reaching a limit is no error.
+/// Minimises the sum of squares from `start`, telling `observer` of every iteration. The cost of the run is the sum of
+/// squared residuals; reaching a limit is no error.
 ///
 /// # Errors
 /// [`LeastSquaresError`] when argmin fails.
 pub fn minimize<R: Residuals>(
-    residuals: R,
+    residuals: &R,
     start: Vec<f64>,
     limits: Limits,
-) -> Result<Fit, LeastSquaresError> {
+    observer: impl FnMut(Step) + 'static,
+) -> Result<Run<Vec<f64>>, LeastSquaresError> {
     let mut first = Vec::new();
     residuals.residuals(&start, &mut first);
+    let cost = sum(&first);
     let solver = LevenbergMarquardt {
         limits,
         damping: 1e-2,
         residuals: first,
-        evaluations: 1,
         stuck: false,
     };
-    let cost = sum(&solver.residuals);
-    let run = Executor::new(Sum(residuals), solver)
-        .configure(|state| {
-            let state = state.param(start.clone()).cost(cost);
-            state.max_iters(limits.iterations).target_cost(limits.goal)
-        })
-        .ctrlc(false)
-        .timer(false)
-        .run()
-        .map_err(|e| LeastSquaresError(e.to_string()))?;
-    let evaluations = run.solver.evaluations;
-    let state = run.state;
-    Ok(Fit {
-        cost: state.best_cost.min(cost),
-        x: state.best_param.unwrap_or(start),
-        evaluations,
-    })
-}
-
-struct Sum<R>(R);
-
-impl<R: Residuals> CostFunction for Sum<R> {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, x: &Vec<f64>) -> Result<f64, ArgminError> {
-        let mut out = Vec::new();
-        self.0.residuals(x, &mut out);
-        Ok(sum(&out))
-    }
+    let begin = |state: Search<Vec<f64>>| {
+        let state = state.param(start).cost(cost);
+        state.max_iters(limits.iterations).target_cost(limits.goal)
+    };
+    let run = execute(residuals, solver, |e| e.configure(begin), observer);
+    let (run, _) = run.map_err(|e| LeastSquaresError(e.to_string()))?;
+    Ok(run)
 }
 
 fn sum(residuals: &[f64]) -> f64 {
@@ -106,27 +75,24 @@ struct LevenbergMarquardt {
     damping: f64,
     /// At the present point.
     residuals: Vec<f64>,
-    evaluations: u64,
     stuck: bool,
 }
 
 /// Damping beyond which no step is tried.
 const MOST_DAMPING: f64 = 1e8;
 
-type LmState = IterState<Vec<f64>, (), (), (), (), f64>;
-
-impl<R: Residuals> Solver<Sum<R>, LmState> for LevenbergMarquardt {
+impl<R: Residuals> Solver<&R, Search<Vec<f64>>> for LevenbergMarquardt {
     fn name(&self) -> &str {
         "Levenberg-Marquardt"
     }
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<Sum<R>>,
-        mut state: LmState,
-    ) -> Result<(LmState, Option<KV>), ArgminError> {
-        let function = problem.problem.as_ref();
-        let function = &function.ok_or_else(|| ArgminError::msg("no residuals"))?.0;
+        problem: &mut Problem<&R>,
+        mut state: Search<Vec<f64>>,
+    ) -> Result<(Search<Vec<f64>>, Option<KV>), ArgminError> {
+        let function = problem.problem;
+        let function = function.ok_or_else(|| ArgminError::msg("no residuals"))?;
         let x = state.take_param().unwrap_or_default();
         let cost = sum(&self.residuals);
         let (normal, gradient) = self.linearize(function, &x);
@@ -134,7 +100,6 @@ impl<R: Residuals> Solver<Sum<R>, LmState> for LevenbergMarquardt {
             if let Some(next) = self.step(&normal, &gradient, &x) {
                 let mut residuals = Vec::with_capacity(self.residuals.len());
                 function.residuals(&next, &mut residuals);
-                self.evaluations += 1;
                 let now = sum(&residuals);
                 if now < cost {
                     self.stuck = cost - now < 1e-12 * cost;
@@ -149,7 +114,7 @@ impl<R: Residuals> Solver<Sum<R>, LmState> for LevenbergMarquardt {
         Ok((state.param(x).cost(cost), None))
     }
 
-    fn terminate(&mut self, _state: &LmState) -> TerminationStatus {
+    fn terminate(&mut self, _state: &Search<Vec<f64>>) -> TerminationStatus {
         if self.stuck {
             return TerminationStatus::Terminated(TerminationReason::SolverConverged);
         }
@@ -159,7 +124,7 @@ impl<R: Residuals> Solver<Sum<R>, LmState> for LevenbergMarquardt {
 
 impl LevenbergMarquardt {
     /// `J'J` and `J'r` at `x`.
-    fn linearize(&mut self, function: &impl Residuals, x: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    fn linearize(&self, function: &impl Residuals, x: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let (m, n) = (self.residuals.len(), x.len());
         let mut jacobian = DMatrix::zeros(m, n);
         let (mut moved, mut out) = (x.to_vec(), Vec::with_capacity(m));
@@ -167,7 +132,6 @@ impl LevenbergMarquardt {
             moved[k] = x[k] + self.limits.difference;
             out.clear();
             function.residuals(&moved, &mut out);
-            self.evaluations += 1;
             moved[k] = x[k];
             for i in 0..m {
                 jacobian[(i, k)] = (out[i] - self.residuals[i]) / self.limits.difference;
@@ -221,16 +185,16 @@ mod tests {
 
     #[test]
     fn a_curved_valley_is_followed_to_its_end() {
-        let fit = minimize(Rosenbrock, vec![-1.2, 1.0], LIMITS).unwrap();
-        assert!((fit.x[0] - 1.0).abs() < 1e-6 && (fit.x[1] - 1.0).abs() < 1e-6);
+        let fit = minimize(&Rosenbrock, vec![-1.2, 1.0], LIMITS, |_| {}).unwrap();
+        assert!((fit.best[0] - 1.0).abs() < 1e-6 && (fit.best[1] - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn a_line_is_fitted_as_the_normal_equations_say() {
         let points = vec![(0.0, 1.0), (1.0, 2.0), (2.0, 4.0)];
-        let fit = minimize(Line(points), vec![0.0, 0.0], LIMITS).unwrap();
+        let fit = minimize(&Line(points), vec![0.0, 0.0], LIMITS, |_| {}).unwrap();
         // Normal equations by hand: slope 3/2, intercept 5/6.
-        assert!((fit.x[1] - 1.5).abs() < 1e-6 && (fit.x[0] - 5.0 / 6.0).abs() < 1e-6);
+        assert!((fit.best[1] - 1.5).abs() < 1e-6 && (fit.best[0] - 5.0 / 6.0).abs() < 1e-6);
         assert!((fit.cost - 1.0 / 6.0).abs() < 1e-9);
     }
 
@@ -242,8 +206,12 @@ mod tests {
                 out.push(x.iter().sum::<f64>() - 9.0);
             }
         }
-        let fit = minimize(Total, vec![0.0; 3], LIMITS).unwrap();
+        let fit = minimize(&Total, vec![0.0; 3], LIMITS, |_| {}).unwrap();
         assert!(fit.cost < 1e-12);
-        assert!(fit.x.iter().all(|v| (v - 3.0).abs() < 1e-5), "{:?}", fit.x);
+        assert!(
+            fit.best.iter().all(|v| (v - 3.0).abs() < 1e-5),
+            "{:?}",
+            fit.best
+        );
     }
 }

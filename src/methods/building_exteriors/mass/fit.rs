@@ -1,5 +1,7 @@
 //! Lines of a scheme moved until the measured attributes are the wanted ones.
 
+use std::cell::Cell;
+
 use super::scheme::{Block, Line, Scheme};
 use super::target::MassTarget;
 use super::{MASS, max_z};
@@ -32,10 +34,12 @@ struct Model<'a> {
     scheme: &'a Scheme,
     target: &'a MassTarget,
     deviations: &'a [f64],
+    evaluations: Cell<u64>,
 }
 
 impl Residuals for Model<'_> {
     fn residuals(&self, x: &[f64], out: &mut Vec<f64>) {
+        self.evaluations.set(self.evaluations.get() + 1);
         let building = self.scheme.building(x, self.target.floor_height);
         let measured = mass_attributes(&building);
         let wanted = self.target.wanted.iter();
@@ -74,14 +78,15 @@ fn once(scheme: &Scheme, target: &MassTarget, deviations: &[f64]) -> (Vec<f64>, 
         scheme,
         target,
         deviations,
+        evaluations: Cell::new(0),
     };
     let start = scheme.start.clone();
     // Without free lines, or should argmin fail, the start is what there is.
     let fit = match start.is_empty() {
         true => None,
-        false => minimize(model, start, LIMITS).ok(),
+        false => minimize(&model, start, LIMITS, |_| {}).ok(),
     };
-    let (x, evaluations) = fit.map_or((scheme.start.clone(), 1), |f| (f.x, f.evaluations));
+    let x = fit.map_or_else(|| scheme.start.clone(), |run| run.best);
     let mut rounded = scheme.clone();
     for line in rounded.lines.iter_mut().flatten() {
         if let Line::Fixed(at) = line {
@@ -95,7 +100,7 @@ fn once(scheme: &Scheme, target: &MassTarget, deviations: &[f64]) -> (Vec<f64>, 
         max_z: max_z(&measured, &target.wanted[..MASS], deviations),
         building,
         blocks: scheme.blocks(&x, target.floor_height),
-        evaluations: evaluations + 1,
+        evaluations: model.evaluations.get() + 1,
     };
     (x, fitted)
 }
