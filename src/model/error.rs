@@ -123,6 +123,19 @@ pub enum ModelError {
         /// The variable.
         variable: String,
     },
+    /// Exact inference would need tables that are too large.
+    #[error(
+        "exact inference needs a table of {width} variables and {cells:.1e} cells to eliminate `{variable}`, which is too large: \
+         ask for fewer variables or approximately"
+    )]
+    TooWide {
+        /// The variable whose elimination needs the largest table.
+        variable: String,
+        /// Number of variables of that table.
+        width: usize,
+        /// Its number of cells.
+        cells: f64,
+    },
     /// Text that does not hold a model.
     #[error("corrupt model, {place}: {problem}")]
     Corrupt {

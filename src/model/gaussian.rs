@@ -20,6 +20,18 @@ pub(crate) struct Particle {
     pub cov: Vec<f64>,
 }
 
+impl Particle {
+    /// No states, nothing missing.
+    pub fn empty() -> Self {
+        Self {
+            log_density: 0.0,
+            states: Vec::new(),
+            mean: Vec::new(),
+            cov: Vec::new(),
+        }
+    }
+}
+
 /// E[u uᵀ] under `particle`, u = (1, columns), lower triangle added to `scatter` times `weight`;
 /// `missing` are the columns the particle's Gaussian is over.
 pub(crate) fn add_scatter(

@@ -79,3 +79,17 @@ pub(crate) fn categorical_of_logs<R: Rng>(logs: &[f64], rng: &mut R) -> usize {
     }
     last
 }
+
+/// An index drawn by probabilities; the last positive one where rounding runs out.
+pub(crate) fn categorical<R: Rng>(probabilities: &[f64], rng: &mut R) -> usize {
+    let mut at = rng.random::<f64>();
+    let mut last = 0;
+    for (i, p) in probabilities.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+        last = i;
+        at -= p;
+        if at < 0.0 {
+            break;
+        }
+    }
+    last
+}

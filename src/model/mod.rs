@@ -4,6 +4,7 @@
 //! | --- | --- | --- |
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
 //! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
+//! | [`elimination`] | sums and maxima over products of tables | – |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
 //! | [`density`] | mixtures, smoothed histograms, kernels, conditional densities | EM, counting |
 //! | [`boosting`] | probabilities from features by oblivious trees | gradient boosting |
@@ -26,6 +27,7 @@ pub mod boosting;
 pub(crate) mod chunks;
 pub mod conjugate;
 pub mod density;
+pub mod elimination;
 pub mod em;
 mod error;
 pub mod factor_graph;

@@ -98,12 +98,7 @@ impl Component {
         let mut component = Self {
             groups: groups.to_vec(),
             missing: Vec::new(),
-            particles: vec![Particle {
-                log_density: 0.0,
-                states: Vec::new(),
-                mean: Vec::new(),
-                cov: Vec::new(),
-            }],
+            particles: vec![Particle::empty()],
         };
         for &g in groups {
             let mut next = Vec::new();

@@ -1,15 +1,16 @@
 //! Evidence, and the factors it leaves over the unobserved discrete variables.
 
 use super::super::conjugate::Linear;
+use super::super::elimination::{Factor, advance};
 use super::super::error::ModelError;
 use super::super::gaussian::{Particle, extend};
-use super::factor::{Factor, advance};
 use super::{Cpd, Network};
 
 /// What is known.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
     discrete: Vec<(String, String)>,
+    soft: Vec<(String, Vec<f64>)>,
     real: Vec<(String, Vec<Option<f64>>)>,
 }
 
@@ -22,6 +23,13 @@ impl Evidence {
     /// A discrete variable has this category.
     pub fn is(mut self, name: &str, category: &str) -> Self {
         self.discrete.push((name.to_owned(), category.to_owned()));
+        self
+    }
+
+    /// Soft (virtual) evidence on a discrete variable: `P(what was seen | category)`, up to a common factor, for every
+    /// category in order (Pearl 1988, Sec. 2.2.2).
+    pub fn likely(mut self, name: &str, likelihoods: &[f64]) -> Self {
+        self.soft.push((name.to_owned(), likelihoods.to_vec()));
         self
     }
 
@@ -43,6 +51,8 @@ impl Evidence {
 pub(crate) struct Known {
     /// Per node.
     pub discrete: Vec<Option<usize>>,
+    /// Nodes with soft evidence, and the logarithms of its likelihoods.
+    pub soft: Vec<(usize, Vec<f64>)>,
     /// Per coordinate, NaN for unknown.
     pub real: Vec<f64>,
 }
@@ -67,20 +77,55 @@ pub(crate) struct Linked {
     pub particles: Vec<Particle>,
 }
 
+/// What a question is about, besides the evidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Asked {
+    /// Nothing: the evidence alone.
+    Evidence,
+    /// One variable.
+    Variable(usize),
+    /// All discrete variables.
+    Discrete,
+}
+
 /// A question made ready for elimination.
 #[derive(Debug)]
 pub(crate) struct Question {
     pub known: Known,
     pub factors: Vec<Factor>,
     pub linked: Vec<Linked>,
-    /// Continuous nodes without evidence on or below them.
-    pub free: Vec<usize>,
+    /// Unobserved nodes that the question leaves out, parents first.
+    pub left_out: Vec<usize>,
+}
+
+impl Question {
+    /// The factors that node n is connected with.
+    pub fn component(&self, n: usize) -> Vec<Factor> {
+        let mut reached = vec![n];
+        let mut left: Vec<&Factor> = self.factors.iter().collect();
+        let mut found = Vec::new();
+        loop {
+            let near = |f: &&Factor| f.vars.iter().any(|v| reached.contains(v));
+            let (own, others): (Vec<&Factor>, Vec<&Factor>) = left.into_iter().partition(near);
+            if own.is_empty() {
+                return found;
+            }
+            for factor in own {
+                reached.extend(&factor.vars);
+                found.push(factor.clone());
+            }
+            reached.sort_unstable();
+            reached.dedup();
+            left = others;
+        }
+    }
 }
 
 impl Network {
     pub(crate) fn known(&self, evidence: &Evidence) -> Result<Known, ModelError> {
         let mut known = Known {
             discrete: vec![None; self.nodes.len()],
+            soft: Vec::new(),
             real: vec![f64::NAN; self.width],
         };
         for (name, category) in &evidence.discrete {
@@ -101,6 +146,17 @@ impl Network {
                 });
             }
             known.discrete[node] = Some(value);
+        }
+        for (name, likelihoods) in &evidence.soft {
+            let node = self.find(name)?;
+            let fits = likelihoods.len() == self.nodes[node].categories.len();
+            let likely = likelihoods.iter().all(|l| l.is_finite() && *l >= 0.0);
+            if !fits || !likely || likelihoods.iter().all(|l| *l == 0.0) {
+                let problem = "needs a likelihood, not all 0, for each of its categories";
+                return Err(ModelError::parameter(name, problem));
+            }
+            let logs = likelihoods.iter().map(|l| l.ln()).collect();
+            known.soft.push((node, logs));
         }
         for (name, values) in &evidence.real {
             let range = self.nodes[self.find(name)?].coordinates.clone();
@@ -125,46 +181,16 @@ impl Network {
         Ok(known)
     }
 
-    /// Factors over the unobserved discrete variables; continuous ones integrated out.
-    pub(crate) fn question(&self, known: Known) -> Result<Question, ModelError> {
-        self.question_about(known, usize::MAX)
-    }
-
-    /// The same, with node `asked` (if any) among the linked ones even without evidence below it.
-    pub(crate) fn question_about(
-        &self,
-        known: Known,
-        asked: usize,
-    ) -> Result<Question, ModelError> {
+    /// Factors over the unobserved discrete variables; continuous ones integrated out. Variables without evidence on or
+    /// below them that are not asked for are barren and left out.
+    pub(crate) fn question(&self, known: Known, asked: Asked) -> Result<Question, ModelError> {
         let unknown = |n: usize| {
             self.nodes[n]
                 .coordinates
                 .clone()
                 .any(|c| known.real[c].is_nan())
         };
-        // Active: with evidence on it or below, or asked for.
-        let mut active = vec![false; self.nodes.len()];
-        for &n in self.order.iter().rev() {
-            let node = &self.nodes[n];
-            active[n] = active[n]
-                || n == asked
-                || known.discrete[n].is_some()
-                || node.coordinates.clone().any(|c| !known.real[c].is_nan());
-            if active[n] {
-                for &p in &node.parents {
-                    active[p] = true;
-                }
-            }
-        }
-        // Other discrete variables are left out only below a softmax of unknown values.
-        let mut left_out = vec![false; self.nodes.len()];
-        for &n in &self.order {
-            let node = &self.nodes[n];
-            let gap = matches!(node.cpd, Cpd::Softmax(_))
-                && node.regressors.iter().any(|&c| known.real[c].is_nan());
-            left_out[n] = !active[n] && (gap || node.discrete.iter().any(|&p| left_out[p]));
-            active[n] |= node.is_discrete() && !left_out[n];
-        }
+        let active = self.active(&known, asked);
         let mut factors = Vec::new();
         for (n, node) in self.nodes.iter().enumerate() {
             let mut vars = node.discrete.clone();
@@ -172,7 +198,7 @@ impl Network {
             match &node.cpd {
                 Cpd::Table(table) if active[n] => {
                     let values = table.iter().map(|p| p.ln()).collect();
-                    factors.push(Factor { vars, values }.reduce(&known.discrete, &self.sizes));
+                    factors.push(Factor::new(vars, values).reduce(&known.discrete, &self.sizes));
                 }
                 Cpd::Softmax(weights) if active[n] => {
                     if node.regressors.iter().any(|&c| known.real[c].is_nan()) {
@@ -180,10 +206,14 @@ impl Network {
                         return Err(ModelError::parameter(&node.name, problem));
                     }
                     let values = softmax(weights, &node.regressors, &known.real, self.sizes[n]);
-                    factors.push(Factor { vars, values }.reduce(&known.discrete, &self.sizes));
+                    factors.push(Factor::new(vars, values).reduce(&known.discrete, &self.sizes));
                 }
                 _ => {}
             }
+        }
+        for (n, logs) in &known.soft {
+            let factor = Factor::new(vec![*n], logs.clone());
+            factors.push(factor.reduce(&known.discrete, &self.sizes));
         }
         let mut label: Vec<usize> = (0..self.nodes.len()).collect();
         let real = |n: &usize| matches!(self.nodes[*n].cpd, Cpd::Linear(_));
@@ -201,12 +231,7 @@ impl Network {
             }
         }
         let mut groups: Vec<Vec<usize>> = Vec::new();
-        let mut free = Vec::new();
-        for &n in self.order.iter().filter(|n| real(n)) {
-            if !active[n] {
-                free.push(n);
-                continue;
-            }
+        for &n in self.order.iter().filter(|n| real(n) && active[**n]) {
             match groups.iter_mut().find(|g| label[g[0]] == label[n]) {
                 Some(group) => group.push(n),
                 None => groups.push(vec![n]),
@@ -214,17 +239,50 @@ impl Network {
         }
         let linked: Vec<Linked> = groups.into_iter().map(|g| self.link(g, &known)).collect();
         for l in &linked {
-            factors.push(Factor {
-                vars: l.vars.clone(),
-                values: l.particles.iter().map(|p| p.log_density).collect(),
-            });
+            let densities = l.particles.iter().map(|p| p.log_density).collect();
+            factors.push(Factor::new(l.vars.clone(), densities));
         }
+        let left_out = self.order.iter().copied();
+        let left_out = left_out.filter(|&n| !active[n] && known.discrete[n].is_none());
         Ok(Question {
+            left_out: left_out.collect(),
             known,
             factors,
             linked,
-            free,
         })
+    }
+
+    /// The nodes that a question depends on: with evidence on them or below, or asked for.
+    fn active(&self, known: &Known, asked: Asked) -> Vec<bool> {
+        let mut active = vec![false; self.nodes.len()];
+        for (n, _) in &known.soft {
+            active[*n] = true;
+        }
+        for &n in self.order.iter().rev() {
+            let node = &self.nodes[n];
+            active[n] = active[n]
+                || asked == Asked::Variable(n)
+                || known.discrete[n].is_some()
+                || node.coordinates.clone().any(|c| !known.real[c].is_nan());
+            if active[n] {
+                for &p in &node.parents {
+                    active[p] = true;
+                }
+            }
+        }
+        if asked != Asked::Discrete {
+            return active;
+        }
+        // All other discrete variables but those below a softmax of unknown values.
+        let mut without = vec![false; self.nodes.len()];
+        for &n in &self.order {
+            let node = &self.nodes[n];
+            let gap = matches!(node.cpd, Cpd::Softmax(_))
+                && node.regressors.iter().any(|&c| known.real[c].is_nan());
+            without[n] = !active[n] && (gap || node.discrete.iter().any(|&p| without[p]));
+            active[n] |= node.is_discrete() && !without[n];
+        }
+        active
     }
 
     fn link(&self, nodes: Vec<usize>, known: &Known) -> Linked {
@@ -241,12 +299,7 @@ impl Network {
         let mut missing = Vec::new();
         for _ in 0..count {
             missing.clear();
-            let mut particle = Particle {
-                log_density: 0.0,
-                states: Vec::new(),
-                mean: Vec::new(),
-                cov: Vec::new(),
-            };
+            let mut particle = Particle::empty();
             for &n in &nodes {
                 let columns = self.columns(n);
                 if let Some(linear) = self.state(n, &assignment) {

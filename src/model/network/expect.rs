@@ -5,12 +5,11 @@
 
 use super::super::chunks;
 use super::super::conjugate::{LinearPrior, Priors, dirichlet_log_density, dirichlet_mode};
+use super::super::elimination::{Mode, advance};
 use super::super::em::Em;
 use super::super::error::ModelError;
 use super::super::gaussian::add_scatter;
-use super::evidence::Known;
-use super::factor::{Mode, advance};
-use super::query::distribution;
+use super::evidence::{Asked, Known};
 use super::{Cpd, Network};
 
 /// Expected counts per table, expected scatter per configuration of a real vector.
@@ -50,25 +49,12 @@ impl Problem<'_> {
     }
 
     fn row(&self, network: &Network, i: usize, stats: &mut Stats) -> Result<(), ModelError> {
-        let at_row = |e| match e {
-            ModelError::Contradiction { variable, .. } => {
-                ModelError::Contradiction { row: i, variable }
-            }
-            e => e,
-        };
-        let question = network.question(self.rows[i].clone())?;
-        let tree = network.tree(&question, Mode::Sum).map_err(at_row)?;
+        let question = network.question(self.rows[i].clone(), Asked::Discrete)?;
+        let tree = network
+            .tree(&question, Mode::Sum)
+            .map_err(|e| e.in_row(i))?;
         let beliefs = tree.beliefs();
         let sizes = &network.sizes;
-        let spread = |vars: &[usize]| -> Vec<f64> {
-            if vars.is_empty() {
-                return vec![1.0];
-            }
-            let found = beliefs
-                .iter()
-                .find(|b| vars.iter().all(|v| b.vars.contains(v)));
-            found.map_or_else(Vec::new, |b| distribution(&b.onto(vars, sizes, Mode::Sum)))
-        };
         let fixed = question.known.assignment();
         for (n, counts) in stats
             .counts
@@ -81,7 +67,7 @@ impl Problem<'_> {
                 .filter(|&v| question.known.discrete[v].is_none())
                 .collect();
             let mut assignment = fixed.clone();
-            for w in spread(&vars) {
+            for w in beliefs.of(&vars) {
                 let index = network.configuration(n, &assignment) * sizes[n] + assignment[n];
                 counts[index] += w;
                 advance(&vars, sizes, &mut assignment);
@@ -89,7 +75,7 @@ impl Problem<'_> {
         }
         for linked in &question.linked {
             let mut assignment = fixed.clone();
-            for (particle, w) in linked.particles.iter().zip(spread(&linked.vars)) {
+            for (particle, w) in linked.particles.iter().zip(beliefs.of(&linked.vars)) {
                 for &n in &linked.nodes {
                     let state = network.configuration(n, &assignment);
                     let (columns, scatter) = (network.columns(n), &mut stats.scatter[n][state]);

@@ -96,6 +96,7 @@ impl Network {
         }
         let empty = Known {
             discrete: vec![None; self.nodes.len()],
+            soft: Vec::new(),
             real: vec![f64::NAN; self.width],
         };
         let mut rows = vec![empty; data.rows()];

@@ -5,8 +5,8 @@
 //! configuration of discrete parents; or a linear Gaussian `y ~ N(Bᵀ(1, x), Σ)` for each. The joint
 //! density is the product. Answers given any evidence (any discrete variables, any coordinates of
 //! real ones) are exact: continuous variables are integrated out first, each linked set of them
-//! giving one table over its discrete parents; the rest is variable elimination on logarithms
-//! (one forward and one backward pass over a tree of buckets).
+//! giving one table over its discrete parents; the rest is variable elimination ([`super::elimination`]). What has no
+//! evidence on or below it and is not asked for is left out (barren variables), and drawn from its parents.
 //!
 //! ```
 //! use edifice::model::network::{Evidence, Network, Variable};
@@ -25,25 +25,28 @@
 //! - A sigmoid or softmax needs its continuous parents observed, unless it is barren for the
 //!   question (no evidence on it or its descendants): the integral has no closed form.
 //! - The most probable explanations are over the discrete variables, continuous ones integrated.
-//! - Cost is exponential in the width of the elimination order; tables over 2²⁶ cells are refused.
+//! - Cost is exponential in the width of the elimination order; tables over 2²⁶ cells are refused before they are made. A
+//!   single posterior then leaves out what is independent of the variable given the evidence, too, so that evidence there
+//!   is not checked for contradictions.
 //!
 //! Sources: Koller and Friedman 2009, Ch. 9, 13 and 14; Dechter 1999; Lauritzen 1992.
 
+mod approximate;
 mod bif;
 mod check;
 mod evidence;
 mod expect;
-mod factor;
 mod learn;
 mod query;
+mod sample;
 mod store;
-mod tree;
 
 use std::collections::{HashMap, HashSet};
 
 use super::conjugate::Linear;
 use super::error::ModelError;
 use super::graph::order;
+pub use approximate::{Estimate, Loopy};
 use check::check;
 pub use evidence::Evidence;
 pub use learn::{FitSettings, Fitted};

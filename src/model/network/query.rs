@@ -1,15 +1,9 @@
 //! Questions to a network.
 
-use rand::Rng;
-use rand::rngs::SmallRng;
-
+use super::super::elimination::{BucketTree, Mode, TooWide};
 use super::super::error::ModelError;
-use super::super::gaussian::gaussian;
-use super::super::linalg::{categorical_of_logs, log_sum_exp};
-use super::evidence::{Evidence, Question, softmax};
-use super::factor::{Factor, Mode};
-use super::tree::Tree;
-use super::{Cpd, Network};
+use super::Network;
+use super::evidence::{Asked, Evidence, Known, Question};
 
 /// Posterior of one variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,40 +24,64 @@ pub struct Explanation {
 }
 
 impl Network {
-    pub(crate) fn tree(&self, question: &Question, mode: Mode) -> Result<Tree, ModelError> {
-        let tree = Tree::new(question.factors.clone(), &self.sizes, mode);
-        let tree = tree.ok_or_else(|| {
-            ModelError::parameter("network", "a table of the elimination would be too large")
-        })?;
-        if tree.total.is_finite() {
+    /// Eliminates the factors of a question.
+    ///
+    /// # Errors
+    /// [`ModelError::TooWide`]; [`ModelError::Contradiction`] for evidence of probability zero.
+    pub(crate) fn tree(&self, question: &Question, mode: Mode) -> Result<BucketTree, ModelError> {
+        let tree = BucketTree::new(question.factors.clone(), &self.sizes, mode);
+        self.possible(tree.map_err(|e| self.too_wide(&e))?, question)
+    }
+
+    fn too_wide(&self, error: &TooWide) -> ModelError {
+        ModelError::TooWide {
+            variable: self.nodes[error.variable].name.clone(),
+            width: error.width,
+            cells: error.cells,
+        }
+    }
+
+    fn possible(&self, tree: BucketTree, question: &Question) -> Result<BucketTree, ModelError> {
+        if tree.total > f64::NEG_INFINITY {
             return Ok(tree);
         }
         Err(ModelError::Contradiction {
             row: 0,
-            variable: self.culprit(question),
+            variable: self.culprit(&question.known),
         })
     }
 
-    /// The first observed variable at which the evidence becomes impossible.
-    fn culprit(&self, question: &Question) -> String {
-        let mut known = question.known.clone();
-        known.discrete.fill(None);
-        known.real.fill(f64::NAN);
-        for &n in &self.order {
-            known.discrete[n] = question.known.discrete[n];
-            for c in self.nodes[n].coordinates.clone() {
-                known.real[c] = question.known.real[c];
+    /// The first observed variable, parents before children, at which the evidence becomes impossible: by bisection, as
+    /// more evidence does not make it possible again.
+    fn culprit(&self, known: &Known) -> String {
+        let soft = |n: usize| known.soft.iter().any(|(s, _)| *s == n);
+        let seen = |n: &usize| {
+            let mut own = self.nodes[*n].coordinates.clone();
+            known.discrete[*n].is_some() || soft(*n) || own.any(|c| !known.real[c].is_nan())
+        };
+        let observed: Vec<usize> = self.order.iter().copied().filter(seen).collect();
+        let (mut possible, mut impossible) = (0, observed.len());
+        while impossible - possible > 1 {
+            let middle = (possible + impossible) / 2;
+            let mut first = known.clone();
+            for &n in &observed[middle..] {
+                first.discrete[n] = None;
+                first.soft.retain(|(s, _)| *s != n);
+                first.real[self.nodes[n].coordinates.clone()].fill(f64::NAN);
             }
-            let total = self
-                .question(known.clone())
-                .ok()
-                .and_then(|q| Tree::new(q.factors, &self.sizes, Mode::Sum))
+            let question = self.question(first, Asked::Evidence).ok();
+            let total = question
+                .and_then(|q| BucketTree::new(q.factors, &self.sizes, Mode::Sum).ok())
                 .map(|t| t.total);
-            if total.is_some_and(|t| !t.is_finite()) {
-                return self.nodes[n].name.clone();
+            match total {
+                Some(f64::NEG_INFINITY) => impossible = middle,
+                _ => possible = middle,
             }
         }
-        "the evidence as a whole".to_owned()
+        match observed.get(possible) {
+            Some(&n) => self.nodes[n].name.clone(),
+            None => "no evidence".to_owned(),
+        }
     }
 
     /// `log p(evidence)`, nats: a density over the observed coordinates.
@@ -72,7 +90,7 @@ impl Network {
     /// Names or categories that are not there, values that are not finite, a softmax whose
     /// continuous parent is not observed; [`ModelError::Contradiction`] for probability zero.
     pub fn log_probability(&self, evidence: &Evidence) -> Result<f64, ModelError> {
-        let question = self.question(self.known(evidence)?)?;
+        let question = self.question(self.known(evidence)?, Asked::Evidence)?;
         Ok(self.tree(&question, Mode::Sum)?.total)
     }
 
@@ -89,11 +107,18 @@ impl Network {
                 expected: "discrete",
             });
         }
-        let all = self.marginals(evidence)?;
-        let found = all.into_iter().find(|a| a.name == name);
-        found.map(|a| a.probabilities).ok_or_else(|| {
-            ModelError::parameter(name, "a continuous parent of it must be observed")
-        })
+        let question = self.question(self.known(evidence)?, Asked::Variable(n))?;
+        if let Some(v) = question.known.discrete[n] {
+            self.tree(&question, Mode::Sum)?;
+            return Ok(certain(v, self.sizes[n]));
+        }
+        let tree = match BucketTree::new(question.factors.clone(), &self.sizes, Mode::Sum) {
+            Ok(tree) => tree,
+            // The rest is independent of it given the evidence.
+            Err(_) => BucketTree::new(question.component(n), &self.sizes, Mode::Sum)
+                .map_err(|e| self.too_wide(&e))?,
+        };
+        Ok(self.possible(tree, &question)?.beliefs().of(&[n]))
     }
 
     /// P(variable | evidence) of every discrete variable, in order of the variables; a softmax
@@ -102,32 +127,19 @@ impl Network {
     /// # Errors
     /// As [`Network::log_probability`].
     pub fn marginals(&self, evidence: &Evidence) -> Result<Vec<Answer>, ModelError> {
-        let question = self.question(self.known(evidence)?)?;
+        let question = self.question(self.known(evidence)?, Asked::Discrete)?;
         let tree = self.tree(&question, Mode::Sum)?;
         let beliefs = tree.beliefs();
-        let mut answers = Vec::new();
-        for (n, node) in self
-            .nodes
-            .iter()
-            .enumerate()
-            .filter(|(_, n)| n.is_discrete())
-        {
-            let probabilities = match question.known.discrete[n] {
-                Some(v) => (0..self.sizes[n])
-                    .map(|i| f64::from(u8::from(i == v)))
-                    .collect(),
-                // The last variable of a bucket's scope is its own.
-                None => match beliefs.iter().find(|b| b.vars.last() == Some(&n)) {
-                    Some(belief) => distribution(&belief.onto(&[n], &self.sizes, Mode::Sum)),
-                    None => continue,
-                },
-            };
-            answers.push(Answer {
-                name: node.name.clone(),
-                probabilities,
-            });
-        }
-        Ok(answers)
+        let nodes = self.nodes.iter().enumerate();
+        let answers = nodes.filter(|(_, node)| node.is_discrete());
+        let answers = answers.map(|(n, node)| Answer {
+            name: node.name.clone(),
+            probabilities: match question.known.discrete[n] {
+                Some(v) => certain(v, self.sizes[n]),
+                None => beliefs.of(&[n]),
+            },
+        });
+        Ok(answers.filter(|a| !a.probabilities.is_empty()).collect())
     }
 
     /// Mean and covariance (row-major) of a real vector given evidence: the moments of its exact
@@ -151,12 +163,13 @@ impl Network {
         let own: Vec<usize> = self.nodes[n].coordinates.clone().collect();
         let known = self.known(evidence)?;
         // Ask for n explicitly: it is linked as if its children were observed.
-        let question = self.question_about(known, n)?;
+        let question = self.question(known, Asked::Variable(n))?;
         let tree = self.tree(&question, Mode::Sum)?;
+        let beliefs = tree.beliefs();
         let d = own.len();
         let (mut mean, mut second) = (vec![0.0; d], vec![0.0; d * d]);
         for linked in question.linked.iter().filter(|l| l.nodes.contains(&n)) {
-            let weights = self.weights(&tree, &linked.vars);
+            let weights = beliefs.of(&linked.vars);
             for (particle, w) in linked.particles.iter().zip(weights) {
                 let place: Vec<Option<usize>> = own
                     .iter()
@@ -185,20 +198,6 @@ impl Network {
         Ok((mean, second))
     }
 
-    /// P(configuration of `vars` | evidence), the last variable fastest; they share a bucket.
-    pub(crate) fn weights(&self, tree: &Tree, vars: &[usize]) -> Vec<f64> {
-        if vars.is_empty() {
-            return vec![1.0];
-        }
-        let beliefs = tree.beliefs();
-        let belief = beliefs
-            .iter()
-            .find(|b| vars.iter().all(|v| b.vars.contains(v)));
-        belief.map_or_else(Vec::new, |b| {
-            distribution(&b.onto(vars, &self.sizes, Mode::Sum))
-        })
-    }
-
     /// The `count` most probable explanations, most probable first.
     ///
     /// # Errors
@@ -208,7 +207,7 @@ impl Network {
         evidence: &Evidence,
         count: usize,
     ) -> Result<Vec<Explanation>, ModelError> {
-        let question = self.question(self.known(evidence)?)?;
+        let question = self.question(self.known(evidence)?, Asked::Discrete)?;
         let tree = self.tree(&question, Mode::Max)?;
         let start = question.known.assignment();
         let found = tree.best(count, &start);
@@ -226,10 +225,10 @@ impl Network {
     /// # Errors
     /// As [`Network::log_probability`].
     pub fn explain(&self, evidence: &Evidence) -> Result<Explanation, ModelError> {
-        let question = self.question(self.known(evidence)?)?;
+        let question = self.question(self.known(evidence)?, Asked::Discrete)?;
         let tree = self.tree(&question, Mode::Max)?;
         let mut assignment = question.known.assignment();
-        tree.decode(&mut assignment, None::<&mut SmallRng>);
+        tree.decode(&mut assignment);
         Ok(Explanation {
             values: self.named(&assignment),
             log_joint: tree.total,
@@ -247,44 +246,6 @@ impl Network {
             .collect()
     }
 
-    /// Draws `count` joint assignments given evidence (none: forward samples), each as complete
-    /// evidence by index: categories of every node, and all coordinates.
-    ///
-    /// # Errors
-    /// As [`Network::log_probability`].
-    pub fn sample<R: Rng>(
-        &self,
-        evidence: &Evidence,
-        count: usize,
-        rng: &mut R,
-    ) -> Result<super::super::table::Table, ModelError> {
-        let question = self.question(self.known(evidence)?)?;
-        let tree = self.tree(&question, Mode::Sum)?;
-        let mut codes: Vec<Vec<Option<usize>>> = vec![Vec::new(); self.nodes.len()];
-        let mut reals: Vec<Vec<Option<f64>>> = vec![Vec::new(); self.width];
-        for _ in 0..count {
-            let (assignment, real) = self.draw(&question, &tree, rng);
-            for (column, v) in codes.iter_mut().zip(assignment) {
-                column.push(Some(v));
-            }
-            for (column, v) in reals.iter_mut().zip(real) {
-                column.push(v.is_finite().then_some(v));
-            }
-        }
-        let mut table = super::super::table::Table::new();
-        for (n, node) in self.nodes.iter().enumerate() {
-            if node.is_discrete() {
-                let names: Vec<&str> = node.categories.iter().map(String::as_str).collect();
-                table = table.codes(&node.name, &names, codes[n].iter().copied())?;
-            }
-            for (i, c) in node.coordinates.clone().enumerate() {
-                let name = self.column_name(n, i);
-                table = table.real(&name, reals[c].iter().copied())?;
-            }
-        }
-        Ok(table)
-    }
-
     /// Name of the data column of a coordinate: the variable's own name when it has only one,
     /// `name[i]` otherwise.
     pub(crate) fn column_name(&self, n: usize, i: usize) -> String {
@@ -295,64 +256,9 @@ impl Network {
             format!("{}[{i}]", node.name)
         }
     }
-
-    fn draw<R: Rng>(
-        &self,
-        question: &Question,
-        tree: &Tree,
-        rng: &mut R,
-    ) -> (Vec<usize>, Vec<f64>) {
-        let mut assignment = question.known.assignment();
-        let mut real = question.known.real.clone();
-        tree.decode(&mut assignment, Some(rng));
-        for linked in &question.linked {
-            let index = linked
-                .vars
-                .iter()
-                .fold(0, |i, &v| i * self.sizes[v] + assignment[v]);
-            let particle = &linked.particles[index];
-            let drawn = gaussian(&particle.mean, &particle.cov, rng);
-            for (&c, v) in linked.missing.iter().zip(drawn) {
-                real[c] = v;
-            }
-        }
-        // What has no evidence below it follows its parents, in order.
-        for &n in &self.order {
-            let node = &self.nodes[n];
-            let open = question.known.discrete[n].is_none()
-                && !question.factors.iter().any(|f| f.vars.contains(&n));
-            let from = self.configuration(n, &assignment) * self.sizes[n];
-            match &node.cpd {
-                Cpd::Softmax(weights) if open => {
-                    let logs = softmax(weights, &node.regressors, &real, self.sizes[n]);
-                    assignment[n] = categorical_of_logs(&logs[from..from + self.sizes[n]], rng);
-                }
-                Cpd::Table(table) if open => {
-                    let row = table[from..from + self.sizes[n]].iter();
-                    assignment[n] =
-                        categorical_of_logs(&row.map(|p| p.ln()).collect::<Vec<_>>(), rng);
-                }
-                Cpd::Linear(_) if question.free.contains(&n) => {
-                    if let Some(linear) = self.state(n, &assignment) {
-                        let mut u = vec![1.0];
-                        u.extend(node.regressors.iter().map(|&c| real[c]));
-                        let mut mean = vec![0.0; linear.d];
-                        linear.mean(&u, &mut mean);
-                        let drawn = gaussian(&mean, &linear.covariance, rng);
-                        for (c, v) in node.coordinates.clone().zip(drawn) {
-                            real[c] = v;
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
-        (assignment, real)
-    }
 }
 
-/// Probabilities from log values.
-pub(crate) fn distribution(factor: &Factor) -> Vec<f64> {
-    let total = log_sum_exp(&factor.values);
-    factor.values.iter().map(|v| (v - total).exp()).collect()
+/// The distribution of an observed variable of `k` categories.
+fn certain(value: usize, k: usize) -> Vec<f64> {
+    (0..k).map(|i| f64::from(u8::from(i == value))).collect()
 }

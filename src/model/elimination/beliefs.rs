@@ -1,0 +1,57 @@
+//! The backward pass: marginals of every bucket's scope.
+
+use super::BucketTree;
+use super::factor::sum_onto;
+
+/// Marginals of an elimination by sums.
+#[derive(Debug)]
+pub struct Beliefs<'t> {
+    tree: &'t BucketTree,
+    /// Joint probability of every bucket's scope.
+    tables: Vec<Vec<f64>>,
+}
+
+impl<'t> Beliefs<'t> {
+    /// From the last eliminated variable down: `P(scope) = P(var | rest) P(rest)`, where the rest is in the parent's scope.
+    pub(super) fn new(tree: &'t BucketTree) -> Self {
+        let mut tables: Vec<Vec<f64>> = vec![Vec::new(); tree.buckets.len()];
+        for (b, bucket) in tree.buckets.iter().enumerate().rev() {
+            let mut table = bucket.table.clone();
+            if let Some(parent) = bucket.parent {
+                let (rest, k) = (
+                    &bucket.scope[..bucket.scope.len() - 1],
+                    tree.sizes[bucket.var],
+                );
+                let above = &tree.buckets[parent].scope;
+                let given = sum_onto(&tables[parent], above, rest, &tree.sizes);
+                for (row, p) in table.chunks_mut(k).zip(given) {
+                    row.iter_mut().for_each(|v| *v *= p);
+                }
+            }
+            tables[b] = table;
+        }
+        Self { tree, tables }
+    }
+
+    /// The joint distribution of variables that share a factor, the last fastest; 1 for none.
+    ///
+    /// Variables that share no factor may be in no bucket together: then, and for a variable that is in no factor, nothing
+    /// is known and the result is empty.
+    pub fn of(&self, vars: &[usize]) -> Vec<f64> {
+        let Some(first) = vars.iter().map(|&v| self.tree.place[v]).min() else {
+            return vec![1.0];
+        };
+        let Some(bucket) = self.tree.buckets.get(first) else {
+            return Vec::new();
+        };
+        if !vars.iter().all(|v| bucket.scope.contains(v)) {
+            return Vec::new();
+        }
+        let table = &self.tables[first];
+        let mut sums = sum_onto(table, &bucket.scope, vars, &self.tree.sizes);
+        // Rounding: the parts of a distribution sum to 1.
+        let total: f64 = sums.iter().sum();
+        sums.iter_mut().for_each(|v| *v /= total);
+        sums
+    }
+}

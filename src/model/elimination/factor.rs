@@ -1,0 +1,131 @@
+//! Log-valued tables over discrete variables, and the loops over their cells.
+
+/// A function of some discrete variables; `values` are natural logarithms, the last variable fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    /// Its variables, each once.
+    pub vars: Vec<usize>,
+    /// One value for each configuration of them.
+    pub values: Vec<f64>,
+}
+
+impl Factor {
+    /// A factor.
+    pub fn new(vars: Vec<usize>, values: Vec<f64>) -> Self {
+        Self { vars, values }
+    }
+
+    /// Index of an assignment (of all variables) in `values`.
+    pub fn index(&self, assignment: &[usize], sizes: &[usize]) -> usize {
+        index(&self.vars, assignment, sizes)
+    }
+
+    /// The factor with observed variables fixed.
+    pub fn reduce(self, observed: &[Option<usize>], sizes: &[usize]) -> Self {
+        if self.vars.iter().all(|&v| observed[v].is_none()) {
+            return self;
+        }
+        let vars = self.vars.iter().copied();
+        let vars: Vec<usize> = vars.filter(|&v| observed[v].is_none()).collect();
+        let mut assignment: Vec<usize> = observed.iter().map(|o| o.unwrap_or(0)).collect();
+        let count: usize = vars.iter().map(|&v| sizes[v]).product();
+        let mut values = Vec::with_capacity(count);
+        for _ in 0..count {
+            values.push(self.values[self.index(&assignment, sizes)]);
+            advance(&vars, sizes, &mut assignment);
+        }
+        Self { vars, values }
+    }
+}
+
+/// Index of an assignment in a table over `vars`.
+pub(super) fn index(vars: &[usize], assignment: &[usize], sizes: &[usize]) -> usize {
+    vars.iter().fold(0, |i, &v| i * sizes[v] + assignment[v])
+}
+
+/// The next assignment of `vars`, the last fastest.
+pub(crate) fn advance(vars: &[usize], sizes: &[usize], assignment: &mut [usize]) {
+    for &v in vars.iter().rev() {
+        assignment[v] += 1;
+        if assignment[v] < sizes[v] {
+            return;
+        }
+        assignment[v] = 0;
+    }
+}
+
+/// The cells of a table over `outer` beside those of a table over `inner`, whose variables are all among `outer`'s: calls
+/// `visit(start, length, at, moves)` for every run of `length` cells from `start`; beside them the cells from `at` of the
+/// inner table, one after the other where it `moves`, else always the same one.
+pub(super) fn runs(
+    outer: &[usize],
+    inner: &[usize],
+    sizes: &[usize],
+    mut visit: impl FnMut(usize, usize, usize, bool),
+) {
+    // By how much each variable of `outer` moves the index of the inner table.
+    let mut strides = vec![0; outer.len()];
+    let mut stride = 1;
+    for &v in inner.iter().rev() {
+        if let Some(at) = outer.iter().position(|&w| w == v) {
+            strides[at] = stride;
+        }
+        stride *= sizes[v];
+    }
+    // The longest run at the end of `outer` over which the inner index follows or stands still.
+    let moves = strides.last().is_some_and(|&s| s == 1);
+    let (mut length, mut left) = (1, outer.len());
+    while left > 0 && strides[left - 1] == if moves { length } else { 0 } {
+        length *= sizes[outer[left - 1]];
+        left -= 1;
+    }
+    let count: usize = outer[..left].iter().map(|&v| sizes[v]).product();
+    let (mut digits, mut at) = (vec![0; left], 0);
+    for run in 0..count {
+        visit(run * length, length, at, moves);
+        for d in (0..left).rev() {
+            digits[d] += 1;
+            at += strides[d];
+            if digits[d] < sizes[outer[d]] {
+                break;
+            }
+            at -= strides[d] * digits[d];
+            digits[d] = 0;
+        }
+    }
+}
+
+/// Adds a factor to the table over `scope`, which holds all its variables.
+pub(super) fn add(values: &mut [f64], scope: &[usize], factor: &Factor, sizes: &[usize]) {
+    let inner = &factor.values;
+    runs(scope, &factor.vars, sizes, |start, length, at, moves| {
+        let out = &mut values[start..start + length];
+        if moves {
+            let along = &inner[at..at + length];
+            out.iter_mut().zip(along).for_each(|(o, i)| *o += i);
+        } else {
+            let one = inner[at];
+            out.iter_mut().for_each(|o| *o += one);
+        }
+    });
+}
+
+/// Sums a table of probabilities over the variables of `scope` that are not in `vars`.
+pub(super) fn sum_onto(
+    values: &[f64],
+    scope: &[usize],
+    vars: &[usize],
+    sizes: &[usize],
+) -> Vec<f64> {
+    let mut sums = vec![0.0; vars.iter().map(|&v| sizes[v]).product()];
+    runs(scope, vars, sizes, |start, length, at, moves| {
+        let own = &values[start..start + length];
+        if moves {
+            let out = &mut sums[at..at + length];
+            out.iter_mut().zip(own).for_each(|(o, v)| *o += v);
+        } else {
+            sums[at] += own.iter().sum::<f64>();
+        }
+    });
+    sums
+}

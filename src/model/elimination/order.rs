@@ -1,0 +1,231 @@
+//! Orders of elimination, and the sizes of tables that they lead to.
+//!
+//! A best order is NP-hard to find. Greedy orders by three costs are tried: the next table's size, the number of edges that
+//! an elimination adds, and their weighted number (Koller and Friedman 2009, Sec. 9.4.3.2). The first alone where it is
+//! good enough, as on small problems finding an order takes longer than the elimination itself.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Most cells of one table.
+pub const MOST_CELLS: f64 = (1 << 26) as f64;
+/// Most cells of all tables together (1 GiB).
+pub const MOST_CELLS_IN_ALL: f64 = (1 << 27) as f64;
+/// Cells of all tables below which no other order is looked for.
+const FEW_CELLS: f64 = 10_000.0;
+
+/// Exact elimination would need tables that are too large.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the elimination of variable {variable} needs a table of {width} variables and {cells:.1e} cells, {in_all:.1e} cells in \
+     all ({MOST_CELLS:.1e} and {MOST_CELLS_IN_ALL:.1e} are the most)"
+)]
+pub struct TooWide {
+    /// The variable whose elimination needs the largest table.
+    pub variable: usize,
+    /// Number of variables of that table.
+    pub width: usize,
+    /// Its number of cells.
+    pub cells: f64,
+    /// Cells of all tables.
+    pub in_all: f64,
+}
+
+/// An order of elimination.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Order {
+    /// The variables, first eliminated first.
+    pub variables: Vec<usize>,
+    /// Where the largest table is needed.
+    pub widest: TooWide,
+}
+
+impl Order {
+    /// A good order for the elimination of all variables of some scopes.
+    pub fn new<'a>(scopes: impl Iterator<Item = &'a [usize]>, sizes: &[usize]) -> Self {
+        let graph = Graph::new(scopes, sizes);
+        let mut best = graph.clone().eliminate(Cost::Cells);
+        if best.widest.in_all > FEW_CELLS {
+            for cost in [Cost::Fill, Cost::WeightedFill] {
+                let other = graph.clone().eliminate(cost);
+                if other.widest.in_all < best.widest.in_all {
+                    best = other;
+                }
+            }
+        }
+        best
+    }
+
+    /// Whether all tables can be made.
+    ///
+    /// # Errors
+    /// [`TooWide`].
+    pub fn check(&self) -> Result<(), TooWide> {
+        let TooWide { cells, in_all, .. } = self.widest;
+        match cells <= MOST_CELLS && in_all <= MOST_CELLS_IN_ALL {
+            true => Ok(()),
+            false => Err(self.widest),
+        }
+    }
+}
+
+/// What a greedy order looks at.
+#[derive(Clone, Copy, PartialEq)]
+enum Cost {
+    /// Cells of the table.
+    Cells,
+    /// Edges that are added between neighbours.
+    Fill,
+    /// The same, an edge weighing the product of its ends' sizes.
+    WeightedFill,
+}
+
+/// The undirected graph of variables that share a factor.
+#[derive(Clone)]
+struct Graph {
+    /// Variables, rising; below, a variable is its place here.
+    variables: Vec<usize>,
+    sizes: Vec<f64>,
+    /// Neighbours, rising.
+    neighbours: Vec<Vec<u32>>,
+}
+
+impl Graph {
+    fn new<'a>(scopes: impl Iterator<Item = &'a [usize]>, sizes: &[usize]) -> Self {
+        let scopes: Vec<&[usize]> = scopes.collect();
+        let mut variables: Vec<usize> = scopes.iter().copied().flatten().copied().collect();
+        variables.sort_unstable();
+        variables.dedup();
+        let mut place = vec![0_u32; sizes.len()];
+        for (i, &v) in variables.iter().enumerate() {
+            place[v] = i as u32;
+        }
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); variables.len()];
+        for scope in scopes {
+            for &v in scope {
+                let others = scope.iter().filter(|&&w| w != v);
+                neighbours[place[v] as usize].extend(others.map(|&w| place[w]));
+            }
+        }
+        for list in &mut neighbours {
+            list.sort_unstable();
+            list.dedup();
+        }
+        Self {
+            sizes: variables.iter().map(|&v| sizes[v] as f64).collect(),
+            variables,
+            neighbours,
+        }
+    }
+
+    /// Cells of the table that the elimination of v needs.
+    fn cells(&self, v: usize) -> f64 {
+        let around = self.neighbours[v].iter();
+        around.fold(self.sizes[v], |c, &n| c * self.sizes[n as usize])
+    }
+
+    /// Edges that the elimination of v adds.
+    fn fill(&self, v: usize, weighted: bool) -> f64 {
+        let around = &self.neighbours[v];
+        let mut sum = 0.0;
+        for (i, &a) in around.iter().enumerate() {
+            let mut known = self.neighbours[a as usize].iter().peekable();
+            for &b in &around[i + 1..] {
+                while known.next_if(|&&n| n < b).is_some() {}
+                if known.peek() != Some(&&b) {
+                    sum += match weighted {
+                        true => self.sizes[a as usize] * self.sizes[b as usize],
+                        false => 1.0,
+                    };
+                }
+            }
+        }
+        sum
+    }
+
+    fn cost(&self, v: usize, cost: Cost) -> f64 {
+        match cost {
+            Cost::Cells => self.cells(v),
+            Cost::Fill => self.fill(v, false),
+            Cost::WeightedFill => self.fill(v, true),
+        }
+    }
+
+    /// Greedily the variable of lowest cost; of several, the first.
+    fn eliminate(mut self, cost: Cost) -> Order {
+        let count = self.variables.len();
+        let mut costs: Vec<f64> = (0..count).map(|v| self.cost(v, cost)).collect();
+        let mut queue: BinaryHeap<Reverse<(Ordered, usize)>> = (0..count)
+            .map(|v| Reverse((Ordered(costs[v]), v)))
+            .collect();
+        let mut done = vec![false; count];
+        let mut order = Order {
+            variables: Vec::with_capacity(count),
+            widest: TooWide {
+                variable: 0,
+                width: 0,
+                cells: 0.0,
+                in_all: 0.0,
+            },
+        };
+        let mut touched: Vec<u32> = Vec::new();
+        while let Some(Reverse((Ordered(known), v))) = queue.pop() {
+            if done[v] || known != costs[v] {
+                continue;
+            }
+            done[v] = true;
+            let cells = self.cells(v);
+            order.widest.in_all += cells;
+            if cells > order.widest.cells {
+                order.widest.variable = self.variables[v];
+                order.widest.width = self.neighbours[v].len() + 1;
+                order.widest.cells = cells;
+            }
+            order.variables.push(self.variables[v]);
+            let around = std::mem::take(&mut self.neighbours[v]);
+            touched.clear();
+            for &a in &around {
+                let list = &mut self.neighbours[a as usize];
+                let before = list.len();
+                list.extend(around.iter().filter(|&&b| b != a));
+                list.sort_unstable();
+                list.dedup();
+                list.retain(|&b| b as usize != v);
+                touched.push(a);
+                // New edges close triangles of the neighbours' neighbours.
+                if cost != Cost::Cells && list.len() + 1 > before {
+                    touched.extend(&self.neighbours[a as usize]);
+                }
+            }
+            touched.sort_unstable();
+            touched.dedup();
+            for &a in &touched {
+                let a = a as usize;
+                let now = self.cost(a, cost);
+                if now != costs[a] {
+                    costs[a] = now;
+                    queue.push(Reverse((Ordered(now), a)));
+                }
+            }
+        }
+        order
+    }
+}
+
+/// Numbers that are not NaN, in order.
+#[derive(PartialEq)]
+struct Ordered(f64);
+
+impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}

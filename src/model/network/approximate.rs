@@ -1,0 +1,323 @@
+//! Posteriors where exact elimination is too wide: likelihood weighting and Gibbs sampling with standard errors, and loopy
+//! belief propagation. Asked for by name; no exact answer falls back on them.
+//!
+//! Sources: Koller and Friedman 2009, Sec. 12.2 (likelihood weighting), 12.3 (Gibbs), 11.3 (loopy belief propagation).
+
+use rand::Rng;
+
+use super::super::elimination::{Factor, advance};
+use super::super::error::ModelError;
+use super::super::gaussian::{Particle, extend, gaussian};
+use super::super::linalg::{categorical_of_logs, log_sum_exp};
+use super::evidence::{Asked, Evidence, Known, softmax};
+use super::{Answer, Cpd, Network};
+
+/// Estimated posterior of one variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The variable.
+    pub name: String,
+    /// Estimates of P(category | evidence), in order of the categories.
+    pub probabilities: Vec<f64>,
+    /// Their standard errors.
+    pub errors: Vec<f64>,
+}
+
+/// Result of [`Network::loopy`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loopy {
+    /// Beliefs of every discrete variable.
+    pub answers: Vec<Answer>,
+    /// Rounds made.
+    pub rounds: usize,
+    /// Whether no message moved by more than the tolerance in the last round.
+    pub converged: bool,
+}
+
+/// Weighted draws of every discrete variable.
+type Draws = Vec<(Vec<usize>, f64)>;
+
+impl Network {
+    /// Likelihood weighting: every variable without evidence is drawn given its parents, and a draw weighs as much as the
+    /// evidence is likely given it. One estimate for each discrete variable; standard errors by the delta method.
+    ///
+    /// # Errors
+    /// Evidence that does not fit; [`ModelError::Parameter`] when no draw agrees with the evidence, or `draws` is 0.
+    pub fn likelihood_weighting<R: Rng>(
+        &self,
+        evidence: &Evidence,
+        draws: usize,
+        rng: &mut R,
+    ) -> Result<Vec<Estimate>, ModelError> {
+        let known = self.known(evidence)?;
+        let mut drawn: Draws = (0..draws).map(|_| self.weighted(&known, rng)).collect();
+        let top = drawn.iter().map(|d| d.1).fold(f64::NEG_INFINITY, f64::max);
+        if top == f64::NEG_INFINITY {
+            let problem = format!("no draw out of {draws} agrees with the evidence");
+            return Err(ModelError::parameter("draws", problem));
+        }
+        for draw in &mut drawn {
+            draw.1 = (draw.1 - top).exp();
+        }
+        let total: f64 = drawn.iter().map(|d| d.1).sum();
+        Ok(self.estimates(|n, v| {
+            let hits = |d: &(Vec<usize>, f64)| f64::from(u8::from(d.0[n] == v));
+            let p = drawn.iter().map(|d| d.1 * hits(d)).sum::<f64>() / total;
+            let spread = drawn.iter().map(|d| (d.1 * (hits(d) - p)).powi(2));
+            (p, spread.sum::<f64>().sqrt() / total)
+        }))
+    }
+
+    /// A draw that agrees with the evidence where it can, and the logarithm of its weight.
+    fn weighted<R: Rng>(&self, known: &Known, rng: &mut R) -> (Vec<usize>, f64) {
+        let mut assignment = known.assignment();
+        let mut real = known.real.clone();
+        let mut weight = 0.0;
+        for &n in &self.order {
+            let node = &self.nodes[n];
+            let at = self.configuration(n, &assignment) * self.sizes[n] + assignment[n];
+            match &node.cpd {
+                Cpd::Linear(states) => {
+                    let linear = &states[self.configuration(n, &assignment)];
+                    let given = extend(&Particle::empty(), &[], &self.columns(n), linear, &real);
+                    weight += given.log_density;
+                    let drawn = gaussian(&given.mean, &given.cov, rng);
+                    let open = node.coordinates.clone().filter(|&c| real[c].is_nan());
+                    let open: Vec<usize> = open.collect();
+                    for (c, v) in open.into_iter().zip(drawn) {
+                        real[c] = v;
+                    }
+                }
+                _ if known.discrete[n].is_none() => {
+                    self.draw_node(n, &mut assignment, &mut real, rng);
+                }
+                Cpd::Table(table) => weight += table[at].ln(),
+                Cpd::Softmax(weights) => {
+                    weight += softmax(weights, &node.regressors, &real, self.sizes[n])[at];
+                }
+            }
+        }
+        for (n, logs) in &known.soft {
+            weight += logs[assignment[*n]];
+        }
+        (assignment, weight)
+    }
+
+    /// Gibbs sampling: every unobserved discrete variable in turn is drawn given all others, continuous ones integrated out.
+    /// The first half as many sweeps again are dropped; standard errors by means of batches. Where probabilities are 0, the
+    /// chain may not reach every state.
+    ///
+    /// # Errors
+    /// As [`Network::marginals`], but for width; [`ModelError::Parameter`] when no start agrees with the evidence, or for
+    /// fewer than 100 sweeps.
+    pub fn gibbs<R: Rng>(
+        &self,
+        evidence: &Evidence,
+        sweeps: usize,
+        rng: &mut R,
+    ) -> Result<Vec<Estimate>, ModelError> {
+        if sweeps < 100 {
+            return Err(ModelError::parameter("sweeps", "must be at least 100"));
+        }
+        let question = self.question(self.known(evidence)?, Asked::Discrete)?;
+        let mut start = (0..STARTS).map(|_| self.weighted(&question.known, rng));
+        let start = start.find(|(_, weight)| *weight > f64::NEG_INFINITY);
+        let (mut state, _) = start.ok_or_else(|| {
+            let problem = format!("no start out of {STARTS} agrees with the evidence");
+            ModelError::parameter("evidence", problem)
+        })?;
+        let mut around: Vec<Vec<&Factor>> = vec![Vec::new(); self.nodes.len()];
+        for factor in &question.factors {
+            factor.vars.iter().for_each(|&v| around[v].push(factor));
+        }
+        let batches = (sweeps as f64).sqrt() as usize;
+        let mut counts: Vec<Vec<Vec<f64>>> = (self.sizes.iter())
+            .map(|&k| vec![vec![0.0; k]; batches])
+            .collect();
+        for sweep in 0..sweeps + sweeps / 2 {
+            for n in (0..self.nodes.len()).filter(|&n| !around[n].is_empty()) {
+                let mut logs = vec![0.0; self.sizes[n]];
+                for (v, log) in logs.iter_mut().enumerate() {
+                    state[n] = v;
+                    let values = around[n].iter();
+                    *log = values.map(|f| f.values[f.index(&state, &self.sizes)]).sum();
+                }
+                state[n] = categorical_of_logs(&logs, rng);
+            }
+            if let Some(kept) = sweep.checked_sub(sweeps / 2) {
+                let batch = kept * batches / sweeps;
+                for (n, &v) in state.iter().enumerate() {
+                    counts[n][batch][v] += batches as f64 / sweeps as f64;
+                }
+            }
+        }
+        Ok(self.estimates(|n, v| {
+            let means = || counts[n].iter().map(|batch| batch[v]);
+            let mean = means().sum::<f64>() / batches as f64;
+            let spread: f64 = means().map(|m| (m - mean).powi(2)).sum();
+            (mean, (spread / (batches * (batches - 1)) as f64).sqrt())
+        }))
+    }
+
+    /// An estimate for each discrete variable; `of` gives probability and standard error of a category.
+    fn estimates(&self, of: impl Fn(usize, usize) -> (f64, f64)) -> Vec<Estimate> {
+        let nodes = self
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, n)| n.is_discrete());
+        let estimate = |(n, node): (usize, &super::Node)| {
+            let (probabilities, errors) = (0..self.sizes[n]).map(|v| of(n, v)).unzip();
+            Estimate {
+                name: node.name.clone(),
+                probabilities,
+                errors,
+            }
+        };
+        nodes.map(estimate).collect()
+    }
+
+    /// Loopy belief propagation: sum-product messages between factors and variables, in rounds over all factors, each
+    /// message the geometric mean of the old and the new one. Exact where the factors form a tree.
+    ///
+    /// # Errors
+    /// As [`Network::marginals`], but for width; impossible evidence is found only where messages become 0.
+    pub fn loopy(
+        &self,
+        evidence: &Evidence,
+        rounds: usize,
+        tolerance: f64,
+    ) -> Result<Loopy, ModelError> {
+        let question = self.question(self.known(evidence)?, Asked::Discrete)?;
+        let mut messages = Messages::new(&question.factors, &self.sizes);
+        let (mut made, mut converged) = (0, false);
+        while made < rounds && !converged {
+            made += 1;
+            converged = messages.round() <= tolerance;
+        }
+        let mut answers = Vec::new();
+        for (n, node) in self
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, n)| n.is_discrete())
+        {
+            let belief = match question.known.discrete[n] {
+                Some(v) => (0..self.sizes[n])
+                    .map(|i| f64::from(u8::from(i == v)))
+                    .collect(),
+                None if messages.around[n].is_empty() => continue,
+                None => messages
+                    .belief(n)
+                    .ok_or_else(|| ModelError::Contradiction {
+                        row: 0,
+                        variable: node.name.clone(),
+                    })?,
+            };
+            answers.push(Answer {
+                name: node.name.clone(),
+                probabilities: belief,
+            });
+        }
+        Ok(Loopy {
+            answers,
+            rounds: made,
+            converged,
+        })
+    }
+}
+
+/// Starts of a Gibbs chain that are tried.
+const STARTS: usize = 10_000;
+
+/// Messages from factors to variables, logarithms that sum to probability 1.
+struct Messages<'a> {
+    factors: &'a [Factor],
+    sizes: &'a [usize],
+    /// Per factor and place in its scope.
+    to: Vec<Vec<Vec<f64>>>,
+    /// Per variable, the factors and places that speak to it.
+    around: Vec<Vec<(usize, usize)>>,
+}
+
+impl<'a> Messages<'a> {
+    fn new(factors: &'a [Factor], sizes: &'a [usize]) -> Self {
+        let mut around = vec![Vec::new(); sizes.len()];
+        let mut to = Vec::with_capacity(factors.len());
+        for (f, factor) in factors.iter().enumerate() {
+            for (place, &v) in factor.vars.iter().enumerate() {
+                around[v].push((f, place));
+            }
+            let vars = factor.vars.iter();
+            to.push(
+                vars.map(|&v| vec![-(sizes[v] as f64).ln(); sizes[v]])
+                    .collect(),
+            );
+        }
+        Self {
+            factors,
+            sizes,
+            to,
+            around,
+        }
+    }
+
+    /// What all factors but one say of a variable.
+    fn without(&self, v: usize, factor: usize) -> Vec<f64> {
+        let mut sum = vec![0.0; self.sizes[v]];
+        for &(f, place) in self.around[v].iter().filter(|(f, _)| *f != factor) {
+            sum.iter_mut()
+                .zip(&self.to[f][place])
+                .for_each(|(s, m)| *s += m);
+        }
+        sum
+    }
+
+    /// Sends every message anew; the largest change of a probability.
+    fn round(&mut self) -> f64 {
+        let mut moved: f64 = 0.0;
+        for (f, factor) in self.factors.iter().enumerate() {
+            let vars = &factor.vars;
+            let heard: Vec<Vec<f64>> = vars.iter().map(|&v| self.without(v, f)).collect();
+            let mut said: Vec<Vec<Vec<f64>>> = vars
+                .iter()
+                .map(|&v| vec![Vec::new(); self.sizes[v]])
+                .collect();
+            let mut assignment = vec![0; self.sizes.len()];
+            for value in &factor.values {
+                let all: Vec<f64> = (vars.iter().zip(&heard))
+                    .map(|(&v, h)| h[assignment[v]])
+                    .collect();
+                for (place, &v) in vars.iter().enumerate() {
+                    let others = all.iter().enumerate().filter(|(p, _)| *p != place);
+                    let sum = value + others.map(|(_, h)| h).sum::<f64>();
+                    said[place][assignment[v]].push(sum);
+                }
+                advance(vars, self.sizes, &mut assignment);
+            }
+            for (place, terms) in said.into_iter().enumerate() {
+                let logs: Vec<f64> = terms.iter().map(|t| log_sum_exp(t)).collect();
+                let old = &mut self.to[f][place];
+                let damped: Vec<f64> = old.iter().zip(&logs).map(|(o, n)| 0.5 * (o + n)).collect();
+                let total = log_sum_exp(&damped);
+                for (o, d) in old.iter_mut().zip(damped) {
+                    let new = if total == f64::NEG_INFINITY {
+                        total
+                    } else {
+                        d - total
+                    };
+                    moved = moved.max((new.exp() - o.exp()).abs());
+                    *o = new;
+                }
+            }
+        }
+        moved
+    }
+
+    /// The belief of a variable; `None` when nothing is possible.
+    fn belief(&self, v: usize) -> Option<Vec<f64>> {
+        let sum = self.without(v, usize::MAX);
+        let total = log_sum_exp(&sum);
+        (total > f64::NEG_INFINITY).then(|| sum.iter().map(|s| (s - total).exp()).collect())
+    }
+}
