@@ -4,9 +4,10 @@
 //! p(x) = Σ_k w_k N(x; μ_k, Σ_k),      x of d values, k = 1..K
 //! E: r_nk = w_k N(x_n; μ_k, Σ_k) / Σ_j ...        N_k = Σ_n r_nk
 //! M: w_k = N_k / N,  μ_k = Σ_n r_nk x_n / (N_k + κ),
-//!    Σ_k = (ψI + κ μ_k μ_kᵀ + Σ_n r_nk (x_n - μ_k)(x_n - μ_k)ᵀ) / (N_k + ν)
+//!    Σ_k = (ψD + κ μ_k μ_kᵀ + Σ_n r_nk (x_n - μ_k)(x_n - μ_k)ᵀ) / (N_k + ν)
 //! ```
-//! with x relative to the overall mean. κ, ψ and ν are a normal-inverse-Wishart prior
+//! with x relative to the overall mean and D the diagonal of the overall variances, so that a fit does not depend on the
+//! units of the data. κ, ψ and ν are a normal-inverse-Wishart prior
 //! ([`Prior`]), so that an empty or a singular component is no special case. Full covariances,
 //! diagonal ones, or one shared by all components ([`Covariance`]). Rows may carry weights.
 //!
@@ -50,12 +51,12 @@ pub enum Covariance {
     Tied,
 }
 
-/// Normal-inverse-Wishart prior of every component, in units of the data.
+/// Normal-inverse-Wishart prior of every component, in units of the overall standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Prior {
     /// κ: how many rows at the overall mean each component has seen.
     pub mean: f64,
-    /// ψ: scatter (squared units) that each coordinate of each component has seen.
+    /// ψ: scatter (times the overall variance) that each coordinate of each component has seen.
     pub scatter: f64,
     /// ν: how many rows that scatter is worth.
     pub freedom: f64,

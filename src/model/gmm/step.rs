@@ -19,6 +19,8 @@ pub(crate) struct Steps<'a> {
     settings: &'a Settings,
     pub k: usize,
     pub centre: Vec<f64>,
+    /// Standard deviation of each coordinate: prior and convergence are in these units.
+    scale: Vec<f64>,
 }
 
 /// Expected sufficient statistics.
@@ -63,11 +65,13 @@ impl<'a> Steps<'a> {
                 *c += points.weight(i) / total * v;
             }
         }
+        let scale = scale(points, &centre);
         Ok(Self {
             points,
             settings,
             k,
             centre,
+            scale,
         })
     }
 
@@ -99,22 +103,13 @@ impl<'a> Steps<'a> {
     /// One k-means++ start.
     pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Mixture, ModelError> {
         let d = self.points.dimension();
-        let mut scale = vec![0.0; d];
-        for x in self.points.rows() {
-            for ((s, v), c) in scale.iter_mut().zip(x).zip(&self.centre) {
-                *s += (v - c).powi(2);
-            }
-        }
         let n = self.points.len();
-        scale
-            .iter_mut()
-            .for_each(|s| *s = (*s / n as f64).sqrt().max(f64::MIN_POSITIVE));
         // Many rows are represented by a systematic sample.
         let stride = n.div_ceil(20_000);
         let sample: Vec<usize> = (0..n).step_by(stride).collect();
         let mut scaled = Vec::with_capacity(sample.len() * d);
         for &i in &sample {
-            let row = self.points.row(i).iter().zip(&self.centre).zip(&scale);
+            let row = self.points.row(i).iter().zip(&self.centre).zip(&self.scale);
             scaled.extend(row.map(|((v, c), s)| (v - c) / s));
         }
         let labels = kmeans(&scaled, d, self.k, 5, rng);
@@ -223,7 +218,10 @@ impl Em for Steps<'_> {
                     if kind == Covariance::Diagonal && i != j {
                         continue;
                     }
-                    let ridge = if i == j { prior.scatter } else { 0.0 };
+                    let ridge = match i == j {
+                        true => prior.scatter * self.scale[i] * self.scale[i],
+                        false => 0.0,
+                    };
                     let scatter = at(i, j) - (n + prior.mean) * mean[i] * mean[j];
                     covariance[i * d + j] += share * (ridge + scatter);
                 }
@@ -244,7 +242,8 @@ impl Em for Steps<'_> {
             .map(|k| {
                 let w = model.whitening_of(k);
                 let mean = model.mean(k);
-                let trace: f64 = w.iter().map(|v| v * v).sum();
+                let scale = self.scale.iter().cycle();
+                let trace: f64 = w.iter().zip(scale).map(|(v, s)| (v * s) * (v * s)).sum();
                 let quad: f64 = (0..d)
                     .map(|i| (0..=i).map(|j| w[i * d + j] * mean[j]).sum::<f64>().powi(2))
                     .sum();
@@ -255,16 +254,39 @@ impl Em for Steps<'_> {
     }
 
     fn movement(&self, before: &Mixture, after: &Mixture) -> f64 {
-        let far = |a: &[f64], b: &[f64]| {
-            a.iter()
-                .zip(b)
-                .map(|(x, y)| (x - y).abs())
+        let (d, s) = (before.d, &self.scale);
+        let far = |a: &[f64], b: &[f64], unit: &dyn Fn(usize) -> f64| {
+            let moved = a.iter().zip(b).enumerate();
+            moved
+                .map(|(i, (x, y))| (x - y).abs() / unit(i))
                 .fold(0.0, f64::max)
         };
-        far(&before.weights, &after.weights)
-            .max(far(&before.means, &after.means))
-            .max(far(&before.covariances, &after.covariances))
+        far(&before.weights, &after.weights, &|_| 1.0)
+            .max(far(&before.means, &after.means, &|i| s[i % d]))
+            .max(far(&before.covariances, &after.covariances, &|i| {
+                s[i / d % d] * s[i % d]
+            }))
     }
+}
+
+/// Standard deviation of each coordinate; where it is constant, its size, so that units never matter, or 1 for 0.
+fn scale(points: &Points, centre: &[f64]) -> Vec<f64> {
+    let mut squares = vec![0.0; centre.len()];
+    for (i, x) in points.rows().enumerate() {
+        for ((s, v), c) in squares.iter_mut().zip(x).zip(centre) {
+            *s += points.weight(i) * (v - c).powi(2);
+        }
+    }
+    let total = points.total();
+    let each = squares.iter().zip(centre).map(|(square, c)| {
+        let deviation = (square / total).sqrt();
+        match deviation > 1e-12 * c.abs() {
+            true => deviation,
+            false if *c != 0.0 => c.abs(),
+            false => 1.0,
+        }
+    });
+    each.collect()
 }
 
 fn add_row(sums: &mut [f64], u: &[f64], weight: f64, kind: Covariance) {
