@@ -51,6 +51,7 @@ pub mod report;
 pub mod rng;
 pub mod scene;
 pub mod shape;
+pub mod tables;
 
 pub use error::{Error, Result};
 

@@ -217,14 +217,12 @@ fn barren_variables_do_not_count() {
     let corner = network.marginal(&nothing, "v1_1").unwrap();
     let by_hand = {
         // P(v1_1) over v1_0 and v0_1, both children of v0_0.
-        let root = [0.7, 0.3];
         let child = |p: usize| [0.7 - 0.2 * p as f64, 0.3 + 0.2 * p as f64];
         let mut yes = 0.0;
-        for r in 0..2 {
-            for a in 0..2 {
-                for b in 0..2 {
-                    let p = 0.3 + 0.2 * (a + b) as f64;
-                    yes += root[r] * child(r)[a] * child(r)[b] * p;
+        for (r, root) in [0.7, 0.3].iter().enumerate() {
+            for (a, left) in child(r).iter().enumerate() {
+                for (b, below) in child(r).iter().enumerate() {
+                    yes += root * left * below * (0.3 + 0.2 * (a + b) as f64);
                 }
             }
         }

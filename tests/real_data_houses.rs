@@ -5,9 +5,9 @@ mod common;
 use std::path::Path;
 
 use edifice::io::{building_csv, json, read_bytes};
-use edifice::methods::building_exteriors::data::Dataset;
-use edifice::methods::building_exteriors::schema::Schema;
 use edifice::model::hierarchy::{Constant, Settings, learn};
+use edifice::tables::Dataset;
+use edifice::tables::schema::Schema;
 
 fn read(schema: &str, table: &str) -> Option<Dataset> {
     let table = format!("houses/{table}");

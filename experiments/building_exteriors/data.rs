@@ -5,11 +5,12 @@ use serde::Deserialize;
 use crate::experiments::Context;
 use crate::io::{building_csv, building_json, json, read_bytes};
 use crate::methods::building_exteriors::attributes::attributes;
-use crate::methods::building_exteriors::compare::split;
-use crate::methods::building_exteriors::data::{Dataset, dataset};
-use crate::methods::building_exteriors::schema::{FORMAT, Schema, VERSION};
+use crate::methods::building_exteriors::data::dataset;
 use crate::model::{Cell, Table};
 use crate::shape::Building;
+use crate::tables::Dataset;
+use crate::tables::compare::split;
+use crate::tables::schema::{FORMAT, Schema, VERSION};
 use crate::{Error, Result};
 
 /// What the generator knows.

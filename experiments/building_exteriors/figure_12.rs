@@ -4,9 +4,9 @@ use super::averages::mean_and_error;
 use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::experiments::Context;
-use crate::methods::building_exteriors::compare::{Contender, held_out, split};
-use crate::methods::building_exteriors::data::Dataset;
 use crate::report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
+use crate::tables::Dataset;
+use crate::tables::compare::{Contender, held_out, split};
 use crate::{Error, Result};
 
 /// Fig. 12 left: five models over five splits of 80/20, on all three sets.

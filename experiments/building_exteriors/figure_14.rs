@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{data, settings};
 use crate::experiments::Context;
 use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::methods::building_exteriors::baseline::Baseline;
-use crate::methods::building_exteriors::compare::split;
 use crate::model::hierarchy::learn;
 use crate::report::{Align, Bars, Figure, Row, Scale, Table};
 use crate::rng::stream;
+use crate::tables::compare::split;
+use crate::tables::mixture::Baseline;
 use crate::{Error, Result};
 
 /// Columns that are given: the bounding box and the garage.

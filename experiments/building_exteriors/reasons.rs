@@ -3,10 +3,10 @@
 
 use super::averages::mean_and_error;
 use crate::experiments::Context;
-use crate::methods::building_exteriors::compare::{Contender, Judged, held_out, judge, split};
-use crate::methods::building_exteriors::data::Dataset;
 use crate::model::hierarchy::Settings;
 use crate::report::{Align, Table};
+use crate::tables::Dataset;
+use crate::tables::compare::{Contender, Judged, held_out, judge, split};
 use crate::{Error, Result};
 
 /// Mean losses of all contenders on one set, in their order.

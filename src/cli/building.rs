@@ -6,7 +6,6 @@ mod check;
 mod data;
 mod draw;
 mod evaluate;
-mod given;
 mod learn;
 mod output;
 mod produce;

@@ -41,7 +41,7 @@ enum Command {
     /// Cities as grammars of instances (Demir et al. 2014).
     #[command(subcommand)]
     City(city::Command),
-    /// Show and convert Bayesian networks and logic models.
+    /// Learn, ask, show and convert models: of any table, Bayesian networks, logic models.
     #[command(subcommand)]
     Model(model::Command),
     /// Ablations and comparisons from one file, on this machine or a cluster.
@@ -53,6 +53,7 @@ enum Command {
 
 /// Kinds of models that `model show` knows besides Bayesian networks.
 const MODELS: &[model::Shown] = &[
+    model::TABLE_MODEL,
     logic::LOGIC, // one line each
 ];
 

@@ -1,4 +1,11 @@
-//! Model files on the command line: Bayesian networks, and the models of papers that have a [`Shown`].
+//! Models on the command line: Bayesian networks, models of tables, and the models of papers that have a [`Shown`].
+
+pub mod data;
+pub mod evaluate;
+pub mod given;
+mod query;
+pub mod search;
+mod tables;
 
 use std::path::{Path, PathBuf};
 
@@ -11,9 +18,42 @@ use edifice::{Error, Result};
 
 use super::{MODELS, print};
 
+pub use tables::TABLE_MODEL;
+
 /// Commands.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Print the schema that is guessed of a table, to edit.
+    #[command(after_help = "Examples:
+  edifice model schema penguins.csv > penguins.schema.json")]
+    Schema(data::TableInput),
+    /// Learn a hierarchical model with hidden styles from any table.
+    #[command(after_help = "Examples:
+  edifice model learn penguins.csv -o penguins.table-model.json
+  edifice model learn penguins.csv --schema penguins.schema.json --max-styles 8 -o penguins.table-model.json")]
+    Learn(tables::LearnArgs),
+    /// Print the log-likelihood of every row of a table under a model.
+    #[command(after_help = "Examples:
+  edifice model score penguins.table-model.json others.csv")]
+    Score(tables::ScoreArgs),
+    /// Sample rows from a model of a table; prints CSV.
+    #[command(after_help = "Examples:
+  edifice model sample penguins.table-model.json -n 5 --given species=Adelie")]
+    Sample(tables::SampleArgs),
+    /// Complete rows whose cells are partly missing; prints CSV.
+    #[command(after_help = "Examples:
+  edifice model complete penguins.table-model.json some.csv -n 3")]
+    Complete(tables::CompleteArgs),
+    /// Compare models by the negative log-likelihood of rows they have not seen.
+    #[command(after_help = "Examples:
+  edifice model evaluate penguins.csv --splits 20 --models ours,model_1,model_2,model_3")]
+    Evaluate(evaluate::Args),
+    /// Ask a Bayesian network: posteriors given evidence, or the most probable explanations.
+    #[command(after_help = "Examples:
+  edifice model query datasets/model/asia.bif --given smoke=yes --of lung,bronc
+  edifice model query datasets/model/asia.bif --likely xray=0.2,0.9 --method gibbs --draws 20000
+  edifice model query datasets/model/asia.bif --given dysp=yes --explain 3")]
+    Query(query::Args),
     /// Show the variables of a Bayesian network, or the rules and facades of a logic model.
     #[command(after_help = "Examples:
   edifice model show datasets/model/asia.bif
@@ -68,6 +108,13 @@ struct NotANetwork;
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
     let lines = match command {
+        Command::Schema(args) => return tables::schema(&args),
+        Command::Learn(args) => return tables::learn(&args),
+        Command::Score(args) => return tables::score(&args),
+        Command::Sample(args) => return tables::sample(&args),
+        Command::Complete(args) => return tables::complete(&args),
+        Command::Evaluate(args) => return evaluate::run(&args),
+        Command::Query(args) => return query::run(&args),
         Command::Show { model, json } => match read(&model)? {
             Any::Network(network) => show_network(&network, json).map_err(at(&model))?,
             Any::Other(kind, bytes) => (kind.show)(&bytes, &model, json)?,
@@ -144,10 +191,16 @@ fn show_network(network: &Network, json: bool) -> Result<Vec<String>, ModelError
     }
 }
 
+/// Reads a Bayesian network.
+fn network(path: &Path) -> Result<Network> {
+    match read(path)? {
+        Any::Network(network) => Ok(network),
+        Any::Other(..) => Err(Error::content(path, NotANetwork)),
+    }
+}
+
 fn convert(from: &Path, to: &Path) -> Result<()> {
-    let Any::Network(network) = read(from)? else {
-        return Err(Error::content(from, NotANetwork));
-    };
+    let network = network(from)?;
     let text = if is_bif(to) {
         network.to_bif().map_err(at(to))?
     } else if to

@@ -1,6 +1,7 @@
 //! `edifice building attributes`.
 
-use super::data::{Input, csv_lines};
+use super::data::Input;
+use crate::cli::model::data::csv_lines;
 use crate::cli::print;
 
 /// Options.

@@ -10,9 +10,9 @@ use edifice::{Error, Result};
 
 use super::data;
 use super::draw::{Draw, drawn_table};
-use super::given::evidence;
 use super::output;
 use super::produce::{Order, Output, produce};
+use crate::cli::model::given::evidence;
 
 /// Options of `build`.
 #[derive(clap::Args)]
@@ -123,7 +123,7 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
         }
         None => {
             let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-            let given = evidence(&file, &kinds.table, &args.given)
+            let given = evidence(&file.groups, &kinds.table, &args.given)
                 .map_err(|e| Error::option("--given", e.to_string()))?;
             let draw = Draw::new(args.count, args.most_probable, args.output.seed);
             (drawn_table(&file, &given, &draw, 0)?, given)

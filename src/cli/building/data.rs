@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use edifice::io::{building_csv, building_json, json, read_bytes};
 use edifice::methods::building_exteriors::attributes::attributes;
-use edifice::methods::building_exteriors::data::{Dataset, dataset};
+use edifice::methods::building_exteriors::data::dataset;
 use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::methods::building_exteriors::schema::{FORMAT, Schema, VERSION};
-use edifice::model::{Cell, Table};
+use edifice::tables::Dataset;
+use edifice::tables::schema::{FORMAT, Schema, VERSION};
 use edifice::{Error, Result};
 
 /// Where houses come from.
@@ -52,29 +52,4 @@ pub fn model(path: &Path) -> Result<ModelFile> {
     let bytes = read_bytes(path)?;
     let text = String::from_utf8(bytes).map_err(|e| Error::content(path, e))?;
     ModelFile::from_json(&text).map_err(|e| Error::content(path, e))
-}
-
-/// A table as lines of CSV, the header first; categories by name, missing cells empty.
-pub fn csv_lines(table: &Table) -> Vec<String> {
-    let quoted = |text: &str| {
-        if text.contains([',', '"', '\n']) {
-            format!("\"{}\"", text.replace('"', "\"\""))
-        } else {
-            text.to_owned()
-        }
-    };
-    let names = table.columns().iter().map(|c| quoted(c.name()));
-    let mut lines = vec![names.collect::<Vec<_>>().join(",")];
-    for row in 0..table.rows() {
-        let cells = table.columns().iter().map(|column| match column.cell(row) {
-            Cell::Missing => String::new(),
-            Cell::Real(value) => value.to_string(),
-            Cell::Code(code) => {
-                let names = column.categories().unwrap_or_default();
-                quoted(names.get(code).map_or("", String::as_str))
-            }
-        });
-        lines.push(cells.collect::<Vec<_>>().join(","));
-    }
-    lines
 }

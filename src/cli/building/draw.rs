@@ -7,8 +7,9 @@ use edifice::model::Table;
 use edifice::rng::stream;
 use edifice::{Error, Result};
 
-use super::data::{self, Input, csv_lines};
-use super::given::evidence;
+use super::data::{self, Input};
+use crate::cli::model::data::csv_lines;
+use crate::cli::model::given::evidence;
 use crate::cli::print;
 
 /// Samples among which the most probable are sought.
@@ -86,7 +87,7 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
         return print::line(&csv_lines(&draws.table).join("\n"));
     }
     let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&file, &kinds.table, &args.given)
+    let given = evidence(&file.groups, &kinds.table, &args.given)
         .map_err(|e| Error::option("--given", e.to_string()))?;
     print::line(&drawn(&file, &given, &args.draw, 0)?.join("\n"))
 }

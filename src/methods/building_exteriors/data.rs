@@ -3,40 +3,7 @@
 use super::attributes::{AttributeRow, GROUPS, Level};
 use crate::model::hierarchy::Group;
 use crate::model::{ModelError, Table};
-
-/// A table and its attributes.
-#[derive(Debug, Clone)]
-pub struct Dataset {
-    /// One house a row.
-    pub table: Table,
-    /// Which columns belong together.
-    pub groups: Vec<Group>,
-}
-
-impl Dataset {
-    /// The houses of the given rows.
-    pub fn select(&self, rows: &[usize]) -> Self {
-        Self {
-            table: self.table.select(rows),
-            groups: self.groups.clone(),
-        }
-    }
-
-    /// All attributes but one.
-    ///
-    /// # Errors
-    /// [`ModelError::Unknown`] when a group names a column that the table lacks.
-    pub fn without(&self, attribute: &str) -> Result<Self, ModelError> {
-        let mut groups = self.groups.clone();
-        groups.retain(|g| g.name != attribute);
-        let columns = groups.iter().flat_map(|g| &g.columns);
-        let columns: Vec<&str> = columns.map(String::as_str).collect();
-        Ok(Self {
-            table: self.table.only(&columns)?,
-            groups,
-        })
-    }
-}
+use crate::tables::Dataset;
 
 /// The 49 attributes of many buildings with the paper's 13 groups.
 ///

@@ -6,12 +6,9 @@
 
 pub mod agreement;
 pub mod attributes;
-pub mod baseline;
-pub mod compare;
 pub mod data;
 pub mod facade;
 pub mod house;
 pub mod mass;
 pub mod model_file;
 pub mod network;
-pub mod schema;

@@ -1,9 +1,10 @@
-//! The models of Fig. 12, learned from the same houses with the same priors and judged on others.
+//! Models of tables (those of Fan and Wonka 2016, Fig. 12), learned from the same rows with the same priors and judged
+//! on others.
 
-use super::baseline::Baseline;
-use super::data::Dataset;
-use crate::model::ModelError;
+use super::Dataset;
+use super::mixture::Baseline;
 use crate::model::hierarchy::{Settings, Variant, learn};
+use crate::model::{Cell, ModelError};
 
 /// A model of Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,6 +42,27 @@ impl Contender {
         }
     }
 
+    /// Whether it can be learned from a table, or asked for its rows.
+    ///
+    /// # Errors
+    /// [`ModelError::Missing`]: a mixture needs complete rows, and names the first cell that is missing.
+    pub fn check(self, data: &Dataset) -> Result<(), ModelError> {
+        if self != Contender::Gmm {
+            return Ok(());
+        }
+        for row in 0..data.table.rows() {
+            for column in data.table.columns() {
+                if column.cell(row) == Cell::Missing {
+                    return Err(ModelError::Missing {
+                        column: column.name().to_owned(),
+                        row,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn variant(self) -> Option<Variant> {
         match self {
             Contender::Ours => Some(Variant::Full),
@@ -52,7 +74,7 @@ impl Contender {
     }
 }
 
-/// Negative log-likelihood of each house of `test`, in nats, under a model learned from `train`.
+/// Negative log-likelihood of each row of `test`, in nats, under a model learned from `train`.
 /// `settings.variant` is set by the contender; the mixture shares the prior of the Gaussians.
 ///
 /// # Errors
@@ -64,6 +86,8 @@ pub fn held_out(
     settings: &Settings,
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
+    contender.check(train)?;
+    contender.check(test)?;
     let logs = match contender.variant() {
         Some(variant) => {
             let settings = Settings {
@@ -82,10 +106,10 @@ pub fn held_out(
     Ok(logs.into_iter().map(|log| -log).collect())
 }
 
-/// How a learned model fares on unseen houses.
+/// How a learned model fares on unseen rows.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Judged {
-    /// Mean negative log-likelihood of a house, nats.
+    /// Mean negative log-likelihood of a row, nats.
     pub loss: f64,
     /// Per attribute, mean of `-log p(attribute | all others)`, nats.
     pub attributes: Vec<(String, f64)>,
@@ -128,7 +152,7 @@ pub fn judge(
     }))
 }
 
-/// Row numbers of split `index`: the houses to learn from, then the others.
+/// Row numbers of split `index`: those to learn from, then the others.
 ///
 /// `share` of `rows` are learned from; the same seed gives the same splits to every model.
 pub fn split(rows: usize, share: f64, seed: u64, index: u64) -> (Vec<usize>, Vec<usize>) {
@@ -141,4 +165,37 @@ pub fn split(rows: usize, share: f64, seed: u64, index: u64) -> (Vec<usize>, Vec
     ));
     let test = order.split_off(((rows as f64) * share).round() as usize);
     (order, test)
+}
+
+/// Mean loss of a model over splits, beside that of a reference on the same splits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Mean over splits, nats a row.
+    pub mean: f64,
+    /// Its standard error; NaN for one split.
+    pub error: f64,
+    /// Mean of the model's loss less the reference's.
+    pub difference: f64,
+    /// Its standard error, paired; NaN for one split.
+    pub difference_error: f64,
+}
+
+/// Summarises losses by split (`losses[i]`: of split i) beside those of a reference.
+pub fn summary(losses: &[f64], reference: &[f64]) -> Summary {
+    let (mean, error) = mean_and_error(losses);
+    let differences: Vec<f64> = losses.iter().zip(reference).map(|(a, b)| a - b).collect();
+    let (difference, difference_error) = mean_and_error(&differences);
+    Summary {
+        mean,
+        error,
+        difference,
+        difference_error,
+    }
+}
+
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    (mean, (square / (n * (n - 1.0))).sqrt())
 }

@@ -1,4 +1,4 @@
-//! Which columns of a table of houses are which attributes: `*.schema.json`.
+//! Which columns of a table are which attributes: `*.schema.json`.
 //!
 //! ```json
 //! { "format": "edifice/attributes", "version": 1,
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::data::Dataset;
+use super::Dataset;
 use crate::model::hierarchy::Group;
 use crate::model::{ModelError, Table};
 
@@ -48,7 +48,7 @@ pub struct SchemaGroup {
     pub columns: Vec<String>,
 }
 
-/// A schema.
+/// A schema. Columns that no group names are not read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Schema {
     /// Rows to keep, by column.
@@ -94,6 +94,24 @@ pub enum SchemaError {
         /// The text found.
         text: String,
     },
+    /// A column of many different texts.
+    #[error(
+        "column `{column}` looks like free text ({different} different texts in {cells} cells): a schema can leave it out"
+    )]
+    FreeText {
+        /// The column.
+        column: String,
+        /// Number of different texts.
+        different: usize,
+        /// Number of cells with a text.
+        cells: usize,
+    },
+    /// A column without a value.
+    #[error("column `{column}` has no value: a schema can leave it out")]
+    NoValues {
+        /// The column.
+        column: String,
+    },
     /// No row is left after `keep`.
     #[error("no row has the values that `keep` asks for")]
     NothingKept,
@@ -103,6 +121,36 @@ pub enum SchemaError {
 }
 
 impl Schema {
+    /// The attributes as groups of columns.
+    pub fn groups(&self) -> Vec<Group> {
+        let groups = self.groups.iter().map(|g| Group {
+            name: g.name.clone(),
+            columns: g.columns.clone(),
+        });
+        groups.collect()
+    }
+
+    /// The text of the file.
+    ///
+    /// # Errors
+    /// [`ModelError::Corrupt`] when JSON cannot say it.
+    pub fn to_json(&self) -> Result<String, ModelError> {
+        #[derive(Serialize)]
+        struct Stored<'a> {
+            format: &'static str,
+            version: u64,
+            #[serde(flatten)]
+            schema: &'a Schema,
+        }
+        let stored = Stored {
+            format: FORMAT,
+            version: VERSION,
+            schema: self,
+        };
+        let text = serde_json::to_string_pretty(&stored);
+        text.map_err(|e| ModelError::corrupt("the schema", e.to_string()))
+    }
+
     /// Reads the cells of a table by this schema.
     ///
     /// # Errors
@@ -133,13 +181,9 @@ impl Schema {
                 table = add(table, group.kind, column, &cells)?;
             }
         }
-        let groups = self.groups.iter().map(|g| Group {
-            name: g.name.clone(),
-            columns: g.columns.clone(),
-        });
         Ok(Dataset {
             table,
-            groups: groups.collect(),
+            groups: self.groups(),
         })
     }
 

@@ -1,7 +1,7 @@
-//! The paper's baseline (Sec. 7): a Gaussian mixture over the concatenated attributes, its number
-//! of components chosen by MDL.
+//! A Gaussian mixture over the concatenated columns of a table, its number of components chosen by MDL: the baseline
+//! of Fan and Wonka 2016, Sec. 7.
 //!
-//! Real columns are standardised by the training houses. A category (or yes/no) code c becomes
+//! Real columns are standardised by the training rows. A category (or yes/no) code c becomes
 //! `c + u`, u uniform on (-1/2, 1/2), and its probability is the mass of that unit interval,
 //! estimated over [`DRAWS`] draws of u: so that a density over all columns can be set beside the
 //! other models, whose discrete columns have probabilities. Every component has the same
@@ -14,7 +14,7 @@ use crate::model::gmm::{Criterion, Mixture, Points, Prior, Settings, select};
 use crate::model::{Cell, ModelError, Table};
 use crate::rng::stream;
 
-/// Draws of u per house.
+/// Draws of u per row.
 pub const DRAWS: usize = 200;
 
 /// A learned mixture over the columns of a table.
@@ -116,7 +116,7 @@ impl Baseline {
         Ok(out)
     }
 
-    /// Draws `count` houses with the named columns given, in the columns' own units and order.
+    /// Draws `count` rows with the named columns given, in the columns' own units and order.
     pub fn sample_given<R: Rng>(
         &self,
         given: &[(&str, f64)],

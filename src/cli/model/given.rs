@@ -1,6 +1,6 @@
 //! Evidence in words: `garage=none`, `bbox.w=12`, `wwr=0.2,0.2,0.1,0.1`, `roof.hip=yes`.
 
-use edifice::methods::building_exteriors::model_file::ModelFile;
+use edifice::model::hierarchy::Group;
 use edifice::model::{ModelError, Table};
 
 /// What is wrong with a piece of evidence.
@@ -52,12 +52,12 @@ pub enum GivenError {
 }
 
 /// A table of one row with the given values and nothing else. `ATTRIBUTE=none` sets all numbers of
-/// an attribute to zero, as the paper does for a house without garage. `sample` is any row drawn
+/// an attribute to zero, as for a house without garage. `sample` is any row drawn
 /// from the model: it tells the kinds of the columns.
 ///
 /// # Errors
 /// [`GivenError`] names the text that is wrong.
-pub fn evidence(model: &ModelFile, sample: &Table, given: &[String]) -> Result<Table, GivenError> {
+pub fn evidence(groups: &[Group], sample: &Table, given: &[String]) -> Result<Table, GivenError> {
     let mut table = Table::new();
     for text in given {
         let (name, value) = text
@@ -67,7 +67,7 @@ pub fn evidence(model: &ModelFile, sample: &Table, given: &[String]) -> Result<T
             table = add(table, name, column.categories(), value)?;
             continue;
         }
-        let Some(group) = model.groups.iter().find(|g| g.name == name) else {
+        let Some(group) = groups.iter().find(|g| g.name == name) else {
             return Err(GivenError::Unknown { name: name.into() });
         };
         let values: Vec<&str> = match value {

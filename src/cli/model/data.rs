@@ -1,0 +1,92 @@
+//! Tables and models of tables.
+
+use std::path::{Path, PathBuf};
+
+use edifice::io::{building_csv, json, read_bytes};
+use edifice::model::{Cell, Table};
+use edifice::tables::Dataset;
+use edifice::tables::schema::{FORMAT, Schema, VERSION};
+use edifice::tables::table_model::TableModel;
+use edifice::{Error, Result};
+
+/// A table, and how to read it.
+#[derive(clap::Args)]
+pub struct TableInput {
+    /// The table (`*.csv`, `*.csv.gz`), a header line first.
+    pub table: PathBuf,
+    /// Which columns are which attributes (`*.schema.json`); guessed without.
+    #[arg(long)]
+    pub schema: Option<PathBuf>,
+}
+
+impl TableInput {
+    /// Reads the table; the schema is returned besides.
+    pub fn read(&self) -> Result<(Dataset, Schema)> {
+        let text = building_csv::read(&self.table)?;
+        let at = |e| Error::content(&self.table, e);
+        let schema = match &self.schema {
+            Some(path) => read_schema(path)?,
+            None => Schema::guess(&text.header, &text.rows).map_err(at)?,
+        };
+        let data = schema.read(&text.header, &text.rows).map_err(at)?;
+        Ok((data, schema))
+    }
+
+    /// The guessed schema.
+    pub fn guess(&self) -> Result<Schema> {
+        let text = building_csv::read(&self.table)?;
+        let guessed = Schema::guess(&text.header, &text.rows);
+        guessed.map_err(|e| Error::content(&self.table, e))
+    }
+}
+
+/// Reads a schema.
+pub fn read_schema(path: &Path) -> Result<Schema> {
+    let bytes = read_bytes(path)?;
+    json::check_header(&bytes, path, FORMAT, VERSION)?;
+    json::parse_json(&bytes, path)
+}
+
+/// Reads a model of a table.
+pub fn read_model(path: &Path) -> Result<TableModel> {
+    let bytes = read_bytes(path)?;
+    let text = std::str::from_utf8(&bytes).map_err(|e| Error::content(path, e))?;
+    TableModel::from_json(text).map_err(|e| Error::content(path, e))
+}
+
+/// Reads a table by a model's schema. Of the schema's columns the table may lack some: they are missing.
+pub fn read_rows(model: &TableModel, path: &Path) -> Result<Dataset> {
+    let text = building_csv::read(path)?;
+    let mut schema = model.schema.clone();
+    for group in &mut schema.groups {
+        group.columns.retain(|column| text.header.contains(column));
+    }
+    schema.groups.retain(|group| !group.columns.is_empty());
+    let data = schema.read(&text.header, &text.rows);
+    data.map_err(|e| Error::content(path, e))
+}
+
+/// A table as lines of CSV, the header first; categories by name, missing cells empty.
+pub fn csv_lines(table: &Table) -> Vec<String> {
+    let quoted = |text: &str| {
+        if text.contains([',', '"', '\n']) {
+            format!("\"{}\"", text.replace('"', "\"\""))
+        } else {
+            text.to_owned()
+        }
+    };
+    let names = table.columns().iter().map(|c| quoted(c.name()));
+    let mut lines = vec![names.collect::<Vec<_>>().join(",")];
+    for row in 0..table.rows() {
+        let cells = table.columns().iter().map(|column| match column.cell(row) {
+            Cell::Missing => String::new(),
+            Cell::Real(value) => value.to_string(),
+            Cell::Code(code) => {
+                let names = column.categories().unwrap_or_default();
+                quoted(names.get(code).map_or("", String::as_str))
+            }
+        });
+        lines.push(cells.collect::<Vec<_>>().join(","));
+    }
+    lines
+}

@@ -1,0 +1,83 @@
+//! Options of learning a hierarchical model, and what to warn of.
+
+use edifice::Error;
+use edifice::model::hierarchy::{Constant, Settings, Variant};
+use edifice::model::{Cell, Table};
+
+/// How to learn.
+#[derive(clap::Args)]
+pub struct Search {
+    /// Fewest styles tried.
+    #[arg(long, default_value_t = 2)]
+    min_styles: usize,
+    /// Most styles tried.
+    #[arg(long, default_value_t = 25)]
+    max_styles: usize,
+    /// Most kinds of one attribute.
+    #[arg(long, default_value_t = 25)]
+    max_kinds: usize,
+    /// Leave out lateral edges (the paper's Model 1).
+    #[arg(long)]
+    no_lateral_edges: bool,
+    /// Refuse columns that are constant, instead of keeping them.
+    #[arg(long)]
+    refuse_constant: bool,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+impl Search {
+    /// The settings of the model layer.
+    pub fn settings(&self) -> edifice::Result<Settings> {
+        if self.min_styles < 1 || self.min_styles > self.max_styles {
+            return Err(Error::option(
+                "--min-styles",
+                "must be from 1 to --max-styles",
+            ));
+        }
+        if self.max_kinds < 2 {
+            return Err(Error::option("--max-kinds", "must be at least 2"));
+        }
+        let variant = if self.no_lateral_edges {
+            Variant::NoLateral
+        } else {
+            Variant::Full
+        };
+        let constant = if self.refuse_constant {
+            Constant::Refuse
+        } else {
+            Constant::Keep
+        };
+        Ok(Settings {
+            variant,
+            styles: self.min_styles..=self.max_styles,
+            most_states: self.max_kinds,
+            constant,
+            ..Settings::default()
+        })
+    }
+}
+
+/// What was learned all the same, but says little: constant columns, fewer rows than parameters.
+pub fn warnings(table: &Table, parameters: usize) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for column in table.columns() {
+        let cells = (0..table.rows()).map(|row| column.cell(row));
+        let mut seen = cells.filter(|cell| *cell != Cell::Missing);
+        let first = seen.next();
+        if seen.all(|cell| Some(cell) == first) {
+            let name = column.name();
+            warnings.push(format!(
+                "column `{name}` is constant: it is kept with unit scale"
+            ));
+        }
+    }
+    let rows = table.rows();
+    if rows < parameters {
+        warnings.push(format!(
+            "{rows} rows for {parameters} free parameters: where rows do not tell, the prior decides"
+        ));
+    }
+    warnings
+}

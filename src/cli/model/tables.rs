@@ -1,0 +1,203 @@
+//! `edifice model schema`, `learn`, `score`, `sample` and `complete`: hierarchical models of any table.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use edifice::file::write_atomic;
+use edifice::model::hierarchy::learn as learn_model;
+use edifice::rng::stream;
+use edifice::tables::table_model::{FORMAT, TableModel};
+use edifice::{Error, Result};
+
+use super::Shown;
+use super::data::{TableInput, csv_lines, read_model, read_rows};
+use super::given::evidence;
+use super::search::{Search, warnings};
+use crate::cli::print;
+
+/// Options of `learn`.
+#[derive(clap::Args)]
+pub struct LearnArgs {
+    #[command(flatten)]
+    input: TableInput,
+    /// Where the model goes (`*.table-model.json`).
+    #[arg(short, long)]
+    output: PathBuf,
+    #[command(flatten)]
+    search: Search,
+    /// Print a line of JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Options of `score`.
+#[derive(clap::Args)]
+pub struct ScoreArgs {
+    /// The model (`*.table-model.json`).
+    model: PathBuf,
+    /// The table.
+    table: PathBuf,
+}
+
+/// Options of `sample`.
+#[derive(clap::Args)]
+pub struct SampleArgs {
+    /// The model (`*.table-model.json`).
+    model: PathBuf,
+    /// Rows to draw.
+    #[arg(short = 'n', long, default_value_t = 10)]
+    count: usize,
+    /// Evidence: COLUMN=VALUE; repeatable.
+    #[arg(long)]
+    given: Vec<String>,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Options of `complete`.
+#[derive(clap::Args)]
+pub struct CompleteArgs {
+    /// The model (`*.table-model.json`).
+    model: PathBuf,
+    /// The table; empty cells and columns that it lacks are completed.
+    table: PathBuf,
+    /// Completions of each row.
+    #[arg(short = 'n', long, default_value_t = 1)]
+    count: usize,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Runs `schema`.
+pub fn schema(input: &TableInput) -> Result<()> {
+    print::line(&input.guess()?.to_json().map_err(Error::method)?)
+}
+
+/// Runs `learn`.
+pub fn learn(args: &LearnArgs) -> Result<()> {
+    let (data, schema) = args.input.read()?;
+    let settings = args.search.settings()?;
+    let start = Instant::now();
+    let learned = learn_model(&data.table, &data.groups, &settings, args.search.seed)
+        .map_err(|e| Error::content(&args.input.table, e))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let model = learned.model;
+    for warning in warnings(&data.table, model.free_parameters()) {
+        print::message(&format!("warning: {warning}"));
+    }
+    if args.input.schema.is_none() {
+        let kinds = schema
+            .groups
+            .iter()
+            .map(|g| format!("{} {:?}", g.name, g.kind));
+        let kinds: Vec<String> = kinds.collect();
+        print::message(&format!(
+            "kinds guessed (`edifice model schema` prints them to edit): {}",
+            kinds.join(", ").to_lowercase()
+        ));
+    }
+    let (rows, styles) = (data.table.rows(), model.styles());
+    let edges = model.lateral_edges().len();
+    let file = TableModel { schema, model };
+    let text = file.to_json().map_err(Error::method)?;
+    write_atomic(&args.output, text.as_bytes())?;
+    print::message(&format!(
+        "{rows} rows: {styles} styles, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {seconds:.1} s",
+        learned.score
+    ));
+    match args.json {
+        true => print::line(
+            &serde_json::json!({
+                "rows": rows, "styles": styles, "lateral_edges": edges, "score": learned.score,
+                "bic": learned.bic, "seconds": seconds, "seed": args.search.seed,
+            })
+            .to_string(),
+        ),
+        false => Ok(()),
+    }
+}
+
+/// Runs `score`: the log-likelihood of every row, missing cells integrated out.
+pub fn score(args: &ScoreArgs) -> Result<()> {
+    let model = read_model(&args.model)?;
+    let data = read_rows(&model, &args.table)?;
+    let logs = model.model.log_likelihood(&data.table);
+    let logs = logs.map_err(|e| Error::content(&args.table, e))?;
+    print::line("row,log_likelihood")?;
+    for (row, log) in logs.iter().enumerate() {
+        print::line(&format!("{},{log}", row + 1))?;
+    }
+    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+    print::message(&format!("mean {mean:.4} nats a row"));
+    Ok(())
+}
+
+/// Runs `sample`.
+pub fn sample(args: &SampleArgs) -> Result<()> {
+    let model = read_model(&args.model)?;
+    if args.count == 0 {
+        return Err(Error::option("--count", "must be at least 1"));
+    }
+    let mut rng = stream(args.seed, "model/sample", 0);
+    let kinds = model.model.sample(1, &mut rng).map_err(Error::method)?;
+    let given = evidence(&model.schema.groups(), &kinds.table, &args.given)
+        .map_err(|e| Error::option("--given", e.to_string()))?;
+    let draws = match args.given.is_empty() {
+        true => model.model.sample(args.count, &mut rng),
+        false => model.model.complete(&given, args.count, &mut rng),
+    };
+    let table = draws
+        .map_err(|e| Error::option("--given", e.to_string()))?
+        .table;
+    print::line(&csv_lines(&table).join("\n"))
+}
+
+/// Runs `complete`.
+pub fn complete(args: &CompleteArgs) -> Result<()> {
+    let model = read_model(&args.model)?;
+    let data = read_rows(&model, &args.table)?;
+    for row in 0..data.table.rows() {
+        let mut rng = stream(args.seed, "model/complete", row as u64);
+        let given = data.table.select(&[row]);
+        let draws = model.model.complete(&given, args.count, &mut rng);
+        let draws = draws.map_err(|e| Error::content(&args.table, e.in_row(row)))?;
+        // The header stands once, before the first row.
+        let lines = csv_lines(&draws.table);
+        print::line(&lines[usize::from(row > 0)..].join("\n"))?;
+    }
+    Ok(())
+}
+
+/// How `model show` shows a model of a table.
+pub const TABLE_MODEL: Shown = Shown {
+    format: FORMAT,
+    show,
+};
+
+fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
+    let text = std::str::from_utf8(bytes).map_err(|e| Error::content(path, e))?;
+    let file = TableModel::from_json(text).map_err(|e| Error::content(path, e))?;
+    let model = &file.model;
+    let groups = model.real_groups().iter().zip(model.cardinalities());
+    if json {
+        let cardinalities: std::collections::BTreeMap<_, _> = groups.collect();
+        let summary = serde_json::json!({
+            "styles": model.styles(),
+            "style_probabilities": model.style_probabilities(),
+            "cardinalities": cardinalities,
+            "lateral_edges": model.lateral_edges(),
+        });
+        return Ok(vec![summary.to_string()]);
+    }
+    let shares = model.style_probabilities().iter();
+    let shares = shares.map(|p| format!("{:.0}%", 100.0 * p));
+    let shares: Vec<String> = shares.collect();
+    let mut lines = vec![format!("{} styles: {}", model.styles(), shares.join(" "))];
+    lines.extend(groups.map(|(name, kinds)| format!("{name}: {kinds} kinds")));
+    let edges = model.lateral_edges();
+    lines.push(format!("{} lateral edges", edges.len()));
+    lines.extend(edges.iter().map(|(from, to)| format!("  {from} -> {to}")));
+    Ok(lines)
+}

@@ -1,0 +1,66 @@
+//! A schema guessed from the texts of a table.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::schema::{Kind, Schema, SchemaError, SchemaGroup};
+
+/// Texts that commonly mean "not known".
+const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
+/// Different texts up to which a column may be a category, whatever the number of rows.
+const FEW_CATEGORIES: usize = 10;
+/// Different texts beyond which it is free text, whatever the number of rows.
+const MOST_CATEGORIES: usize = 100;
+/// A category has at least so many rows on average.
+const ROWS_PER_CATEGORY: usize = 5;
+
+impl Schema {
+    /// Guesses a schema, one attribute a column: columns of two texts that say yes and no are binary, other numbers
+    /// are continuous, texts that repeat are categories. Usual signs for "not known" are missing.
+    ///
+    /// # Errors
+    /// [`SchemaError::FreeText`] for a column of many different texts, [`SchemaError::NoValues`] for one without any: a
+    /// schema written by hand can leave them out.
+    pub fn guess(header: &[String], rows: &[Vec<String>]) -> Result<Self, SchemaError> {
+        let mut groups = Vec::with_capacity(header.len());
+        for (c, column) in header.iter().enumerate() {
+            let texts = rows.iter().filter_map(|row| row.get(c)).map(|t| t.trim());
+            let texts: Vec<&str> = texts.filter(|t| !MISSING.contains(t)).collect();
+            groups.push(SchemaGroup {
+                name: column.clone(),
+                kind: kind(column, &texts)?,
+                columns: vec![column.clone()],
+            });
+        }
+        Ok(Self {
+            keep: BTreeMap::new(),
+            missing: MISSING.map(str::to_owned).to_vec(),
+            groups,
+        })
+    }
+}
+
+fn kind(column: &str, texts: &[&str]) -> Result<Kind, SchemaError> {
+    let different: BTreeSet<String> = texts.iter().map(|t| t.to_ascii_lowercase()).collect();
+    if different.is_empty() {
+        return Err(SchemaError::NoValues {
+            column: column.to_owned(),
+        });
+    }
+    let pair = |no: &str, yes: &str| different.iter().all(|t| t == no || t == yes);
+    if pair("0", "1") || pair("no", "yes") || pair("false", "true") {
+        return Ok(Kind::Binary);
+    }
+    let number = |text: &&str| text.parse().is_ok_and(f64::is_finite);
+    if texts.iter().all(number) {
+        return Ok(Kind::Continuous);
+    }
+    let most = (texts.len() / ROWS_PER_CATEGORY).clamp(FEW_CATEGORIES, MOST_CATEGORIES);
+    match different.len() <= most {
+        true => Ok(Kind::Category),
+        false => Err(SchemaError::FreeText {
+            column: column.to_owned(),
+            different: different.len(),
+            cells: texts.len(),
+        }),
+    }
+}

@@ -1,0 +1,53 @@
+//! Any table: its columns as typed attributes, models learned from it, compared on rows that they have not seen.
+//!
+//! | module | what |
+//! | --- | --- |
+//! | [`schema`] | which columns are which attributes, written by hand or guessed |
+//! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
+//! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
+//! | [`compare`] | held-out likelihoods of models on the same splits |
+//!
+//! Texts become numbers and categories here; the models themselves are in [`crate::model`].
+
+pub mod compare;
+mod guess;
+pub mod mixture;
+pub mod schema;
+pub mod table_model;
+
+use crate::model::hierarchy::Group;
+use crate::model::{ModelError, Table};
+
+/// A table and its attributes.
+#[derive(Debug, Clone)]
+pub struct Dataset {
+    /// One thing (a house, say) a row.
+    pub table: Table,
+    /// Which columns belong together.
+    pub groups: Vec<Group>,
+}
+
+impl Dataset {
+    /// The given rows.
+    pub fn select(&self, rows: &[usize]) -> Self {
+        Self {
+            table: self.table.select(rows),
+            groups: self.groups.clone(),
+        }
+    }
+
+    /// All attributes but one.
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`] when a group names a column that the table lacks.
+    pub fn without(&self, attribute: &str) -> Result<Self, ModelError> {
+        let mut groups = self.groups.clone();
+        groups.retain(|g| g.name != attribute);
+        let columns = groups.iter().flat_map(|g| &g.columns);
+        let columns: Vec<&str> = columns.map(String::as_str).collect();
+        Ok(Self {
+            table: self.table.only(&columns)?,
+            groups,
+        })
+    }
+}
