@@ -42,6 +42,7 @@ pub mod low_rank;
 pub mod network;
 pub(crate) mod standardize;
 mod table;
+mod translate;
 
 pub use error::ModelError;
 pub use table::{Cell, Column, Table};

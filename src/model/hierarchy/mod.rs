@@ -64,7 +64,7 @@ mod schema;
 mod search;
 mod split;
 mod store;
-mod structure;
+pub(crate) mod structure;
 
 use std::ops::RangeInclusive;
 

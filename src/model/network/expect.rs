@@ -1,7 +1,9 @@
 //! EM for a network.
 //!
 //! Each row is a question: its posterior over every family (a variable with its parents) gives
-//! expected counts, and over every linked set of real vectors expected scatter matrices.
+//! expected counts, and over every linked set of real vectors expected scatter matrices. What is barren in a row (nothing
+//! is observed on or below it) is no part of the row's complete data: it says nothing about the parameters, and counting its
+//! expectation would only shorten the steps towards the same maximum.
 
 use super::super::chunks;
 use super::super::conjugate::{LinearPrior, Priors, dirichlet_log_density, dirichlet_mode};
@@ -49,18 +51,20 @@ impl Problem<'_> {
     }
 
     fn row(&self, network: &Network, i: usize, stats: &mut Stats) -> Result<(), ModelError> {
-        let question = network.question(self.rows[i].clone(), Asked::Discrete)?;
+        let question = network.question(self.rows[i].clone(), Asked::Evidence)?;
         let tree = network
             .tree(&question, Mode::Sum)
             .map_err(|e| e.in_row(i))?;
         let beliefs = tree.beliefs();
         let sizes = &network.sizes;
         let fixed = question.known.assignment();
+        let mut barren = vec![false; network.nodes.len()];
+        question.left_out.iter().for_each(|&n| barren[n] = true);
         for (n, counts) in stats
             .counts
             .iter_mut()
             .enumerate()
-            .filter(|(_, c)| !c.is_empty())
+            .filter(|(n, c)| !c.is_empty() && !barren[*n])
         {
             let family = network.nodes[n].discrete.iter().copied().chain([n]);
             let vars: Vec<usize> = family

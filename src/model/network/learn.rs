@@ -8,7 +8,7 @@ use super::super::conjugate::{Linear, Priors};
 use super::super::em::{Fit, Stopping, restarts};
 use super::super::error::ModelError;
 use super::super::standardize::{Constant, moments};
-use super::super::table::{Cell, Table};
+use super::super::table::Table;
 use super::evidence::Known;
 use super::expect::Problem;
 use super::{Cpd, Network};
@@ -61,25 +61,48 @@ impl Network {
         settings: &FitSettings,
         rng: &mut R,
     ) -> Result<Fitted, ModelError> {
-        settings.priors.check()?;
         let (rows, scales) = self.rows(data)?;
-        let problem = Problem {
-            rows: &rows,
-            priors: &settings.priors,
-            start: self,
-        };
         let starts: Vec<Network> = (0..settings.restarts.max(1))
             .map(|_| self.random(&rows, rng))
             .collect();
+        self.fitted(starts, &rows, &scales, settings)
+    }
+
+    /// As [`Network::fit`], with one run of EM from this network's own parameters.
+    ///
+    /// # Errors
+    /// As [`Network::fit`].
+    pub fn fit_from(&self, data: &Table, settings: &FitSettings) -> Result<Fitted, ModelError> {
+        let (rows, scales) = self.rows(data)?;
+        let mut start = self.clone();
+        let inverse: Scales = scales.iter().map(|(m, s)| (-m / s, 1.0 / s)).collect();
+        start.rescale(&inverse);
+        self.fitted(vec![start], &rows, &scales, settings)
+    }
+
+    /// EM from standardised starts on standardised rows, back in the columns' own units.
+    fn fitted(
+        &self,
+        starts: Vec<Network>,
+        rows: &[Known],
+        scales: &Scales,
+        settings: &FitSettings,
+    ) -> Result<Fitted, ModelError> {
+        settings.priors.check()?;
+        let problem = Problem {
+            rows,
+            priors: &settings.priors,
+            start: self,
+        };
         let Fit {
             mut model,
             mut log_likelihood,
             trace,
             ..
         } = restarts(&problem, starts, &settings.stopping)?;
-        model.rescale(&scales);
-        for row in &rows {
-            let seen = row.real.iter().zip(&scales).filter(|(v, _)| !v.is_nan());
+        model.rescale(scales);
+        for row in rows {
+            let seen = row.real.iter().zip(scales).filter(|(v, _)| !v.is_nan());
             log_likelihood -= seen.map(|(_, s)| s.1.ln()).sum::<f64>();
         }
         Ok(Fitted {
@@ -91,61 +114,26 @@ impl Network {
 
     /// Rows as standardised evidence, and (mean, deviation) of every coordinate.
     fn rows(&self, data: &Table) -> Result<(Vec<Known>, Scales), ModelError> {
-        if data.rows() == 0 {
-            return Err(ModelError::Empty { what: "rows" });
-        }
-        let empty = Known {
-            discrete: vec![None; self.nodes.len()],
-            soft: Vec::new(),
-            real: vec![f64::NAN; self.width],
-        };
-        let mut rows = vec![empty; data.rows()];
+        let mut rows = self.table_rows(data)?;
         let mut scales = vec![(0.0, 1.0); self.width];
         for (n, node) in self.nodes.iter().enumerate() {
-            if node.is_discrete() {
-                let Ok(column) = data.column(&node.name) else {
-                    continue;
-                };
-                for (i, row) in rows.iter_mut().enumerate() {
-                    row.discrete[n] = match (column.cell(i), column.categories()) {
-                        (Cell::Code(c), Some(names)) => {
-                            let found = node.categories.iter().position(|k| *k == names[c]);
-                            Some(found.ok_or_else(|| ModelError::UnseenCategory {
-                                column: node.name.clone(),
-                                row: i,
-                                category: names[c].clone(),
-                            })?)
-                        }
-                        (Cell::Missing, Some(_)) => None,
-                        _ => return Err(kind(&node.name, "real", "categorical")),
-                    };
-                }
-                if rows.iter().all(|r| r.discrete[n].is_none()) {
-                    return Err(ModelError::AllMissing {
-                        column: node.name.clone(),
-                    });
-                }
+            let empty = node.is_discrete() && rows.iter().all(|r| r.discrete[n].is_none());
+            if empty && data.column(&node.name).is_ok() {
+                return Err(ModelError::AllMissing {
+                    column: node.name.clone(),
+                });
             }
             for (i, c) in node.coordinates.clone().enumerate() {
                 let name = self.column_name(n, i);
-                let Ok(column) = data.column(&name) else {
+                if data.column(&name).is_err() {
                     continue;
-                };
-                if column.categories().is_some() {
-                    return Err(kind(&name, "categorical", "real"));
                 }
-                let seen: Vec<f64> = (0..data.rows())
-                    .filter_map(|r| match column.cell(r) {
-                        Cell::Real(v) => Some(v),
-                        _ => None,
-                    })
-                    .collect();
+                let seen = rows.iter().map(|r| r.real[c]).filter(|v| !v.is_nan());
+                let seen: Vec<f64> = seen.collect();
                 let (mean, deviation) = moments(&name, &seen, Constant::Refuse)?;
                 scales[c] = (mean, deviation);
-                for (r, row) in rows.iter_mut().enumerate() {
-                    if let Cell::Real(v) = column.cell(r) {
-                        row.real[c] = (v - mean) / deviation;
-                    }
+                for row in &mut rows {
+                    row.real[c] = (row.real[c] - mean) / deviation;
                 }
             }
         }
@@ -215,13 +203,5 @@ impl Network {
                 }
             }
         }
-    }
-}
-
-fn kind(column: &str, got: &'static str, expected: &'static str) -> ModelError {
-    ModelError::Kind {
-        column: column.to_owned(),
-        got,
-        expected,
     }
 }

@@ -39,6 +39,7 @@ mod expect;
 mod learn;
 mod query;
 mod sample;
+mod score;
 mod store;
 
 use std::collections::{HashMap, HashSet};
