@@ -51,7 +51,7 @@ pub enum Command {
     /// Ask a Bayesian network: posteriors given evidence, or the most probable explanations.
     #[command(after_help = "Examples:
   edifice model query datasets/model/asia.bif --given smoke=yes --of lung,bronc
-  edifice model query datasets/model/asia.bif --likely xray=0.2,0.9 --method gibbs --draws 20000
+  edifice model query datasets/model/asia.bif --likely xray=0.2,0.9 --method likelihood-weighting --draws 20000
   edifice model query datasets/model/asia.bif --given dysp=yes --explain 3")]
     Query(query::Args),
     /// Show the variables of a Bayesian network, or the rules and facades of a logic model.

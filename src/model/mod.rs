@@ -12,6 +12,20 @@
 //! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
 //! | [`log_linear`] | the same for a user's features and negative sampler | contrastive divergence |
 //!
+//! # Which model when
+//! | you have, you want | here | peers |
+//! | --- | --- | --- |
+//! | a network with its tables; posteriors, explanations, draws | [`network`]: exact by [`elimination`], approximate on request | pyAgrum, pgmpy |
+//! | a network without numbers, rows with missing cells, hidden variables | [`network::Network::fit`] | pyAgrum, pgmpy (complete rows) |
+//! | a table of mixed columns, and no idea of its structure | [`hierarchy::learn`] | StepMix (latent classes), scikit-learn's `GaussianMixture` |
+//! | points of one kind of number; clusters, a density | [`gmm`] | scikit-learn, linfa |
+//! | one number, bounded, multimodal or given another | [`density`] | rv, SciPy |
+//! | states of any kind with features that you can compute, but no sum over states | [`factor_graph`], [`log_linear`] | – |
+//! | a probability of yes or no from features | [`boosting`] | CatBoost, scikit-learn |
+//! | a matrix with holes | [`low_rank`] | softImpute |
+//!
+//! A hierarchy is a network ([`hierarchy::Hierarchy::to_network`]): learn it as the one, ask it as the other.
+//!
 //! One verb for one idea: *fit* estimates parameters of a given structure, *learn* structure and
 //! parameters, *select* a size by a criterion; *sample* draws, *complete* draws what is missing.
 //! `log_density` is of complete real points, `log_probability` of evidence, `log_likelihood` of the

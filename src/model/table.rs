@@ -283,6 +283,18 @@ impl Table {
         }
     }
 
+    /// The columns of these names, in this order.
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`] for a name without a column.
+    pub fn in_order(&self, names: &[&str]) -> Result<Self, ModelError> {
+        let columns = names.iter().map(|name| self.column(name).cloned());
+        Ok(Self {
+            columns: columns.collect::<Result<_, _>>()?,
+            ..self.clone()
+        })
+    }
+
     /// The same table where every column not called one of `names` is missing in every row: what
     /// is left is evidence to condition on.
     ///

@@ -123,7 +123,6 @@ mod tests {
     use super::super::em::{Em, Stopping};
     use super::super::hierarchy::{Group, Priors, Settings, Variant, learn};
     use super::super::network::FitSettings;
-    use super::*;
     use crate::model::Table;
 
     #[test]

@@ -15,7 +15,8 @@ const ROWS_PER_CATEGORY: usize = 5;
 
 impl Schema {
     /// Guesses a schema, one attribute a column: columns of two texts that say yes and no are binary, other numbers
-    /// are continuous, texts that repeat are categories. Usual signs for "not known" are missing.
+    /// are continuous, texts that repeat are categories, and so are numbers of few different values (a density over such
+    /// values has no upper bound). Usual signs for "not known" are missing.
     ///
     /// # Errors
     /// [`SchemaError::FreeText`] for a column of many different texts, [`SchemaError::NoValues`] for one without any: a
@@ -51,7 +52,8 @@ fn kind(column: &str, texts: &[&str]) -> Result<Kind, SchemaError> {
         return Ok(Kind::Binary);
     }
     let number = |text: &&str| text.parse().is_ok_and(f64::is_finite);
-    if texts.iter().all(number) {
+    let few = (texts.len() / ROWS_PER_CATEGORY).min(FEW_CATEGORIES);
+    if texts.iter().all(number) && different.len() > few {
         return Ok(Kind::Continuous);
     }
     let most = (texts.len() / ROWS_PER_CATEGORY).clamp(FEW_CATEGORIES, MOST_CATEGORIES);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use edifice::file::write_atomic;
+use edifice::model::Table;
 use edifice::model::hierarchy::learn as learn_model;
 use edifice::rng::stream;
 use edifice::tables::table_model::{FORMAT, TableModel};
@@ -151,7 +152,16 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
     let table = draws
         .map_err(|e| Error::option("--given", e.to_string()))?
         .table;
-    print::line(&csv_lines(&table).join("\n"))
+    print::line(&csv_lines(&in_order(&model, &table)?).join("\n"))
+}
+
+/// The columns in the order of the schema.
+fn in_order(model: &TableModel, table: &Table) -> Result<Table> {
+    let groups = model.schema.groups.iter();
+    let columns: Vec<&str> = groups
+        .flat_map(|g| g.columns.iter().map(String::as_str))
+        .collect();
+    table.in_order(&columns).map_err(Error::method)
 }
 
 /// Runs `complete`.
@@ -164,7 +174,7 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
         let draws = model.model.complete(&given, args.count, &mut rng);
         let draws = draws.map_err(|e| Error::content(&args.table, e.in_row(row)))?;
         // The header stands once, before the first row.
-        let lines = csv_lines(&draws.table);
+        let lines = csv_lines(&in_order(&model, &draws.table)?);
         print::line(&lines[usize::from(row > 0)..].join("\n"))?;
     }
     Ok(())

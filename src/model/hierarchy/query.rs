@@ -130,7 +130,11 @@ impl Hierarchy {
     }
 
     /// These rows under this model; the priors are not asked.
-    pub(in crate::model) fn problem<'a>(&'a self, rows: &'a Rows, priors: &'a Priors) -> Problem<'a> {
+    pub(in crate::model) fn problem<'a>(
+        &'a self,
+        rows: &'a Rows,
+        priors: &'a Priors,
+    ) -> Problem<'a> {
         Problem {
             schema: &self.schema,
             rows,

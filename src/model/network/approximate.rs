@@ -104,12 +104,11 @@ impl Network {
     }
 
     /// Gibbs sampling: every unobserved discrete variable in turn is drawn given all others, continuous ones integrated out.
-    /// The first half as many sweeps again are dropped; standard errors by means of batches. Where probabilities are 0, the
-    /// chain may not reach every state.
+    /// The first half as many sweeps again are dropped; standard errors by means of batches.
     ///
     /// # Errors
-    /// As [`Network::marginals`], but for width; [`ModelError::Parameter`] when no start agrees with the evidence, or for
-    /// fewer than 100 sweeps.
+    /// As [`Network::marginals`], but for width; [`ModelError::Parameter`] for fewer than 100 sweeps, and where
+    /// probabilities are 0: the chain may then not reach every state, and its standard errors would not tell.
     pub fn gibbs<R: Rng>(
         &self,
         evidence: &Evidence,
@@ -120,12 +119,13 @@ impl Network {
             return Err(ModelError::parameter("sweeps", "must be at least 100"));
         }
         let question = self.question(self.known(evidence)?, Asked::Discrete)?;
-        let mut start = (0..STARTS).map(|_| self.weighted(&question.known, rng));
-        let start = start.find(|(_, weight)| *weight > f64::NEG_INFINITY);
-        let (mut state, _) = start.ok_or_else(|| {
-            let problem = format!("no start out of {STARTS} agrees with the evidence");
-            ModelError::parameter("evidence", problem)
-        })?;
+        let zero = |f: &&Factor| f.values.contains(&f64::NEG_INFINITY);
+        if let Some(factor) = question.factors.iter().find(zero) {
+            let name = &self.nodes[factor.vars.last().copied().unwrap_or(0)].name;
+            let problem = "has probabilities of 0, between which Gibbs sampling may not move: use likelihood weighting";
+            return Err(ModelError::parameter(name, problem));
+        }
+        let (mut state, _) = self.weighted(&question.known, rng);
         let mut around: Vec<Vec<&Factor>> = vec![Vec::new(); self.nodes.len()];
         for factor in &question.factors {
             factor.vars.iter().for_each(|&v| around[v].push(factor));
@@ -226,9 +226,6 @@ impl Network {
         })
     }
 }
-
-/// Starts of a Gibbs chain that are tried.
-const STARTS: usize = 10_000;
 
 /// Messages from factors to variables, logarithms that sum to probability 1.
 struct Messages<'a> {
