@@ -16,7 +16,7 @@ const ROWS: usize = 240;
 fn clusters() -> Vec<[f64; 2]> {
     let mut rng = stream(5, "scale", 0);
     let row = |i: usize| {
-        let at = if i % 3 == 0 { 0.0 } else { 4.0 };
+        let at = if i.is_multiple_of(3) { 0.0 } else { 4.0 };
         let (a, b): (f64, f64) = (rng.sample(StandardNormal), rng.sample(StandardNormal));
         [at + a, 2.0 * at + 0.5 * a + b]
     };
@@ -29,7 +29,7 @@ fn table(unit: f64) -> Table {
     let column = |k: usize| rows.iter().map(move |r| Some(r[k] * unit));
     let table = Table::new().real("a", column(0)).unwrap();
     let table = table.real("b", column(1)).unwrap();
-    let garage = (0..ROWS).map(|i| Some(i % 3 == 0));
+    let garage = (0..ROWS).map(|i| Some(i.is_multiple_of(3)));
     table.binary("garage", garage).unwrap()
 }
 
