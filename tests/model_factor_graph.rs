@@ -178,3 +178,34 @@ fn bad_input_is_named() {
     .unwrap();
     assert!(fit(&wild, &[vec![0]], &Settings::default(), 1).is_err());
 }
+
+#[test]
+fn exact_sums_are_those_of_enumeration() {
+    let weights = [0.37, -0.21];
+    let (log_sum, mean) = ising().exact(&weights).unwrap();
+    let (mut total, mut slow) = (0.0, [0.0; 2]);
+    for state in 0..1_usize << (SIDE * SIDE) {
+        let state: Vec<usize> = (0..SIDE * SIDE).map(|i| state >> i & 1).collect();
+        let features = ising().features(&state);
+        let weight = (weights[0] * features[0] + weights[1] * features[1]).exp();
+        total += weight;
+        slow.iter_mut()
+            .zip(features)
+            .for_each(|(s, f)| *s += weight * f);
+    }
+    assert!((log_sum - f64::ln(total)).abs() < 1e-12);
+    for (m, s) in mean.iter().zip(slow) {
+        assert!((m - s / total).abs() < 1e-12);
+    }
+    assert!(ising().exact(&[0.1]).is_err());
+    // A variable twice in a factor is refused, one without factors is free.
+    let spin_of = |variables: Vec<usize>| Factor {
+        variables,
+        weight: 0,
+        feature: Box::new(|v| spin(v[0])),
+    };
+    assert!(Gibbs::new(vec![2], vec![spin_of(vec![0, 0])]).is_err());
+    let free = Gibbs::new(vec![2, 5], vec![spin_of(vec![0])]).unwrap();
+    let (log_sum, _) = free.exact(&[0.0]).unwrap();
+    assert!((log_sum - 10.0_f64.ln()).abs() < 1e-12);
+}

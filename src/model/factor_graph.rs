@@ -21,8 +21,9 @@
 use rand::RngExt;
 use rayon::prelude::*;
 
+use super::elimination::{self, BucketTree, Mode};
 use super::error::ModelError;
-use super::linalg::{categorical_of_logs, log_sum_exp};
+use super::linalg::categorical_of_logs;
 use crate::rng::{Stream, stream};
 
 /// A model family: features of a state, and a way to move between states.
@@ -99,13 +100,18 @@ pub struct Gibbs {
     weights: usize,
     /// Factors of each variable.
     around: Vec<Vec<usize>>,
+    /// Per factor, its feature for every configuration of its variables, the last fastest; empty beyond [`TABULATED`].
+    tables: Vec<Vec<f64>>,
 }
+
+/// Most configurations of a factor whose feature is tabulated.
+const TABULATED: usize = 1 << 12;
 
 impl Gibbs {
     /// Variables with so many values each, and their factors.
     ///
     /// # Errors
-    /// [`ModelError::Parameter`] for a factor on a variable that is not there, or a variable
+    /// [`ModelError::Parameter`] for a factor on a variable that is not there, or that it names twice, or a variable
     /// without values; [`ModelError::Empty`] without factors.
     pub fn new(sizes: Vec<usize>, factors: Vec<Factor>) -> Result<Self, ModelError> {
         if factors.is_empty() {
@@ -123,53 +129,86 @@ impl Gibbs {
                         format!("there is no variable {v}"),
                     )
                 })?;
-                if list.last() != Some(&i) {
-                    list.push(i);
+                if list.last() == Some(&i) {
+                    let problem = format!("names variable {v} twice");
+                    return Err(ModelError::parameter(format!("factor {i}"), problem));
                 }
+                list.push(i);
             }
         }
+        let tables = factors.iter().map(|f| tabulate(f, &sizes)).collect();
         Ok(Self {
             weights: factors.iter().map(|f| f.weight + 1).max().unwrap_or(0),
             sizes,
             factors,
             around,
+            tables,
         })
     }
 
-    fn value(&self, factor: &Factor, state: &[usize]) -> f64 {
-        let values: Vec<usize> = factor.variables.iter().map(|&v| state[v]).collect();
-        (factor.feature)(&values)
+    fn value(&self, factor: usize, state: &[usize]) -> f64 {
+        let (table, factor) = (&self.tables[factor], &self.factors[factor]);
+        let variables = factor.variables.iter();
+        if table.is_empty() {
+            let values: Vec<usize> = variables.map(|&v| state[v]).collect();
+            return (factor.feature)(&values);
+        }
+        table[variables.fold(0, |i, &v| i * self.sizes[v] + state[v])]
     }
 
-    /// `log Z(w)` and `E_w f` by enumeration of all states.
+    /// `log Z(w)` and `E_w f`, exactly, by variable elimination.
     ///
     /// # Errors
-    /// [`ModelError::Parameter`] beyond 2²⁰ states.
+    /// [`ModelError::TooWide`]; [`ModelError::Parameter`] for a factor of more than 2¹² configurations, or weights of
+    /// another number.
     pub fn exact(&self, weights: &[f64]) -> Result<(f64, Vec<f64>), ModelError> {
-        let count = self.sizes.iter().try_fold(1usize, |n, &k| n.checked_mul(k));
-        let count = count.filter(|n| *n <= 1 << 20);
-        let count =
-            count.ok_or_else(|| ModelError::parameter("states", "too many to enumerate"))?;
-        let state = |mut rest: usize| -> Vec<usize> {
-            let digits = self.sizes.iter().map(|k| {
-                let digit = rest % k;
-                rest /= k;
-                digit
-            });
-            digits.collect()
-        };
-        let logs: Vec<f64> = (0..count)
-            .map(|i| dot(weights, &self.features(&state(i))))
-            .collect();
-        let total = log_sum_exp(&logs);
-        let mut mean = vec![0.0; self.weights];
-        for (i, log) in logs.iter().enumerate() {
-            for (m, f) in mean.iter_mut().zip(self.features(&state(i))) {
-                *m += (log - total).exp() * f;
-            }
+        if weights.len() != self.weights {
+            return Err(ModelError::parameter("weights", "of another number"));
         }
-        Ok((total, mean))
+        let mut factors = Vec::with_capacity(self.factors.len());
+        for (i, (factor, table)) in self.factors.iter().zip(&self.tables).enumerate() {
+            if table.is_empty() {
+                let problem = "has too many configurations to be tabulated";
+                return Err(ModelError::parameter(format!("factor {i}"), problem));
+            }
+            let logs = table.iter().map(|f| weights[factor.weight] * f).collect();
+            factors.push(elimination::Factor::new(factor.variables.clone(), logs));
+        }
+        // Variables without a factor are free.
+        let alone = (0..self.sizes.len()).filter(|&v| self.around[v].is_empty());
+        let free: f64 = alone.map(|v| (self.sizes[v] as f64).ln()).sum();
+        let tree = BucketTree::new(factors, &self.sizes, Mode::Sum);
+        let tree = tree.map_err(|e| ModelError::TooWide {
+            variable: e.variable.to_string(),
+            width: e.width,
+            cells: e.cells,
+        })?;
+        let beliefs = tree.beliefs();
+        let mut mean = vec![0.0; self.weights];
+        for (factor, table) in self.factors.iter().zip(&self.tables) {
+            let joint = beliefs.of(&factor.variables);
+            mean[factor.weight] += dot(table, &joint);
+        }
+        Ok((tree.total + free, mean))
     }
+}
+
+/// The feature for every configuration of the variables; nothing where there are too many.
+fn tabulate(factor: &Factor, sizes: &[usize]) -> Vec<f64> {
+    let variables = &factor.variables;
+    let count = variables
+        .iter()
+        .try_fold(1_usize, |n, &v| n.checked_mul(sizes[v]));
+    let Some(count) = count.filter(|n| *n <= TABULATED) else {
+        return Vec::new();
+    };
+    let mut assignment = vec![0; sizes.len()];
+    let each = (0..count).map(|_| {
+        let values: Vec<usize> = variables.iter().map(|&v| assignment[v]).collect();
+        elimination::advance(variables, sizes, &mut assignment);
+        (factor.feature)(&values)
+    });
+    each.collect()
 }
 
 impl Chain for Gibbs {
@@ -181,24 +220,24 @@ impl Chain for Gibbs {
 
     fn features(&self, state: &Vec<usize>) -> Vec<f64> {
         let mut sums = vec![0.0; self.weights];
-        for factor in &self.factors {
-            sums[factor.weight] += self.value(factor, state);
+        for (i, factor) in self.factors.iter().enumerate() {
+            sums[factor.weight] += self.value(i, state);
         }
         sums
     }
 
     fn step(&self, state: &mut Vec<usize>, weights: &[f64], rng: &mut Stream) {
+        let mut logs = vec![0.0; self.sizes.iter().copied().max().unwrap_or(0)];
         for v in 0..self.sizes.len() {
-            let logs: Vec<f64> = (0..self.sizes[v])
-                .map(|value| {
-                    state[v] = value;
-                    let factors = self.around[v].iter().map(|&f| &self.factors[f]);
-                    factors
-                        .map(|f| weights[f.weight] * self.value(f, state))
-                        .sum()
-                })
-                .collect();
-            state[v] = categorical_of_logs(&logs, rng);
+            let logs = &mut logs[..self.sizes[v]];
+            for (value, log) in logs.iter_mut().enumerate() {
+                state[v] = value;
+                let factors = self.around[v].iter();
+                *log = factors
+                    .map(|&f| weights[self.factors[f].weight] * self.value(f, state))
+                    .sum();
+            }
+            state[v] = categorical_of_logs(logs, rng);
         }
     }
 }
