@@ -13,8 +13,8 @@
 //! probability `min(1, exp(wᵀ(f(x') - f(x)) + log q ratio))`.
 //!
 //! # Deviations and readings
-//! - With [`Settings::newton`] a step is the gradient over the information that the chains give of the weights
-//!   ([`information`](super::information)), so that the rate has no unit and correlated features do not slow the ascent.
+//! - With [`Settings::newton`] a step is the gradient over the information that the chains give of the weights,
+//!   half the covariance of `f(x) - f(x')` between examples and the ends of their chains, so that the rate has no unit and correlated features do not slow the ascent.
 //! - Step sizes fall as `rate / (1 + round / decay)`; the result is the mean of the weights over
 //!   the second half of the rounds (Polyak and Juditsky 1992).
 //!

@@ -14,8 +14,8 @@ use crate::shape::{AnnotatedFacade, Facade, Rect, Region};
 use crate::{Error, Result};
 
 /// Outline of the sketch in metres.
-const WIDTH: f64 = 14.0;
-const HEIGHT: f64 = 15.5;
+const WIDTH: f64 = 10.7;
+const HEIGHT: f64 = 13.4;
 
 /// A step of the sequence: its letter, what the user did, and the sketched elements.
 type Step = (char, &'static str, Vec<Element>);
@@ -27,17 +27,17 @@ fn element(class: Class, x: f64, y: f64, width: f64, height: f64) -> Element {
 /// The sketch, and what becomes of it.
 fn steps() -> [Step; 4] {
     let window = |x: f64, y: f64| element(Class::Window, x, y, 1.1, 1.8);
-    let upper = [window(1.2, 8.2), window(3.7, 8.2), window(1.2, 11.4)];
+    let sketch = |second: f64, last: Element| {
+        let windows = [window(1.2, 4.2), window(second, 4.2), window(1.2, 7.4)];
+        windows.into_iter().chain([last]).collect()
+    };
     let door = |x: f64| element(Class::Door, x, 0.0, 1.3, 2.6);
-    let with = |last: Element| upper.iter().copied().chain([last]).collect();
-    let shop = element(Class::Shop, 8.4, 0.0, 2.4, 2.6);
-    let mut moved = vec![window(1.2, 8.2), window(3.1, 8.2), window(1.2, 11.4)];
-    moved.push(shop);
+    let shop = element(Class::Shop, 7.6, 0.0, 2.4, 2.6);
     [
-        ('c', "four elements sketched", with(door(6.2))),
-        ('d', "door moved", with(door(9.0))),
-        ('e', "door made a shop window", with(shop)),
-        ('f', "column moved, so that more fit", moved),
+        ('c', "sketch completed", sketch(3.6, door(4.7))),
+        ('d', "door moved", sketch(3.6, door(8.3))),
+        ('e', "door made a shop", sketch(3.6, shop)),
+        ('f', "column moved", sketch(3.0, shop)),
     ]
 }
 

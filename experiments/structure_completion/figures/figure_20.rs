@@ -50,7 +50,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         left += add_box(&mut scene, name, &front, left)? + APART;
     }
     let size = ctx.budget().choose([120, 60], [1200, 600], [1200, 600]);
-    let camera = framing(&scene, [0.35, -0.3, -0.9], size[0] as f32 / size[1] as f32);
+    let camera = framing(&scene, [0.3, -0.25, -0.9], size[0] as f32 / size[1] as f32);
     let picture = picture_png(&trace(&scene, &camera, size[0], size[1])).map_err(Error::method)?;
     let what = "from left to right: what is observed (the lowest 40 % are hidden), its completion, the truth";
     ctx.attach("figure_20.png", &picture, what)?;

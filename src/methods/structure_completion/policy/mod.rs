@@ -24,7 +24,7 @@
 //!   reaches 0.3 of the size. An empty place blocks, and may be extended.
 //! - γ = 1 and a reward only at the end: its value does not matter.
 //!
-//! Complexity of a candidate of n elements: items are found by place ([`Growing`]), so that an action costs about the same
+//! Complexity of a candidate of n elements: items are found by place, so that an action costs about the same
 //! however many there are; its score n log n.
 
 mod grow;
