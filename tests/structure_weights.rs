@@ -111,7 +111,8 @@ fn weights_come_back_by_the_unbiased_update_only() {
         .collect();
     let settings = Settings {
         rounds: 80,
-        penalty: 1e-3,
+        rate: 0.5,
+        newton: true,
         ..WEIGHTS
     };
     let rmse = |weights: [f64; TERMS]| {

@@ -104,13 +104,14 @@ pub fn figure_18(ctx: &mut Context) -> Result<()> {
     let terms: Vec<usize> = std::iter::once(TERMS).chain(0..TERMS).collect();
     let (_, items, found) = measure(ctx, &terms)?;
     let seed = ctx.seed();
-    let mut figure = Figure::new("Known half of one facade completed with all terms, and with each left out (added elements outlined)", 6)
-        .cell(180.0, 200.0);
+    let mut figure = Figure::new("Known half of one facade completed with all terms, and with each left out, F1 (added elements outlined)", 6)
+        .cell(205.0, 210.0);
     if let (Some(item), Some(found)) = (items.first(), found.first()) {
         let (w, h) = (item.layout.width, item.layout.height);
         figure = figure.panel(panel("truth".into(), w, h, &item.layout.elements, &[]));
         for (f, &left_out) in found.iter().zip(&terms) {
-            let title = format!("{}: {:.2}", title(left_out), f.f1);
+            let name = title(left_out).replace("without", "no");
+            let title = format!("{name}: {:.2}", f.f1);
             figure = figure.panel(shown(item, 0, seed, title, &f.added));
         }
     }

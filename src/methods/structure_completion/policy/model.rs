@@ -24,17 +24,17 @@ const LARGEST: usize = 150;
 /// Policies that each optimization starts from (Sec. 5.2).
 const POLICIES: usize = 10;
 /// Sweeps over a block of a negative.
-const SWEEPS: usize = 1;
-/// Settings of the contrastive divergence by which [`PaperModel::train`] learns. The penalty is a prior: facades of a
-/// database are more regular than any draw, and say little of weights beyond it.
+const SWEEPS: usize = 2;
+/// Settings of the contrastive divergence by which [`PaperModel::train`] learns. It stops early, near the prior: the
+/// facades of a database are more regular than any draw, so that weights that fit them best run off.
 pub const WEIGHTS: Settings = Settings {
-    rounds: 40,
+    rounds: 60,
     moves: 1,
     persistent: false,
-    rate: 0.5,
-    decay: 15.0,
-    penalty: 3e-2,
-    newton: true,
+    rate: 0.3,
+    decay: 30.0,
+    penalty: 1e-3,
+    newton: false,
 };
 /// Labels with sizes, and ratios of spacing to size, that are kept.
 const EXEMPLARS: usize = 400;
