@@ -88,9 +88,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let (w, h) = (item.layout.width, item.layout.height);
         let name = item.layout.name.clone();
         figure = figure.panel(panel(name, w, h, &item.layout.elements, &[]));
-        for s in 0..PICTURED {
-            let (partial, _) = observe(&item.layout, SHARES[s], seed, *k as u64);
-            let title = format!("{:.0} % seen: F1 {:.2}", 100.0 * SHARES[s], found.f1[s][0]);
+        for (s, share) in SHARES.into_iter().enumerate().take(PICTURED) {
+            let (partial, _) = observe(&item.layout, share, seed, *k as u64);
+            let title = format!("{:.0} % seen: F1 {:.2}", 100.0 * share, found.f1[s][0]);
             figure = figure.panel(panel(title, w, h, &partial.observed, &found.added[s]));
         }
     }
