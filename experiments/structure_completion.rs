@@ -6,12 +6,15 @@ pub mod data;
 mod figure_12;
 mod figure_19;
 mod figure_9;
+mod figures;
 mod folds;
 mod optimality;
 mod picture;
 mod plausibility;
+mod published;
 mod results;
 mod timing;
+mod weights;
 
 use super::{Artefact, Experiment};
 use crate::report::Row;
@@ -35,9 +38,19 @@ const ARTEFACTS: &[Artefact] = &[
         run: timing::run,
     },
     Artefact {
+        name: "weights",
+        title: "known weights recovered from drawn layouts (Sec. 4.4), by an unbiased update and by Eq. 20",
+        run: weights::run,
+    },
+    Artefact {
         name: "optimality",
         title: "the chain over grid lines against enumeration and annealing",
         run: optimality::run,
+    },
+    Artefact {
+        name: "figure_8",
+        title: "optimized policies against a fixed one",
+        run: figures::figure_8::run,
     },
     Artefact {
         name: "figure_9",
@@ -45,14 +58,59 @@ const ARTEFACTS: &[Artefact] = &[
         run: figure_9::run,
     },
     Artefact {
+        name: "figure_10",
+        title: "ever fewer observed elements",
+        run: figures::figure_10::run,
+    },
+    Artefact {
+        name: "figure_11",
+        title: "observed elements in two regions apart",
+        run: figures::figure_11::run,
+    },
+    Artefact {
         name: "figure_12",
         title: "several completions of one facade",
         run: figure_12::run,
     },
     Artefact {
+        name: "figure_13",
+        title: "limits: irregular facades",
+        run: figures::figure_13::run,
+    },
+    Artefact {
+        name: "figure_14",
+        title: "simulated annealing on the score",
+        run: figures::figure_14::run,
+    },
+    Artefact {
+        name: "figure_15",
+        title: "a sketched facade, edited and completed by commands",
+        run: figures::figure_15::run,
+    },
+    Artefact {
+        name: "figure_16",
+        title: "the weights against the size of the training set",
+        run: figures::figure_16::run,
+    },
+    Artefact {
+        name: "figure_17",
+        title: "completions without the symmetry term",
+        run: figures::figure_18::figure_17,
+    },
+    Artefact {
+        name: "figure_18",
+        title: "completions with each scoring function left out",
+        run: figures::figure_18::figure_18,
+    },
+    Artefact {
         name: "figure_19",
         title: "low-rank completion and ours",
         run: figure_19::run,
+    },
+    Artefact {
+        name: "figure_20",
+        title: "a completed facade on a box (with Fig. 1 and 21)",
+        run: figures::figure_20::run,
     },
 ];
 

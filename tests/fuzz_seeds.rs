@@ -9,6 +9,7 @@ use edifice::io::{
 };
 use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
+use edifice::methods::structure_completion::model::Model as CompletionModel;
 use edifice::model::network::Network;
 
 /// Whether the reader of that name takes the bytes.
@@ -24,6 +25,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
         }
         "cmp_xml" => cmp_xml::parse(bytes, path).is_ok_and(|c| c.label_grid(30.0, 40.0).is_ok()),
         "coco" => coco::parse(bytes, path, None).is_ok(),
+        "completion_model" => text.is_some_and(|t| CompletionModel::from_json(t).is_ok()),
         "facade_json" => facade_json::parse(bytes, path).is_ok(),
         "grammar_cga" => grammar_cga::parse(bytes, path).is_ok(),
         "grammar_json" => grammar_json::parse(bytes, path).is_ok(),
@@ -39,6 +41,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
             parse_json::<ModelFile>(bytes, path).is_ok_and(|file| Model::try_from(file).is_ok())
         }
         "network_json" => text.is_some_and(|t| Network::from_json(t).is_ok()),
+        "partial_facade" => facade_json::parse_annotated(bytes, path).is_ok(),
         other => panic!("no reader for fuzz/seeds/{other}"),
     }
 }
@@ -65,5 +68,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 15);
+    assert_eq!(targets, 17);
 }

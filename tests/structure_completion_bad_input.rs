@@ -128,3 +128,60 @@ fn bad_input_is_told_and_nothing_is_written() {
         "{message}"
     );
 }
+
+#[test]
+fn an_impossible_pin_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    // An added window on an observed one, and one on known wall.
+    for (x, y) in [(12, 62), (200, 5)] {
+        let added = format!(
+            ", {{ \"label\": \"window\", \"x\": {x}, \"y\": {y}, \"width\": 20, \"height\": 30, \"id\": \"mine\", \"observed\": false }}"
+        );
+        let unknown =
+            ", \"unknown\": [ { \"x\": 125, \"y\": 60, \"width\": 115, \"height\": 160 } ]";
+        partial(at, &added, unknown);
+        let words = [
+            "facade",
+            "complete",
+            "p.facade.json",
+            "--pin",
+            "mine",
+            "-o",
+            "a.facade.json",
+        ];
+        let message = complaint(at, &words, 1);
+        assert!(message.contains("cannot stay"), "{message}");
+        assert!(!at.join("a.facade.json").exists());
+    }
+}
+
+#[test]
+fn nothing_to_learn_from_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    std::fs::create_dir(at.join("empty")).expect("a folder");
+    let train = |input: &str| {
+        complaint(
+            at,
+            &["facade", "train", input, "-o", "m.completion.json"],
+            1,
+        )
+    };
+    assert!(train("empty").contains("no .facade.json"));
+    assert!(train("nowhere").contains("nowhere"));
+    assert!(!at.join("m.completion.json").exists());
+    // A mask that is no image, and a folder that cannot be made.
+    partial(at, "", "");
+    let complete = |words: &[&str]| {
+        let all = ["facade", "complete", "p.facade.json"];
+        complaint(at, &all.iter().chain(words).copied().collect::<Vec<_>>(), 1)
+    };
+    complete(&["--mask", "p.facade.json", "-o", "a.facade.json"]);
+    complete(&["-o", "p.facade.json/answers"]);
+    for extent in ["0", "-5", "nan", "inf"] {
+        let width = format!("--width={extent}");
+        assert!(complete(&[&width, "-o", "a.facade.json"]).contains("--width"));
+    }
+    assert!(!at.join("a.facade.json").exists());
+}

@@ -291,3 +291,50 @@ fn a_model_is_learnt_from_files() {
         .contains("one facade")
     );
 }
+
+/// The sketches that the report attaches to Fig. 15 give, by the printed commands, as many elements as its table says.
+#[test]
+fn the_edits_of_figure_15_are_commands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    output(
+        at,
+        &[
+            "reproduce",
+            "structure_completion",
+            "--only",
+            "figure_15",
+            "--budget",
+            "smoke",
+            "--out",
+            "report",
+        ],
+    );
+    let report = at.join("report/structure_completion");
+    let text = std::fs::read_to_string(report.join("figure_15.md")).expect("the artefact");
+    let commands: Vec<&str> = text
+        .lines()
+        .filter_map(|l| l.strip_prefix("edifice "))
+        .collect();
+    assert_eq!(commands.len(), 4);
+    let counts = std::fs::read_to_string(report.join("figure_15.csv")).expect("its numbers");
+    for command in commands {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        output(&report, &words);
+        let out = words.last().expect("a file");
+        let whole = read(&report.join(out));
+        let regions = whole["regions"].as_array().expect("regions");
+        for class in ["window", "door", "balcony", "shop"] {
+            let found = regions.iter().filter(|r| r["label"] == class).count();
+            let row = format!("{}/{class},", &out[..1]);
+            let line = counts.lines().find(|l| l.contains(&row)).expect("a row");
+            let value: f64 = line
+                .split(',')
+                .nth(6)
+                .expect("a value")
+                .parse()
+                .expect("a number");
+            assert_eq!(value, found as f64, "{line}");
+        }
+    }
+}

@@ -193,7 +193,9 @@ fn answer(unit: &Unit, run_seed: u64) -> Result<Option<Answer>> {
                 .map(|c| agreement(&added(Some(c)), &hidden, 0.5).f1);
             put("f1_best_of_5", each.fold(0.0, f64::max));
             put("distinct_of_5", completions.len() as f64);
-            put("calibration", inside(&windows, &hidden));
+            if let Some(inside) = inside(&windows, &hidden) {
+                put("calibration", inside);
+            }
         }
         let whole: Vec<Element> = partial.observed.iter().copied().chain(first).collect();
         made.push((
@@ -215,16 +217,18 @@ fn added(completion: Option<&Completion>) -> Vec<Element> {
         .collect()
 }
 
-/// Whether the true number of windows lies between the 10 % and the 90 % quantile of the pool.
-fn inside(windows: &[(usize, f64)], hidden: &[Element]) -> f64 {
+/// Whether the true number of windows lies between the 10 % and the 90 % quantile of the pool; `None` where the pool
+/// has no layout to count.
+fn inside(windows: &[(usize, f64)], hidden: &[Element]) -> Option<f64> {
     let truth = hidden.iter().filter(|e| e.class == Class::Window).count();
-    let share = |test: &dyn Fn(usize) -> bool| {
-        windows
-            .iter()
-            .filter(|w| test(w.0))
-            .map(|w| w.1)
-            .sum::<f64>()
+    let weight = |test: &dyn Fn(usize) -> bool| -> f64 {
+        windows.iter().filter(|w| test(w.0)).map(|w| w.1).sum()
     };
-    let inside = share(&|n| n < truth) <= 0.9 && share(&|n| n > truth) <= 0.9;
-    f64::from(u8::from(inside))
+    // The weights are shares of the pool's origins, some of which a facade may lack.
+    let total = weight(&|_| true);
+    if total <= 0.0 {
+        return None;
+    }
+    let inside = weight(&|n| n < truth) <= 0.9 * total && weight(&|n| n > truth) <= 0.9 * total;
+    Some(f64::from(u8::from(inside)))
 }

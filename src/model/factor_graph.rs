@@ -13,6 +13,8 @@
 //! probability `min(1, exp(wᵀ(f(x') - f(x)) + log q ratio))`.
 //!
 //! # Deviations and readings
+//! - With [`Settings::newton`] a step is the gradient over the information that the chains give of the weights,
+//!   half the covariance of `f(x) - f(x')` between examples and the ends of their chains, so that the rate has no unit and correlated features do not slow the ascent.
 //! - Step sizes fall as `rate / (1 + round / decay)`; the result is the mean of the weights over
 //!   the second half of the rounds (Polyak and Juditsky 1992).
 //!
@@ -23,6 +25,7 @@ use rayon::prelude::*;
 
 use super::elimination::{self, BucketTree, Mode};
 use super::error::ModelError;
+use super::information::Information;
 use super::linalg::categorical_of_logs;
 use crate::rng::{Stream, stream};
 
@@ -257,6 +260,8 @@ pub struct Settings {
     pub decay: f64,
     /// λ of the penalty `λ/2 |w|²` per example.
     pub penalty: f64,
+    /// Whether steps are Newton's, with the information that the chains give of the weights.
+    pub newton: bool,
 }
 
 impl Default for Settings {
@@ -268,6 +273,7 @@ impl Default for Settings {
             rate: 0.1,
             decay: 100.0,
             penalty: 1e-4,
+            newton: false,
         }
     }
 }
@@ -284,11 +290,10 @@ pub fn gradient<C: Chain>(
     moves: usize,
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
-    let target = mean_features(chain, data)?;
+    let examples = all_features(chain, data)?;
     let mut states = data.to_vec();
     advance(chain, &mut states, weights, moves, seed, 0);
-    let now = mean_features(chain, &states)?;
-    Ok(target.iter().zip(now).map(|(t, n)| t - n).collect())
+    Ok(mean_difference(&examples, &all_features(chain, &states)?))
 }
 
 /// Fits the weights to examples, starting at zero.
@@ -312,8 +317,9 @@ pub fn fit<C: Chain>(
             "rounds, moves, rate and decay must be positive",
         ));
     }
-    let target = mean_features(chain, data)?;
+    let examples = all_features(chain, data)?;
     let mut weights = vec![0.0; chain.weights()];
+    let mut information = Information::new(weights.len());
     let mut mean = vec![0.0; weights.len()];
     let mut states = data.to_vec();
     let half = settings.rounds / 2;
@@ -329,10 +335,17 @@ pub fn fit<C: Chain>(
             seed,
             round as u64,
         );
-        let now = mean_features(chain, &states)?;
+        let negatives = all_features(chain, &states)?;
+        let gap = mean_difference(&examples, &negatives);
+        let ascent = weights.iter().zip(&gap);
+        let mut step: Vec<f64> = ascent.map(|(w, g)| g - settings.penalty * w).collect();
+        if settings.newton {
+            information.observe(&examples, &negatives, &gap);
+            step = information.newton(&step, settings.penalty);
+        }
         let rate = settings.rate / (1.0 + round as f64 / settings.decay);
-        for (w, (t, n)) in weights.iter_mut().zip(target.iter().zip(&now)) {
-            *w += rate * (t - n - settings.penalty * *w);
+        for (w, s) in weights.iter_mut().zip(&step) {
+            *w += rate * s;
         }
         if round >= half {
             for (m, w) in mean.iter_mut().zip(&weights) {
@@ -365,12 +378,12 @@ fn advance<C: Chain>(
     });
 }
 
-fn mean_features<C: Chain>(chain: &C, states: &[C::State]) -> Result<Vec<f64>, ModelError> {
+/// Features of all states, row by row.
+fn all_features<C: Chain>(chain: &C, states: &[C::State]) -> Result<Vec<Vec<f64>>, ModelError> {
     if states.is_empty() {
         return Err(ModelError::Empty { what: "examples" });
     }
     let all: Vec<Vec<f64>> = states.par_iter().map(|s| chain.features(s)).collect();
-    let mut mean = vec![0.0; chain.weights()];
     for (row, features) in all.iter().enumerate() {
         if let Some(i) = features.iter().position(|f| !f.is_finite()) {
             return Err(ModelError::NotFinite {
@@ -379,11 +392,19 @@ fn mean_features<C: Chain>(chain: &C, states: &[C::State]) -> Result<Vec<f64>, M
                 value: features[i],
             });
         }
-        for (m, f) in mean.iter_mut().zip(features) {
-            *m += f / states.len() as f64;
+    }
+    Ok(all)
+}
+
+/// Mean of a row of `a` less the row of `b`.
+fn mean_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<f64> {
+    let mut mean = vec![0.0; a.first().map_or(0, Vec::len)];
+    for (x, y) in a.iter().zip(b) {
+        for (m, (x, y)) in mean.iter_mut().zip(x.iter().zip(y)) {
+            *m += (x - y) / a.len() as f64;
         }
     }
-    Ok(mean)
+    mean
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

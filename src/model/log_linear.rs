@@ -8,7 +8,9 @@
 //!   the update unbiased as its moves grow or, persistent, as the step shrinks;
 //! - another one (for instance the best of some candidates) makes it a heuristic.
 //!
-//! [`fit`] divides each feature by its standard deviation over the data before the ascent, so that one
+//! [`Settings::newton`] makes the update one that is as good for correlated features.
+//!
+//! [`LogLinear::fit`] divides each feature by its standard deviation over the data before the ascent, so that one
 //! rate serves for all and the weights do not depend on the features' units.
 
 use super::ModelError;

@@ -49,6 +49,7 @@ pub(crate) mod gaussian;
 pub mod gmm;
 pub(crate) mod graph;
 pub mod hierarchy;
+mod information;
 pub(crate) mod kmeans;
 pub(crate) mod linalg;
 pub mod log_linear;

@@ -119,7 +119,8 @@ pub fn anneal(
     settings: &Settings,
     seed: u64,
 ) -> Result<(Vec<Element>, f64), AnnealingError> {
-    let scored = Scored::new(&scene.model.score, scene.facade, partial.observed.clone());
+    let (model, observed) = (&scene.model.score, partial.observed.clone());
+    let scored = Scored::weighted(model, scene.weights, scene.facade, observed);
     let mut landscape = Completions {
         scene,
         partial,

@@ -3,56 +3,16 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use super::scene::{Extent, Item, Scene};
+use super::growing::{Growing, most};
+use super::scene::{Item, Scene};
 use super::{Direction, FAILURES, Policy};
 use crate::methods::structure_completion::layout::{Class, Element};
 use crate::shape::Rect;
 
-/// Two elements are on one line where their centres differ by less than this share of the size.
-const SAME_LINE: f64 = 0.35;
 /// How far an element is snapped, relative to its size.
 const SNAP: f64 = 0.3;
 /// Standard deviation of the random offset, relative to the spacing.
 const OFFSET: f64 = 0.1;
-/// Ratio of sizes up to which a new element belongs to a grid of its class.
-const SAME_SIZE: f64 = 1.35;
-/// A candidate is complete at this many elements and empty places for each observed one, and some more.
-const MOST: (usize, usize) = (8, 60);
-
-/// A layout as it grows.
-#[derive(Debug, Clone)]
-pub struct Growing {
-    pub(super) items: Vec<Item>,
-    pub(super) grids: Vec<Extent>,
-}
-
-impl Growing {
-    /// The observed layout.
-    pub fn new(scene: &Scene) -> Self {
-        Self {
-            items: scene.items.clone(),
-            grids: scene.grids.clone(),
-        }
-    }
-
-    /// All elements, the observed ones first.
-    pub fn elements(&self) -> Vec<Element> {
-        let real = self.items.iter().filter(|i| !i.empty);
-        real.map(|i| i.element).collect()
-    }
-
-    pub(super) fn add(&mut self, item: Item) {
-        match self.grids.get_mut(item.grid as usize) {
-            Some(extent) => extent.include(&item.element),
-            None => self.grids.push(Extent::of(&item.element)),
-        }
-        self.items.push(item);
-    }
-
-    fn fits(&self, scene: &Scene, element: &Element) -> bool {
-        scene.open.allows(element) && self.items.iter().all(|i| !i.element.excludes(element))
-    }
-}
 
 /// A candidate of a policy: all elements, the observed ones first.
 pub fn grow<R: Rng>(scene: &Scene, policy: &Policy, rng: &mut R) -> Vec<Element> {
@@ -70,7 +30,7 @@ pub(super) fn next<R: Rng>(
     policy: &Policy,
     rng: &mut R,
 ) -> Option<Item> {
-    if growing.items.is_empty() || growing.items.len() >= MOST.0 * scene.items.len() + MOST.1 {
+    if growing.items.is_empty() || growing.items.len() >= most(scene.start.items.len()) {
         return None;
     }
     (0..FAILURES).find_map(|_| action(scene, growing, policy, rng))
@@ -86,7 +46,7 @@ fn action<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R
     let (class, size, empty) = label(scene, seed, policy, rng);
     let grid = match (class, size) == (seed.element.class, seed.size()) {
         true => seed.grid,
-        false => grid_of(growing, class, size),
+        false => growing.grid_of(&Element::new(class, Rect::new(0.0, 0.0, size[0], size[1]))),
     };
     let snap = rng.random::<f64>() < lambda[9];
     let place = |axis: usize, forward: bool, rng: &mut R| {
@@ -94,7 +54,7 @@ fn action<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R
         let mut at = seed.centre;
         at[axis] += if forward { step } else { -step };
         if snap {
-            at[axis] = snapped(growing, at[axis], axis, SNAP * size[axis]);
+            at[axis] = growing.snapped(at[axis], axis, SNAP * size[axis]);
         }
         at
     };
@@ -114,7 +74,7 @@ fn action<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R
             Direction::Along(axis, forward) => element(place(axis, forward, rng)),
             Direction::Concave => {
                 let turn = rng.random_range(0..4);
-                let inside = growing.grids[seed.grid as usize];
+                let inside = growing.extent(seed.grid);
                 (0..4).find_map(|i| {
                     let side = (i + turn) % 4;
                     let at = place(side / 2, side % 2 == 0, rng);
@@ -131,30 +91,10 @@ fn action<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R
 
 /// A seed at random, or one of highest rank (Eq. 23).
 fn seed<'s, R: Rng>(scene: &Scene, growing: &'s Growing, policy: &Policy, rng: &mut R) -> &'s Item {
-    let items = &growing.items;
-    let start = rng.random_range(0..items.len());
     if rng.random::<f64>() < policy.0[0] {
-        return &items[start];
+        return &growing.items[rng.random_range(0..growing.items.len())];
     }
-    let area = scene.facade[0] * scene.facade[1];
-    let rank = |item: &Item| {
-        let grid = &growing.grids[item.grid as usize];
-        let r = &item.element.rect;
-        let inside = grid.low[0] < r.x
-            && r.right() < grid.high[0]
-            && grid.low[1] < r.y
-            && r.top() < grid.high[1];
-        policy.0[1] * f64::from(u8::from(inside)) + (1.0 - policy.0[1]) * (1.0 - grid.area() / area)
-    };
-    // The first of the highest rank, counted from a random place.
-    let mut best = (start, rank(&items[start]));
-    for i in (start + 1..items.len()).chain(0..start) {
-        let r = rank(&items[i]);
-        if r > best.1 {
-            best = (i, r);
-        }
-    }
-    &items[best.0]
+    growing.highest(policy.0[1], scene.facade[0] * scene.facade[1], rng)
 }
 
 /// Class and size of the new element, and whether it is an empty place.
@@ -182,20 +122,6 @@ fn label<R: Rng>(
     }
 }
 
-/// The grid that a new element of another label joins, or a new one.
-fn grid_of(growing: &Growing, class: Class, size: [f64; 2]) -> u32 {
-    let similar = |item: &&Item| {
-        let own = item.size();
-        let near = |axis: usize| {
-            let ratio = own[axis] / size[axis];
-            ratio < SAME_SIZE && ratio > 1.0 / SAME_SIZE
-        };
-        item.element.class == class && near(0) && near(1)
-    };
-    let known = growing.items.iter().find(similar);
-    known.map_or(growing.grids.len() as u32, |item| item.grid)
-}
-
 /// Spacing between the seed and the new element.
 fn spacing<R: Rng>(
     scene: &Scene,
@@ -207,7 +133,7 @@ fn spacing<R: Rng>(
 ) -> f64 {
     let method = policy.option(7, 8, rng);
     if method == 0
-        && let Some(step) = opposite(growing, seed, axis, forward)
+        && let Some(step) = growing.opposite(seed, axis, forward)
     {
         return step;
     }
@@ -224,34 +150,6 @@ fn spacing<R: Rng>(
         2 => step * (1.0 + OFFSET * rng.sample::<f64, _>(StandardNormal)),
         _ => step,
     }
-}
-
-/// Distance of the nearest element of the same grid on the seed's line, on the other side.
-fn opposite(growing: &Growing, seed: &Item, axis: usize, forward: bool) -> Option<f64> {
-    let across = 1 - axis;
-    let tolerance = SAME_LINE * seed.size()[across];
-    let mut least = f64::INFINITY;
-    for item in growing.items.iter().filter(|i| i.grid == seed.grid) {
-        let ahead = seed.centre[axis] - item.centre[axis];
-        let distance = if forward { ahead } else { -ahead };
-        let aligned = (item.centre[across] - seed.centre[across]).abs() < tolerance;
-        if aligned && distance > SAME_LINE * seed.size()[axis] && distance < least {
-            least = distance;
-        }
-    }
-    least.is_finite().then_some(least)
-}
-
-/// The nearest centre of another element within reach, else the value itself.
-fn snapped(growing: &Growing, value: f64, axis: usize, reach: f64) -> f64 {
-    let mut best = (reach, value);
-    for item in &growing.items {
-        let distance = (item.centre[axis] - value).abs();
-        if distance < best.0 {
-            best = (distance, item.centre[axis]);
-        }
-    }
-    best.1
 }
 
 /// The mirror image of the seed about the middle of the facade.

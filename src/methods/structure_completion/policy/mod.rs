@@ -24,16 +24,19 @@
 //!   reaches 0.3 of the size. An empty place blocks, and may be extended.
 //! - γ = 1 and a reward only at the end: its value does not matter.
 //!
-//! Complexity of a candidate: n elements tried against n others for each action, n² in all.
+//! Complexity of a candidate of n elements: items are found by place, so that an action costs about the same
+//! however many there are; its score n log n.
 
 mod grow;
+mod growing;
 mod model;
 mod optimize;
+mod places;
 mod process;
 mod scene;
 
 pub use grow::grow;
-pub use model::PaperModel;
+pub use model::{PaperModel, WEIGHTS, weight_states};
 pub use optimize::{Budget, Found, optimize};
 pub use process::{Growth, rollouts};
 pub use scene::Scene;

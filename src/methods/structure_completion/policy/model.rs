@@ -5,15 +5,16 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use super::optimize::{Budget, optimize};
-use super::{PARAMETERS, Policy, Scene};
+use super::{PARAMETERS, Policy, Scene, grow};
 use crate::methods::structure_completion::layout::{Class, Layout};
+use crate::methods::structure_completion::partial::PartialLayout;
 use crate::methods::structure_completion::score::{
-    ScoreModel, Sites, Training, grids, learn_weights,
+    ScoreModel, Sites, TERMS, Training, grids, learn_weights,
 };
 use crate::methods::structure_completion::task::Task;
 use crate::model::ModelError;
 use crate::model::factor_graph::Settings;
-use crate::rng::stream;
+use crate::rng::{Stream, stream};
 
 /// Facades that weights are learnt from, and facades that policies are learnt on.
 const WEIGHT_FACADES: usize = 100;
@@ -22,6 +23,19 @@ const POLICY_FACADES: usize = 12;
 const LARGEST: usize = 150;
 /// Policies that each optimization starts from (Sec. 5.2).
 const POLICIES: usize = 10;
+/// Sweeps over a block of a negative.
+const SWEEPS: usize = 2;
+/// Settings of the contrastive divergence by which [`PaperModel::train`] learns. It stops early, near the prior: the
+/// facades of a database are more regular than any draw, so that weights that fit them best run off.
+pub const WEIGHTS: Settings = Settings {
+    rounds: 60,
+    moves: 1,
+    persistent: false,
+    rate: 0.3,
+    decay: 30.0,
+    penalty: 1e-3,
+    newton: false,
+};
 /// Labels with sizes, and ratios of spacing to size, that are kept.
 const EXEMPLARS: usize = 400;
 
@@ -44,6 +58,14 @@ pub struct PaperModel {
     pub(super) spacings: [Vec<f64>; 2],
 }
 
+/// The states that weights are learnt from: whole layouts with their spurious sites.
+pub fn weight_states(layouts: &[&Layout], seed: u64) -> Vec<Sites> {
+    let states = layouts.iter().enumerate();
+    let state =
+        |(i, l): (usize, &&Layout)| Sites::of_layout(l, &mut stream(seed, "sites", i as u64));
+    states.map(state).collect()
+}
+
 impl PaperModel {
     /// Learns densities, weights and initial policies from whole layouts.
     ///
@@ -56,25 +78,68 @@ impl PaperModel {
             chosen.retain(|l| l.elements.len() <= LARGEST);
         }
         chosen.shuffle(&mut stream(seed, "database", 0));
-        let states: Vec<Sites> = (chosen.iter().take(WEIGHT_FACADES).enumerate())
-            .map(|(i, l)| Sites::of_layout(l, &mut stream(seed, "sites", i as u64)))
-            .collect();
-        model.score.weights =
-            learn_weights(&model.score, &states, None, &Self::weight_settings(), seed)?;
+        let states = weight_states(&chosen[..chosen.len().min(WEIGHT_FACADES)], seed);
+        model.score.weights = Self::unbiased_weights(&model.score, &states, &WEIGHTS, seed)?;
         model.learn_policies(&chosen, seed);
         Ok(model)
     }
 
-    /// Settings of the contrastive divergence that [`PaperModel::train`] uses.
-    pub fn weight_settings() -> Settings {
-        Settings {
-            rounds: 60,
-            moves: 1,
-            persistent: false,
-            rate: 0.3,
-            decay: 30.0,
-            penalty: 1e-3,
-        }
+    /// Weights by contrastive divergence whose negatives are layouts of which a block was resampled given the rest.
+    ///
+    /// # Errors
+    /// As [`learn_weights`].
+    pub fn unbiased_weights(
+        score: &ScoreModel,
+        data: &[Sites],
+        settings: &Settings,
+        seed: u64,
+    ) -> Result<[f64; TERMS], ModelError> {
+        let sampler = |x: &mut Sites, weights: &[f64; TERMS], rng: &mut Stream| {
+            x.resample_block(score, weights, SWEEPS, rng);
+        };
+        learn_weights(score, data, sampler, settings, seed)
+    }
+
+    /// Weights by the update of Eq. 20: the negative is the completion of the layout without a tenth of its elements, the
+    /// best of `candidates` ones of the model's policies (or of fixed ones where it has none) under the weights so far. It
+    /// is no sample of the model, so that even weights of layouts drawn from the model do not come back.
+    ///
+    /// # Errors
+    /// As [`learn_weights`].
+    pub fn printed_weights(
+        &self,
+        data: &[Layout],
+        candidates: usize,
+        settings: &Settings,
+        seed: u64,
+    ) -> Result<[f64; TERMS], ModelError> {
+        let sampler = |x: &mut Layout, weights: &[f64; TERMS], rng: &mut Stream| {
+            x.elements.shuffle(rng);
+            let kept = x.elements.len() - x.elements.len().div_ceil(10);
+            let partial = PartialLayout {
+                width: x.width,
+                height: x.height,
+                observed: x.elements[..kept].to_vec(),
+                unknown: None,
+                forbidden: Vec::new(),
+            };
+            let mut scene = Scene::new(self, &partial);
+            scene.weights = *weights;
+            let candidate = |rng: &mut Stream| {
+                let known = self.policies.len();
+                let policy = match known {
+                    0 => Policy::FIXED,
+                    n => self.policies[rng.random_range(0..n)],
+                };
+                let elements = grow(&scene, &policy, rng);
+                (scene.score(&elements), elements)
+            };
+            let all = (0..candidates.max(1)).map(|_| candidate(rng));
+            if let Some((_, best)) = all.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                x.elements = best;
+            }
+        };
+        learn_weights(&self.score, data, sampler, settings, seed)
     }
 
     /// Densities only: weights of 1, and no initial policies.

@@ -78,7 +78,7 @@ impl Search<'_> {
         match self.best.get_mut(at) {
             Some(same) if same.score == score => same.times += 1,
             _ if at < self.keep => {
-                let added = elements[self.scene.items.len()..].to_vec();
+                let added = elements[self.scene.start.items.len()..].to_vec();
                 let times = 1;
                 self.best.insert(
                     at,
@@ -103,8 +103,7 @@ impl Breed for Search<'_> {
         let mut sum = 0.0;
         for _ in 0..self.draws {
             let elements = grow(self.scene, policy, &mut self.rng);
-            let model = &self.scene.model.score;
-            let score = model.score(&model.evaluate(self.scene.facade, &elements).features);
+            let score = self.scene.score(&elements);
             self.note(score, &elements);
             self.made += 1;
             sum += score;

@@ -6,7 +6,8 @@
 
 use rand::Rng;
 
-use super::grow::{Growing, next};
+use super::grow::next;
+use super::growing::Growing;
 use super::scene::Item;
 use super::{Policy, Scene};
 use crate::methods::structure_completion::layout::Element;
@@ -28,9 +29,7 @@ pub struct Walk {
 
 impl Growth<'_> {
     fn loss(&self, growing: &Growing) -> f64 {
-        let model = &self.0.model.score;
-        let evaluation = model.evaluate(self.0.facade, &growing.elements());
-        -model.score(&evaluation.features)
+        -self.0.score(&growing.elements())
     }
 }
 

@@ -2,13 +2,14 @@
 
 use rand::{Rng, RngExt};
 
+use super::growing::Growing;
 use super::model::{Exemplar, PaperModel};
 use crate::methods::structure_completion::layout::{Class, Element};
 use crate::methods::structure_completion::partial::PartialLayout;
-use crate::methods::structure_completion::score::grids;
+use crate::methods::structure_completion::score::{TERMS, grids};
 
 /// Bounding box of a grid as it grows.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
     pub low: [f64; 2],
     pub high: [f64; 2],
@@ -29,12 +30,14 @@ pub(super) struct Item {
 pub struct Scene<'a> {
     /// The model that rewards and that knows the database.
     pub model: &'a PaperModel,
+    /// Weights of the scoring functions; the model's unless changed.
+    pub weights: [f64; TERMS],
     /// Extent of the facade.
     pub facade: [f64; 2],
     /// Where elements may be added; without the observed elements, which are among the items.
     pub(super) open: PartialLayout,
-    pub(super) items: Vec<Item>,
-    pub(super) grids: Vec<Extent>,
+    /// The observed layout.
+    pub(super) start: Growing,
     /// Observed spacings along each axis.
     pub(super) spacings: [Vec<f64>; 2],
     /// Observed elements as (class, width, height), those of the database scaled to this facade.
@@ -63,6 +66,12 @@ impl Extent {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
 
+    /// Whether an element is inside, and not on the boundary.
+    pub fn surrounds(&self, element: &Element) -> bool {
+        let other = Self::of(element);
+        (0..2).all(|axis| self.low[axis] < other.low[axis] && other.high[axis] < self.high[axis])
+    }
+
     /// Whether a point is inside.
     pub fn holds(&self, at: [f64; 2]) -> bool {
         (0..2).all(|axis| self.low[axis] < at[axis] && at[axis] < self.high[axis])
@@ -86,6 +95,12 @@ impl Item {
 }
 
 impl Scene<'_> {
+    /// The reward of a candidate.
+    pub fn score(&self, elements: &[Element]) -> f64 {
+        let features = self.model.score.evaluate(self.facade, elements).features;
+        self.weights.iter().zip(features).map(|(w, f)| w * f).sum()
+    }
+
     /// Class and size of an observed element or of one of the database, each with probability one half.
     pub fn random_label<R: Rng>(&self, rng: &mut R) -> Option<(Class, [f64; 2])> {
         let from = match rng.random::<bool>() && !self.observed.is_empty() {
@@ -100,13 +115,10 @@ impl Scene<'_> {
 impl<'a> Scene<'a> {
     /// Prepares a partial layout. Without observed elements nothing can be extended: candidates are empty.
     pub fn new(model: &'a PaperModel, partial: &PartialLayout) -> Self {
-        let (mut items, mut extents): (Vec<Item>, Vec<Extent>) = (Vec::new(), Vec::new());
+        let mut items = Vec::new();
         let mut spacings = [Vec::new(), Vec::new()];
+        let facade = [partial.width, partial.height];
         for (index, grid) in grids(partial.width, &partial.observed).iter().enumerate() {
-            extents.push(Extent {
-                low: grid.low,
-                high: grid.high,
-            });
             for &member in &grid.members {
                 let element = partial.observed[member as usize];
                 items.push(Item::new(element, index as u32, false));
@@ -134,13 +146,13 @@ impl<'a> Scene<'a> {
         };
         Self {
             model,
-            facade: [partial.width, partial.height],
+            weights: model.score.weights,
+            facade,
             open: PartialLayout {
                 observed: Vec::new(),
                 ..partial.clone()
             },
-            items,
-            grids: extents,
+            start: Growing::of_items(facade, items),
             spacings,
             observed,
             database: model.exemplars.iter().map(scaled).collect(),

@@ -8,6 +8,8 @@
 //! The unbiased sampler takes a block of a tenth of the sites and resamples its attributes one by one
 //! given all else, by Metropolis with uniform proposals, which leaves `p(x; w)` invariant.
 
+use std::borrow::Cow;
+
 use rand::RngExt;
 use rand::seq::SliceRandom;
 
@@ -23,6 +25,13 @@ use crate::shape::Rect;
 const OFFSETS: [f64; 5] = [0.0, -0.2, -0.1, 0.1, 0.2];
 /// Sizes relative to the data's.
 const SIZES: [f64; 3] = [1.0, 0.7, 1.4];
+/// Number of values of each attribute: offset along x and y, size, shift of the class.
+const VALUES: [u8; 4] = [
+    OFFSETS.len() as u8,
+    OFFSETS.len() as u8,
+    SIZES.len() as u8,
+    4,
+];
 /// Share of spurious sites, and of the sites in a block.
 const SPURIOUS: f64 = 0.2;
 const BLOCK: f64 = 0.1;
@@ -43,8 +52,32 @@ pub struct Sites {
     sites: Vec<Site>,
 }
 
-/// How negatives are drawn.
-pub type Sampler<'a> = dyn Fn(&mut Sites, &[f64; TERMS], &mut Stream) + Sync + 'a;
+/// A layout that weights are learnt from.
+pub trait State: Clone + Send + Sync {
+    /// Extent of the facade.
+    fn facade(&self) -> [f64; 2];
+    /// Its elements.
+    fn elements(&self) -> Cow<'_, [Element]>;
+}
+
+impl State for Layout {
+    fn facade(&self) -> [f64; 2] {
+        [self.width, self.height]
+    }
+    fn elements(&self) -> Cow<'_, [Element]> {
+        Cow::Borrowed(&self.elements)
+    }
+}
+
+impl State for Sites {
+    fn facade(&self) -> [f64; 2] {
+        self.facade
+    }
+    fn elements(&self) -> Cow<'_, [Element]> {
+        let present = self.sites.iter().filter(|s| s.present);
+        Cow::Owned(present.map(|s| s.element(self.facade)).collect())
+    }
+}
 
 impl Site {
     fn element(&self, facade: [f64; 2]) -> Element {
@@ -88,26 +121,67 @@ impl Sites {
         }
     }
 
-    /// The elements that are present.
-    pub fn elements(&self) -> Vec<Element> {
-        let present = self.sites.iter().filter(|s| s.present);
-        present.map(|s| s.element(self.facade)).collect()
+    /// A draw of `p(x; w)` on the sites, as far as `sweeps` of the chain forget where it began: in a state in which
+    /// every attribute is random.
+    pub fn draw(
+        &self,
+        model: &ScoreModel,
+        weights: &[f64; TERMS],
+        sweeps: usize,
+        rng: &mut Stream,
+    ) -> Self {
+        let mut drawn = self.clone();
+        for site in &mut drawn.sites {
+            site.present = rng.random();
+            site.attributes = VALUES.map(|n| rng.random_range(0..n));
+        }
+        let all: Vec<usize> = (0..drawn.sites.len()).collect();
+        drawn.resample(&all, model, weights, sweeps, rng);
+        drawn
     }
 
-    /// Extent of the facade.
-    pub fn facade(&self) -> [f64; 2] {
-        self.facade
-    }
-
-    /// The state in which other elements are present at the data's places; those that are near no site stay
-    /// out. For samplers that complete a layout instead of moving within the states.
-    pub fn set_present(&mut self, elements: &[Element]) {
-        for site in &mut self.sites {
-            let own = site.data;
-            site.attributes = [0; 4];
-            site.present = elements
+    /// All layouts of the sites, each with the logarithm of the number of states that it stands for: as the attributes of an
+    /// absent element do not show. There are 301 for each site.
+    pub fn states(&self) -> Vec<(f64, Vec<Element>)> {
+        let hidden = f64::from(VALUES.iter().map(|&n| u32::from(n)).product::<u32>()).ln();
+        let mut all = vec![(0.0, Vec::new())];
+        for site in &self.sites {
+            let mut ways = vec![(hidden, None)];
+            for code in 0..VALUES.iter().map(|&n| usize::from(n)).product::<usize>() {
+                let mut rest = code;
+                let attributes = VALUES.map(|n| {
+                    let value = rest % usize::from(n);
+                    rest /= usize::from(n);
+                    value as u8
+                });
+                let present = Site {
+                    attributes,
+                    present: true,
+                    ..*site
+                };
+                ways.push((0.0, Some(present.element(self.facade))));
+            }
+            all = all
                 .iter()
-                .any(|e| e.class == own.class && e.rect.iou(&own.rect) > 0.5);
+                .flat_map(|(log, elements): &(f64, Vec<Element>)| {
+                    ways.iter().map(move |(own, element)| {
+                        let mut elements = elements.clone();
+                        elements.extend(*element);
+                        (log + own, elements)
+                    })
+                })
+                .collect();
+        }
+        all
+    }
+
+    /// The layout that the state is.
+    pub fn layout(&self, name: String) -> Layout {
+        Layout {
+            name,
+            width: self.facade[0],
+            height: self.facade[1],
+            elements: self.elements().into_owned(),
         }
     }
 
@@ -122,6 +196,18 @@ impl Sites {
         let mut order: Vec<usize> = (0..self.sites.len()).collect();
         order.shuffle(rng);
         order.truncate((BLOCK * order.len() as f64).ceil() as usize);
+        self.resample(&order, model, weights, sweeps, rng);
+    }
+
+    /// Resamples each attribute of some sites given all else, `sweeps` times.
+    fn resample(
+        &mut self,
+        order: &[usize],
+        model: &ScoreModel,
+        weights: &[f64; TERMS],
+        sweeps: usize,
+        rng: &mut Stream,
+    ) {
         // Index of each site's element in the layout that is scored, and back.
         let mut of_element: Vec<usize> = (0..self.sites.len())
             .filter(|&s| self.sites[s].present)
@@ -130,15 +216,16 @@ impl Sites {
         for (i, &site) in of_element.iter().enumerate() {
             index[site] = i;
         }
-        let mut scored = Scored::weighted(model, *weights, self.facade, self.elements());
+        let mut scored =
+            Scored::weighted(model, *weights, self.facade, self.elements().into_owned());
         for _ in 0..sweeps {
-            for &at in &order {
+            for &at in order {
                 for attribute in 0..5 {
                     let old = self.sites[at];
                     let site = &mut self.sites[at];
                     match attribute {
                         4 => site.present = !site.present,
-                        a => site.attributes[a] = rng.random_range(0..[5, 5, 3, 4][a]),
+                        a => site.attributes[a] = rng.random_range(0..VALUES[a]),
                     }
                     let before = scored.score();
                     let new = self.sites[at];
@@ -175,23 +262,22 @@ fn from_prior(differences: &[f64]) -> [f64; TERMS] {
     std::array::from_fn(|k| 1.0 + differences[k])
 }
 
-/// Learns the weights of `model` from states; `sampler` draws the negatives, [`Sites::resample_block`] with
-/// two sweeps unless another one is given. The penalty of `settings` draws each weight to 1, at which the score is
-/// the sum of the log densities.
+/// Learns the weights of `model` from layouts; `sampler` changes a layout into its negative, given the weights. One that
+/// leaves `p(x; w)` invariant, as [`Sites::resample_block`] does, makes the update unbiased. The penalty of `settings`
+/// draws each weight to 1, at which the score is the sum of the log densities.
 ///
 /// # Errors
 /// As [`fit`](crate::model::factor_graph::fit).
-pub fn learn_weights(
+pub fn learn_weights<X: State>(
     model: &ScoreModel,
-    data: &[Sites],
-    sampler: Option<&Sampler>,
+    data: &[X],
+    sampler: impl Fn(&mut X, &[f64; TERMS], &mut Stream) + Sync,
     settings: &Settings,
     seed: u64,
 ) -> Result<[f64; TERMS], ModelError> {
-    let features = |x: &Sites| model.evaluate(x.facade, &x.elements()).features.to_vec();
-    let step = |x: &mut Sites, weights: &[f64], rng: &mut Stream| match sampler {
-        Some(sampler) => sampler(x, &from_prior(weights), rng),
-        None => x.resample_block(model, &from_prior(weights), 2, rng),
+    let features = |x: &X| model.evaluate(x.facade(), &x.elements()).features.to_vec();
+    let step = |x: &mut X, weights: &[f64], rng: &mut Stream| {
+        sampler(x, &from_prior(weights), rng);
     };
     let weights = LogLinear::new(TERMS, features, step).fit(data, settings, seed)?;
     Ok(from_prior(&weights))

@@ -54,7 +54,7 @@ use self::pair::Pattern;
 use super::layout::{Class, Element};
 use crate::model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
 pub use explain::Line;
-pub use learn::{Sampler, Sites, learn_weights};
+pub use learn::{Sites, State, learn_weights};
 pub use state::{Change, Scored};
 pub use train::Training;
 

@@ -1,0 +1,71 @@
+//! The paper's figures, each with the numbers that the paper lacks.
+
+pub mod figure_10;
+pub mod figure_11;
+pub mod figure_13;
+pub mod figure_14;
+pub mod figure_15;
+pub mod figure_16;
+pub mod figure_18;
+pub mod figure_20;
+pub mod figure_8;
+
+use super::data::{self, Item};
+use crate::experiments::Context;
+use crate::methods::structure_completion::completion::Completion;
+use crate::methods::structure_completion::layout::{Class, Element, Layout};
+use crate::methods::structure_completion::policy::PaperModel;
+use crate::{Error, Result};
+
+/// Facades that fit a picture and that a search of seconds can complete.
+const ELEMENTS: std::ops::RangeInclusive<usize> = 8..=90;
+
+/// Facades with at least eight windows and at most 90 elements; those in scope only, where there are enough.
+pub fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
+    let mut items = data::items(ctx)?;
+    items.retain(|i| {
+        i.layout.count(Class::Window) >= 8 && ELEMENTS.contains(&i.layout.elements.len())
+    });
+    if items.iter().filter(|i| i.in_scope).count() > items.len() / 2 {
+        items.retain(|i| i.in_scope);
+    }
+    Ok(items)
+}
+
+/// Up to `count` facades at equal distances, at most half of all, and the others, for learning.
+fn split(items: &[Item], count: usize) -> (Vec<&Item>, Vec<&Item>) {
+    let count = count.min(items.len() / 2).max(1);
+    let chosen = |i: usize| (i * count) / items.len() != ((i + 1) * count) / items.len();
+    let of = |wanted: bool| {
+        let all = items.iter().enumerate();
+        all.filter(|(i, _)| chosen(*i) == wanted)
+            .map(|(_, item)| item)
+            .collect()
+    };
+    (of(true), of(false))
+}
+
+/// The paper's part of a model, learnt from some facades.
+fn paper(items: &[&Item], seed: u64) -> Result<PaperModel> {
+    let layouts: Vec<Layout> = items.iter().map(|i| i.layout.clone()).collect();
+    PaperModel::train(&layouts, seed).map_err(Error::method)
+}
+
+/// The elements that the first completion adds.
+fn first(completions: &[Completion]) -> Vec<Element> {
+    let added = completions.first().into_iter().flat_map(|c| &c.added);
+    added.map(|a| a.element).collect()
+}
+
+/// Mean and its standard error, as text.
+fn plus_minus(values: &[f64]) -> String {
+    let (mean, error) = mean_error(values);
+    format!("{mean:.3} ± {error:.3}")
+}
+
+fn mean_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    (mean, (variance / n).sqrt())
+}
