@@ -63,7 +63,7 @@ const WALLS: &[(&str, &[&str])] = &[
 
 /// The models of `model`: none imports another, and what they share imports none of them.
 const MODELS: [&str; 4] = ["factor_graph", "gmm", "hierarchy", "network"];
-const SHARED_BY_MODELS: [&str; 11] = [
+const SHARED_BY_MODELS: [&str; 12] = [
     "chunks",
     "conjugate",
     "elimination",
@@ -71,6 +71,7 @@ const SHARED_BY_MODELS: [&str; 11] = [
     "error",
     "gaussian",
     "graph",
+    "information",
     "kmeans",
     "linalg",
     "standardize",
