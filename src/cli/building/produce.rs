@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use edifice::io::{gltf, write_atomic};
 use edifice::methods::building_exteriors::attributes::COLUMNS;
 use edifice::methods::building_exteriors::house::{
-    Database, Generated, HouseReport, Joining, Options, generate,
+    Database, Generated, HouseReport, Joining, Method, Options, generate,
 };
 use edifice::rng::stream;
 use edifice::shape::Building;
@@ -33,6 +33,9 @@ pub struct Output {
     /// Roofs of each box, or one joined roof for all boxes of a height.
     #[arg(long, value_enum, default_value = "boxes")]
     pub roof: RoofOption,
+    /// How mass models and facades are found.
+    #[arg(long, value_enum, default_value = "best")]
+    pub method: MethodOption,
     /// Never cut a strip of wall in two for the sake of symmetry.
     #[arg(long)]
     pub no_cuts: bool,
@@ -66,6 +69,15 @@ impl RoofOption {
     }
 }
 
+/// How mass models and facades are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MethodOption {
+    /// Boxes of similar houses fitted by least squares, facades side by side: reaches the attributes in milliseconds.
+    Best,
+    /// Simulated annealing and a genetic algorithm as in the paper: seconds a house.
+    Paper,
+}
+
 /// A house to make.
 pub struct Order {
     /// Its name, and that of its files.
@@ -82,6 +94,10 @@ impl Output {
         Options {
             joining: self.roof.joining(),
             no_cuts: self.no_cuts,
+            method: match self.method {
+                MethodOption::Best => Method::Best,
+                MethodOption::Paper => Method::Paper,
+            },
             ..Options::default()
         }
     }
