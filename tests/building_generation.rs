@@ -216,7 +216,15 @@ fn variations_differ() {
     let wanted = row(&database, 5);
     let target = MassTarget::new(std::array::from_fn(|c| wanted[c]));
     let mut rng = stream(1, "tests/variations", 0);
-    let found = variations(&target, 6, 0.02, &database, &Search::default(), &mut rng);
+    let found = variations(
+        &target,
+        6,
+        0.02,
+        &[],
+        &database,
+        &Search::default(),
+        &mut rng,
+    );
     assert!(found.len() >= 4, "{}", found.len());
     assert!(
         found

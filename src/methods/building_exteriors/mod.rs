@@ -9,6 +9,7 @@ pub mod attributes;
 pub mod baseline;
 pub mod compare;
 pub mod data;
+pub mod design;
 pub mod facade;
 pub mod house;
 pub mod mass;

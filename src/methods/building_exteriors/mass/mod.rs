@@ -34,7 +34,7 @@ mod search;
 pub mod target;
 
 pub use scheme::Block;
-pub use search::{MassError, MassModel, Search, nearest, search, variations};
+pub use search::{MassError, MassModel, Search, iou, nearest, search, variations};
 pub use target::{MassTarget, PartTarget};
 
 use crate::shape::{BoxStyle, Building, MassBox, PlanUnion};
