@@ -4,7 +4,7 @@ use edifice::io::{building_json, surface_obj};
 use edifice::methods::building_exteriors::attributes::{COLUMNS, attributes};
 use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Database, Joining, Options, generate, model};
-use edifice::methods::building_exteriors::mass::repair::{Contradiction, check};
+use edifice::methods::building_exteriors::mass::contradiction::{Contradiction, check};
 use edifice::methods::building_exteriors::mass::{
     MassTarget, Search, is_sound, search, variations,
 };

@@ -7,6 +7,8 @@ use edifice::methods::building_exteriors::attributes::COLUMNS;
 use edifice::methods::building_exteriors::house::{
     Database, Generated, HouseReport, Joining, Method, Options, generate,
 };
+use edifice::methods::building_exteriors::mass::contradiction::check_given;
+use edifice::methods::building_exteriors::mass::footprint::reconcile;
 use edifice::rng::stream;
 use edifice::shape::Building;
 use edifice::{Error, Result};
@@ -24,6 +26,22 @@ pub struct Output {
     /// Folder of the output; it is made when it does not exist.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub making: Making,
+    /// Also write all houses of this run as one scene, a street: `DIR/street.glb`.
+    #[arg(long)]
+    pub street: bool,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Print a line of JSON for each house.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How houses are made, and which files of them are written.
+#[derive(clap::Args)]
+pub struct Making {
     /// Files for each house.
     #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Format::Json, Format::Glb])]
     pub format: Vec<Format>,
@@ -39,15 +57,6 @@ pub struct Output {
     /// Never cut a strip of wall in two for the sake of symmetry.
     #[arg(long)]
     pub no_cuts: bool,
-    /// Also write all houses of this run as one scene, a street: `DIR/street.glb`.
-    #[arg(long)]
-    pub street: bool,
-    /// Seed of all random streams.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Print a line of JSON for each house.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// How roofs are joined.
@@ -88,7 +97,27 @@ pub struct Order {
     pub given: [bool; 49],
 }
 
-impl Output {
+impl Making {
+    /// The database of donors.
+    pub fn database(&self) -> Result<Database> {
+        output::database(self.database.as_deref())
+    }
+
+    /// Writes houses with their reports into a folder, in their order; with `json`, prints a line for each.
+    pub fn write(&self, houses: &[Generated], folder: &Path, json: bool) -> Result<()> {
+        output::folder(folder)?;
+        for house in houses {
+            output::write(&house.building, &house.model, folder, &self.format)?;
+            let line = report(&house.report, None)?;
+            let path = folder.join(format!("{}.report.json", house.building.name));
+            write_atomic(&path, format!("{line}\n").as_bytes())?;
+            if json {
+                print::line(&line)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The settings of generation.
     pub fn options(&self) -> Options {
         Options {
@@ -101,19 +130,29 @@ impl Output {
             ..Options::default()
         }
     }
+}
 
+impl Output {
     fn report_file(&self, name: &str) -> PathBuf {
         self.output.join(format!("{name}.report.json"))
     }
 }
 
 /// Makes and writes the houses. Those whose report is there with the same attributes are left as they are.
-pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result<()> {
-    let options = output.options();
+pub fn produce(
+    orders: &[Order],
+    database: &Database,
+    options: &Options,
+    output: &Output,
+) -> Result<()> {
     // Nothing is written when some row cannot be a house.
-    for order in orders.iter().filter(|o| o.given.iter().all(|g| *g)) {
-        edifice::methods::building_exteriors::mass::repair::check(&order.wanted)
-            .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
+    for order in orders {
+        let named = |e: String| Error::method(format!("{}: {e}", order.name));
+        check_given(&order.wanted, &order.given).map_err(|e| named(e.to_string()))?;
+        if let Some(plan) = &options.footprint {
+            reconcile(&mut order.wanted.clone(), &order.given, plan)
+                .map_err(|e| named(e.to_string()))?;
+        }
     }
     output::folder(&output.output)?;
     let mut street: Vec<(Building, edifice::methods::building_exteriors::house::Model)> =
@@ -133,7 +172,7 @@ pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result
                     &order.wanted,
                     &order.given,
                     database,
-                    &options,
+                    options,
                     &mut rng,
                 )
                 .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
@@ -142,7 +181,7 @@ pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result
                     &house.building,
                     &house.model,
                     &output.output,
-                    &output.format,
+                    &output.making.format,
                 )?;
                 let text = report(&house.report, Some(seconds))?;
                 write_atomic(

@@ -7,23 +7,24 @@
 use rand::Rng;
 
 use super::observed::wanted_rows;
-use crate::methods::building_exteriors::attributes::mass_attributes;
-use crate::methods::building_exteriors::attributes::{AttributeRow, COLUMNS};
+use super::reconcile::{SAME, origins, reconciled};
+use crate::methods::building_exteriors::attributes::{AttributeRow, mass_attributes};
 use crate::methods::building_exteriors::data::table;
 use crate::methods::building_exteriors::facade::FixedPiece;
 use crate::methods::building_exteriors::house::walls::walls_of_pieces;
 use crate::methods::building_exteriors::house::{
     Database, Frozen, GenerateError, Generated, Options, Wish, finish,
 };
-use crate::methods::building_exteriors::mass::repair::{Change, check, repair};
-use crate::methods::building_exteriors::mass::target::{PARTS, bounds, part_of};
+use crate::methods::building_exteriors::mass::contradiction::check_given;
+use crate::methods::building_exteriors::mass::repair::{changes, repair};
+use crate::methods::building_exteriors::mass::target::{PARTS, part_of};
 use crate::methods::building_exteriors::mass::{
     Block, MASS, MassError, MassModel, MassTarget, is_sound, max_z, search,
 };
 use crate::model::ModelError;
 use crate::model::hierarchy::Hierarchy;
 use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, ElementStyle, MassBox, PlanUnion, RoofStyle, Special};
+use crate::shape::{BoxStyle, Building, MassBox};
 
 /// Why observed parts cannot be completed.
 #[derive(Debug, thiserror::Error)]
@@ -83,8 +84,6 @@ pub enum CompleteError {
     Generate(#[from] GenerateError),
 }
 
-/// Lengths nearer than this are the same (m).
-const SAME: f64 = 5e-3;
 /// Mass models within this distance (standard deviations) are near enough not to try another place.
 const NEAR: f64 = 0.05;
 /// Samples among which the most probable answers are sought, answers tried for each house wanted, and their
@@ -163,9 +162,7 @@ pub fn around(
     options: &Options,
     rng: &mut impl Rng,
 ) -> Result<Generated, CompleteError> {
-    if given.iter().all(|g| *g) {
-        check(wanted).map_err(GenerateError::from)?;
-    }
+    check_given(wanted, given).map_err(GenerateError::from)?;
     let frozen = Frozen {
         boxes: partial.boxes.clone(),
         pieces: fixed_pieces(partial)?,
@@ -268,17 +265,6 @@ fn placed(
     }
 }
 
-fn changes(wanted: &[f64; 49], row: &[f64; 49]) -> Vec<Change> {
-    let moved = (0..49).filter(|&c| (row[c] - wanted[c]).abs() > 1e-12);
-    moved
-        .map(|c| Change {
-            column: COLUMNS[c],
-            from: wanted[c],
-            to: row[c],
-        })
-        .collect()
-}
-
 /// Moves the house to the origin and puts the observed boxes, as they are, in place of those fitted.
 fn exactly(mass: &mut MassModel, observed: &[MassBox], origin: [f64; 2]) {
     let boxes = &mut mass.building.boxes;
@@ -325,113 +311,4 @@ fn stands(building: &Building, fixed: &[FixedPiece]) -> bool {
         let mut own = building.facades.iter().zip(&walls);
         own.any(|(p, w)| *p == f.piece && w.is_some_and(|w| (w.at - f.at).abs() < SAME))
     })
-}
-
-/// The wanted row with what the observed boxes and elements say, and the columns that must stay.
-fn reconciled(
-    partial: &Building,
-    wanted: &[f64; 49],
-    given: &[bool; 49],
-) -> Result<([f64; 49], [bool; 49]), CompleteError> {
-    let (mut row, mut known) = (*wanted, *given);
-    let hull = bounds(partial);
-    for axis in 0..2 {
-        let extent = hull[axis][1] - hull[axis][0];
-        if given[axis] && extent > row[axis] + SAME {
-            return Err(outside(partial, &hull, axis, row[axis]));
-        }
-        if !given[axis] {
-            row[axis] = (row[axis].max(extent) * 1e3).ceil() / 1e3;
-        }
-    }
-    let shares = [row[6], row[7], row[8]];
-    let floors = 1 + shares[1..].iter().filter(|s| **s > 0.02).count();
-    for (index, b) in partial.boxes.iter().enumerate() {
-        let own = partial.floors_of(b);
-        if own > floors {
-            return Err(CompleteError::Floors {
-                index,
-                floors: own,
-                wanted: floors,
-            });
-        }
-    }
-    let heights = partial.boxes.iter().map(|b| b.height);
-    let highest = heights.fold(floors as f64 * partial.floor_height, f64::max);
-    if !given[2] {
-        (row[2], known[2]) = (highest, true);
-    }
-    let plans: Vec<_> = partial.boxes.iter().map(MassBox::plan).collect();
-    let covered = PlanUnion::new(&plans).area() / (row[0] * row[1]);
-    if !given[3] {
-        row[3] = row[3].max(covered.min(1.0));
-    }
-    for (c, shown) in shown(partial) {
-        if shown {
-            (row[c], known[c]) = (1.0, true);
-        }
-    }
-    (known[0], known[1]) = (true, true);
-    Ok((row, known))
-}
-
-fn outside(partial: &Building, hull: &[[f64; 2]; 2], axis: usize, bound: f64) -> CompleteError {
-    let ends = |b: &MassBox| {
-        let plan = b.plan();
-        let [low, high] = [[plan.x, plan.right()], [plan.y, plan.top()]][axis];
-        [low - hull[axis][0], high - hull[axis][0]]
-    };
-    let beyond = |(_, b): &(usize, &MassBox)| ends(b)[1] > bound + SAME;
-    let (index, b) = partial
-        .boxes
-        .iter()
-        .enumerate()
-        .find(beyond)
-        .unwrap_or((0, &partial.boxes[0]));
-    let [low, high] = ends(b);
-    CompleteError::Outside {
-        index,
-        low,
-        high,
-        column: COLUMNS[axis],
-        bound,
-    }
-}
-
-/// Columns of styles, and whether the partial house shows them.
-fn shown(partial: &Building) -> Vec<(usize, bool)> {
-    let roof = |style| partial.boxes.iter().any(|b| b.roof.style == style);
-    let window = |style| {
-        let mut elements = partial.facades.iter().flat_map(|p| &p.elements);
-        elements.any(|e| e.style == style)
-    };
-    vec![
-        (39, roof(RoofStyle::Flat)),
-        (40, roof(RoofStyle::Gable)),
-        (41, roof(RoofStyle::Hip)),
-        (42, window(ElementStyle::Sash)),
-        (43, window(ElementStyle::Sliding)),
-        (44, window(ElementStyle::Casement)),
-        (45, window(ElementStyle::Bay)),
-        (46, window(ElementStyle::Fixed)),
-        (47, partial.special.contains(&Special::Chimney)),
-        (48, partial.special.contains(&Special::Tower)),
-    ]
-}
-
-/// Corners of the house to try: that of the coordinates, then the ends of the observed boxes.
-fn origins(partial: &Building, row: &[f64; 49]) -> Vec<[f64; 2]> {
-    let hull = bounds(partial);
-    let ends = |axis: usize| {
-        let [low, high] = hull[axis];
-        // The corner of the coordinates first, where the house then covers the observed boxes.
-        let mut ends = vec![0.0, low, high - row[axis]];
-        ends.retain(|o| low >= o - SAME && high <= o + row[axis] + SAME);
-        ends.dedup_by(|a, b| (*a - *b).abs() < SAME);
-        ends
-    };
-    let (xs, ys) = (ends(0), ends(1));
-    ys.iter()
-        .flat_map(|y| xs.iter().map(move |x| [*x, *y]))
-        .collect()
 }

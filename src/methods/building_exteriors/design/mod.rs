@@ -5,6 +5,7 @@
 mod complete;
 mod edit;
 mod observed;
+mod reconcile;
 mod variants;
 
 pub use complete::{CompleteError, around, completions};

@@ -13,14 +13,16 @@ use crate::methods::building_exteriors::facade::{
     FacadeTarget, Facades, FixedPiece, breed, elements, furnish,
 };
 use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use crate::methods::building_exteriors::mass::repair::{Change, Contradiction, check, repair};
+use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
+use crate::methods::building_exteriors::mass::footprint::{DECIDED, PlanError, reconcile, stand};
+use crate::methods::building_exteriors::mass::repair::{Change, changes, repair};
 use crate::methods::building_exteriors::mass::{
     MASS, MassError, MassModel, MassTarget, Search, max_z, search,
 };
 use crate::optim::annealing::AnnealingError;
 use crate::optim::genetic::{GeneticError, Settings};
 use crate::shape::solid::{SurfaceError, faces};
-use crate::shape::{Building, MassBox, Special};
+use crate::shape::{Building, MassBox, Rect, Special};
 
 /// Continuous columns: mass and facades.
 const NUMBERS: usize = 39;
@@ -64,6 +66,8 @@ pub struct Options {
     pub generations: u64,
     /// What stays as it is; roofs and facades keep clear of it.
     pub frozen: Frozen,
+    /// The ground plan, rectangles from the origin on, that the house has to cover exactly.
+    pub footprint: Option<Vec<Rect>>,
 }
 
 impl Default for Options {
@@ -76,6 +80,7 @@ impl Default for Options {
             annealing: AnnealSettings::default(),
             generations: GENERATIONS,
             frozen: Frozen::default(),
+            footprint: None,
         }
     }
 }
@@ -86,6 +91,9 @@ pub enum GenerateError {
     /// Given values contradict each other.
     #[error(transparent)]
     Contradiction(#[from] Contradiction),
+    /// No house stands on the footprint.
+    #[error(transparent)]
+    Footprint(#[from] PlanError),
     /// No mass model was found.
     #[error(transparent)]
     Mass(#[from] MassError),
@@ -149,8 +157,8 @@ pub struct HouseReport {
     pub unplaced: usize,
 }
 
-/// Makes a house with the wanted attributes. `given` says which columns must not be changed: all of them given must
-/// be free of contradictions, others are repaired.
+/// Makes a house with the wanted attributes. `given` says which columns must not be changed: they must be free of
+/// contradictions, others are repaired.
 ///
 /// # Errors
 /// [`GenerateError`].
@@ -163,14 +171,19 @@ pub fn generate(
     rng: &mut impl Rng,
 ) -> Result<Generated, GenerateError> {
     let mut row = *wanted;
-    if given.iter().all(|g| *g) {
-        check(&row)?;
+    check_given(&row, given)?;
+    let mut known = *given;
+    if let Some(plan) = &options.footprint {
+        reconcile(&mut row, given, plan)?;
+        DECIDED.iter().for_each(|c| known[*c] = true);
     }
-    let repaired = repair(&mut row, given, &database.deviations);
+    repair(&mut row, &known, &database.deviations);
+    let repaired = changes(wanted, &row);
     let target = MassTarget::new(std::array::from_fn(|c| row[c]));
-    let mass = match options.method {
-        Method::Best => search(&target, &[], database, &options.search, rng)?,
-        Method::Paper => {
+    let mass = match (&options.footprint, options.method) {
+        (Some(plan), _) => stand(&row, given, plan, &database.deviations[..MASS])?,
+        (None, Method::Best) => search(&target, &[], database, &options.search, rng)?,
+        (None, Method::Paper) => {
             let deviations = &database.deviations[..MASS];
             anneal(&target, deviations, &options.annealing, rng.random())?.0
         }

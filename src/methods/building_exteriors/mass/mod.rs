@@ -26,7 +26,9 @@
 //! - A garage and a porch are one box each.
 
 pub mod anneal;
+pub mod contradiction;
 mod fit;
+pub mod footprint;
 pub mod random;
 pub mod repair;
 mod scheme;
