@@ -3,9 +3,7 @@
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
 use crate::experiments::Context;
-use crate::methods::building_exteriors::design::{
-    Edit, completions, edited, observed, suggested,
-};
+use crate::methods::building_exteriors::design::{Edit, completions, edited, observed, suggested};
 use crate::methods::building_exteriors::house::walls::walls_of_pieces;
 use crate::methods::building_exteriors::house::{Database, Generated, Joining, Options, model};
 use crate::methods::building_exteriors::mass::iou;
@@ -32,7 +30,9 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
     let settings = settings(ctx);
     let mut buildings = shipped.buildings;
     let held_out = buildings.split_off(buildings.len() - HELD_OUT);
-    let seen = shipped.data.select(&(0..buildings.len()).collect::<Vec<_>>());
+    let seen = shipped
+        .data
+        .select(&(0..buildings.len()).collect::<Vec<_>>());
     let found = learn(&seen.table, &seen.groups, &settings, ctx.seed()).map_err(Error::method)?;
     Ok(Learned {
         model: found.model,
@@ -46,7 +46,11 @@ fn seen_from_the_street(house: &Building) -> Building {
     let walls = walls_of_pieces(house);
     let front = house.facades.iter().zip(&walls);
     let front: Vec<_> = front.filter(|(p, _)| p.side == Side::Front).collect();
-    let shows = |at: f64| front.iter().any(|(_, w)| w.is_some_and(|w| (w.at - at).abs() < 1e-6));
+    let shows = |at: f64| {
+        front
+            .iter()
+            .any(|(_, w)| w.is_some_and(|w| (w.at - at).abs() < 1e-6))
+    };
     let boxes = house.boxes.iter();
     let seen = boxes.filter(|b| shows(b.plan().y) || (b.style == BoxStyle::Porch && b.y < 4.0));
     Building {
@@ -143,7 +147,11 @@ pub fn figure_17(ctx: &mut Context) -> Result<()> {
         })
         .collect();
     let png = sheet(&panels, cell(ctx))?;
-    ctx.attach("figure_17.png", &png, "three completed houses: front, right, back, boxes (observed in yellow)")?;
+    ctx.attach(
+        "figure_17.png",
+        &png,
+        "three completed houses: front, right, back, boxes (observed in yellow)",
+    )?;
     Ok(())
 }
 
@@ -167,7 +175,11 @@ pub fn figure_18(ctx: &mut Context) -> Result<()> {
         panels.push(row(&house.model, boxes, &views));
     }
     let png = sheet(&panels, cell(ctx))?;
-    ctx.attach("figure_18.png", &png, "what was observed, and three completions: front, back, boxes (observed in yellow)")?;
+    ctx.attach(
+        "figure_18.png",
+        &png,
+        "what was observed, and three completions: front, back, boxes (observed in yellow)",
+    )?;
     let mut table = overlap_table("Completions of one house");
     tell(ctx, &mut table, &learned.held_out[5], &partial, &houses);
     ctx.table(&table);
@@ -201,13 +213,20 @@ fn tell(
 ) {
     let keeps = |h: &&Generated| {
         partial.boxes.iter().all(|b| h.building.boxes.contains(b))
-            && partial.facades.iter().all(|p| h.building.facades.contains(p))
+            && partial
+                .facades
+                .iter()
+                .all(|p| h.building.facades.contains(p))
     };
     let same = houses.iter().filter(keeps).count();
     let best = 1.0 - iou(truth, &houses[closest(truth, houses)].building);
     let mut apart = Vec::new();
     for (i, a) in houses.iter().enumerate() {
-        apart.extend(houses[..i].iter().map(|b| 1.0 - iou(&a.building, &b.building)));
+        apart.extend(
+            houses[..i]
+                .iter()
+                .map(|b| 1.0 - iou(&a.building, &b.building)),
+        );
     }
     let mean = apart.iter().sum::<f64>() / apart.len().max(1) as f64;
     table.row([
@@ -220,7 +239,10 @@ fn tell(
         format!("{mean:.3}"),
         format!("{:.4}", houses[0].report.repaired_z),
     ]);
-    for (metric, value) in [("distance_of_plan", best), ("same_bits", same as f64 / houses.len() as f64)] {
+    for (metric, value) in [
+        ("distance_of_plan", best),
+        ("same_bits", same as f64 / houses.len() as f64),
+    ] {
         ctx.observe(Row {
             dataset: "shipped".into(),
             method: "best".into(),
@@ -248,7 +270,9 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
     let (w, d) = (extent(start)[0], extent(start)[1]);
     let garage = [2.1, 3.2, 3.8, 6.0, 2.5];
     let steps: [(&str, &dyn Fn(&Building) -> Edit); 3] = [
-        ("garage added in front", &|_| Edit::Add(BoxStyle::Garage, garage)),
+        ("garage added in front", &|_| {
+            Edit::Add(BoxStyle::Garage, garage)
+        }),
         ("garage moved to the back", &|h| {
             Edit::Move(find(h, BoxStyle::Garage), [2.1, extent(h)[1] - 3.2])
         }),
@@ -262,9 +286,16 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
         let house = &stages[stages.len() - 1].1;
         let edit = edit(house);
         let clock = std::time::Instant::now();
-        let found = suggested(house, &[edit], &learned.model, &learned.database, &options, &mut rng)
-            .or_else(|_| edited(house, &[edit], &learned.database, &options, &mut rng))
-            .map_err(Error::method)?;
+        let found = suggested(
+            house,
+            &[edit],
+            &learned.model,
+            &learned.database,
+            &options,
+            &mut rng,
+        )
+        .or_else(|_| edited(house, &[edit], &learned.database, &options, &mut rng))
+        .map_err(Error::method)?;
         let seconds = clock.elapsed().as_secs_f64();
         let old = &house.boxes;
         let touched = found.building.boxes.iter().filter(|b| match edit {
@@ -276,7 +307,10 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
         let touched = touched.copied().collect();
         stages.push((name.into(), found.building, touched, seconds));
     }
-    let models: Vec<_> = stages.iter().map(|s| watched(&s.1)).collect::<Result<_>>()?;
+    let models: Vec<_> = stages
+        .iter()
+        .map(|s| watched(&s.1))
+        .collect::<Result<_>>()?;
     let panels: Vec<Vec<Panel>> = models
         .iter()
         .zip(&stages)
@@ -325,7 +359,11 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
 }
 
 fn find(house: &Building, style: BoxStyle) -> usize {
-    let own = house.boxes.iter().enumerate().filter(|(_, b)| b.style == style);
+    let own = house
+        .boxes
+        .iter()
+        .enumerate()
+        .filter(|(_, b)| b.style == style);
     let largest = own.max_by(|a, b| (a.1.width * a.1.depth).total_cmp(&(b.1.width * b.1.depth)));
     largest.map_or(0, |(k, _)| k)
 }

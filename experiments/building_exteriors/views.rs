@@ -132,12 +132,7 @@ fn parts_from_above(row: &[f64; 49], size: [usize; 2]) -> Picture {
     let colours = [GARAGE, FRONT_PORCH, BACK_PORCH];
     let parts = PARTS.iter().zip(colours).filter_map(|((_, c, _), colour)| {
         let own = part(row, *c).filter(|_| row[c + 2].min(row[c + 3]) >= 0.5)?;
-        let rect = Rect::new(
-            own.x[0],
-            own.y[0],
-            own.x[1] - own.x[0],
-            own.y[1] - own.y[0],
-        );
+        let rect = Rect::new(own.x[0], own.y[0], own.x[1] - own.x[0], own.y[1] - own.y[0]);
         Some((rect, colour))
     });
     let parts: Vec<(Rect, Colour)> = parts.collect();
@@ -154,7 +149,8 @@ fn parts_from_above(row: &[f64; 49], size: [usize; 2]) -> Picture {
         canvas.outline(place.of(rect), INK, 1);
     }
     for (k, (rect, _)) in parts.iter().enumerate() {
-        let outside = rect.x < -0.1 || rect.y < -0.1 || rect.right() > w + 0.1 || rect.top() > d + 0.1;
+        let outside =
+            rect.x < -0.1 || rect.y < -0.1 || rect.right() > w + 0.1 || rect.top() > d + 0.1;
         let others = parts.iter().enumerate().filter(|(j, _)| *j != k);
         if outside || others.map(|(_, p)| p.0.overlap(rect)).any(|a| a > 0.05) {
             canvas.outline(place.of(rect), RED, 3);
@@ -187,9 +183,8 @@ impl Placement {
     /// Left, right, upper and lower pixel.
     fn of(&self, r: &Rect) -> [i64; 4] {
         let x = |v: f64| (self.shift[0] + self.scale * (v - self.low[0])).round() as i64;
-        let y = |v: f64| {
-            (self.height - self.shift[1] - self.scale * (v - self.low[1])).round() as i64
-        };
+        let y =
+            |v: f64| (self.height - self.shift[1] - self.scale * (v - self.low[1])).round() as i64;
         [x(r.x), x(r.right()), y(r.top()), y(r.y)]
     }
 }
