@@ -19,7 +19,7 @@ use crate::methods::building_exteriors::mass::contradiction::check_given;
 use crate::methods::building_exteriors::mass::repair::{changes, repair};
 use crate::methods::building_exteriors::mass::target::{PARTS, part_of};
 use crate::methods::building_exteriors::mass::{
-    Block, MASS, MassError, MassModel, MassTarget, is_sound, max_z, search,
+    Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search,
 };
 use crate::model::ModelError;
 use crate::model::hierarchy::Hierarchy;
@@ -90,6 +90,9 @@ const NEAR: f64 = 0.05;
 /// least root mean square distance in standard deviations.
 const POOL: usize = 2000;
 const TRIES: usize = 12;
+/// Rounds of random arrangements for an answer, and the distance in standard deviations at which to stop.
+const ROUNDS: usize = 8;
+const ENOUGH: f64 = 0.03;
 const APART: f64 = 0.05;
 
 /// Completions of a partial house: the most probable answers of the model to what is given, built around the observed
@@ -107,6 +110,15 @@ pub fn completions(
     seed: u64,
 ) -> Result<Vec<Generated>, CompleteError> {
     let mut rng = stream(seed, "building/complete", 0);
+    // An answer that does not fit the observed boxes is not worth a long search: there are others.
+    let options = &Options {
+        search: Search {
+            rounds: options.search.rounds.min(ROUNDS),
+            enough: ENOUGH,
+            ..options.search.clone()
+        },
+        ..options.clone()
+    };
     let evidence = table(std::slice::from_ref(given))?;
     let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, None, &mut rng)?;
     let is_given: [bool; 49] = std::array::from_fn(|c| given[c].is_some());

@@ -57,7 +57,10 @@ impl From<GenerateError> for EditError {
 
 /// Answers of the model to choose from: few, since an edit has to be quick.
 const POOL: usize = 300;
-const TRIES: usize = 8;
+const TRIES: usize = 4;
+/// Rounds of random arrangements for an answer, and the distance in standard deviations at which to stop.
+const ROUNDS: usize = 5;
+const NEAR: f64 = 0.05;
 
 /// Applies edits in turn; returns the boxes, without facades, and which of them were added, moved or resized.
 fn apply(house: &Building, edits: &[Edit]) -> Result<(Building, Vec<bool>), EditError> {
@@ -203,32 +206,45 @@ pub fn suggested(
         .most_probable(&table, TRIES, POOL, 0.0, None, rng)
         .map_err(CompleteError::from)?;
     let mut own = boxes.clone();
-    let flags: Vec<bool> = touched;
     own.boxes = boxes
         .boxes
         .iter()
-        .zip(&flags)
+        .zip(&touched)
         .filter(|(_, t)| **t)
         .map(|(b, _)| *b)
         .collect();
     own.special.clear();
     let donor = alone(&boxes, database);
     let given: [bool; 49] = std::array::from_fn(|c| c < 2 || c >= 39);
+    let rows = wanted_rows(&draws.table);
     let mut failed = None;
-    let first = Options {
-        search: Search {
-            rounds: 0,
-            ..options.search.clone()
-        },
-        ..options.clone()
-    };
-    for wanted in wanted_rows(&draws.table) {
-        for (database, options) in [(&donor, &first), (database, options)] {
-            match around(&house.name, &own, &wanted, &given, database, options, rng) {
-                Ok(found) if found.report.shells == 1 => return Ok(found),
-                Ok(_) => {}
+    // From the boxes of the house itself, then from those of any house.
+    for (database, rounds) in [(&donor, 0), (database, ROUNDS)] {
+        let options = Options {
+            search: Search {
+                rounds,
+                ..options.search.clone()
+            },
+            ..options.clone()
+        };
+        let mut best: Option<Generated> = None;
+        for wanted in &rows {
+            let name = &house.name;
+            match around(name, &own, wanted, &given, database, &options, rng) {
+                Ok(found) => {
+                    let z = found.report.repaired_z;
+                    if best.as_ref().is_none_or(|b| z < b.report.repaired_z) {
+                        best = Some(found);
+                    }
+                    if z <= NEAR {
+                        break;
+                    }
+                }
                 Err(e) => failed = failed.or(Some(e)),
             }
+        }
+        if let Some(best) = best {
+            return Ok(best);
         }
     }
     Err(failed.unwrap_or(CompleteError::Hidden).into())

@@ -17,7 +17,7 @@ use crate::methods::building_exteriors::mass::contradiction::{Contradiction, che
 use crate::methods::building_exteriors::mass::footprint::{DECIDED, PlanError, reconcile, stand};
 use crate::methods::building_exteriors::mass::repair::{Change, changes, repair};
 use crate::methods::building_exteriors::mass::{
-    MASS, MassError, MassModel, MassTarget, Search, max_z, search,
+    MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations,
 };
 use crate::optim::annealing::AnnealingError;
 use crate::optim::genetic::{GeneticError, Settings};
@@ -26,6 +26,12 @@ use crate::shape::{Building, MassBox, Rect, Special};
 
 /// Continuous columns: mass and facades.
 const NUMBERS: usize = 39;
+/// A house within this distance of its row (standard deviations) is near enough.
+const NEAR: f64 = 0.05;
+/// Other plans tried else, their least 1 - IoU, and rounds of random arrangements over four to find them.
+const OTHERS: usize = 4;
+const APART: f64 = 0.02;
+const ROUNDS: usize = 2;
 /// Generations of the genetic algorithm; the paper prints none.
 const GENERATIONS: u64 = 200;
 
@@ -194,7 +200,31 @@ pub fn generate(
         row: &row,
         repaired,
     };
-    finish(wish, mass, database, options, rng)
+    let first = mass.building.clone();
+    let house = finish(wish.clone(), mass, database, options, rng)?;
+    let searched = options.footprint.is_none() && options.method == Method::Best;
+    if !searched || house.report.repaired_z <= NEAR {
+        return Ok(house);
+    }
+    // The walls have no room for the wanted facades: other plans may.
+    let mut best = house;
+    let few = Search {
+        rounds: ROUNDS,
+        ..options.search.clone()
+    };
+    let unlike = [first];
+    for mass in variations(&target, OTHERS, APART, &unlike, database, &few, rng) {
+        let other = finish(wish.clone(), mass, database, options, rng)?;
+        let spent = best.report.evaluations + other.report.evaluations;
+        if other.report.repaired_z < best.report.repaired_z {
+            best = other;
+        }
+        best.report.evaluations = spent;
+        if best.report.repaired_z <= NEAR {
+            break;
+        }
+    }
+    Ok(best)
 }
 
 /// What a mass model is to become.
