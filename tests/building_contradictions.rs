@@ -62,7 +62,7 @@ fn contradictory_attributes_are_refused_and_nothing_is_written() {
             vec!["garage.x", "garage.w", "bbox.w"],
         ),
         (
-            one("porch.front.y", "-0.2"),
+            one("porch.front.y", "0.001"),
             vec!["porch.front.y", "porch.front.d", "bbox.d"],
         ),
         (

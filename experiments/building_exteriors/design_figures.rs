@@ -269,7 +269,7 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
         vec![("initial".into(), start.clone(), Vec::new(), 0.0)];
     let (w, d) = (extent(start)[0], extent(start)[1]);
     let garage = [2.1, 3.2, 3.8, 6.0, 2.5];
-    let steps: [(&str, &dyn Fn(&Building) -> Edit); 3] = [
+    let steps: [(&str, Next); 3] = [
         ("garage added in front", &|_| {
             Edit::Add(BoxStyle::Garage, garage)
         }),
@@ -357,6 +357,9 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
     ));
     Ok(())
 }
+
+/// The next edit of a house.
+type Next<'a> = &'a dyn Fn(&Building) -> Edit;
 
 fn find(house: &Building, style: BoxStyle) -> usize {
     let own = house

@@ -286,9 +286,9 @@ pub fn figure_9(ctx: &mut Context) -> Result<()> {
         let mut deviations: Vec<f64> = database.deviations[MASS..39].to_vec();
         // A wanted value of zero is divided by the deviation: an endless one leaves the attribute out.
         for group in GROUPS.iter().filter(|g| Some(g.name) == without) {
-            for c in group.first - MASS..group.first - MASS + group.len {
-                (target.wanted[c], deviations[c]) = (0.0, 1e9);
-            }
+            let own = group.first - MASS..group.first - MASS + group.len;
+            target.wanted[own.clone()].fill(0.0);
+            deviations[own].fill(1e9);
         }
         let (found, _) = bred(ctx, &database, &base, HOUSE, &target, &deviations)?;
         let furnished = Building {

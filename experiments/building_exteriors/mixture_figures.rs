@@ -59,7 +59,7 @@ fn write(ctx: &mut Context, name: &str, what: &str, all: &[Shown]) -> Result<()>
         .numbers([
             "garage and front porch overlap (m²)",
             "part outside",
-            "columns moved by over 0.25 standard deviations",
+            "columns moved",
             "max z from the attributes",
         ]);
     for s in all {

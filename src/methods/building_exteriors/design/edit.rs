@@ -215,7 +215,7 @@ pub fn suggested(
         .collect();
     own.special.clear();
     let donor = alone(&boxes, database);
-    let given: [bool; 49] = std::array::from_fn(|c| c < 2 || c >= 39);
+    let given: [bool; 49] = std::array::from_fn(|c| !(2..39).contains(&c));
     let rows = wanted_rows(&draws.table);
     let mut failed = None;
     // From the boxes of the house itself, then from those of any house.
