@@ -268,13 +268,14 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
     let mut stages: Vec<(String, Building, Vec<crate::shape::MassBox>, f64)> =
         vec![("initial".into(), start.clone(), Vec::new(), 0.0)];
     let (w, d) = (extent(start)[0], extent(start)[1]);
-    let garage = [2.1, 3.2, 3.8, 6.0, 2.5];
+    // Beside the left wall, half a metre inside it.
+    let garage = [-1.4, 3.4, 3.8, 6.0, 2.5];
     let steps: [(&str, Next); 3] = [
         ("garage added in front", &|_| {
             Edit::Add(BoxStyle::Garage, garage)
         }),
         ("garage moved to the back", &|h| {
-            Edit::Move(find(h, BoxStyle::Garage), [2.1, extent(h)[1] - 3.2])
+            Edit::Move(find(h, BoxStyle::Garage), [-1.4, extent(h)[1] - 3.4])
         }),
         ("main box resized", &|h| {
             let k = find(h, BoxStyle::Main);
