@@ -161,7 +161,8 @@ pub fn completions(
     Ok(houses)
 }
 
-/// A house with the wanted attributes around the boxes and facade pieces of a partial house.
+/// A house with the wanted attributes around the boxes and facade pieces of a partial house, at the corner of
+/// `options.frozen` where it is known.
 ///
 /// # Errors
 /// [`CompleteError`].
@@ -178,7 +179,9 @@ pub fn around(
     let frozen = Frozen {
         boxes: partial.boxes.clone(),
         pieces: fixed_pieces(partial)?,
+        corner: options.frozen.corner,
     };
+    let corner = frozen.corner;
     let options = Options {
         frozen,
         ..options.clone()
@@ -186,7 +189,8 @@ pub fn around(
     let (row, known) = reconciled(partial, wanted, given)?;
     let mut best: Option<(Generated, f64)> = None;
     let mut failed = None;
-    for origin in origins(partial, &row) {
+    let corners = corner.map_or_else(|| origins(partial, &row), |c| vec![c]);
+    for origin in corners {
         match placed(
             name,
             partial,

@@ -9,7 +9,7 @@ use crate::methods::building_exteriors::data::table;
 use crate::methods::building_exteriors::house::{
     Database, Frozen, GenerateError, Generated, Options, Wish, finish,
 };
-use crate::methods::building_exteriors::mass::target::PARTS;
+use crate::methods::building_exteriors::mass::target::{PARTS, bounds};
 use crate::methods::building_exteriors::mass::{MASS, MassModel, Search, is_sound};
 use crate::model::hierarchy::Hierarchy;
 use crate::shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
@@ -153,6 +153,7 @@ pub fn edited(
         frozen: Frozen {
             boxes: boxes.boxes.clone(),
             pieces: Vec::new(),
+            corner: None,
         },
         ..options.clone()
     };
@@ -215,6 +216,7 @@ pub fn suggested(
         .collect();
     own.special.clear();
     let donor = alone(&boxes, database);
+    let [[x, _], [y, _]] = bounds(&boxes);
     let given: [bool; 49] = std::array::from_fn(|c| !(2..39).contains(&c));
     let rows = wanted_rows(&draws.table);
     let mut failed = None;
@@ -224,6 +226,10 @@ pub fn suggested(
             search: Search {
                 rounds,
                 ..options.search.clone()
+            },
+            frozen: Frozen {
+                corner: Some([x, y]),
+                ..Frozen::default()
             },
             ..options.clone()
         };

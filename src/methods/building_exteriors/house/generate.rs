@@ -53,6 +53,8 @@ pub struct Frozen {
     pub boxes: Vec<MassBox>,
     /// Pieces of facades with their walls.
     pub pieces: Vec<FixedPiece>,
+    /// Left front corner of the bounding box of the whole house, where it is known.
+    pub corner: Option<[f64; 2]>,
 }
 
 /// How to generate.
