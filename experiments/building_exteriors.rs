@@ -3,16 +3,21 @@
 
 mod averages;
 mod data;
+mod design_figures;
+mod facade_figures;
 mod figure_10;
 mod figure_11;
 mod figure_12;
 mod figure_14;
 mod generation;
 mod generation_figures;
+mod generation_speed;
 pub mod houses;
 mod learning;
+mod mixture_figures;
 mod reasons;
 mod speed;
+mod views;
 
 use super::{Artefact, Context, Experiment};
 use crate::model::hierarchy::{Constant, Settings};
@@ -31,9 +36,59 @@ const ARTEFACTS: &[Artefact] = &[
         run: generation_figures::figure_6,
     },
     Artefact {
+        name: "figure_7",
+        title: "energy of facades against generations",
+        run: facade_figures::figure_7,
+    },
+    Artefact {
+        name: "figure_8",
+        title: "a house made again from its attributes",
+        run: facade_figures::figure_8,
+    },
+    Artefact {
+        name: "figure_9",
+        title: "what each attribute does",
+        run: facade_figures::figure_9,
+    },
+    Artefact {
+        name: "figure_13",
+        title: "houses of the means of a Gaussian mixture",
+        run: mixture_figures::figure_13,
+    },
+    Artefact {
+        name: "figure_14_houses",
+        title: "houses of a Gaussian mixture and of ours, bounding box and garage given",
+        run: mixture_figures::figure_14,
+    },
+    Artefact {
         name: "figure_15",
         title: "six synthesized houses",
         run: generation_figures::figure_15,
+    },
+    Artefact {
+        name: "figure_16",
+        title: "completions of houses seen from the street, beside the truth",
+        run: design_figures::figure_16,
+    },
+    Artefact {
+        name: "figure_17",
+        title: "three completed houses",
+        run: design_figures::figure_17,
+    },
+    Artefact {
+        name: "figure_18",
+        title: "several completions of one house",
+        run: design_figures::figure_18,
+    },
+    Artefact {
+        name: "figure_19",
+        title: "an editing sequence",
+        run: design_figures::figure_19,
+    },
+    Artefact {
+        name: "generation_speed",
+        title: "seconds of mass models, roofs, facades and whole houses",
+        run: generation_speed::run,
     },
     Artefact {
         name: "generation",

@@ -4,7 +4,7 @@ use edifice::io::{building_json, surface_obj};
 use edifice::methods::building_exteriors::attributes::{COLUMNS, attributes};
 use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Database, Joining, Options, generate, model};
-use edifice::methods::building_exteriors::mass::repair::{Contradiction, check};
+use edifice::methods::building_exteriors::mass::contradiction::{Contradiction, check};
 use edifice::methods::building_exteriors::mass::{
     MassTarget, Search, is_sound, search, variations,
 };
@@ -216,7 +216,15 @@ fn variations_differ() {
     let wanted = row(&database, 5);
     let target = MassTarget::new(std::array::from_fn(|c| wanted[c]));
     let mut rng = stream(1, "tests/variations", 0);
-    let found = variations(&target, 6, 0.02, &database, &Search::default(), &mut rng);
+    let found = variations(
+        &target,
+        6,
+        0.02,
+        &[],
+        &database,
+        &Search::default(),
+        &mut rng,
+    );
     assert!(found.len() >= 4, "{}", found.len());
     assert!(
         found

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use edifice::io::json::parse_json;
 use edifice::io::{
-    LabelMap, building_csv, building_json, cmp_xml, coco, facade_json, grammar_cga, grammar_json,
-    label_image, label_text, labelme,
+    LabelMap, building_csv, building_json, cmp_xml, coco, facade_json, footprint, grammar_cga,
+    grammar_json, label_image, label_text, labelme, surface_obj,
 };
 use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
@@ -26,6 +26,10 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
         "cmp_xml" => cmp_xml::parse(bytes, path).is_ok_and(|c| c.label_grid(30.0, 40.0).is_ok()),
         "coco" => coco::parse(bytes, path, None).is_ok(),
         "completion_model" => text.is_some_and(|t| CompletionModel::from_json(t).is_ok()),
+        "footprint" => footprint::parse(bytes, path).is_ok(),
+        "surface_obj" => {
+            surface_obj::parse(bytes, path).is_ok_and(|s| s.check().is_ok_and(|r| r.shells == 1))
+        }
         "facade_json" => facade_json::parse(bytes, path).is_ok(),
         "grammar_cga" => grammar_cga::parse(bytes, path).is_ok(),
         "grammar_json" => grammar_json::parse(bytes, path).is_ok(),

@@ -1,12 +1,16 @@
 //! Fig. 10: the styles found.
 
+use super::views::{FRONT, Panel, sheet};
 use super::{data, settings};
 use crate::cluster::adjusted_rand_index;
 use crate::experiments::Context;
 use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::model::hierarchy::learn;
+use crate::methods::building_exteriors::design::wanted_rows;
+use crate::methods::building_exteriors::house::{Database, Generated, Options, generate};
+use crate::model::hierarchy::{Hierarchy, learn};
 use crate::model::{Cell, Table as Data};
 use crate::report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};
+use crate::rng::stream;
 use crate::shape::{BoxStyle, Building, PlanUnion, Rect};
 use crate::{Error, Result};
 
@@ -83,11 +87,55 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     }
     ctx.table(&apart);
     ctx.note(
-        "The paper samples two buildings of each style and builds their geometry (its Sec. 6, not part of this \
-         project yet); here the two training houses of highest density stand for them.",
+        "The plans are those of the two training houses of highest density of each style; the picture of houses shows two \
+         samples of each style, as in the paper: the most probable of 40 draws, and the most probable of 40 others.",
     );
-    Ok(())
+    sampled_houses(ctx, &model, shipped.buildings)
 }
+
+/// Two houses built from samples of each style, a style a column.
+fn sampled_houses(ctx: &mut Context, model: &Hierarchy, buildings: Vec<Building>) -> Result<()> {
+    let database = Database::new(buildings).map_err(Error::method)?;
+    let mut rows: [Vec<Generated>; 2] = Default::default();
+    for style in 0..model.styles() {
+        for (k, row) in rows.iter_mut().enumerate() {
+            let name = format!("building_exteriors/figure_10/{style}");
+            let mut rng = stream(ctx.seed(), &name, k as u64);
+            let draws = model
+                .sample_style(style, DRAWS, &mut rng)
+                .map_err(Error::method)?;
+            let wanted = wanted_rows(&draws.table);
+            let most = data::argmax(&draws.log_density);
+            let (free, options) = ([false; 49], Options::default());
+            let made = generate(
+                "sample",
+                &wanted[most],
+                &free,
+                &database,
+                &options,
+                &mut rng,
+            );
+            row.push(made.map_err(Error::method)?);
+        }
+    }
+    let panels: Vec<Vec<Panel>> = rows
+        .iter()
+        .map(|row| {
+            let each = row.iter().enumerate();
+            each.map(|(s, house)| Panel::House(&house.model, s, FRONT))
+                .collect()
+        })
+        .collect();
+    let cell = ctx.budget().choose([60, 44], [240, 180], [240, 180]);
+    ctx.attach(
+        "figure_10_houses.png",
+        &sheet(&panels, cell)?,
+        "two houses sampled from each style, a style a column",
+    )
+}
+
+/// Draws of a style, the most probable of which is built.
+const DRAWS: usize = 40;
 
 /// Mean of each column among the houses of a style, in standard deviations of all houses.
 fn deviations(table: &Data, labels: &[usize], style: usize) -> Vec<(&'static str, f64)> {

@@ -58,6 +58,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         ctx.budget().choose(6, 200, 500),
         ctx.budget().choose(2, 20, 60),
     );
+    let wilder = ctx.budget().choose(6, 500, 500);
+    ctx.setting("wild_houses", wilder);
     ctx.setting("houses", many);
     ctx.setting("houses_of_paper", slow);
     let table = &shipped.data.table;
@@ -76,7 +78,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let mut add = |dataset, rows: Vec<Vec<f64>>| {
         for (house, wanted) in rows.into_iter().enumerate() {
             for method in ["best", "nearest", "nearest_scaled", "random", "paper"] {
-                let most = if method == "paper" { slow } else { many };
+                let most = match (dataset, method) {
+                    (_, "paper") => slow,
+                    ("wild", "best") => wilder,
+                    _ => many,
+                };
                 if house < most {
                     units.push(Unit {
                         dataset,
@@ -89,7 +95,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         }
     };
     add("shipped", rows_of(table).into_iter().take(many).collect());
-    let wild_rows = (0..many as u64).map(|i| mass_attributes(&wild(WILD_SEED, i)));
+    let wild_rows = (0..wilder as u64).map(|i| mass_attributes(&wild(WILD_SEED, i)));
     add("wild", wild_rows.collect());
     add("sampled", rows_of(&sampled.table));
     add("most_probable", rows_of(&probable.table));

@@ -4,6 +4,7 @@ mod attributes;
 mod build;
 mod check;
 mod data;
+mod design;
 mod draw;
 mod evaluate;
 mod learn;
@@ -38,6 +39,7 @@ pub enum Command {
     /// Complete houses whose attributes are partly missing; prints CSV.
     #[command(after_help = "Examples:
   edifice building complete model.houses.json partial.building.json -n 5 --most-probable
+  edifice building complete model.houses.json partial.building.json -n 5 -o completed --format json,png
   edifice building complete ames.houses.json some.csv --schema datasets/building_exteriors/ames.schema.json
 A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
     Complete(draw::CompleteArgs),
@@ -55,8 +57,18 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
     #[command(after_help = "Examples:
   edifice building generate model.houses.json -n 6 --most-probable -o houses --format json,obj,glb,svg,png
   edifice building generate model.houses.json -n 3 --given garage=none --given roof.hip=yes -o houses --json
+  edifice building generate model.houses.json -n 4 --footprint plot.geojson -o houses
   edifice building generate model.houses.json -n 50 -o town --street")]
     Generate(build::GenerateArgs),
+    /// Make other houses with the attributes of a house, their plans at least 5 % apart.
+    #[command(after_help = "Examples:
+  edifice building variations house_0001.building.json -n 8 -o variations --format json,png")]
+    Variations(design::VariationsArgs),
+    /// Add, move, resize and remove boxes of a house; with a model, a house around the edited boxes is suggested.
+    #[command(after_help = "Examples:
+  edifice building edit house.building.json --resize 0=9,7,2.9 -o edited --format json,png
+  edifice building edit house.building.json --add garage@2,3,3.5,6,2.5 --model model.houses.json -o edited")]
+    Edit(design::EditArgs),
     /// Check that houses are closed, in one shell, and that nothing overlaps or is hidden; exit code 1 names what is wrong.
     #[command(after_help = "Examples:
   edifice building check houses/*.building.json
@@ -80,6 +92,8 @@ pub fn run(command: Command) -> edifice::Result<()> {
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Build(args) => build::build(&args),
         Command::Generate(args) => build::generate(&args),
+        Command::Variations(args) => design::variations(&args),
+        Command::Edit(args) => design::edit(&args),
         Command::Check(args) => check::check(&args),
         Command::Draw(args) => check::draw(&args),
     }

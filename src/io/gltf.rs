@@ -148,10 +148,14 @@ struct Document {
     accessors: Vec<Index<json::Accessor>>,
 }
 
-/// Buffer views: positions, then indices.
-const VIEWS: [json::buffer::Target; 2] = [
-    json::buffer::Target::ArrayBuffer,
-    json::buffer::Target::ElementArrayBuffer,
+/// Buffer views: positions, three numbers of four bytes, then indices. Several accessors share the first, which
+/// therefore must say its stride.
+const VIEWS: [(json::buffer::Target, Option<json::buffer::Stride>); 2] = [
+    (
+        json::buffer::Target::ArrayBuffer,
+        Some(json::buffer::Stride(12)),
+    ),
+    (json::buffer::Target::ElementArrayBuffer, None),
 ];
 
 impl Document {
@@ -231,12 +235,12 @@ impl Document {
             extras: Default::default(),
         });
         let mut offset = 0;
-        for (length, target) in lengths.into_iter().zip(VIEWS) {
+        for (length, (target, byte_stride)) in lengths.into_iter().zip(VIEWS) {
             self.root.push(json::buffer::View {
                 buffer,
                 byte_length: USize64::from(length),
                 byte_offset: Some(USize64::from(offset)),
-                byte_stride: None,
+                byte_stride,
                 name: None,
                 target: Some(Valid(target)),
                 extensions: None,

@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use edifice::io::building_csv::{self, TextTable};
+use edifice::io::footprint;
 use edifice::methods::building_exteriors::attributes::COLUMNS;
+use edifice::methods::building_exteriors::house::Options;
+use edifice::methods::building_exteriors::mass::footprint::decided;
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
 use edifice::{Error, Result};
 
 use super::data;
 use super::draw::{Draw, drawn_table};
-use super::output;
 use super::produce::{Order, Output, produce};
 use crate::cli::model::given::evidence;
 
@@ -43,6 +45,9 @@ pub struct GenerateArgs {
     /// Draw many and keep the most probable that differ.
     #[arg(long)]
     most_probable: bool,
+    /// Footprint of all houses: one rectilinear polygon without holes, in degrees or metres (GeoJSON).
+    #[arg(long, value_name = "FILE", conflicts_with = "style")]
+    footprint: Option<PathBuf>,
     #[command(flatten)]
     output: Output,
 }
@@ -51,8 +56,9 @@ pub struct GenerateArgs {
 pub fn build(args: &BuildArgs) -> Result<()> {
     let table = building_csv::read(&args.attributes)?;
     let orders = orders(&table, &args.attributes, !args.repair)?;
-    let database = output::database(args.output.database.as_deref())?;
-    produce(&orders, &database, &args.output)
+    let database = args.output.making.database()?;
+    let options = args.output.making.options();
+    produce(&orders, &database, &options, &args.output)
 }
 
 /// The rows of a table of all 49 columns; a column `name` names the houses.
@@ -113,6 +119,7 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
     if args.count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
+    let plan = args.footprint.as_deref().map(footprint::read).transpose()?;
     let (table, given) = match args.style {
         Some(style) => {
             let index = style.checked_sub(1);
@@ -123,15 +130,27 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
         }
         None => {
             let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-            let given = evidence(&file.groups, &kinds.table, &args.given)
+            let mut given = evidence(&file.groups, &kinds.table, &args.given)
                 .map_err(|e| Error::option("--given", e.to_string()))?;
+            for (c, value) in plan.iter().flat_map(|plan| decided(plan)) {
+                // What --given says of the plan is checked against it when the houses are made.
+                if given.column(COLUMNS[c]).is_err() {
+                    given = given
+                        .real(COLUMNS[c], [Some(value)])
+                        .map_err(Error::method)?;
+                }
+            }
             let draw = Draw::new(args.count, args.most_probable, args.output.seed);
             (drawn_table(&file, &given, &draw, 0)?, given)
         }
     };
     let orders = sampled(&table, &given, &args.model)?;
-    let database = output::database(args.output.database.as_deref())?;
-    produce(&orders, &database, &args.output)
+    let database = args.output.making.database()?;
+    let options = Options {
+        footprint: plan,
+        ..args.output.making.options()
+    };
+    produce(&orders, &database, &options, &args.output)
 }
 
 /// The rows of a table of draws; columns of the evidence are given.

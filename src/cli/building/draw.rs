@@ -1,28 +1,36 @@
 //! `edifice building sample` and `complete`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use edifice::io::building_json;
+use edifice::methods::building_exteriors::attributes::COLUMNS;
+use edifice::methods::building_exteriors::design::{completions, observed};
 use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::model::Table;
+use edifice::model::{Cell, Table};
 use edifice::rng::stream;
 use edifice::{Error, Result};
 
+use super::build::is_file_name;
 use super::data::{self, Input};
+use super::produce::Making;
 use crate::cli::model::data::csv_lines;
 use crate::cli::model::given::evidence;
 use crate::cli::print;
 
 /// Samples among which the most probable are sought.
 const POOL: usize = 2000;
+/// Houses drawn where no number is asked for, and houses completed.
+const COUNT: usize = 10;
+const COMPLETED: usize = 5;
 /// Root mean square distance, in standard deviations, below which two houses are the same.
 const APART: f64 = 0.05;
 
 /// What to draw.
 #[derive(clap::Args)]
 pub struct Draw {
-    /// Houses to draw.
-    #[arg(short = 'n', long, default_value_t = 10)]
-    count: usize,
+    /// Houses to draw [default: 10; completed houses: 5]
+    #[arg(short = 'n', long)]
+    count: Option<usize>,
     /// Draw many and keep the most probable that differ.
     #[arg(long)]
     most_probable: bool,
@@ -35,10 +43,14 @@ impl Draw {
     /// What to draw.
     pub fn new(count: usize, most_probable: bool, seed: u64) -> Self {
         Self {
-            count,
+            count: Some(count),
             most_probable,
             seed,
         }
+    }
+
+    fn count(&self) -> usize {
+        self.count.unwrap_or(COUNT)
     }
 }
 
@@ -67,6 +79,18 @@ pub struct CompleteArgs {
     /// Attributes to take as observed; all others are completed. All by default.
     #[arg(long, value_delimiter = ',')]
     keep: Vec<String>,
+    /// Build the completed houses into this folder: boxes and facade pieces of the partial houses stay as they are, the
+    /// houses nearest to the model's answer come first.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// With --output, further evidence as in `sample`; repeatable.
+    #[arg(long, requires = "output")]
+    given: Vec<String>,
+    #[command(flatten)]
+    making: Making,
+    /// With --output, print a line of JSON for each house.
+    #[arg(long, requires = "output")]
+    json: bool,
     #[command(flatten)]
     draw: Draw,
 }
@@ -75,14 +99,14 @@ pub struct CompleteArgs {
 pub fn sample(args: &SampleArgs) -> Result<()> {
     let file = data::model(&args.model)?;
     let mut rng = stream(args.draw.seed, "building/sample", 0);
-    if args.draw.count == 0 {
+    if args.draw.count() == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
     if let Some(style) = args.style {
         let index = style
             .checked_sub(1)
             .ok_or_else(|| Error::option("--style", "the first style is 1"))?;
-        let draws = file.model.sample_style(index, args.draw.count, &mut rng);
+        let draws = file.model.sample_style(index, args.draw.count(), &mut rng);
         let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
         return print::line(&csv_lines(&draws.table).join("\n"));
     }
@@ -95,6 +119,9 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
 /// Runs `complete`.
 pub fn complete(args: &CompleteArgs) -> Result<()> {
     let file = data::model(&args.model)?;
+    if let Some(folder) = &args.output {
+        return complete_houses(args, &file, folder);
+    }
     let mut table = args.input.read()?.table;
     if !args.keep.is_empty() {
         let mut columns: Vec<&str> = Vec::new();
@@ -115,6 +142,62 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
     Ok(())
 }
 
+/// Builds the completions of partial houses.
+fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Result<()> {
+    let path = &args.input.input;
+    let groups = || file.groups.iter().map(|g| g.name.as_str());
+    if let Some(name) = args.keep.iter().find(|k| groups().all(|g| g != k.as_str())) {
+        return Err(Error::option("--keep", format!("no attribute `{name}`")));
+    }
+    let count = args.draw.count.unwrap_or(COMPLETED);
+    if count == 0 {
+        return Err(Error::option("--count", "must be at least 1"));
+    }
+    let mut rng = stream(args.draw.seed, "building/kinds", 0);
+    let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
+    let given = evidence(&file.groups, &kinds.table, &args.given)
+        .map_err(|e| Error::option("--given", e.to_string()))?;
+    let database = args.making.database()?;
+    let options = args.making.options();
+    let mut all = Vec::new();
+    for partial in building_json::read(path)? {
+        let named = |e: String| Error::content(path, format!("{}: {e}", partial.name));
+        if !is_file_name(&partial.name) {
+            return Err(named("its name cannot name a file".into()));
+        }
+        let mut row = observed(&partial, &args.keep).map_err(|e| named(e.to_string()))?;
+        for (value, name) in row.iter_mut().zip(COLUMNS) {
+            match given.column(name).map(|c| c.cell(0)) {
+                Ok(Cell::Real(v)) => *value = Some(v),
+                Ok(Cell::Code(code)) => *value = Some(code as f64),
+                _ => {}
+            }
+        }
+        let seed = args.draw.seed;
+        let houses = completions(
+            &partial,
+            &file.model,
+            &row,
+            count,
+            &database,
+            &options,
+            seed,
+        );
+        let houses = houses.map_err(|e| named(e.to_string()))?;
+        if houses.len() < count {
+            print::message(&format!(
+                "{}: {} of {count} houses; no other answer of the model could be built",
+                partial.name,
+                houses.len()
+            ));
+        }
+        all.extend(houses);
+    }
+    args.making.write(&all, folder, args.json)?;
+    print::message(&format!("{} houses in {}", all.len(), folder.display()));
+    Ok(())
+}
+
 /// Completions of one row as CSV lines, the header first.
 fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<String>> {
     Ok(csv_lines(&drawn_table(file, given, draw, row)?))
@@ -125,12 +208,12 @@ pub fn drawn_table(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Re
     let mut rng = stream(draw.seed, "building/draw", row);
     let model = &file.model;
     let draws = if draw.most_probable {
-        let pool = POOL.max(draw.count);
-        model.most_probable(given, draw.count, pool, APART, None, &mut rng)
+        let pool = POOL.max(draw.count());
+        model.most_probable(given, draw.count(), pool, APART, None, &mut rng)
     } else if given.columns().is_empty() {
-        model.sample(draw.count, &mut rng)
+        model.sample(draw.count(), &mut rng)
     } else {
-        model.complete(given, draw.count, &mut rng)
+        model.complete(given, draw.count(), &mut rng)
     };
     // Each row was asked about on its own; the message names its place in the input.
     let draws = draws.map_err(|e| Error::method(e.in_row(row as usize)))?;

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use edifice::io::{gltf, write_atomic};
 use edifice::methods::building_exteriors::attributes::COLUMNS;
 use edifice::methods::building_exteriors::house::{
-    Database, Generated, HouseReport, Joining, Options, generate,
+    Database, Generated, HouseReport, Joining, Method, Options, generate,
 };
+use edifice::methods::building_exteriors::mass::contradiction::check_given;
+use edifice::methods::building_exteriors::mass::footprint::reconcile;
 use edifice::rng::stream;
 use edifice::shape::Building;
 use edifice::{Error, Result};
@@ -24,18 +26,8 @@ pub struct Output {
     /// Folder of the output; it is made when it does not exist.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// Files for each house.
-    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Format::Json, Format::Glb])]
-    pub format: Vec<Format>,
-    /// Houses that donate boxes (`*.buildings.jsonl`); the shipped ones by default.
-    #[arg(long, value_name = "FILE")]
-    pub database: Option<PathBuf>,
-    /// Roofs of each box, or one joined roof for all boxes of a height.
-    #[arg(long, value_enum, default_value = "boxes")]
-    pub roof: RoofOption,
-    /// Never cut a strip of wall in two for the sake of symmetry.
-    #[arg(long)]
-    pub no_cuts: bool,
+    #[command(flatten)]
+    pub making: Making,
     /// Also write all houses of this run as one scene, a street: `DIR/street.glb`.
     #[arg(long)]
     pub street: bool,
@@ -45,6 +37,26 @@ pub struct Output {
     /// Print a line of JSON for each house.
     #[arg(long)]
     pub json: bool,
+}
+
+/// How houses are made, and which files of them are written.
+#[derive(clap::Args)]
+pub struct Making {
+    /// Files for each house.
+    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Format::Json, Format::Glb])]
+    pub format: Vec<Format>,
+    /// Houses that donate boxes (`*.buildings.jsonl`); the shipped ones by default.
+    #[arg(long, value_name = "FILE")]
+    pub database: Option<PathBuf>,
+    /// Roofs of each box, or one joined roof for all boxes of a height.
+    #[arg(long, value_enum, default_value = "boxes")]
+    pub roof: RoofOption,
+    /// How mass models and facades are found.
+    #[arg(long, value_enum, default_value = "best")]
+    pub method: MethodOption,
+    /// Never cut a strip of wall in two for the sake of symmetry.
+    #[arg(long)]
+    pub no_cuts: bool,
 }
 
 /// How roofs are joined.
@@ -66,6 +78,15 @@ impl RoofOption {
     }
 }
 
+/// How mass models and facades are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MethodOption {
+    /// Boxes of similar houses fitted by least squares, facades side by side: reaches the attributes in milliseconds.
+    Best,
+    /// Simulated annealing and a genetic algorithm as in the paper: seconds a house.
+    Paper,
+}
+
 /// A house to make.
 pub struct Order {
     /// Its name, and that of its files.
@@ -76,28 +97,62 @@ pub struct Order {
     pub given: [bool; 49],
 }
 
-impl Output {
+impl Making {
+    /// The database of donors.
+    pub fn database(&self) -> Result<Database> {
+        output::database(self.database.as_deref())
+    }
+
+    /// Writes houses with their reports into a folder, in their order; with `json`, prints a line for each.
+    pub fn write(&self, houses: &[Generated], folder: &Path, json: bool) -> Result<()> {
+        output::folder(folder)?;
+        for house in houses {
+            output::write(&house.building, &house.model, folder, &self.format)?;
+            let line = report(&house.report, None)?;
+            let path = folder.join(format!("{}.report.json", house.building.name));
+            write_atomic(&path, format!("{line}\n").as_bytes())?;
+            if json {
+                print::line(&line)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The settings of generation.
     pub fn options(&self) -> Options {
         Options {
             joining: self.roof.joining(),
             no_cuts: self.no_cuts,
+            method: match self.method {
+                MethodOption::Best => Method::Best,
+                MethodOption::Paper => Method::Paper,
+            },
             ..Options::default()
         }
     }
+}
 
+impl Output {
     fn report_file(&self, name: &str) -> PathBuf {
         self.output.join(format!("{name}.report.json"))
     }
 }
 
 /// Makes and writes the houses. Those whose report is there with the same attributes are left as they are.
-pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result<()> {
-    let options = output.options();
+pub fn produce(
+    orders: &[Order],
+    database: &Database,
+    options: &Options,
+    output: &Output,
+) -> Result<()> {
     // Nothing is written when some row cannot be a house.
-    for order in orders.iter().filter(|o| o.given.iter().all(|g| *g)) {
-        edifice::methods::building_exteriors::mass::repair::check(&order.wanted)
-            .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
+    for order in orders {
+        let named = |e: String| Error::method(format!("{}: {e}", order.name));
+        check_given(&order.wanted, &order.given).map_err(|e| named(e.to_string()))?;
+        if let Some(plan) = &options.footprint {
+            reconcile(&mut order.wanted.clone(), &order.given, plan)
+                .map_err(|e| named(e.to_string()))?;
+        }
     }
     output::folder(&output.output)?;
     let mut street: Vec<(Building, edifice::methods::building_exteriors::house::Model)> =
@@ -117,7 +172,7 @@ pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result
                     &order.wanted,
                     &order.given,
                     database,
-                    &options,
+                    options,
                     &mut rng,
                 )
                 .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
@@ -126,7 +181,7 @@ pub fn produce(orders: &[Order], database: &Database, output: &Output) -> Result
                     &house.building,
                     &house.model,
                     &output.output,
-                    &output.format,
+                    &output.making.format,
                 )?;
                 let text = report(&house.report, Some(seconds))?;
                 write_atomic(

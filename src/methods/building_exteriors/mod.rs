@@ -7,6 +7,7 @@
 pub mod agreement;
 pub mod attributes;
 pub mod data;
+pub mod design;
 pub mod facade;
 pub mod house;
 pub mod mass;

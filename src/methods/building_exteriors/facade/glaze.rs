@@ -45,6 +45,10 @@ pub(super) fn glaze(
         let mut has_door = false;
         for room in &strip.rooms {
             let index = pieces.len();
+            if let Some(fixed) = &room.fixed {
+                pieces.push(fixed.clone());
+                continue;
+            }
             pieces.push(FacadePiece {
                 side: room.piece.side,
                 start: millimetres(strip.start),
@@ -69,9 +73,11 @@ pub(super) fn glaze(
         }
     }
     let walls_area: f64 = pieces.iter().map(FacadePiece::area).sum();
+    let fixed = pieces.iter().flat_map(|p| &p.elements);
+    let fixed: f64 = fixed.map(|e| e.width * e.height).sum();
     let covered = |scale: f64| {
         let areas = slots.iter().map(|s| s.size(scale)).map(|[w, h]| w * h);
-        areas.sum::<f64>() / walls_area
+        (fixed + areas.sum::<f64>()) / walls_area
     };
     let (mut low, mut high) = (0.25, 4.0);
     for _ in 0..60 {

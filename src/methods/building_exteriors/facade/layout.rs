@@ -2,7 +2,7 @@
 
 use super::cut::{Candidate, Choice, NARROWEST, choices};
 use super::glaze::{Plan, glaze, holds_asymmetric, millimetres};
-use super::room::{Strip, Walls};
+use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
 use crate::methods::building_exteriors::attributes::facade_attributes;
 use crate::shape::solid::Faces;
@@ -17,6 +17,8 @@ pub struct FacadeTarget {
     pub windows: [bool; 5],
     /// Whether a strip may be cut.
     pub cuts: bool,
+    /// Observed pieces that stay as they are.
+    pub fixed: Vec<FixedPiece>,
 }
 
 /// Facades and how near they are.
@@ -44,7 +46,7 @@ pub fn furnish(
     target: &FacadeTarget,
     deviations: &[f64],
 ) -> Facades {
-    let walls = Walls::new(building, shell);
+    let walls = Walls::new(building, shell, &target.fixed);
     let styles = styles::wanted(target.windows);
     let mut out = Facades {
         pieces: Vec::new(),
@@ -63,7 +65,7 @@ pub fn furnish(
             cuts: target.cuts,
             evaluations: 0,
         };
-        let door = (side == Side::Front)
+        let door = (side == Side::Front && !has_door(&target.fixed))
             .then(|| door_strip(building, &walls))
             .flatten();
         let (pieces, z) = search.run(door);
@@ -71,8 +73,13 @@ pub fn furnish(
         out.max_z = out.max_z.max(z);
         out.pieces.extend(pieces);
     }
-    missing_styles(&mut out.pieces, &styles);
+    missing_styles(&mut out.pieces, &styles, &target.fixed);
     out
+}
+
+fn has_door(fixed: &[FixedPiece]) -> bool {
+    let mut elements = fixed.iter().flat_map(|f| &f.piece.elements);
+    elements.any(|e| e.style == ElementStyle::Door)
 }
 
 /// The styles of a side: the main one, and for each further one a side of its own, bays in front.
@@ -92,7 +99,8 @@ fn shared(styles: &[ElementStyle], side: usize) -> Vec<ElementStyle> {
 }
 
 /// Gives a style that no piece shows yet to the last piece of the most common style.
-fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle]) {
+fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle], fixed: &[FixedPiece]) {
+    let is_free = |p: &FacadePiece| fixed.iter().all(|f| f.piece != *p);
     let windows = |p: &FacadePiece| p.elements.iter().any(|e| e.style != ElementStyle::Door);
     for style in styles {
         let shows = |p: &FacadePiece, s: ElementStyle| p.elements.iter().any(|e| e.style == s);
@@ -107,7 +115,7 @@ fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle]) {
         let last = pieces
             .iter_mut()
             .rev()
-            .find(|p| windows(p) && shows(p, most));
+            .find(|p| windows(p) && shows(p, most) && is_free(p));
         for e in last.into_iter().flat_map(|p| &mut p.elements) {
             if e.style == most {
                 e.style = *style;
@@ -117,7 +125,7 @@ fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle]) {
 }
 
 /// The front strip for the door: behind the front porch, else the narrowest that a door fits into with room.
-fn door_strip(building: &Building, walls: &Walls) -> Option<usize> {
+pub(super) fn door_strip(building: &Building, walls: &Walls) -> Option<usize> {
     let strips = &walls.strips[0];
     let porch = building
         .boxes
@@ -170,7 +178,7 @@ impl SideSearch<'_> {
             .iter()
             .map(|s| s.width() * s.rooms.len() as f64)
             .sum();
-        let wanted = (1.0 - self.wanted[1]) * total;
+        let wanted = (1.0 - self.wanted[1]) * total - self.fixed_asymmetric();
         let enough = 0.01 * self.deviations[1] * total;
         for spacing in SPACINGS {
             let candidates = self.strips.iter().map(|s| self.candidate(s, spacing));
@@ -201,6 +209,15 @@ impl SideSearch<'_> {
             }
         }
         best.map_or((Vec::new(), 0.0), |(pieces, z, _)| (pieces, z))
+    }
+
+    /// Asymmetric width of the fixed pieces.
+    fn fixed_asymmetric(&self) -> f64 {
+        let rooms = self.strips.iter().flat_map(|s| &s.rooms);
+        let fixed: Vec<FacadePiece> = rooms.filter_map(|r| r.fixed.clone()).collect();
+        let width: f64 = fixed.iter().map(|p| p.width).sum();
+        let symmetric = self.measured(&fixed)[1].unwrap_or(1.0);
+        (1.0 - symmetric) * width
     }
 
     /// Room for windows off the middle.
@@ -307,6 +324,16 @@ impl SideSearch<'_> {
     /// Largest and summed distance of the side's attributes, measured by the one code of attributes.
     fn distance(&mut self, pieces: &[FacadePiece]) -> (f64, f64) {
         self.evaluations += 1;
+        let measured = self.measured(pieces);
+        let z = (0..3).map(|k| {
+            let value = measured[k].unwrap_or(0.0);
+            ((value - self.wanted[k]) / self.deviations[k]).abs()
+        });
+        z.fold((0.0, 0.0), |(most, sum), z| (z.max(most), sum + z))
+    }
+
+    /// Window-to-wall ratio, symmetry and alignment of pieces of this side.
+    fn measured(&self, pieces: &[FacadePiece]) -> [Option<f64>; 3] {
         let side = Building {
             name: String::new(),
             unit: String::new(),
@@ -316,10 +343,6 @@ impl SideSearch<'_> {
             special: Vec::new(),
         };
         let measured = facade_attributes(&side);
-        let z = (0..3).map(|k| {
-            let value = measured[4 * k + self.column].unwrap_or(0.0);
-            ((value - self.wanted[k]) / self.deviations[k]).abs()
-        });
-        z.fold((0.0, 0.0), |(most, sum), z| (z.max(most), sum + z))
+        [0, 1, 2].map(|k| measured[4 * k + self.column])
     }
 }

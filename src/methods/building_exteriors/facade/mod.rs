@@ -16,18 +16,27 @@
 //! to the wanted attributes is kept. Styles go to strips so that each wanted one occurs; a door stands in the
 //! strip of the front that the front porch covers.
 //!
+//! **`paper`** ([`breed()`]): Eq. 4 by a genetic algorithm (100 genomes; a gene is the layout of a wall piece), each layout
+//! sized by Eq. 5; elements are sub-styles of the database on the house with the most similar styles ([`elements()`]).
+//!
 //! # Deviations and readings
-//! - Sizes follow one scale for a side, not sub-styles of single elements: Eq. 5 couples widths on a piece only
-//!   through their sum, and then [`knapsack`] solves it exactly without a solver.
+//! - `best`: sizes follow one scale for a side, not sub-styles of single elements. `paper`: Eq. 5 couples widths on a piece
+//!   only through their sum, so that [`knapsack`] solves it exactly without a solver; heights and sills are the averages
+//!   of the sub-style, cut to what the wall has free; a drawn layout has one sub-style or several, in equal parts.
 //! - Windows keep clear of corners, of roofs before the wall and of each other, and of garage doors: hard bounds, so
 //!   that a ratio out of reach is missed, never forced.
 //! - Eq. 4 divides by wanted values that may be zero: distances are in standard deviations of the database here.
 
+mod breed;
 mod cut;
+mod elements;
 mod glaze;
 pub mod knapsack;
 mod layout;
 mod room;
 mod styles;
 
+pub use breed::{breed, energy};
+pub use elements::{Elements, SubStyle, elements};
 pub use layout::{FacadeTarget, Facades, furnish};
+pub use room::FixedPiece;

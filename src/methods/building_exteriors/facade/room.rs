@@ -3,7 +3,7 @@
 use crate::methods::building_exteriors::house::model::garage_opening;
 use crate::methods::building_exteriors::house::walls::{WallPiece, wall_pieces};
 use crate::shape::solid::{Faces, Wall};
-use crate::shape::{Building, Side};
+use crate::shape::{Building, FacadePiece, Side};
 
 /// Clear wall between a window and a corner, and over and under it (m).
 pub(super) const CLEAR: f64 = 0.13;
@@ -14,8 +14,19 @@ pub(super) const EYE: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(super) struct Room {
     pub piece: WallPiece,
-    /// A garage door takes this piece.
+    /// A garage door or a fixed piece takes this wall.
     pub taken: bool,
+    /// The observed piece that stays as it is.
+    pub fixed: Option<FacadePiece>,
+}
+
+/// An observed facade piece that a house must keep, and the coordinate across of its wall.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FixedPiece {
+    /// The piece.
+    pub piece: FacadePiece,
+    /// y of a front or back wall, x of a left or right one.
+    pub at: f64,
 }
 
 /// The wall of all floors between two corners of the outlines of a side.
@@ -42,7 +53,7 @@ pub(super) struct Walls<'a> {
 }
 
 impl<'a> Walls<'a> {
-    pub fn new(building: &Building, shell: &'a Faces) -> Self {
+    pub fn new(building: &Building, shell: &'a Faces, fixed: &[FixedPiece]) -> Self {
         let garage = garage_opening(building, shell);
         let mut strips: [Vec<Strip>; 4] = Default::default();
         for piece in wall_pieces(building) {
@@ -51,7 +62,11 @@ impl<'a> Walls<'a> {
                 piece.floor == 0 && same(&wall, &piece.wall()) && overlap > 0.0
             });
             let side = Side::ALL.iter().position(|s| *s == piece.side).unwrap_or(0);
-            let room = Room { piece, taken };
+            let room = Room {
+                piece,
+                taken,
+                fixed: None,
+            };
             match strips[side].last_mut() {
                 Some(last) if last.start == piece.start => last.rooms.push(room),
                 _ => strips[side].push(Strip {
@@ -60,6 +75,11 @@ impl<'a> Walls<'a> {
                     rooms: vec![room],
                 }),
             }
+        }
+        for f in fixed {
+            let side = Side::ALL.iter().position(|s| *s == f.piece.side);
+            let floor = (f.piece.base / building.floor_height).round() as usize;
+            fix(&mut strips[side.unwrap_or(0)], f, floor);
         }
         Self {
             shell,
@@ -83,6 +103,37 @@ impl<'a> Walls<'a> {
         (ends[1] - ends[0] > 0.3).then_some(ends)
     }
 }
+
+/// Cuts the strips at the ends of a fixed piece and gives it its wall; the piece stands where it starts, and no other
+/// piece stands on the rest of its wall.
+fn fix(strips: &mut Vec<Strip>, fixed: &FixedPiece, floor: usize) {
+    let (start, end) = (fixed.piece.start, fixed.piece.start + fixed.piece.width);
+    for cut in [start, end] {
+        let inside = |s: &Strip| s.start + SAME < cut && cut < s.end - SAME;
+        if let Some(k) = strips.iter().position(inside) {
+            let mut rest = strips[k].clone();
+            strips[k].end = cut;
+            rest.start = cut;
+            strips.insert(k + 1, rest);
+        }
+    }
+    let within = |s: &&mut Strip| s.start > start - SAME && s.end < end + SAME;
+    for strip in strips.iter_mut().filter(within) {
+        let first = (strip.start - start).abs() < SAME;
+        let own = |r: &Room| r.piece.floor == floor && (r.piece.at - fixed.at).abs() < SAME;
+        if first {
+            for room in strip.rooms.iter_mut().filter(|r| own(r)) {
+                (room.taken, room.fixed) = (true, Some(fixed.piece.clone()));
+            }
+        } else {
+            strip.rooms.retain(|r| !own(r));
+        }
+    }
+    strips.retain(|s| !s.rooms.is_empty());
+}
+
+/// Places nearer than this are one (m).
+const SAME: f64 = 1e-3;
 
 fn same(a: &Wall, b: &Wall) -> bool {
     a.axis == b.axis && a.positive == b.positive && (a.at - b.at).abs() < 1e-6

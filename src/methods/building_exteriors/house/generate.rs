@@ -1,26 +1,64 @@
 //! From a row of attributes to a house.
 
-use rand::Rng;
+use rand::{Rng, RngExt};
 use serde::Serialize;
 
 use super::Database;
 use super::model::{Model, model};
+use super::roof_styles::roof;
 use super::roofs::Joining;
 use super::solids::prisms;
 use crate::methods::building_exteriors::attributes::{AttributeError, attributes};
-use crate::methods::building_exteriors::facade::{FacadeTarget, furnish};
-use crate::methods::building_exteriors::mass::repair::{Change, Contradiction, check, repair};
-use crate::methods::building_exteriors::mass::{
-    MASS, MassError, MassModel, MassTarget, Search, max_z, search,
+use crate::methods::building_exteriors::facade::{
+    FacadeTarget, Facades, FixedPiece, breed, elements, furnish,
 };
+use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
+use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
+use crate::methods::building_exteriors::mass::footprint::{DECIDED, PlanError, reconcile, stand};
+use crate::methods::building_exteriors::mass::repair::{Change, changes, repair};
+use crate::methods::building_exteriors::mass::{
+    MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations,
+};
+use crate::optim::annealing::AnnealingError;
+use crate::optim::genetic::{GeneticError, Settings};
 use crate::shape::solid::{SurfaceError, faces};
-use crate::shape::{BoxStyle, Building, MassBox, Ridge, RoofStyle, Special};
+use crate::shape::{Building, MassBox, Rect, Special};
 
 /// Continuous columns: mass and facades.
 const NUMBERS: usize = 39;
+/// A house within this distance of its row (standard deviations) is near enough.
+const NEAR: f64 = 0.05;
+/// Other plans tried else, their least 1 - IoU, and rounds of random arrangements over four to find them.
+const OTHERS: usize = 4;
+const APART: f64 = 0.02;
+const ROUNDS: usize = 2;
+/// Generations of the genetic algorithm; the paper prints none.
+const GENERATIONS: u64 = 200;
+
+/// How mass models and facades are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Donors and least squares, and facades side by side.
+    #[default]
+    Best,
+    /// Annealing and a genetic algorithm, as printed.
+    Paper,
+}
+
+/// What stays as it is, to the bit.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Frozen {
+    /// Boxes with their roofs.
+    pub boxes: Vec<MassBox>,
+    /// Pieces of facades with their walls.
+    pub pieces: Vec<FixedPiece>,
+    /// Left front corner of the bounding box of the whole house, where it is known.
+    pub corner: Option<[f64; 2]>,
+}
 
 /// How to generate.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// Limits of the search for mass models.
     pub search: Search,
@@ -28,6 +66,31 @@ pub struct Options {
     pub joining: Joining,
     /// Whether no strip of a facade may be cut in two.
     pub no_cuts: bool,
+    /// How mass models and facades are found.
+    pub method: Method,
+    /// Annealing of method `paper`.
+    pub annealing: AnnealSettings,
+    /// Generations of method `paper`.
+    pub generations: u64,
+    /// What stays as it is; roofs and facades keep clear of it.
+    pub frozen: Frozen,
+    /// The ground plan, rectangles from the origin on, that the house has to cover exactly.
+    pub footprint: Option<Vec<Rect>>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            search: Search::default(),
+            joining: Joining::default(),
+            no_cuts: false,
+            method: Method::default(),
+            annealing: AnnealSettings::default(),
+            generations: GENERATIONS,
+            frozen: Frozen::default(),
+            footprint: None,
+        }
+    }
 }
 
 /// Why there is no house.
@@ -36,6 +99,9 @@ pub enum GenerateError {
     /// Given values contradict each other.
     #[error(transparent)]
     Contradiction(#[from] Contradiction),
+    /// No house stands on the footprint.
+    #[error(transparent)]
+    Footprint(#[from] PlanError),
     /// No mass model was found.
     #[error(transparent)]
     Mass(#[from] MassError),
@@ -45,6 +111,12 @@ pub enum GenerateError {
     /// The house has no attributes.
     #[error(transparent)]
     Attributes(#[from] AttributeError),
+    /// Bad settings of the annealing.
+    #[error(transparent)]
+    Annealing(#[from] AnnealingError),
+    /// Bad settings of the genetic algorithm.
+    #[error(transparent)]
+    Genetic(#[from] GeneticError),
 }
 
 /// A generated house.
@@ -93,8 +165,8 @@ pub struct HouseReport {
     pub unplaced: usize,
 }
 
-/// Makes a house with the wanted attributes. `given` says which columns must not be changed: all of them given must
-/// be free of contradictions, others are repaired.
+/// Makes a house with the wanted attributes. `given` says which columns must not be changed: they must be free of
+/// contradictions, others are repaired.
 ///
 /// # Errors
 /// [`GenerateError`].
@@ -107,13 +179,67 @@ pub fn generate(
     rng: &mut impl Rng,
 ) -> Result<Generated, GenerateError> {
     let mut row = *wanted;
-    if given.iter().all(|g| *g) {
-        check(&row)?;
+    check_given(&row, given)?;
+    let mut known = *given;
+    if let Some(plan) = &options.footprint {
+        reconcile(&mut row, given, plan)?;
+        DECIDED.iter().for_each(|c| known[*c] = true);
     }
-    let repaired = repair(&mut row, given, &database.deviations);
+    repair(&mut row, &known, &database.deviations);
+    let repaired = changes(wanted, &row);
     let target = MassTarget::new(std::array::from_fn(|c| row[c]));
-    let mass = search(&target, &[], database, &options.search, rng)?;
-    finish(name, wanted, &row, repaired, mass, database, options)
+    let mass = match (&options.footprint, options.method) {
+        (Some(plan), _) => stand(&row, given, plan, &database.deviations[..MASS])?,
+        (None, Method::Best) => search(&target, &[], database, &options.search, rng)?,
+        (None, Method::Paper) => {
+            let deviations = &database.deviations[..MASS];
+            anneal(&target, deviations, &options.annealing, rng.random())?.0
+        }
+    };
+    let wish = Wish {
+        name,
+        wanted,
+        row: &row,
+        repaired,
+    };
+    let first = mass.building.clone();
+    let house = finish(wish.clone(), mass, database, options, rng)?;
+    let searched = options.footprint.is_none() && options.method == Method::Best;
+    if !searched || house.report.repaired_z <= NEAR {
+        return Ok(house);
+    }
+    // The walls have no room for the wanted facades: other plans may.
+    let mut best = house;
+    let few = Search {
+        rounds: ROUNDS,
+        ..options.search.clone()
+    };
+    let unlike = [first];
+    for mass in variations(&target, OTHERS, APART, &unlike, database, &few, rng) {
+        let other = finish(wish.clone(), mass, database, options, rng)?;
+        let spent = best.report.evaluations + other.report.evaluations;
+        if other.report.repaired_z < best.report.repaired_z {
+            best = other;
+        }
+        best.report.evaluations = spent;
+        if best.report.repaired_z <= NEAR {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// What a mass model is to become.
+#[derive(Debug, Clone)]
+pub struct Wish<'a> {
+    /// Name of the house.
+    pub name: &'a str,
+    /// The 49 columns asked for.
+    pub wanted: &'a [f64; 49],
+    /// The columns to reach: those asked for, with repairs.
+    pub row: &'a [f64; 49],
+    /// The repairs.
+    pub repaired: Vec<Change>,
 }
 
 /// Puts roofs and facades on a mass model.
@@ -121,36 +247,28 @@ pub fn generate(
 /// # Errors
 /// [`GenerateError`].
 pub fn finish(
-    name: &str,
-    wanted: &[f64; 49],
-    row: &[f64; 49],
-    repaired: Vec<Change>,
+    wish: Wish,
     mass: MassModel,
     database: &Database,
     options: &Options,
+    rng: &mut impl Rng,
 ) -> Result<Generated, GenerateError> {
+    let Wish {
+        name, wanted, row, ..
+    } = wish;
     let flag = |c: usize| row[c] > 0.5;
     let mut building = mass.building;
     building.name = name.into();
     building.unit = "m".into();
-    roof(&mut building.boxes, [flag(39), flag(40), flag(41)]);
+    let flags = [flag(39), flag(40), flag(41)];
+    roof(&mut building.boxes, flags, &options.frozen.boxes);
     let special = [(47, Special::Chimney), (48, Special::Tower)];
     building.special = special
         .into_iter()
         .filter(|(c, _)| flag(*c))
         .map(|(_, s)| s)
         .collect();
-    let shell = faces(&prisms(&building, options.joining));
-    let facades = furnish(
-        &building,
-        &shell,
-        &FacadeTarget {
-            wanted: std::array::from_fn(|k| row[MASS + k]),
-            windows: std::array::from_fn(|k| flag(42 + k)),
-            cuts: !options.no_cuts,
-        },
-        &database.deviations[MASS..NUMBERS],
-    );
+    let facades = facades(&building, row, database, options, rng)?;
     building.facades = facades.pieces;
     let model = model(&building, options.joining)?;
     let reached: Vec<f64> = attributes(&building)?
@@ -173,7 +291,7 @@ pub fn finish(
         volume: model.report.volume,
         unplaced: model.unplaced.len(),
         wanted: wanted.to_vec(),
-        repaired,
+        repaired: wish.repaired,
         reached,
     };
     Ok(Generated {
@@ -183,57 +301,32 @@ pub fn finish(
     })
 }
 
-/// Gives every box a roof so that the flagged styles (flat, gable, hip), and no others, occur: the one that most of
-/// the area has already is the main one, the others go to porches, the garage and small boxes. Ridges run along the
-/// longer side. Without any flag all roofs are sheds, which no attribute tells.
-fn roof(boxes: &mut [MassBox], flags: [bool; 3]) {
-    let styles = [RoofStyle::Flat, RoofStyle::Gable, RoofStyle::Hip];
-    let flagged: Vec<RoofStyle> = styles
-        .into_iter()
-        .zip(flags)
-        .filter(|(_, f)| *f)
-        .map(|(s, _)| s)
-        .collect();
-    let area = |b: &MassBox| b.width * b.depth;
-    let shown = |s: RoofStyle| {
-        let own = boxes
-            .iter()
-            .filter(|b| b.roof.style == s && b.style == BoxStyle::Main);
-        own.map(area).sum::<f64>()
+/// The facades of a method.
+fn facades(
+    building: &Building,
+    row: &[f64; 49],
+    database: &Database,
+    options: &Options,
+    rng: &mut impl Rng,
+) -> Result<Facades, GenerateError> {
+    let shell = faces(&prisms(building, options.joining));
+    let flag = |c: usize| row[c] > 0.5;
+    let target = FacadeTarget {
+        wanted: std::array::from_fn(|k| row[MASS + k]),
+        windows: std::array::from_fn(|k| flag(42 + k)),
+        cuts: !options.no_cuts,
+        fixed: options.frozen.pieces.clone(),
     };
-    let main = flagged
-        .iter()
-        .copied()
-        .max_by(|a, b| shown(*a).total_cmp(&shown(*b)))
-        .unwrap_or(RoofStyle::Shed);
-    for b in boxes.iter_mut() {
-        b.roof.style = main;
-        b.roof.ridge = if b.width >= b.depth {
-            Ridge::X
-        } else {
-            Ridge::Y
-        };
+    let deviations = &database.deviations[MASS..NUMBERS];
+    if options.method == Method::Best {
+        return Ok(furnish(building, &shell, &target, deviations));
     }
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    let rank = |b: &MassBox| match b.style {
-        BoxStyle::Porch => 0,
-        BoxStyle::Garage => 1,
-        BoxStyle::Main => 2,
+    let flags = std::array::from_fn(|k| flag(NUMBERS + k));
+    let own = elements(database, &flags, options.search.leave_out, rng);
+    let settings = Settings {
+        generations: options.generations,
+        ..Settings::default()
     };
-    order.sort_by(|&i, &j| {
-        let (a, b) = (&boxes[i], &boxes[j]);
-        rank(a).cmp(&rank(b)).then(area(a).total_cmp(&area(b)))
-    });
-    let others: Vec<RoofStyle> = flagged.into_iter().filter(|s| *s != main).collect();
-    for (style, i) in others.into_iter().zip(order) {
-        boxes[i].roof.style = style;
-    }
-    for b in boxes.iter_mut() {
-        b.roof.pitch = match b.roof.style {
-            RoofStyle::Flat => 0.0,
-            RoofStyle::Shed => 12.0,
-            _ if b.roof.pitch > 5.0 => b.roof.pitch,
-            _ => 30.0,
-        };
-    }
+    let seed = rng.random();
+    Ok(breed(building, &shell, &target, &own, deviations, settings, seed)?.0)
 }

@@ -3,6 +3,7 @@
 mod database;
 mod generate;
 pub mod model;
+mod roof_styles;
 pub mod roofs;
 pub mod scene;
 pub mod solids;
@@ -10,6 +11,8 @@ pub mod walls;
 pub mod windows;
 
 pub use database::{Database, DatabaseError};
-pub use generate::{GenerateError, Generated, HouseReport, Options, finish, generate};
+pub use generate::{
+    Frozen, GenerateError, Generated, HouseReport, Method, Options, Wish, finish, generate,
+};
 pub use model::{Model, model};
 pub use roofs::Joining;

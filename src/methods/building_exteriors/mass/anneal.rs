@@ -13,7 +13,7 @@ use rand::{Rng, RngExt};
 
 use super::target::MassTarget;
 use super::{MASS, MassModel, THINNEST, max_z};
-use crate::methods::building_exteriors::attributes::{GROUPS, mass_attributes};
+use crate::methods::building_exteriors::attributes::{GROUPS, Group, mass_attributes};
 use crate::methods::building_exteriors::mass::scheme::PLAIN;
 use crate::optim::Step;
 use crate::optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
@@ -30,6 +30,8 @@ pub struct AnnealSettings {
     pub goal: f64,
     /// First and last temperature.
     pub cooling: Cooling,
+    /// An attribute that Eq. 3 leaves out (Fig. 9).
+    pub without: Option<&'static str>,
 }
 
 impl Default for AnnealSettings {
@@ -42,6 +44,7 @@ impl Default for AnnealSettings {
                 start: 1.0,
                 end: 1e-4,
             },
+            without: None,
         }
     }
 }
@@ -64,7 +67,10 @@ pub fn anneal(
     let mut best: Option<(Vec<MassBox>, f64)> = None;
     let (mut evaluations, mut steps) = (0, Vec::new());
     for restart in 0..settings.restarts {
-        let mut model = Model::new(target, deviations);
+        let mut model = Model {
+            without: settings.without,
+            ..Model::new(target, deviations)
+        };
         let seed = seed.wrapping_add(restart);
         let annealing = Annealing::new(settings.cooling, settings.iterations, 1, seed)?;
         let run = annealing.until(settings.goal).run(&mut model, |_| ())?;
@@ -104,6 +110,7 @@ struct Model<'a> {
     tentative: Vec<MassBox>,
     tentative_cost: f64,
     evaluations: u64,
+    without: Option<&'static str>,
 }
 
 impl<'a> Model<'a> {
@@ -116,6 +123,7 @@ impl<'a> Model<'a> {
             tentative: Vec::new(),
             tentative_cost: LARGE,
             evaluations: 0,
+            without: None,
         }
     }
 
@@ -127,7 +135,8 @@ impl<'a> Model<'a> {
         let building = building(boxes.to_vec(), self.target);
         let measured = mass_attributes(&building);
         let mut energy = 0.0;
-        for group in GROUPS.iter().filter(|g| g.first < MASS) {
+        let counts = |g: &&Group| g.first < MASS && self.without != Some(g.name);
+        for group in GROUPS.iter().filter(counts) {
             let own = group.first..group.first + group.len;
             let norm: f64 = own.clone().map(|c| self.target.wanted[c].powi(2)).sum();
             for c in own {

@@ -26,7 +26,9 @@
 //! - A garage and a porch are one box each.
 
 pub mod anneal;
+pub mod contradiction;
 mod fit;
+pub mod footprint;
 pub mod random;
 pub mod repair;
 mod scheme;
@@ -34,7 +36,7 @@ mod search;
 pub mod target;
 
 pub use scheme::Block;
-pub use search::{MassError, MassModel, Search, nearest, search, variations};
+pub use search::{MassError, MassModel, Search, iou, nearest, search, variations};
 pub use target::{MassTarget, PartTarget};
 
 use crate::shape::{BoxStyle, Building, MassBox, PlanUnion};

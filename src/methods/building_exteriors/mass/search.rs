@@ -5,7 +5,7 @@ use rand::Rng;
 use super::fit::{Fitted, fit};
 use super::random;
 use super::scheme::{Block, PLAIN, Scheme, donated};
-use super::target::MassTarget;
+use super::target::{MassTarget, bounds};
 use super::{MASS, is_sound};
 use crate::methods::building_exteriors::attributes::mass_attributes;
 use crate::methods::building_exteriors::house::Database;
@@ -138,11 +138,13 @@ impl Found {
     }
 }
 
-/// Several different mass models of one target: each plan at least `apart` (1 - IoU) from the others.
+/// Several different mass models of one target: each plan at least `apart` (1 - IoU) from the others and from those
+/// of `unlike`. Donors first, then random arrangements, then changes of those found.
 pub fn variations(
     target: &MassTarget,
     count: usize,
     apart: f64,
+    unlike: &[Building],
     database: &Database,
     options: &Search,
     rng: &mut impl Rng,
@@ -150,9 +152,8 @@ pub fn variations(
     let mut found: Vec<MassModel> = Vec::new();
     let deviations = &database.deviations[..MASS];
     let keep = |fitted: Fitted, donor, found: &mut Vec<MassModel>| {
-        let distinct = found
-            .iter()
-            .all(|m| 1.0 - iou(&m.building, &fitted.building) >= apart);
+        let mut others = found.iter().map(|m| &m.building).chain(unlike);
+        let distinct = others.all(|other| 1.0 - iou(other, &fitted.building) >= apart);
         if fitted.max_z <= 0.05
             && distinct
             && is_sound(&fitted.building)
@@ -193,9 +194,15 @@ pub fn variations(
     found
 }
 
-/// Intersection over union of two ground floors whose bounding boxes start at the same corner.
-fn iou(a: &Building, b: &Building) -> f64 {
-    let (p, q) = (a.floor_plan(0), b.floor_plan(0));
+/// Intersection over union of two ground floors, their bounding boxes laid corner on corner.
+pub fn iou(a: &Building, b: &Building) -> f64 {
+    let plan = |building: &Building| -> Vec<crate::shape::Rect> {
+        let [[x, _], [y, _]] = bounds(building);
+        let plan = building.floor_plan(0).into_iter();
+        plan.map(|r| crate::shape::Rect::new(r.x - x, r.y - y, r.width, r.height))
+            .collect()
+    };
+    let (p, q) = (plan(a), plan(b));
     let area = |plan: &[crate::shape::Rect]| PlanUnion::new(plan).area();
     let both: Vec<_> = p.iter().chain(&q).copied().collect();
     let union = area(&both);

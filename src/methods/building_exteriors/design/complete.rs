@@ -1,0 +1,330 @@
+//! Houses around observed boxes and facade pieces, which stay as they are to the bit.
+//!
+//! Coordinates of the partial house are kept. Its corner of least x and y is taken for that of the whole house where
+//! the wanted bounding box allows it; else the observed boxes stand at the left or right end, in front or at the back.
+//! Wanted columns that the observed boxes contradict are moved and reported as repairs; given ones never are.
+
+use rand::Rng;
+
+use super::observed::wanted_rows;
+use super::reconcile::{SAME, origins, reconciled};
+use crate::methods::building_exteriors::attributes::{AttributeRow, mass_attributes};
+use crate::methods::building_exteriors::data::table;
+use crate::methods::building_exteriors::facade::FixedPiece;
+use crate::methods::building_exteriors::house::walls::walls_of_pieces;
+use crate::methods::building_exteriors::house::{
+    Database, Frozen, GenerateError, Generated, Options, Wish, finish,
+};
+use crate::methods::building_exteriors::mass::contradiction::check_given;
+use crate::methods::building_exteriors::mass::repair::{changes, repair};
+use crate::methods::building_exteriors::mass::target::{PARTS, part_of};
+use crate::methods::building_exteriors::mass::{
+    Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search,
+};
+use crate::model::ModelError;
+use crate::model::hierarchy::Hierarchy;
+use crate::rng::stream;
+use crate::shape::{BoxStyle, Building, MassBox};
+
+/// Why observed parts cannot be completed.
+#[derive(Debug, thiserror::Error)]
+pub enum CompleteError {
+    /// An observed box does not fit into the given bounding box.
+    #[error(
+        "boxes[{index}] of the partial house reaches from {low:.3} to {high:.3} m, outside 0 to {bound} m ({column})"
+    )]
+    Outside {
+        /// The box.
+        index: usize,
+        /// Its lower end.
+        low: f64,
+        /// Its upper end.
+        high: f64,
+        /// Column of the bounding box.
+        column: &'static str,
+        /// Its value.
+        bound: f64,
+    },
+    /// An observed box has more floors than the house is to have.
+    #[error(
+        "boxes[{index}] of the partial house has {floors} floors, the shares of the floors (arf) ask for {wanted}"
+    )]
+    Floors {
+        /// The box.
+        index: usize,
+        /// Its floors.
+        floors: usize,
+        /// Those of the house.
+        wanted: usize,
+    },
+    /// An observed facade piece stands on no wall of the observed boxes.
+    #[error("facades[{index}] of the partial house stands on no wall of its boxes")]
+    NoWall {
+        /// The piece.
+        index: usize,
+    },
+    /// No arrangement of further boxes leaves the observed facades free.
+    #[error(
+        "every arrangement of boxes found hides an observed facade piece or cuts the house apart"
+    )]
+    Hidden,
+    /// No answer of the model could be built.
+    #[error("none of {tried} answers of the model fits the observed parts; the first: {first}")]
+    NoAnswer {
+        /// Answers tried.
+        tried: usize,
+        /// What was wrong with the first.
+        first: Box<CompleteError>,
+    },
+    /// The model refuses the evidence.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// No house was found.
+    #[error(transparent)]
+    Generate(#[from] GenerateError),
+}
+
+/// Mass models within this distance (standard deviations) are near enough not to try another place.
+const NEAR: f64 = 0.05;
+/// Samples among which the most probable answers are sought, answers tried for each house wanted, and their
+/// least root mean square distance in standard deviations.
+const POOL: usize = 2000;
+const TRIES: usize = 12;
+/// Rounds of random arrangements for an answer, and the distance in standard deviations at which to stop.
+const ROUNDS: usize = 8;
+const ENOUGH: f64 = 0.03;
+const APART: f64 = 0.05;
+
+/// Completions of a partial house: the most probable answers of the model to what is given, built around the observed
+/// parts, those that come nearest to their answer first.
+///
+/// # Errors
+/// [`CompleteError`]; when some answers can be built, the others are passed over.
+pub fn completions(
+    partial: &Building,
+    model: &Hierarchy,
+    given: &AttributeRow,
+    count: usize,
+    database: &Database,
+    options: &Options,
+    seed: u64,
+) -> Result<Vec<Generated>, CompleteError> {
+    let mut rng = stream(seed, "building/complete", 0);
+    // An answer that does not fit the observed boxes is not worth a long search: there are others.
+    let options = &Options {
+        search: Search {
+            rounds: options.search.rounds.min(ROUNDS),
+            enough: ENOUGH,
+            ..options.search.clone()
+        },
+        ..options.clone()
+    };
+    let evidence = table(std::slice::from_ref(given))?;
+    let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, None, &mut rng)?;
+    let is_given: [bool; 49] = std::array::from_fn(|c| given[c].is_some());
+    let mut houses = Vec::new();
+    let mut first = None;
+    let rows = wanted_rows(&draws.table);
+    for (k, wanted) in rows.iter().enumerate() {
+        if houses.len() == count {
+            break;
+        }
+        let name = format!("{}_{}", partial.name, k + 1);
+        let mut rng = stream(seed, "building/complete/house", k as u64);
+        match around(
+            &name, partial, wanted, &is_given, database, options, &mut rng,
+        ) {
+            Ok(house) => houses.push(house),
+            Err(e) => first = first.or(Some(e)),
+        }
+    }
+    if let (true, Some(first)) = (houses.is_empty(), first) {
+        // What contradicts the given values is wrong with every answer.
+        return Err(match first {
+            CompleteError::Outside { .. } | CompleteError::NoWall { .. } => first,
+            first => CompleteError::NoAnswer {
+                tried: rows.len(),
+                first: Box::new(first),
+            },
+        });
+    }
+    let fit = |h: &Generated| (h.report.unplaced, h.report.mean_z);
+    houses.sort_by(|a, b| {
+        let (p, q) = (fit(a), fit(b));
+        p.0.cmp(&q.0).then(p.1.total_cmp(&q.1))
+    });
+    for (k, house) in houses.iter_mut().enumerate() {
+        let name = format!("{}_{}", partial.name, k + 1);
+        house.report.house.clone_from(&name);
+        house.building.name = name;
+    }
+    Ok(houses)
+}
+
+/// A house with the wanted attributes around the boxes and facade pieces of a partial house, at the corner of
+/// `options.frozen` where it is known.
+///
+/// # Errors
+/// [`CompleteError`].
+pub fn around(
+    name: &str,
+    partial: &Building,
+    wanted: &[f64; 49],
+    given: &[bool; 49],
+    database: &Database,
+    options: &Options,
+    rng: &mut impl Rng,
+) -> Result<Generated, CompleteError> {
+    check_given(wanted, given).map_err(GenerateError::from)?;
+    let frozen = Frozen {
+        boxes: partial.boxes.clone(),
+        pieces: fixed_pieces(partial)?,
+        corner: options.frozen.corner,
+    };
+    let corner = frozen.corner;
+    let options = Options {
+        frozen,
+        ..options.clone()
+    };
+    let (row, known) = reconciled(partial, wanted, given)?;
+    let mut best: Option<(Generated, f64)> = None;
+    let mut failed = None;
+    let corners = corner.map_or_else(|| origins(partial, &row), |c| vec![c]);
+    for origin in corners {
+        match placed(
+            name,
+            partial,
+            origin,
+            (wanted, &row, &known),
+            database,
+            &options,
+            rng,
+        ) {
+            Ok(house) => {
+                let z = house.report.repaired_z;
+                if best.as_ref().is_none_or(|(_, least)| z < *least) {
+                    best = Some((house, z));
+                }
+            }
+            Err(e) => failed = failed.or(Some(e)),
+        }
+        if best.as_ref().is_some_and(|(_, z)| *z <= NEAR) {
+            break;
+        }
+    }
+    match best {
+        Some((house, _)) => Ok(house),
+        None => Err(failed.unwrap_or(CompleteError::Hidden)),
+    }
+}
+
+/// The house with its corner at `origin`; `rows` are the wanted and the reconciled row and which columns must stay.
+fn placed(
+    name: &str,
+    partial: &Building,
+    origin: [f64; 2],
+    rows: (&[f64; 49], &[f64; 49], &[bool; 49]),
+    database: &Database,
+    options: &Options,
+    rng: &mut impl Rng,
+) -> Result<Generated, CompleteError> {
+    let (wanted, mut row, mut known) = (rows.0, *rows.1, *rows.2);
+    for b in &partial.boxes {
+        if let Some(k) = part_of(b, origin[1] + row[1] / 2.0) {
+            let c = PARTS[k].1;
+            row[c] = (b.x - origin[0]) / row[0];
+            row[c + 1] = (b.y - origin[1]) / row[1];
+            (row[c + 2], row[c + 3], row[c + 4]) = (b.width, b.depth, b.height);
+            if row[c + 5] <= 0.0 {
+                row[c + 5] = 0.5;
+            }
+            known[c..c + 5].fill(true);
+        }
+    }
+    repair(&mut row, &known, &database.deviations);
+    let changes = changes(wanted, &row);
+    let mut target = MassTarget::new(std::array::from_fn(|c| row[c]));
+    target.floor_height = partial.floor_height;
+    let general = partial.boxes.iter().filter(|b| b.style == BoxStyle::Main);
+    let blocks: Vec<Block> = general
+        .map(|b| {
+            let plan = b.plan();
+            Block {
+                edges: [
+                    [plan.x - origin[0], plan.right() - origin[0]],
+                    [plan.y - origin[1], plan.top() - origin[1]],
+                ],
+                floors: partial.floors_of(b).min(target.floors),
+                roof: b.roof,
+                frozen: true,
+            }
+        })
+        .collect();
+    let mut mass = search(&target, &blocks, database, &options.search, rng)
+        .map_err(|e: MassError| GenerateError::from(e))?;
+    exactly(&mut mass, &partial.boxes, origin);
+    if !is_sound(&mass.building) {
+        return Err(CompleteError::Hidden);
+    }
+    let measured = mass_attributes(&mass.building);
+    mass.max_z = max_z(&measured, &row[..MASS], &database.deviations);
+    let wish = Wish {
+        name,
+        wanted,
+        row: &row,
+        repaired: changes,
+    };
+    let house = finish(wish, mass, database, options, rng)?;
+    match stands(&house.building, &options.frozen.pieces) {
+        true => Ok(house),
+        false => Err(CompleteError::Hidden),
+    }
+}
+
+/// Moves the house to the origin and puts the observed boxes, as they are, in place of those fitted.
+fn exactly(mass: &mut MassModel, observed: &[MassBox], origin: [f64; 2]) {
+    let boxes = &mut mass.building.boxes;
+    for b in boxes.iter_mut() {
+        (b.x, b.y) = (b.x + origin[0], b.y + origin[1]);
+    }
+    for own in observed {
+        let same = |b: &MassBox| {
+            let (p, q) = (b.plan(), own.plan());
+            let ends = [
+                p.x - q.x,
+                p.y - q.y,
+                p.right() - q.right(),
+                p.top() - q.top(),
+            ];
+            b.style == own.style && ends.iter().all(|d| d.abs() < SAME)
+        };
+        match boxes.iter().position(same) {
+            Some(k) => boxes[k] = *own,
+            None => boxes.push(*own),
+        }
+    }
+}
+
+/// The observed pieces with their walls.
+fn fixed_pieces(partial: &Building) -> Result<Vec<FixedPiece>, CompleteError> {
+    let walls = walls_of_pieces(partial).into_iter().enumerate();
+    let fixed = walls
+        .zip(&partial.facades)
+        .map(|((index, wall), piece)| match wall {
+            Some(wall) => Ok(FixedPiece {
+                piece: piece.clone(),
+                at: wall.at,
+            }),
+            None => Err(CompleteError::NoWall { index }),
+        });
+    fixed.collect()
+}
+
+/// Whether the pieces stand on their walls.
+fn stands(building: &Building, fixed: &[FixedPiece]) -> bool {
+    let walls = walls_of_pieces(building);
+    fixed.iter().all(|f| {
+        let mut own = building.facades.iter().zip(&walls);
+        own.any(|(p, w)| *p == f.piece && w.is_some_and(|w| (w.at - f.at).abs() < SAME))
+    })
+}

@@ -1,0 +1,56 @@
+//! What a partial house tells of its attributes.
+
+use crate::methods::building_exteriors::attributes::{
+    AttributeError, AttributeRow, COLUMNS, GROUPS, attributes,
+};
+use crate::methods::building_exteriors::mass::target::PARTS;
+use crate::model::{Cell, Table};
+use crate::shape::Building;
+
+/// First column of the facades and of the styles.
+const FACADES: usize = 27;
+const STYLES: usize = 39;
+
+/// The attributes that a partial house tells; all others are `None`. With `keep`, those of the named groups, as they
+/// are measured. Without, what cannot change when more of the house appears:
+/// - sizes of a garage or porch that is there,
+/// - the three facade attributes of each side that has pieces,
+/// - styles that are there (not that others are absent).
+///
+/// # Errors
+/// [`AttributeError`] for more than three floors.
+pub fn observed(partial: &Building, keep: &[String]) -> Result<AttributeRow, AttributeError> {
+    let mut row = attributes(partial)?;
+    if !keep.is_empty() {
+        for group in GROUPS.iter().filter(|g| !keep.iter().any(|k| k == g.name)) {
+            row[group.first..group.first + group.len].fill(None);
+        }
+        return Ok(row);
+    }
+    for (c, value) in row.iter_mut().enumerate() {
+        let is_size = PARTS
+            .iter()
+            .any(|(_, first, _)| (first + 2..first + 5).contains(&c));
+        let present = value.is_some_and(|v| v > 0.0);
+        let tells = match c {
+            c if c < FACADES => is_size && present,
+            c if c < STYLES => true,
+            _ => value.is_some_and(|v| v > 0.5),
+        };
+        if !tells {
+            *value = None;
+        }
+    }
+    Ok(row)
+}
+
+/// The 49 columns of each row of a table; missing cells and columns are 0.
+pub fn wanted_rows(table: &Table) -> Vec<[f64; 49]> {
+    let value = |row: usize, name: &str| match table.column(name).map(|c| c.cell(row)) {
+        Ok(Cell::Real(v)) => v,
+        Ok(Cell::Code(code)) => code as f64,
+        _ => 0.0,
+    };
+    let row = |r: usize| std::array::from_fn(|c| value(r, COLUMNS[c]));
+    (0..table.rows()).map(row).collect()
+}

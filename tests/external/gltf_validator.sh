@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# The Khronos validator (npm `gltf-validator`) on files that the program writes: a generated house, a street of houses,
+# facades on a town, a city of instances. Exit code 1 for any error. Where node, npm or the registry is missing it says so and passes.
+#
+# usage: tests/external/gltf_validator.sh [PATH_OF_EDIFICE]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+skip() {
+    printf 'gltf_validator: not run: %s\n' "$1"
+    exit 0
+}
+for tool in node npm; do
+    command -v "$tool" >/dev/null || skip "$tool is not installed"
+done
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+(cd "$folder" && npm init -y && npm install --no-audit --no-fund gltf-validator@2.0.0-dev.3.10) >"$folder/npm.log" 2>&1 ||
+    skip "npm cannot install gltf-validator ($(tail -n 1 "$folder/npm.log"))"
+
+edifice=${1:-}
+if [ -z "$edifice" ]; then
+    cargo build --quiet --bin edifice
+    edifice=${CARGO_TARGET_DIR:-target}/debug/edifice
+fi
+
+houses=datasets/building_exteriors/houses.buildings.jsonl
+head -n 4 "$houses" >"$folder/few.buildings.jsonl"
+"$edifice" building attributes "$folder/few.buildings.jsonl" >"$folder/few.csv"
+"$edifice" building build "$folder/few.csv" -o "$folder/houses" --format glb,obj --street
+"$edifice" reproduce facade_grammar --only figure_15 --budget smoke --out "$folder/reports" >/dev/null
+"$edifice" city proceduralize "$folder/houses/house_0001.obj" -o "$folder/a.city-grammar.json" --glb "$folder/city.glb"
+
+mapfile -t files < <(find "$folder" -name '*.glb' -not -path '*/node_modules/*' | sort)
+[ "${#files[@]}" -ge 7 ] || {
+    printf 'gltf_validator: only %d files were written\n' "${#files[@]}" >&2
+    exit 1
+}
+cat >"$folder/validate.cjs" <<'END'
+const fs = require("fs");
+const validator = require("gltf-validator");
+(async () => {
+  let bad = 0;
+  for (const file of process.argv.slice(2)) {
+    const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)));
+    const { numErrors, numWarnings, messages } = report.issues;
+    console.log(`${file.split("/").pop()}: ${numErrors} errors, ${numWarnings} warnings`);
+    for (const m of messages.filter((m) => m.severity === 0)) console.log(`  ${m.code} ${m.pointer}: ${m.message}`);
+    bad += numErrors;
+  }
+  process.exit(bad > 0 ? 1 : 0);
+})();
+END
+(cd "$folder" && node validate.cjs "${files[@]}")
+printf 'gltf_validator: %d files without errors\n' "${#files[@]}"
