@@ -1,11 +1,14 @@
 //! From types to a grammar (Eq. 5 to 7).
 
-use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
+use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::parse_tree::ParseTree;
 use super::types::Types;
-use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
+use crate::grammar::instance::{
+    InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
+};
 use crate::shape::triangles::{City, TriangleMesh, merge_coplanar};
 
 /// Lengths are written in steps of 1 cm.
@@ -70,52 +73,127 @@ fn terminals(city: &City, components: &[Component], types: &Types, merge: bool) 
     }
 }
 
-/// The grammar of `best`: a terminal for each type, a non-terminal for each arrangement of parts that buildings
-/// have, the buildings in their places under the axiom, and the rules of the parse tree as patterns: the axiom
-/// does not lead to them, synthesis draws from them.
+/// The grammar of `best`: a terminal for each type of component, a non-terminal for each type of building, the buildings
+/// in their places under the axiom, and the repeated arrangements of buildings as patterns: the axiom does not lead to them,
+/// synthesis draws from them.
+///
+/// A building's rule has the mean transforms of its type; a building that differs from it by a centimetre
+/// keeps its parts. A single component whose building has no like is a terminal at once.
 pub fn emit(
     city: &City,
     components: &[Component],
     types: &Types,
-    patterns: &ParseTree,
+    buildings: &BuildingTypes,
+    patterns: &[Repeated],
 ) -> InstanceGrammar {
     let mut grammar = terminals(city, components, types, true);
-    let mut start = InstanceRule {
-        symbol: AXIOM.to_owned(),
-        weight: 1.0,
-        successors: Vec::new(),
-    };
-    let mut known: FxHashMap<String, usize> = FxHashMap::default();
-    let indexed: Vec<(usize, &Component)> = components.iter().enumerate().collect();
-    for parts in indexed.chunk_by(|a, b| a.1.building == b.1.building) {
-        let building = &city.buildings[parts[0].1.building];
-        let mut placed = match parts {
-            [(i, only)] => part(*i, only, types, &Frame::WORLD),
-            _ => {
-                let frame = Frame::of(parts[0].0, parts[0].1, types);
-                let parts = parts.iter().map(|(i, c)| part(*i, c, types, &frame));
-                let successors: Vec<Placement> = parts.collect();
-                let key = format!("{successors:?}");
-                let rule = *known.entry(key).or_insert_with(|| {
-                    grammar.rules.push(InstanceRule {
-                        symbol: format!("B{}", grammar.rules.len() + 1),
-                        weight: 0.0,
-                        successors,
-                    });
-                    grammar.rules.len() - 1
-                });
-                grammar.rules[rule].weight += 1.0;
-                let symbol = grammar.rules[rule].symbol.clone();
-                Placement::new(symbol, frame.at, frame.turn, [1.0; 3])
-            }
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
+    for (b, label) in buildings.labels.iter().enumerate() {
+        if let Some(l) = label {
+            members[*l].push(b);
+        }
+    }
+    let mut start: Vec<(usize, Placement)> = Vec::new();
+    for (label, list) in members.iter().enumerate() {
+        let alone = list.len() == 1;
+        if let ([b], [i]) = (&list[..], &buildings.parts[list[0]][..])
+            && alone
+        {
+            start.push((*b, part(*i, &components[*i], types, &Frame::WORLD)));
+            continue;
+        }
+        let placed = |&b: &usize| {
+            let frame = Frame::of(&components[buildings.parts[b][0]]);
+            let parts = buildings.parts[b].iter();
+            let parts = parts.map(|&i| part(i, &components[i], types, &frame));
+            let parts: Vec<Placement> = parts.collect();
+            (b, frame, parts)
         };
+        let placed: Vec<(usize, Frame, Vec<Placement>)> = list.iter().map(placed).collect();
+        let mean: Vec<Placement> = (0..placed[0].2.len())
+            .map(|k| mean_part(placed.iter().map(|p| &p.2[k])))
+            .collect();
+        let symbol = building_symbol(label);
+        for (b, frame, parts) in placed {
+            let mut instance = Placement::new(symbol.clone(), frame.at, frame.turn, [1.0; 3]);
+            if parts != mean {
+                instance.parts = parts.into_iter().map(Some).collect();
+            }
+            start.push((b, instance));
+        }
+        grammar.rules.push(InstanceRule {
+            symbol,
+            weight: list.len() as f64,
+            successors: mean,
+        });
+    }
+    start.sort_by_key(|s| s.0);
+    let named = start.into_iter().map(|(b, mut placed)| {
+        let building = &city.buildings[b];
         placed.id = Some(building.id.clone());
         placed.attributes = building.attributes.clone();
-        start.successors.push(placed);
-    }
-    grammar.rules.insert(0, start);
-    grammar.rules.extend(patterns.rules.iter().cloned());
+        placed
+    });
+    let axiom = InstanceRule {
+        symbol: AXIOM.to_owned(),
+        weight: 1.0,
+        successors: named.collect(),
+    };
+    grammar.rules.insert(0, axiom);
+    let patterns = patterns.iter().enumerate();
     grammar
+        .rules
+        .extend(patterns.map(|(i, p)| pattern(i, p, buildings.count)));
+    grammar
+}
+
+/// The rule of a pattern, over `types` types of buildings.
+fn pattern(index: usize, pattern: &Repeated, types: usize) -> InstanceRule {
+    let member = |m: &Posed| {
+        let symbol = match m.kind.checked_sub(types) {
+            Some(other) => pattern_symbol(other),
+            None => building_symbol(m.kind),
+        };
+        rounded(Placement::new(symbol, m.at, m.turn, [1.0; 3]))
+    };
+    InstanceRule {
+        symbol: pattern_symbol(index),
+        weight: pattern.count as f64,
+        successors: pattern.members.iter().map(member).collect(),
+    }
+}
+
+/// The template that most members have, at their mean transform.
+fn mean_part<'a>(parts: impl Iterator<Item = &'a Placement>) -> Placement {
+    let parts: Vec<&Placement> = parts.collect();
+    let key = |p: &Placement| (p.symbol.clone(), (p.turn / 90.0).round() as i64 % 4);
+    let mut counts: BTreeMap<(String, i64), usize> = BTreeMap::new();
+    for p in &parts {
+        *counts.entry(key(p)).or_default() += 1;
+    }
+    let most = counts.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0)));
+    let most = most.map(|m| m.0.clone()).unwrap_or_default();
+    let own: Vec<&Placement> = parts.into_iter().filter(|p| key(p) == most).collect();
+    let n = own.len() as f64;
+    let mean = |f: &dyn Fn(&Placement) -> f64| own.iter().map(|p| f(p)).sum::<f64>() / n;
+    let sin = mean(&|p| p.turn.to_radians().sin());
+    let cos = mean(&|p| p.turn.to_radians().cos());
+    rounded(Placement::new(
+        most.0,
+        [0, 1, 2].map(|k| mean(&|p| p.at[k])),
+        sin.atan2(cos).to_degrees(),
+        [0, 1, 2].map(|k| mean(&|p| p.size[k])),
+    ))
+}
+
+/// Symbol of a type of buildings.
+pub fn building_symbol(label: usize) -> String {
+    format!("B{}", label + 1)
+}
+
+/// Symbol of a pattern.
+fn pattern_symbol(index: usize) -> String {
+    format!("P{}", index + 1)
 }
 
 /// Symbol of a type.
@@ -135,13 +213,24 @@ impl Frame {
         turn: 0.0,
     };
 
-    fn of(index: usize, component: &Component, types: &Types) -> Self {
-        let placed = part(index, component, types, &Self::WORLD);
+    fn of(component: &Component) -> Self {
+        let turn = component.frame.angle.to_degrees();
+        let placed = rounded(Placement::new("", component.frame.base, turn, [1.0; 3]));
         Self {
             at: placed.at,
             turn: placed.turn,
         }
     }
+}
+
+/// Lengths in steps of 1 cm, turns from 0 to 360 degrees in steps of 0.01.
+fn rounded(mut placed: Placement) -> Placement {
+    let round = |v: f64| (v * LENGTH).round() / LENGTH;
+    placed.at = placed.at.map(|v| round(v) + 0.0);
+    placed.size = placed.size.map(|v| round(v).max(1.0 / LENGTH));
+    let turn = (placed.turn.rem_euclid(360.0) * ANGLE).round() / ANGLE;
+    placed.turn = if turn >= 360.0 { 0.0 } else { turn };
+    placed
 }
 
 /// The template that stands for a component, in a frame: box to box, with the turn of its type.
@@ -161,14 +250,12 @@ fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Pl
         shift[1] * cos - shift[0] * sin,
         shift[2],
     ];
-    let round = |v: f64| (v * LENGTH).round() / LENGTH;
-    let turn = ((turn - frame.turn).rem_euclid(360.0) * ANGLE).round() / ANGLE;
-    Placement::new(
+    rounded(Placement::new(
         terminal(used.kind),
-        at.map(|v| round(v) + 0.0),
-        if turn >= 360.0 { 0.0 } else { turn },
-        size.map(|v| round(v).max(1.0 / LENGTH)),
-    )
+        at,
+        turn - frame.turn,
+        size,
+    ))
 }
 
 /// A representative's mesh: coplanar triangles merged, coordinates on 12 bits.

@@ -55,13 +55,12 @@ struct Grown {
 }
 
 /// Grows the tree from placed leaves: `leaves` are symbols of terminals, `instances` their uses with
-/// midpoints. At most `levels` levels.
+/// midpoints.
 pub fn grow(
     leaves: usize,
     instances: Vec<(usize, [f64; 3], Placement)>,
     detection: Detection,
     weights: DistanceWeights,
-    levels: usize,
 ) -> ParseTree {
     let mut tree = ParseTree {
         rules: Vec::new(),
@@ -76,7 +75,7 @@ pub fn grow(
     });
     let mut grown: Vec<Grown> = grown.collect();
     let mut tolerance = NEIGHBOUR;
-    for _ in 0..levels.min(MOST_LEVELS) {
+    for _ in 0..MOST_LEVELS {
         // Nodes that are still at the top, numbered anew.
         let mut active: Vec<usize> = grown.iter().map(|g| g.node).collect();
         active.sort_unstable();

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::components::{CELLS, Component};
-use super::features::{Points, geometric_features, paper_features};
+use super::features::{Points, paper_features};
 use super::proceduralize::{ProceduralizeError, Representative};
 use crate::cluster::{kmeans, lloyd, means, ward};
 use crate::rng;
@@ -120,13 +120,16 @@ const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
 
-/// Ward's hierarchy of the geometric features, weighted by volume, equal components joined first, cut at `k`
+/// Ward's hierarchy of the geometric features `points`, weighted by volume, equal components joined first, cut at `k`
 /// types; then rounds of Lloyd, and of medoids under the mismatched volume over the four quarter turns.
 ///
 /// # Errors
 /// [`ProceduralizeError::Ward`].
-pub fn best_types(components: &[Component], k: usize) -> Result<Types, ProceduralizeError> {
-    let points = geometric_features(components);
+pub fn best_types(
+    components: &[Component],
+    points: &Points,
+    k: usize,
+) -> Result<Types, ProceduralizeError> {
     let d = points.dimension;
     // Equal components first: the hierarchy is over distinct ones.
     let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
