@@ -11,14 +11,36 @@ use crate::grammar::instance::{
 };
 use crate::shape::triangles::{City, TriangleMesh, merge_coplanar};
 
-/// Lengths are written in steps of 1 cm.
-const LENGTH: f64 = 100.0;
-/// Turns are written in steps of 0.01 degrees.
-const ANGLE: f64 = 100.0;
-/// Coordinates of templates take 12 bits.
-pub const TEMPLATE_STEPS: f64 = 4095.0;
-/// Coplanar triangles of a template are joined within this share of its box.
-const COPLANAR: f64 = 1e-3;
+/// How finely numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detail {
+    /// Steps of lengths in a metre.
+    length: f64,
+    /// Steps of turns in a degree.
+    angle: f64,
+    /// Steps of a template's box.
+    box_steps: f64,
+    /// Coplanar triangles of a template are joined within this share of its box.
+    coplanar: f64,
+}
+
+impl Detail {
+    /// Centimetres, hundredths of degrees, 12 bits: where templates stand for others, nothing finer is seen.
+    pub const COARSE: Self = Self {
+        length: 100.0,
+        angle: 100.0,
+        box_steps: 4095.0,
+        coplanar: 1e-3,
+    };
+    /// Millimetres, ten-thousandths of degrees, 16 bits: where each component has its own template.
+    pub const FINE: Self = Self {
+        length: 1000.0,
+        angle: 10_000.0,
+        box_steps: 65_535.0,
+        coplanar: 2e-5,
+    };
+}
+
 /// Axiom of the grammar.
 pub const AXIOM: &str = "City";
 
@@ -29,7 +51,7 @@ pub fn emit_tree(
     types: &Types,
     tree: &ParseTree,
 ) -> InstanceGrammar {
-    let mut grammar = terminals(city, components, types, false);
+    let mut grammar = terminals(city, components, types, &Detail::COARSE, false);
     grammar.rules.push(InstanceRule {
         symbol: AXIOM.to_owned(),
         weight: 1.0,
@@ -46,7 +68,7 @@ pub fn placed_components(
     types: &Types,
 ) -> Vec<(usize, [f64; 3], Placement)> {
     let one = |(i, c): (usize, &Component)| {
-        let mut placed = part(i, c, types, &Frame::WORLD);
+        let mut placed = part(i, c, types, &Frame::WORLD, &Detail::COARSE);
         let building = &city.buildings[c.building];
         placed.id = Some(building.id.clone());
         if i == 0 || components[i - 1].building != c.building {
@@ -57,11 +79,17 @@ pub fn placed_components(
     components.iter().enumerate().map(one).collect()
 }
 
-fn terminals(city: &City, components: &[Component], types: &Types, merge: bool) -> InstanceGrammar {
+fn terminals(
+    city: &City,
+    components: &[Component],
+    types: &Types,
+    detail: &Detail,
+    merge: bool,
+) -> InstanceGrammar {
     let templates = types.representatives.iter().enumerate();
     let template = |(kind, &c): (usize, &usize)| Template {
         symbol: terminal(kind),
-        mesh: template(&components[c].mesh, merge),
+        mesh: template(&components[c].mesh, detail, merge),
     };
     InstanceGrammar {
         name: city.name.clone(),
@@ -85,8 +113,9 @@ pub fn emit(
     types: &Types,
     buildings: &BuildingTypes,
     patterns: &[Repeated],
+    detail: &Detail,
 ) -> InstanceGrammar {
-    let mut grammar = terminals(city, components, types, true);
+    let mut grammar = terminals(city, components, types, detail, true);
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
     for (b, label) in buildings.labels.iter().enumerate() {
         if let Some(l) = label {
@@ -99,19 +128,19 @@ pub fn emit(
         if let ([b], [i]) = (&list[..], &buildings.parts[list[0]][..])
             && alone
         {
-            start.push((*b, part(*i, &components[*i], types, &Frame::WORLD)));
+            start.push((*b, part(*i, &components[*i], types, &Frame::WORLD, detail)));
             continue;
         }
         let placed = |&b: &usize| {
-            let frame = Frame::of(&components[buildings.parts[b][0]]);
+            let frame = Frame::of(&components[buildings.parts[b][0]], detail);
             let parts = buildings.parts[b].iter();
-            let parts = parts.map(|&i| part(i, &components[i], types, &frame));
+            let parts = parts.map(|&i| part(i, &components[i], types, &frame, detail));
             let parts: Vec<Placement> = parts.collect();
             (b, frame, parts)
         };
         let placed: Vec<(usize, Frame, Vec<Placement>)> = list.iter().map(placed).collect();
         let mean: Vec<Placement> = (0..placed[0].2.len())
-            .map(|k| mean_part(placed.iter().map(|p| &p.2[k])))
+            .map(|k| mean_part(placed.iter().map(|p| &p.2[k]), detail))
             .collect();
         let symbol = building_symbol(label);
         for (b, frame, parts) in placed {
@@ -154,7 +183,10 @@ fn pattern(index: usize, pattern: &Repeated, types: usize) -> InstanceRule {
             Some(other) => pattern_symbol(other),
             None => building_symbol(m.kind),
         };
-        rounded(Placement::new(symbol, m.at, m.turn, [1.0; 3]))
+        rounded(
+            Placement::new(symbol, m.at, m.turn, [1.0; 3]),
+            &Detail::COARSE,
+        )
     };
     InstanceRule {
         symbol: pattern_symbol(index),
@@ -164,7 +196,7 @@ fn pattern(index: usize, pattern: &Repeated, types: usize) -> InstanceRule {
 }
 
 /// The template that most members have, at their mean transform.
-fn mean_part<'a>(parts: impl Iterator<Item = &'a Placement>) -> Placement {
+fn mean_part<'a>(parts: impl Iterator<Item = &'a Placement>, detail: &Detail) -> Placement {
     let parts: Vec<&Placement> = parts.collect();
     let key = |p: &Placement| (p.symbol.clone(), (p.turn / 90.0).round() as i64 % 4);
     let mut counts: BTreeMap<(String, i64), usize> = BTreeMap::new();
@@ -178,12 +210,13 @@ fn mean_part<'a>(parts: impl Iterator<Item = &'a Placement>) -> Placement {
     let mean = |f: &dyn Fn(&Placement) -> f64| own.iter().map(|p| f(p)).sum::<f64>() / n;
     let sin = mean(&|p| p.turn.to_radians().sin());
     let cos = mean(&|p| p.turn.to_radians().cos());
-    rounded(Placement::new(
+    let mean = Placement::new(
         most.0,
         [0, 1, 2].map(|k| mean(&|p| p.at[k])),
         sin.atan2(cos).to_degrees(),
         [0, 1, 2].map(|k| mean(&|p| p.size[k])),
-    ))
+    );
+    rounded(mean, detail)
 }
 
 /// Symbol of a type of buildings.
@@ -213,9 +246,12 @@ impl Frame {
         turn: 0.0,
     };
 
-    fn of(component: &Component) -> Self {
+    fn of(component: &Component, detail: &Detail) -> Self {
         let turn = component.frame.angle.to_degrees();
-        let placed = rounded(Placement::new("", component.frame.base, turn, [1.0; 3]));
+        let placed = rounded(
+            Placement::new("", component.frame.base, turn, [1.0; 3]),
+            detail,
+        );
         Self {
             at: placed.at,
             turn: placed.turn,
@@ -223,18 +259,24 @@ impl Frame {
     }
 }
 
-/// Lengths in steps of 1 cm, turns from 0 to 360 degrees in steps of 0.01.
-fn rounded(mut placed: Placement) -> Placement {
-    let round = |v: f64| (v * LENGTH).round() / LENGTH;
+/// Lengths and turns in steps, turns from 0 to 360 degrees.
+fn rounded(mut placed: Placement, detail: &Detail) -> Placement {
+    let round = |v: f64| (v * detail.length).round() / detail.length;
     placed.at = placed.at.map(|v| round(v) + 0.0);
-    placed.size = placed.size.map(|v| round(v).max(1.0 / LENGTH));
-    let turn = (placed.turn.rem_euclid(360.0) * ANGLE).round() / ANGLE;
+    placed.size = placed.size.map(|v| round(v).max(1.0 / detail.length));
+    let turn = (placed.turn.rem_euclid(360.0) * detail.angle).round() / detail.angle;
     placed.turn = if turn >= 360.0 { 0.0 } else { turn };
     placed
 }
 
 /// The template that stands for a component, in a frame: box to box, with the turn of its type.
-fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Placement {
+fn part(
+    index: usize,
+    component: &Component,
+    types: &Types,
+    frame: &Frame,
+    detail: &Detail,
+) -> Placement {
     let used = types.uses[index];
     let [w, d, h] = component.frame.size;
     let size = if used.quarter.is_multiple_of(2) {
@@ -250,22 +292,20 @@ fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Pl
         shift[1] * cos - shift[0] * sin,
         shift[2],
     ];
-    rounded(Placement::new(
-        terminal(used.kind),
-        at,
-        turn - frame.turn,
-        size,
-    ))
+    rounded(
+        Placement::new(terminal(used.kind), at, turn - frame.turn, size),
+        detail,
+    )
 }
 
-/// A representative's mesh: coplanar triangles merged, coordinates on 12 bits.
-fn template(unit: &TriangleMesh, merge: bool) -> TriangleMesh {
+/// A representative's mesh: coplanar triangles merged, coordinates in steps of the box.
+fn template(unit: &TriangleMesh, detail: &Detail, merge: bool) -> TriangleMesh {
     let mesh = if merge {
-        merge_coplanar(unit, COPLANAR)
+        merge_coplanar(unit, detail.coplanar)
     } else {
         unit.clone()
     };
-    let grid = |v: f64| (v * TEMPLATE_STEPS).round() / TEMPLATE_STEPS;
+    let grid = |v: f64| (v * detail.box_steps).round() / detail.box_steps;
     let snapped = mesh
         .positions
         .iter()
@@ -274,5 +314,5 @@ fn template(unit: &TriangleMesh, merge: bool) -> TriangleMesh {
         positions: snapped.collect(),
         triangles: mesh.triangles,
     }
-    .welded(0.5 / TEMPLATE_STEPS)
+    .welded(0.5 / detail.box_steps)
 }

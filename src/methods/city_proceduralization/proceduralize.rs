@@ -2,12 +2,12 @@
 
 use super::building_types::{BuildingTypes, building_types};
 use super::components::{Decomposition, decompose};
-use super::emission::{emit, emit_tree, placed_components};
+use super::emission::{Detail, emit, emit_tree, placed_components};
 use super::features::geometric_features;
 use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
-use super::types::{Types, best_types, paper_types};
+use super::types::{Types, best_types, distinct_types, paper_types};
 use crate::cluster::WardError;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
 use crate::shape::triangles::City;
@@ -155,10 +155,13 @@ pub fn from_components(
         }
         Mode::Best => {
             let shape = geometric_features(components);
-            let types = best_types(components, &shape, k)?;
+            let (types, detail) = match settings.budget {
+                Budget::All => (distinct_types(components), Detail::FINE),
+                _ => (best_types(components, &shape, k)?, Detail::COARSE),
+            };
             let buildings = building_types(components, &shape, city.buildings.len())?;
             let patterns = patterns(components, &buildings);
-            let grammar = emit(city, components, &types, &buildings, &patterns);
+            let grammar = emit(city, components, &types, &buildings, &patterns, &detail);
             let structure = Structure::Patterns {
                 buildings,
                 patterns,

@@ -113,6 +113,36 @@ fn renumbered(labels: &[usize]) -> (Vec<usize>, usize) {
     (out, numbers.len())
 }
 
+/// Steps of a box within which components are the same.
+const SAME: f64 = 65_536.0;
+
+/// A type for each distinct component: components whose triangles are the same, to 16 bits of their boxes, are of one type.
+pub fn distinct_types(components: &[Component]) -> Types {
+    let mut known: FxHashMap<Vec<i64>, usize> = FxHashMap::default();
+    let mut types = Types {
+        representatives: Vec::new(),
+        uses: Vec::with_capacity(components.len()),
+    };
+    for (i, c) in components.iter().enumerate() {
+        let triangles = c.mesh.corners().map(|t| {
+            let mut t = t.map(|p| p.map(|v| (v * SAME).round() as i64));
+            // From the least corner on, in the same sense.
+            let first = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+            t.rotate_left(first);
+            t
+        });
+        let mut triangles: Vec<[[i64; 3]; 3]> = triangles.collect();
+        triangles.sort_unstable();
+        let key = triangles.into_iter().flatten().flatten().collect();
+        let kind = *known.entry(key).or_insert_with(|| {
+            types.representatives.push(i);
+            types.representatives.len() - 1
+        });
+        types.uses.push(Use { kind, quarter: 0 });
+    }
+    types
+}
+
 /// Rounds of medoids.
 const ROUNDS: usize = 3;
 /// Representatives that a component is compared with, nearest in features first.
