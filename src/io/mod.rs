@@ -13,6 +13,7 @@ pub mod coco;
 pub mod draw;
 mod facade_file;
 pub mod facade_json;
+mod glb_container;
 pub mod gltf;
 pub mod grammar_cga;
 mod grammar_file;

@@ -168,6 +168,22 @@ impl InstanceDerivation {
         self.buildings.len() - 1
     }
 
+    /// Some of the instances, shifted by `-origin`, with their buildings.
+    pub fn part(&self, members: &[usize], origin: [f64; 3]) -> Self {
+        let mut out = Self {
+            depth: self.depth,
+            ..Self::default()
+        };
+        for &i in members {
+            let mut instance = self.instances[i].clone();
+            instance.at = [0, 1, 2].map(|k| instance.at[k] - origin[k]);
+            let building = instance.building.map(|b| &self.buildings[b]);
+            instance.building = building.map(|(id, attributes)| out.building(id, attributes));
+            out.instances.push(instance);
+        }
+        out
+    }
+
     /// The triangles of each building; instances outside all buildings are buildings of their own.
     pub fn city(&self, grammar: &InstanceGrammar) -> crate::shape::triangles::City {
         use crate::shape::triangles::{City, CityBuilding};

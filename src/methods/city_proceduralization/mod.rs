@@ -36,10 +36,12 @@ pub mod building_types;
 pub mod components;
 pub mod emission;
 pub mod features;
+pub mod localization;
 mod orientation;
 pub mod parse_tree;
 pub mod patterns;
 pub mod proceduralize;
+pub mod synthesis;
 pub mod type_graph;
 pub mod types;
 
