@@ -8,8 +8,9 @@
 //! there.
 //!
 //! Whether buildings overlap is read off a grid of 1 m: inner points of a new building must find cells that no other
-//! building covers. A first pass grows without fillers, and the share of each building is bounded, so
-//! that small buildings do not take over where large ones do not fit.
+//! building covers. A building also brings the open ground that is nearer to it than to any other building of its city: no other may
+//! stand there, so that streets and yards stay open. Buildings are in classes of equally many, by plan area and height, and no class
+//! may run ahead of the others, so that small buildings do not take over where large ones do not fit.
 
 mod occupancy;
 
@@ -17,7 +18,7 @@ use std::collections::VecDeque;
 
 use rand::RngExt;
 
-use self::occupancy::{Footprint, Occupancy, footprint};
+use self::occupancy::{Footprint, Occupancy, footprint, open_ground};
 use crate::grammar::instance::{
     InstanceGrammar, InstanceGrammarError, InstanceRule, Placement, TemplateInstance,
 };
@@ -31,9 +32,17 @@ const REACH: f64 = 80.0;
 /// and so many at most.
 const NEIGHBOURS: usize = 10;
 /// Chance places tried one after the other without success before the shape is full.
-const TRIES: usize = 600;
+const TRIES: usize = 200;
+/// Classes by plan area,
+const AREAS: usize = 16;
+/// and in each by height.
+const HEIGHTS: usize = 2;
+/// A class may have so many times its share of the copies,
+const AHEAD: f64 = 1.05;
+/// and so many more.
+const MORE: f64 = 1.0;
 /// A building is copied no more often than the one copied least, plus this.
-const SPREAD: usize = 2;
+const SPREAD: usize = 1;
 
 /// A shape on the ground: rings in metres, even-odd.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -105,8 +114,11 @@ struct Source {
     /// What stands under the axiom: one symbol, or the templates of a building.
     placed: Vec<Placement>,
     kind: usize,
+    /// Class of plan area and height.
+    class: usize,
     at: [f64; 3],
     turn: f64,
+    height: f64,
     footprint: Footprint,
     /// Other sources near it, the nearest first.
     near: Vec<usize>,
@@ -205,17 +217,45 @@ fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, InstanceGrammarErro
         out.push(Source {
             placed,
             kind,
+            class: 0,
             at,
             turn,
+            height: mesh.bounds().map_or(0.0, |b| b.1[2] - b.0[2]),
             footprint: footprint(&mesh, at, turn),
             near: Vec::new(),
         });
     }
+    let frames: Vec<([f64; 3], f64)> = out.iter().map(|s| (s.at, s.turn)).collect();
+    let prints: Vec<&Footprint> = out.iter().map(|s| &s.footprint).collect();
+    let open = open_ground(&prints, &frames);
+    for (source, open) in out.iter_mut().zip(open) {
+        source.footprint.open = open;
+    }
+    classify(&mut out);
     let near: Vec<Vec<usize>> = neighbours(&out);
     for (source, near) in out.iter_mut().zip(near) {
         source.near = near;
     }
     Ok(out)
+}
+
+/// Puts sources into classes of equally many.
+fn classify(sources: &mut [Source]) {
+    let n = sources.len();
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by_key(|&i| (sources[i].footprint.points(), i));
+    for a in 0..AREAS {
+        let own = &mut order[a * n / AREAS..(a + 1) * n / AREAS];
+        own.sort_by(|&i, &j| {
+            sources[i]
+                .height
+                .total_cmp(&sources[j].height)
+                .then(i.cmp(&j))
+        });
+        for (rank, &i) in own.iter().enumerate() {
+            sources[i].class = a * HEIGHTS + rank * HEIGHTS / own.len();
+        }
+    }
 }
 
 fn terminal(grammar: &InstanceGrammar, i: &TemplateInstance) -> Placement {
@@ -270,28 +310,45 @@ fn fill(sources: &[Source], shape: &Shape, seed: u64) -> Vec<Copy> {
     let mut copies: Vec<Copy> = Vec::new();
     let mut queue: VecDeque<usize> = VecDeque::new();
     let mut failed = 0;
-    // Streets of the new city run as those of the grammar's, turned as the first copy is.
-    let mut put = |copy: Copy, copies: &mut Vec<Copy>, used: &mut [usize]| {
-        let fits = ground.take(&sources[copy.source].footprint, copy.at, copy.turn, shape);
-        if fits {
-            used[copy.source] += 1;
-            copies.push(copy);
-        }
-        fits
-    };
+    let mut classes = [0usize; AREAS * HEIGHTS];
+    // Copies when all of them were last asked for neighbours.
+    let mut asked = 0;
+    let mut put =
+        |copy: Copy, copies: &mut Vec<Copy>, used: &mut [usize], classes: &mut [usize]| {
+            let source = &sources[copy.source];
+            let share = copies.len() as f64 / classes.len() as f64;
+            let fits = (classes[source.class] as f64) < AHEAD * share + MORE
+                && ground.take(&source.footprint, copy.at, copy.turn, shape);
+            if fits {
+                classes[source.class] += 1;
+                used[copy.source] += 1;
+                copies.push(copy);
+            }
+            fits
+        };
     loop {
         let least = used.iter().copied().min().unwrap_or(0);
         let Some(i) = queue.pop_front() else {
+            if copies.len() > asked {
+                // Classes that had run ahead may have room now.
+                asked = copies.len();
+                queue.extend(0..copies.len());
+                continue;
+            }
             if failed >= TRIES {
                 return copies;
             }
-            // Of the buildings copied least, one at a chance place, turned as it is in its city.
-            let rare: Vec<usize> = (0..sources.len()).filter(|&s| used[s] == least).collect();
+            // Of the class that is most behind, a building copied least, at a chance place, turned as it is in its city.
+            let behind = |s: &usize| classes[sources[*s].class];
+            let fewest = (0..sources.len()).map(|s| behind(&s)).min().unwrap_or(0);
+            let own = (0..sources.len()).filter(|s| behind(s) == fewest);
+            let least = own.clone().map(|s| used[s]).min().unwrap_or(0);
+            let rare: Vec<usize> = own.filter(|&s| used[s] == least).collect();
             let source = rare[rng.random_range(0..rare.len())];
             let at = [0, 1].map(|k| low[k] + rng.random::<f64>() * (high[k] - low[k]));
             let turn = sources[source].turn;
             let copy = Copy { source, at, turn };
-            if put(copy, &mut copies, &mut used) {
+            if put(copy, &mut copies, &mut used, &mut classes) {
                 failed = 0;
                 queue.push_back(copies.len() - 1);
             } else {
@@ -320,7 +377,7 @@ fn fill(sources: &[Source], shape: &Shape, seed: u64) -> Vec<Copy> {
                 at: [stands.at[0] + shift[0], stands.at[1] + shift[1]],
                 turn: next.turn + turn,
             };
-            if put(copy, &mut copies, &mut used) {
+            if put(copy, &mut copies, &mut used, &mut classes) {
                 queue.push_back(copies.len() - 1);
             }
         }

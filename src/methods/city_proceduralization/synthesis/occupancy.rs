@@ -1,6 +1,6 @@
 //! What ground is taken, on a grid of 1 m.
 
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Shape, rotated};
 use crate::shape::triangles::{TriangleMesh, plan_area};
@@ -9,6 +9,12 @@ use crate::shape::triangles::{TriangleMesh, plan_area};
 const CELL: f64 = 1.0;
 /// Share of a building's inner points that may lie on others.
 const OVERLAP: f64 = 0.004;
+/// Side of a cell of open ground, in metres.
+const OPEN_CELL: f64 = 2.0;
+/// Steps of such cells that open ground reaches from its building.
+const OPEN_STEPS: usize = 4;
+/// Share of a building that may lie on the open ground of others, and of its open ground that others may cover.
+const INTRUSION: f64 = 0.04;
 /// Share of its points that may lie outside the shape.
 const OUTSIDE: f64 = 0.004;
 
@@ -19,6 +25,15 @@ pub(super) struct Footprint {
     inner: Vec<[f64; 2]>,
     /// The other points.
     rim: Vec<[f64; 2]>,
+    /// Points of the open ground that belongs to the building.
+    pub(super) open: Vec<[f64; 2]>,
+}
+
+impl Footprint {
+    /// Number of points: square metres of plan.
+    pub(super) fn points(&self) -> usize {
+        self.inner.len() + self.rim.len()
+    }
 }
 
 /// The plan of a mesh, in the frame at `at`, turned by `turn` degrees.
@@ -45,11 +60,12 @@ pub(super) fn footprint(mesh: &TriangleMesh, at: [f64; 3], turn: f64) -> Footpri
     match inner.is_empty() {
         true => Footprint {
             inner: point(rim),
-            rim: Vec::new(),
+            ..Footprint::default()
         },
         false => Footprint {
             inner: point(inner),
             rim: point(rim),
+            open: Vec::new(),
         },
     }
 }
@@ -78,6 +94,42 @@ fn cover(t: &[[f64; 2]; 3], cells: &mut FxHashSet<[i64; 2]>) {
 #[derive(Debug, Default)]
 pub(super) struct Occupancy {
     taken: FxHashSet<[i64; 2]>,
+    open: FxHashSet<[i64; 2]>,
+}
+
+/// The open ground of each building of a city, in its frame: cells nearer to it than to others, counted in steps.
+pub(super) fn open_ground(prints: &[&Footprint], frames: &[([f64; 3], f64)]) -> Vec<Vec<[f64; 2]>> {
+    let cell = |p: [f64; 2]| p.map(|v| (v / OPEN_CELL).floor() as i64);
+    let mut owner: FxHashMap<[i64; 2], usize> = FxHashMap::default();
+    let mut front: Vec<[i64; 2]> = Vec::new();
+    for (i, (print, (at, turn))) in prints.iter().zip(frames).enumerate() {
+        for p in print.inner.iter().chain(&print.rim) {
+            let [x, y] = rotated(*p, *turn);
+            let c = cell([at[0] + x, at[1] + y]);
+            owner.entry(c).or_insert_with(|| {
+                front.push(c);
+                i
+            });
+        }
+    }
+    let mut open: Vec<Vec<[f64; 2]>> = vec![Vec::new(); prints.len()];
+    for _ in 0..OPEN_STEPS {
+        let mut next = Vec::new();
+        for [x, y] in front {
+            let own = owner[&[x, y]];
+            for c in [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]] {
+                owner.entry(c).or_insert_with(|| {
+                    let (at, turn) = frames[own];
+                    let p = c.map(|v| (v as f64 + 0.5) * OPEN_CELL);
+                    open[own].push(rotated([p[0] - at[0], p[1] - at[1]], -turn));
+                    next.push(c);
+                    own
+                });
+            }
+        }
+        front = next;
+    }
+    open
 }
 
 impl Occupancy {
@@ -103,6 +155,17 @@ impl Occupancy {
         if inner.iter().filter(hit).take(most + 1).count() > most {
             return false;
         }
+        let open_cell = |p: [f64; 2]| p.map(|v| (v / OPEN_CELL).floor() as i64);
+        let intruding = |p: &&[f64; 2]| self.open.contains(&open_cell(**p));
+        let most = (INTRUSION * inner.len() as f64) as usize;
+        if inner.iter().filter(intruding).take(most + 1).count() > most {
+            return false;
+        }
+        let open: Vec<[f64; 2]> = footprint.open.iter().map(place).collect();
+        let most = (INTRUSION * open.len() as f64) as usize;
+        if open.iter().filter(hit).take(most + 1).count() > most {
+            return false;
+        }
         let rim: Vec<[f64; 2]> = footprint.rim.iter().map(place).collect();
         let edge = if rim.is_empty() { &inner } else { &rim };
         let most = (OUTSIDE * edge.len() as f64) as usize;
@@ -111,6 +174,7 @@ impl Occupancy {
             return false;
         }
         self.taken.extend(inner.into_iter().chain(rim).map(cell));
+        self.open.extend(open.into_iter().map(open_cell));
         true
     }
 }
