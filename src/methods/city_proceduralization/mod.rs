@@ -30,6 +30,7 @@
 //!   what they replace.
 //! - Slabs are closed at the top, because another roof may stand on them than the one that they were cut from.
 //! - D (Eq. 11) is a distance; the graph's edge weight for communities is its inverse.
+//! - "Edges for distant node type pairs are omitted": an edge stays when it is among the four of least D of one of its nodes.
 //! - The mean of Eq. 9 is taken over the pairs of neighbours of the two types.
 
 pub mod building_types;
