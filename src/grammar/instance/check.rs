@@ -67,6 +67,8 @@ impl InstanceGrammar {
                 format!("rules[{i}].weight")
             })?;
         }
+        // Before the parts: in a grammar with a cycle they say little.
+        self.check_cycles(&symbols)?;
         for (rule, r) in self.rules.iter().enumerate() {
             for (successor, s) in r.successors.iter().enumerate() {
                 if !symbols.contains_key(s.symbol.as_str()) {
@@ -81,7 +83,6 @@ impl InstanceGrammar {
                 self.check_placement(s, &symbols, &place)?;
             }
         }
-        self.check_cycles(&symbols)?;
         Ok(symbols)
     }
 
