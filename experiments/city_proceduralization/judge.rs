@@ -13,10 +13,12 @@ use crate::methods::city_proceduralization::localization::{
 };
 use crate::methods::city_proceduralization::synthesis::Shape;
 use crate::rng::stream;
-use crate::shape::triangles::{City, TriangleMesh, VolumeRaster};
+use crate::shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples};
 
 /// Cells in which plans are measured, in metres.
 const CELL: f64 = 0.5;
+/// Points on plans that tell what lies inside a shape.
+const POINTS: usize = 100_000;
 /// Buildings stand together within so many metres.
 const TOGETHER: f64 = 30.0;
 
@@ -92,7 +94,7 @@ pub fn judge(
         ),
         shuffled: jensen_shannon(&whole, &together(&b, &shuffled, &all)),
         overlap: 1.0 - plans.united / plans.sum,
-        inside: plans.inside / plans.united,
+        inside: plans.inside,
         fill: plans.united / shape.area() / (old_plans.united / old_extent),
         buildings: b.len() as f64,
     }
@@ -199,6 +201,7 @@ fn jensen_shannon(a: &Frequencies, b: &Frequencies) -> f64 {
 struct Plans {
     sum: f64,
     united: f64,
+    /// Share of the plans.
     inside: f64,
 }
 
@@ -208,13 +211,14 @@ fn plan_areas(city: &City, shape: Option<&Shape>) -> Plans {
     let flat: Vec<TriangleMesh> = city.buildings.iter().map(|b| flattened(&b.mesh)).collect();
     let all: Vec<&TriangleMesh> = flat.iter().collect();
     let sum = flat.iter().map(|m| raster.compare(&[m], &[]).first).sum();
-    let ground: Vec<TriangleMesh> = shape.map(slab).into_iter().collect();
-    let ground: Vec<&TriangleMesh> = ground.iter().collect();
-    let overlap = raster.compare(&all, &ground);
+    let corners = flat.iter().flat_map(|m| m.corners());
+    let points = surface_samples(corners, POINTS, &mut stream(1, "city plans", 0));
+    let within = |p: &&[f64; 3]| shape.is_none_or(|s| s.contains([p[0], p[1]]));
+    let inside = points.iter().filter(within).count() as f64 / points.len().max(1) as f64;
     Plans {
         sum,
-        united: overlap.first,
-        inside: overlap.intersection,
+        united: raster.compare(&all, &[]).first,
+        inside,
     }
 }
 
@@ -227,23 +231,6 @@ fn flattened(mesh: &TriangleMesh) -> TriangleMesh {
         }
     }
     // The floor that open columns reach down to.
-    if let Some(&[x, y, _]) = out.positions.first() {
-        out.positions.push([x, y, 0.0]);
-    }
-    out
-}
-
-/// A shape as a slab of one metre.
-fn slab(shape: &Shape) -> TriangleMesh {
-    let ring = |r: &Vec<[f64; 2]>| r.iter().map(|p| [p[0], p[1], 1.0]).collect::<Vec<_>>();
-    let mut out = TriangleMesh::default();
-    let rings: Vec<Vec<[f64; 3]>> = shape.rings.iter().map(ring).collect();
-    for t in crate::shape::triangles::polygon_triangles(&rings) {
-        match crate::shape::triangles::plan_area(&t) > 0.0 {
-            true => out.push(t),
-            false => out.push([t[0], t[2], t[1]]),
-        }
-    }
     if let Some(&[x, y, _]) = out.positions.first() {
         out.positions.push([x, y, 0.0]);
     }
