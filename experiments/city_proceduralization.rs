@@ -4,8 +4,11 @@
 mod clustering;
 mod communities;
 mod data;
+mod figure_10;
 mod figure_7;
 mod figure_8;
+mod figure_9;
+mod judge;
 mod recovery;
 mod scaling;
 pub mod synthetic;
@@ -35,6 +38,16 @@ const ARTEFACTS: &[Artefact] = &[
         name: "figure_8",
         title: "a city beside its grammar's",
         run: figure_8::run,
+    },
+    Artefact {
+        name: "figure_9",
+        title: "a new city in a drawn shape",
+        run: figure_9::run,
+    },
+    Artefact {
+        name: "figure_10",
+        title: "where a view was taken",
+        run: figure_10::run,
     },
     Artefact {
         name: "recovery",

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
+use edifice::cluster::adjusted_rand_index;
 use edifice::experiments::city_proceduralization::synthetic;
 use edifice::grammar::instance::{
     InstanceGrammar, InstanceGrammarError, InstanceRule, Placement, Template,
 };
 use edifice::io::city::{cityjson, glb, grammar_json, npz, obj};
-use edifice::methods::city_proceduralization::{Budget, Mode, Settings, decompose, proceduralize};
+use edifice::methods::city_proceduralization::{
+    Budget, Mode, Settings, Structure, decompose, proceduralize,
+};
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster};
 
 fn settings(mode: Mode, budget: Budget) -> Settings {
@@ -134,6 +137,61 @@ fn cuts_of_a_known_grammar_are_found() {
         wrong += usize::from(!close);
     }
     assert_eq!(wrong, 0, "of {}", truth.len());
+}
+
+#[test]
+fn types_and_motifs_of_a_known_grammar_are_found() {
+    for (noise, least) in [(0.0, 0.99), (0.03, 0.95)] {
+        let (city, truth) = synthetic::city(160, noise, 9);
+        let made = proceduralize(&city, &settings(Mode::Best, Budget::Level(4))).unwrap();
+        let Structure::Patterns {
+            buildings,
+            patterns,
+        } = &made.structure
+        else {
+            panic!("no patterns");
+        };
+        let found: Vec<usize> = buildings.labels.iter().map(|l| l.unwrap()).collect();
+        let kinds: Vec<usize> = truth.iter().map(|t| t.kind).collect();
+        let agreement = adjusted_rand_index(&found, &kinds);
+        assert!(agreement >= least, "noise {noise}: {agreement}");
+        if noise == 0.0 {
+            // Each motif is one rule of its six types, as often as the city has it.
+            let mut motifs: Vec<Vec<usize>> = Vec::new();
+            for p in patterns {
+                let kind = |l: usize| kinds[found.iter().position(|&f| f == l).unwrap()];
+                let mut own: Vec<usize> = p.members.iter().map(|m| kind(m.kind)).collect();
+                own.sort_unstable();
+                let count = kinds.iter().filter(|&&k| k == own[0]).count();
+                assert_eq!(p.count, count);
+                motifs.push(own);
+            }
+            motifs.sort();
+            let expected: Vec<Vec<usize>> = (0..synthetic::MOTIFS)
+                .map(|m| (6 * m..6 * m + 6).collect())
+                .collect();
+            assert_eq!(motifs, expected);
+        }
+    }
+}
+
+#[test]
+fn parts_of_another_template_are_placed() {
+    let mut grammar = by_hand();
+    let mut other = grammar.templates[0].clone();
+    other.symbol = "T2".to_owned();
+    grammar.templates.push(other);
+    let part = grammar.rules[0].successors[1].parts[0].as_mut().unwrap();
+    part.symbol = "T2".to_owned();
+    assert_eq!(grammar.derive().unwrap().instances[2].template, 1);
+    // But not of a rule.
+    let part = grammar.rules[0].successors[1].parts[0].as_mut().unwrap();
+    part.symbol = "H".to_owned();
+    let error = grammar.derive().unwrap_err();
+    assert!(
+        matches!(error, InstanceGrammarError::Part { .. }),
+        "{error}"
+    );
 }
 
 /// A grammar by hand: a block, and a house of two blocks of which one instance lacks the second.

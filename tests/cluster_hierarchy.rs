@@ -298,3 +298,25 @@ fn louvain_finds_planted_communities() {
     assert_eq!((empty.labels, empty.modularity), (vec![0, 1, 2], 0.0));
     assert_eq!(girvan_newman(&weighted_graph(0, &[])).labels.len(), 0);
 }
+
+/// `tests/igraph/make.py` writes the table: igraph's own Girvan-Newman and its modularity.
+#[test]
+fn girvan_newman_is_that_of_igraph() {
+    let table: serde_json::Value =
+        serde_json::from_str(include_str!("igraph/graphs.json")).unwrap();
+    let graphs = table["graphs"].as_array().unwrap();
+    assert!(graphs.len() >= 10);
+    for (i, g) in graphs.iter().enumerate() {
+        let end = |e: &serde_json::Value, k: usize| e[k].as_u64().unwrap() as usize;
+        let edges = g["edges"].as_array().unwrap().iter();
+        let edges: Vec<_> = edges.map(|e| (end(e, 0), end(e, 1), 1.0)).collect();
+        let graph = weighted_graph(g["nodes"].as_u64().unwrap() as usize, &edges);
+        let found = girvan_newman(&graph).modularity;
+        let expected = g["modularity"].as_f64().unwrap();
+        assert!(
+            (found - expected).abs() < 1e-9,
+            "graph {i}: {found} {expected}"
+        );
+        assert!(louvain(&graph).modularity > expected - 0.1, "graph {i}");
+    }
+}

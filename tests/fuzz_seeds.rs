@@ -4,7 +4,7 @@ use std::path::Path;
 
 use edifice::io::json::parse_json;
 use edifice::io::{
-    LabelMap, building_csv, building_json, cmp_xml, coco, facade_json, footprint, grammar_cga,
+    LabelMap, building_csv, building_json, city, cmp_xml, coco, facade_json, footprint, grammar_cga,
     grammar_json, label_image, label_text, labelme, surface_obj,
 };
 use edifice::methods::building_exteriors::model_file;
@@ -23,6 +23,10 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
             let one = building_json::parse(bytes, path).is_ok();
             building_json::parse_lines(bytes, path).is_ok() || one
         }
+        "city_grammar" => city::grammar_json::parse(bytes, path).is_ok(),
+        "city_json" => city::cityjson::parse(bytes, path).is_ok(),
+        "city_npz" => city::npz::parse(bytes.to_vec(), path).is_ok(),
+        "city_obj" => city::obj::parse(bytes, path).is_ok(),
         "cmp_xml" => cmp_xml::parse(bytes, path).is_ok_and(|c| c.label_grid(30.0, 40.0).is_ok()),
         "coco" => coco::parse(bytes, path, None).is_ok(),
         "completion_model" => text.is_some_and(|t| CompletionModel::from_json(t).is_ok()),
@@ -72,5 +76,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 17);
+    assert_eq!(targets, 23);
 }

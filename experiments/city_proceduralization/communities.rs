@@ -5,7 +5,13 @@ use serde::{Deserialize, Serialize};
 use super::data;
 use crate::cluster::{girvan_newman, louvain};
 use crate::experiments::Context;
-use crate::methods::city_proceduralization::{Mode, proceduralize};
+use crate::methods::city_proceduralization::{
+    Mode,
+    emission::placed_components,
+    parse_tree::{Detection, grow},
+    proceduralize,
+    type_graph::DistanceWeights,
+};
 use crate::report::{Align, Table};
 use crate::{Error, Result};
 
@@ -31,9 +37,19 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         &units,
         |c| cities[*c].0.clone(),
         |&c| {
-            let made = proceduralize(&cities[c].1, &data::settings(Mode::Best, 4, seed))
-                .map_err(Error::method)?;
-            let Some(level) = made.tree.levels.first() else {
+            let city = &cities[c].1;
+            let made =
+                proceduralize(city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+            let components = &made.decomposition.components;
+            let placed = placed_components(city, components, &made.types);
+            let leaves = made.types.representatives.len();
+            let tree = grow(
+                leaves,
+                placed,
+                Detection::Louvain,
+                DistanceWeights::default(),
+            );
+            let Some(level) = tree.levels.first() else {
                 return Ok(None);
             };
             let clock = std::time::Instant::now();

@@ -119,6 +119,15 @@ pub fn iou(city: &City, made: &Proceduralized) -> Result<f64> {
         .iou())
 }
 
+/// A city whose meshes are repaired as the method repairs them.
+pub fn repaired(city: &City) -> City {
+    let mut out = city.clone();
+    for building in &mut out.buildings {
+        building.mesh = repair(&building.mesh).0;
+    }
+    out
+}
+
 /// Settings of a mode at a level; level 0 is a template for each component.
 pub fn settings(mode: Mode, level: u32, seed: u64) -> Settings {
     Settings {

@@ -5,7 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::{data, synthetic};
 use crate::cluster::adjusted_rand_index;
 use crate::experiments::Context;
-use crate::methods::city_proceduralization::{Budget, Mode, Settings, decompose, from_components};
+use crate::grammar::instance::Repeated;
+use crate::methods::city_proceduralization::{
+    Budget, Component, Mode, Settings, Structure, decompose, from_components,
+};
 use crate::report::{Align, Table};
 use crate::{Error, Result};
 
@@ -15,6 +18,8 @@ struct Found {
     purity: f64,
     ari: f64,
     motifs: f64,
+    types: f64,
+    rules: f64,
 }
 
 /// Noise in per cent.
@@ -41,6 +46,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             "purity",
             "adjusted Rand index",
             "motifs",
+            "types of components",
+            "rules",
         ]);
     for ((mode, noise), f) in units.iter().zip(&results) {
         for (metric, value) in [
@@ -48,6 +55,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             ("purity", f.purity),
             ("adjusted_rand_index", f.ari),
             ("motifs", f.motifs),
+            ("types", f.types),
+            ("rules", f.rules),
         ] {
             ctx.observe(data::row(
                 "synthetic",
@@ -65,10 +74,12 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             format!("{:.3}", f.purity),
             format!("{:.3}", f.ari),
             format!("{:.0}", f.motifs),
+            format!("{:.0}", f.types),
+            format!("{:.0}", f.rules),
         ]);
     }
     ctx.table(&table);
-    ctx.note("The number of component types is given: the known grammar's. A motif is found when a rule's successors are types of its six building types alone, at least one of each.");
+    ctx.note("A component's type is, in `best`, its building's type and its storey; the method chooses how many types there are. In `paper` the number of types is given: the known grammar's. A motif is found when what a rule puts down is of its six types of buildings alone, at least one of each.");
     Ok(())
 }
 
@@ -98,11 +109,28 @@ fn recover(mode: Mode, noise: u32, motifs: usize, seed: u64) -> Result<Found> {
         ..Settings::default()
     };
     let made = from_components(&city, decomposition.clone(), &settings).map_err(Error::method)?;
-    let found: Vec<usize> = made.types.uses.iter().map(|u| u.kind).collect();
-    // The motif of a type found: that of most of its components.
-    let mut votes = vec![[0usize; synthetic::TYPES]; made.types.representatives.len()];
-    for (u, c) in made.types.uses.iter().zip(components) {
-        votes[u.kind][truth[c.building].kind] += 1;
+    let (found, rules) = match &made.structure {
+        Structure::Tree(tree) => {
+            let found: Vec<usize> = made.types.uses.iter().map(|u| u.kind).collect();
+            (found, tree.children.clone())
+        }
+        Structure::Patterns {
+            buildings,
+            patterns,
+        } => {
+            let kind = |c: &Component| buildings.labels[c.building].map_or(0, |l| l + 1);
+            let slabs = components.iter().map(|c| c.slab + 1).max().unwrap_or(1);
+            let found = components.iter().map(|c| kind(c) * slabs + c.slab);
+            let rules = expanded(patterns, buildings.count);
+            let of_first = |l: &usize| (l + 1) * slabs;
+            let rules = rules.iter().map(|r| r.iter().map(of_first).collect());
+            (found.collect(), rules.collect())
+        }
+    };
+    // What a type found is in truth: what most of its components are.
+    let mut votes = vec![[0usize; synthetic::TYPES]; found.iter().max().map_or(0, |m| m + 1)];
+    for (&f, c) in found.iter().zip(components) {
+        votes[f][truth[c.building].kind] += 1;
     }
     let kind_of = |t: usize| {
         (0..synthetic::TYPES)
@@ -111,7 +139,7 @@ fn recover(mode: Mode, noise: u32, motifs: usize, seed: u64) -> Result<Found> {
     };
     let members = synthetic::TYPES / synthetic::MOTIFS;
     let mut seen = [false; synthetic::MOTIFS];
-    for children in &made.tree.children {
+    for children in &rules {
         let mut kinds: Vec<usize> = children
             .iter()
             .filter(|&&c| c < votes.len())
@@ -128,8 +156,32 @@ fn recover(mode: Mode, noise: u32, motifs: usize, seed: u64) -> Result<Found> {
         cuts: right as f64 / truth.len() as f64,
         purity: purity(&found, &labels),
         ari: adjusted_rand_index(&found, &labels),
+        types: {
+            let mut all = found.clone();
+            all.sort_unstable();
+            all.dedup();
+            all.len() as f64
+        },
+        rules: rules.len() as f64,
         motifs: seen.iter().filter(|s| **s).count() as f64,
     })
+}
+
+/// The types of buildings that each pattern puts down.
+fn expanded(patterns: &[Repeated], types: usize) -> Vec<Vec<usize>> {
+    let mut out: Vec<Vec<usize>> = Vec::new();
+    for pattern in patterns {
+        let mut own = Vec::new();
+        for m in &pattern.members {
+            match m.kind.checked_sub(types) {
+                // Members come first.
+                Some(other) => own.extend(out[other].clone()),
+                None => own.push(m.kind),
+            }
+        }
+        out.push(own);
+    }
+    out
 }
 
 fn table(a: &[usize], b: &[usize]) -> std::collections::BTreeMap<(usize, usize), f64> {

@@ -4,8 +4,11 @@ mod compare;
 mod data;
 mod derive;
 mod draw;
+mod locate;
 mod proceduralize;
 mod show;
+mod synthesize;
+mod tiles;
 
 use clap::Subcommand;
 
@@ -33,6 +36,22 @@ OBJ and CityJSON are z up, in metres; glTF is y up.")]
     #[command(after_help = "Examples:
   edifice city show midtown.city-grammar.json")]
     Show(show::Args),
+    /// Fill a drawn shape with a new city of a grammar's buildings.
+    #[command(after_help = "Examples:
+  edifice city synthesize midtown.city-grammar.json --shape park.geojson --seed 7 -o new.city-grammar.json
+  edifice city synthesize midtown.city-grammar.json --shape park.geojson -o new.glb
+The shape is a polygon in metres. The output is a grammar, .glb, .obj or .city.json.")]
+    Synthesize(synthesize::Args),
+    /// Find where in a city a view was taken.
+    #[command(after_help = "Examples:
+  edifice city locate midtown.city-grammar.json --view seen.json --top 5
+The view lists buildings near each other: { \"format\": \"edifice/city-view\", \"version\": 1, \"unit\": \"m\",
+  \"buildings\": [ { \"width\": 31.5, \"depth\": 18, \"height\": 64, \"solid\": 0.8 } ] }")]
+    Locate(locate::Args),
+    /// Write 3D Tiles of a grammar's city.
+    #[command(after_help = "Examples:
+  edifice city tiles manhattan.city-grammar.json.gz -o manhattan-tiles")]
+    Tiles(tiles::Args),
     /// Draw a city or a grammar.
     #[command(after_help = "Examples:
   edifice city draw midtown.city-grammar.json --beside midtown.npz -o midtown.png")]
@@ -47,5 +66,8 @@ pub fn run(command: Command) -> edifice::Result<()> {
         Command::Compare(args) => compare::run(&args),
         Command::Show(args) => show::run(&args),
         Command::Draw(args) => draw::run(&args),
+        Command::Synthesize(args) => synthesize::run(&args),
+        Command::Locate(args) => locate::run(&args),
+        Command::Tiles(args) => tiles::run(&args),
     }
 }

@@ -5,10 +5,11 @@
 //! weight of edges inside c and d_c the sum of weighted degrees in c (Newman and Girvan 2004).
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap, VecDeque};
+use std::collections::{BTreeMap, BinaryHeap};
 
 use petgraph::graph::{NodeIndex, UnGraph};
 use petgraph::visit::EdgeRef;
+use rayon::prelude::*;
 
 /// A graph whose edges carry weights, positive and finite.
 pub type WeightedGraph = UnGraph<(), f64>;
@@ -104,60 +105,122 @@ pub fn girvan_newman(graph: &WeightedGraph) -> Communities {
     }
 }
 
+/// Sources are taken in so many groups; sums are over groups in order, the same for any number of threads.
+const SOURCE_GROUPS: usize = 16;
+
 /// Edge betweenness inside a connected part (Brandes 2001), each pair of nodes counted once.
 fn betweenness_of(part: &[usize], adjacent: &[Vec<(usize, usize)>], betweenness: &mut [f64]) {
-    let local: BTreeMap<usize, usize> = part.iter().enumerate().map(|(i, &v)| (v, i)).collect();
-    for &v in part {
-        adjacent[v].iter().for_each(|&(_, e)| betweenness[e] = 0.0);
-    }
+    let local = Local::new(part, adjacent);
     let n = part.len();
-    let neighbours: Vec<Vec<(usize, usize)>> = part
-        .iter()
-        .map(|v| adjacent[*v].iter().map(|(w, e)| (local[w], *e)).collect())
+    let group = n.div_ceil(SOURCE_GROUPS).max(1);
+    let sums: Vec<Vec<f64>> = (0..n.div_ceil(group))
+        .into_par_iter()
+        .map(|g| local.dependencies(g * group..n.min((g + 1) * group)))
         .collect();
-    for source in 0..n {
-        let mut distance = vec![usize::MAX; n];
+    for (e, &edge) in local.edges.iter().enumerate() {
+        betweenness[edge] = sums.iter().map(|s| s[e]).sum();
+    }
+}
+
+/// A part of a graph in one array: the neighbours of node v are `ends[first[v]..first[v + 1]]`.
+struct Local {
+    first: Vec<u32>,
+    /// Neighbour, and index of the edge in the part.
+    ends: Vec<(u32, u32)>,
+    /// Edges of the part, by their indices in the graph.
+    edges: Vec<usize>,
+}
+
+impl Local {
+    fn new(part: &[usize], adjacent: &[Vec<(usize, usize)>]) -> Self {
+        let mut number = vec![0u32; adjacent.len()];
+        for (i, &v) in part.iter().enumerate() {
+            number[v] = i as u32;
+        }
+        let (mut first, mut ends, mut edges) = (vec![0], Vec::new(), Vec::new());
+        let mut index = rustc_hash::FxHashMap::default();
+        for &v in part {
+            for &(w, e) in &adjacent[v] {
+                let local = *index.entry(e).or_insert_with(|| {
+                    edges.push(e);
+                    edges.len() as u32 - 1
+                });
+                ends.push((number[w], local));
+            }
+            first.push(ends.len() as u32);
+        }
+        Self { first, ends, edges }
+    }
+
+    fn around(&self, v: u32) -> &[(u32, u32)] {
+        &self.ends[self.first[v as usize] as usize..self.first[v as usize + 1] as usize]
+    }
+
+    /// Sums, over shortest paths from the sources, of the shares that pass each edge; halved, since each pair of
+    /// nodes is met from both ends.
+    fn dependencies(&self, sources: std::ops::Range<usize>) -> Vec<f64> {
+        let n = self.first.len() - 1;
+        let mut sums = vec![0.0f64; self.edges.len()];
+        let mut distance = vec![u32::MAX; n];
         let mut paths = vec![0.0f64; n];
-        let mut order = Vec::with_capacity(n);
-        let mut queue = VecDeque::from([source]);
-        distance[source] = 0;
-        paths[source] = 1.0;
-        while let Some(v) = queue.pop_front() {
-            order.push(v);
-            for &(w, _) in &neighbours[v] {
-                if distance[w] == usize::MAX {
-                    distance[w] = distance[v] + 1;
-                    queue.push_back(w);
+        let mut dependency = vec![0.0f64; n];
+        let mut order: Vec<u32> = Vec::with_capacity(n);
+        for source in sources {
+            distance.fill(u32::MAX);
+            paths.fill(0.0);
+            dependency.fill(0.0);
+            order.clear();
+            order.push(source as u32);
+            distance[source] = 0;
+            paths[source] = 1.0;
+            let mut next = 0;
+            while let Some(&v) = order.get(next) {
+                next += 1;
+                let (far, through) = (distance[v as usize] + 1, paths[v as usize]);
+                for &(w, _) in self.around(v) {
+                    let w = w as usize;
+                    if distance[w] == u32::MAX {
+                        distance[w] = far;
+                        order.push(w as u32);
+                    }
+                    if distance[w] == far {
+                        paths[w] += through;
+                    }
                 }
-                if distance[w] == distance[v] + 1 {
-                    paths[w] += paths[v];
+            }
+            for &w in order.iter().rev() {
+                let far = distance[w as usize];
+                let each = (1.0 + dependency[w as usize]) / paths[w as usize];
+                for &(v, e) in self.around(w) {
+                    let v = v as usize;
+                    if distance[v] + 1 == far {
+                        let share = paths[v] * each;
+                        sums[e as usize] += share / 2.0;
+                        dependency[v] += share;
+                    }
                 }
             }
         }
-        let mut dependency = vec![0.0; n];
-        for &w in order.iter().rev() {
-            for &(v, e) in &neighbours[w] {
-                if distance[v] + 1 == distance[w] {
-                    let share = paths[v] / paths[w] * (1.0 + dependency[w]);
-                    betweenness[e] += share / 2.0;
-                    dependency[v] += share;
-                }
-            }
-        }
+        sums
     }
 }
 
 fn reachable(start: usize, adjacent: &[Vec<(usize, usize)>]) -> Vec<usize> {
-    let mut seen = std::collections::BTreeSet::from([start]);
-    let mut queue = vec![start];
-    while let Some(v) = queue.pop() {
+    let mut seen = vec![false; adjacent.len()];
+    seen[start] = true;
+    let mut found = vec![start];
+    let mut next = 0;
+    while let Some(&v) = found.get(next) {
+        next += 1;
         for &(w, _) in &adjacent[v] {
-            if seen.insert(w) {
-                queue.push(w);
+            if !seen[w] {
+                seen[w] = true;
+                found.push(w);
             }
         }
     }
-    seen.into_iter().collect()
+    found.sort_unstable();
+    found
 }
 
 fn components(adjacent: &[Vec<(usize, usize)>]) -> Vec<usize> {

@@ -3,6 +3,7 @@
 //! - [`chi_square`]: distance between two histograms.
 //! - [`agglomerate`]: hierarchical clustering of a distance matrix, with its [`Dendrogram`].
 //! - [`ward()`]: Ward's hierarchy of points in near-linear time; [`kmeans()`] and [`lloyd`].
+//! - [`shortest_description`]: how many clusters of a hierarchy the points ask for.
 //! - [`girvan_newman`], [`louvain`]: communities of graphs, and their [`modularity`].
 //! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
 //! - [`adjusted_rand_index`]: agreement of two partitions.
@@ -11,6 +12,7 @@ mod agglomerative;
 mod agreement;
 mod chi_square;
 mod communities;
+mod description;
 mod kd_tree;
 mod kmeans;
 mod retrieval;
@@ -22,6 +24,7 @@ pub use chi_square::{Histogram, chi_square};
 pub use communities::{
     Communities, WeightedGraph, girvan_newman, louvain, modularity, weighted_graph,
 };
+pub use description::shortest_description;
 pub use kmeans::{KMeans, kmeans, lloyd, means, sum_of_squares};
 pub use retrieval::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,

@@ -211,17 +211,18 @@ impl State {
 }
 
 impl WardTree {
+    /// The merges by cost, the cheapest first: a child is before its parent, and costs no more.
+    pub fn order(&self) -> Vec<usize> {
+        let cost = |m: usize| self.merges[m].cost;
+        let mut order: Vec<usize> = (0..self.merges.len()).collect();
+        order.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)).then(a.cmp(&b)));
+        order
+    }
+
     /// The flat clustering with `k` clusters (between 1 and the number of points): the cheapest merges
     /// are done. Returns a label from 0 for each point, numbered by their first points.
     pub fn cut(&self, k: usize) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.merges.len()).collect();
-        // Stable: a child is before its parent, and costs no more.
-        order.sort_by(|&a, &b| {
-            self.merges[a]
-                .cost
-                .total_cmp(&self.merges[b].cost)
-                .then(a.cmp(&b))
-        });
+        let order = self.order();
         let merged = self.points.saturating_sub(k.max(1));
         let mut done = vec![false; self.merges.len()];
         for &m in &order[..merged.min(order.len())] {

@@ -12,6 +12,7 @@ use json::validation::Checked::Valid;
 use json::validation::USize64;
 use json::{Index, Root};
 
+use super::glb_container::{TooLong, glb_container};
 use super::write_atomic;
 use crate::scene::{Group, Instance, Material, Mesh, Scene};
 use crate::{Error, Result};
@@ -250,28 +251,14 @@ impl Document {
         }
     }
 
-    /// Header, JSON chunk padded with spaces, binary chunk padded with zeros.
     fn glb(self) -> std::result::Result<Vec<u8>, GltfError> {
-        let mut text = self
+        let text = self
             .root
             .to_vec()
             .map_err(|e| GltfError::Json(e.to_string()))?;
-        text.resize(text.len().next_multiple_of(4), b' ');
         let mut binary = self.positions;
         binary.extend(self.indices);
-        binary.resize(binary.len().next_multiple_of(4), 0);
-        let total = 12 + 8 + text.len() as u64 + 8 + binary.len() as u64;
-        let length = u32::try_from(total).map_err(|_| GltfError::TooLarge { bytes: total })?;
-        let mut out = Vec::with_capacity(total as usize);
-        out.extend(b"glTF");
-        out.extend(2u32.to_le_bytes());
-        out.extend(length.to_le_bytes());
-        for (kind, chunk) in [(b"JSON", text), (b"BIN\0", binary)] {
-            out.extend((chunk.len() as u32).to_le_bytes());
-            out.extend(kind);
-            out.extend(chunk);
-        }
-        Ok(out)
+        glb_container(text, binary).map_err(|TooLong(bytes)| GltfError::TooLarge { bytes })
     }
 }
 

@@ -14,6 +14,7 @@ pub mod draw;
 mod facade_file;
 pub mod facade_json;
 pub mod footprint;
+mod glb_container;
 pub mod gltf;
 pub mod grammar_cga;
 mod grammar_file;

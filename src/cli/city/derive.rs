@@ -1,7 +1,8 @@
 //! `edifice city derive`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use edifice::grammar::instance::{InstanceDerivation, InstanceGrammar};
 use edifice::io::city::{cityjson, glb, obj};
 use edifice::{Error, Result};
 
@@ -22,22 +23,38 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let path = &args.output;
+    check_output(&args.output)?;
     let grammar = data::grammar(&args.grammar)?;
     let derivation = grammar
         .derive()
         .map_err(|e| Error::content(&args.grammar, e))?;
+    write(&grammar, &derivation, &args.output, !args.no_instancing)
+}
+
+/// Refuses a name of no format before the work begins.
+pub fn check_output(path: &Path) -> Result<()> {
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("glb" | "obj" | "json") => Ok(()),
+        _ => Err(Error::option(
+            "--output",
+            "expected a name with .glb, .obj or .city.json",
+        )),
+    }
+}
+
+/// Writes a derived city; the extension tells the format.
+pub fn write(
+    grammar: &InstanceGrammar,
+    derivation: &InstanceDerivation,
+    path: &Path,
+    instancing: bool,
+) -> Result<()> {
     let bytes = match path.extension().and_then(|e| e.to_str()) {
-        Some("glb") => glb::to_bytes(&grammar, &derivation, !args.no_instancing)
-            .map_err(|e| Error::content(&args.grammar, e))?,
-        Some("obj") => obj::to_string(&derivation.city(&grammar)).into_bytes(),
-        Some("json") => cityjson::to_string(&derivation.city(&grammar)).into_bytes(),
-        _ => {
-            return Err(Error::option(
-                "--output",
-                "expected a name with .glb, .obj or .city.json",
-            ));
+        Some("glb") => {
+            glb::to_bytes(grammar, derivation, instancing).map_err(|e| Error::content(path, e))?
         }
+        Some("obj") => obj::to_string(&derivation.city(grammar)).into_bytes(),
+        _ => cityjson::to_string(&derivation.city(grammar)).into_bytes(),
     };
     edifice::io::write_atomic(path, &bytes)
 }

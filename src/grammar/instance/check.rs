@@ -67,6 +67,8 @@ impl InstanceGrammar {
                 format!("rules[{i}].weight")
             })?;
         }
+        // Before the parts: in a grammar with a cycle they say little.
+        self.check_cycles(&symbols)?;
         for (rule, r) in self.rules.iter().enumerate() {
             for (successor, s) in r.successors.iter().enumerate() {
                 if !symbols.contains_key(s.symbol.as_str()) {
@@ -78,10 +80,9 @@ impl InstanceGrammar {
                     });
                 }
                 let place = || format!("rules[{rule}].successors[{successor}]");
-                check_placement(s, &symbols, &place)?;
+                self.check_placement(s, &symbols, &place)?;
             }
         }
-        self.check_cycles(&symbols)?;
         Ok(symbols)
     }
 
@@ -149,27 +150,59 @@ fn number(
     }
 }
 
-fn check_placement(
-    placement: &Placement,
-    symbols: &FxHashMap<&str, Symbol>,
-    place: &dyn Fn() -> String,
-) -> Result<(), InstanceGrammarError> {
-    for v in placement.at {
-        number(v, "shift", v.is_finite(), || format!("{}.at", place()))?;
+impl InstanceGrammar {
+    fn check_placement(
+        &self,
+        placement: &Placement,
+        symbols: &FxHashMap<&str, Symbol>,
+        place: &dyn Fn() -> String,
+    ) -> Result<(), InstanceGrammarError> {
+        for v in placement.at {
+            number(v, "shift", v.is_finite(), || format!("{}.at", place()))?;
+        }
+        let turn = placement.turn;
+        number(turn, "turn", turn.is_finite(), || {
+            format!("{}.turn", place())
+        })?;
+        let [w, d, h] = placement.size;
+        for v in [w, d, h] {
+            let usable = v.is_finite() && v > 0.0;
+            number(v, "size", usable, || format!("{}.size", place()))?;
+        }
+        let rule = match symbols.get(placement.symbol.as_str()) {
+            None => return Err(InstanceGrammarError::UnknownPart(placement.symbol.clone())),
+            Some(Symbol::Template(_)) => None,
+            Some(&Symbol::Rule(rule)) => Some(&self.rules[rule]),
+        };
+        if rule.is_some() {
+            let what = "size of a non-terminal, which takes one factor for all axes";
+            number(d, what, w == d && d == h, || format!("{}.size", place()))?;
+        }
+        let expected = rule.map_or(0, |r| r.successors.len());
+        if !placement.parts.is_empty() && placement.parts.len() != expected {
+            return Err(InstanceGrammarError::Parts {
+                symbol: placement.symbol.clone(),
+                found: placement.parts.len(),
+                expected,
+            });
+        }
+        for (part, successor) in placement
+            .parts
+            .iter()
+            .zip(rule.iter().flat_map(|r| &r.successors))
+        {
+            let Some(part) = part else { continue };
+            let template = |s: &str| matches!(symbols.get(s), Some(Symbol::Template(_)));
+            if part.symbol != successor.symbol
+                && !(template(&part.symbol) && template(&successor.symbol))
+            {
+                return Err(InstanceGrammarError::Part {
+                    part: part.symbol.clone(),
+                    expected: successor.symbol.clone(),
+                });
+            }
+            self.check_placement(part, symbols, place)?;
+        }
+        Ok(())
     }
-    let turn = placement.turn;
-    number(turn, "turn", turn.is_finite(), || {
-        format!("{}.turn", place())
-    })?;
-    let [w, d, h] = placement.size;
-    for v in [w, d, h] {
-        let usable = v.is_finite() && v > 0.0;
-        number(v, "size", usable, || format!("{}.size", place()))?;
-    }
-    if let Some(Symbol::Rule(_)) = symbols.get(placement.symbol.as_str()) {
-        let what = "size of a non-terminal, which takes one factor for all axes";
-        number(d, what, w == d && d == h, || format!("{}.size", place()))?;
-    }
-    let mut parts = placement.parts.iter().flatten();
-    parts.try_for_each(|part| check_placement(part, symbols, place))
 }

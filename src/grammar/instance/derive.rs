@@ -95,20 +95,13 @@ impl Deriver<'_> {
     ) -> Result<(), InstanceGrammarError> {
         let rule = &self.grammar.rules[rule];
         out.depth = out.depth.max(depth);
-        if !parts.is_empty() && parts.len() != rule.successors.len() {
-            return Err(InstanceGrammarError::Parts {
-                symbol: rule.symbol.clone(),
-                found: parts.len(),
-                expected: rule.successors.len(),
-            });
-        }
         for (i, successor) in rule.successors.iter().enumerate() {
             let placed = match parts.get(i) {
                 None => successor,
                 Some(None) => continue,
                 Some(Some(part)) => part,
             };
-            self.place(placed, &successor.symbol, frame, building, depth, out)?;
+            self.place(placed, frame, building, depth, out)?;
         }
         Ok(())
     }
@@ -116,7 +109,6 @@ impl Deriver<'_> {
     fn place(
         &self,
         placed: &Placement,
-        symbol: &str,
         frame: &Frame,
         building: Option<usize>,
         depth: usize,
@@ -134,7 +126,7 @@ impl Deriver<'_> {
             Some(id) => Some(out.building(id, &placed.attributes)),
             None => building,
         };
-        match self.symbols.get(symbol) {
+        match self.symbols.get(placed.symbol.as_str()) {
             Some(&Symbol::Template(template)) => {
                 if out.instances.len() >= INSTANCE_LIMIT {
                     return Err(InstanceGrammarError::TooLarge);
@@ -156,7 +148,7 @@ impl Deriver<'_> {
                 };
                 self.rule(rule, &placed.parts, &frame, building, depth + 1, out)
             }
-            None => Err(InstanceGrammarError::NoAxiom(symbol.to_owned())),
+            None => Err(InstanceGrammarError::UnknownPart(placed.symbol.clone())),
         }
     }
 }
@@ -174,6 +166,22 @@ impl InstanceDerivation {
         self.buildings.push((id.to_owned(), attributes.clone()));
         self.index.insert(id.to_owned(), self.buildings.len() - 1);
         self.buildings.len() - 1
+    }
+
+    /// Some of the instances, shifted by `-origin`, with their buildings.
+    pub fn part(&self, members: &[usize], origin: [f64; 3]) -> Self {
+        let mut out = Self {
+            depth: self.depth,
+            ..Self::default()
+        };
+        for &i in members {
+            let mut instance = self.instances[i].clone();
+            instance.at = [0, 1, 2].map(|k| instance.at[k] - origin[k]);
+            let building = instance.building.map(|b| &self.buildings[b]);
+            instance.building = building.map(|(id, attributes)| out.building(id, attributes));
+            out.instances.push(instance);
+        }
+        out
     }
 
     /// The triangles of each building; instances outside all buildings are buildings of their own.

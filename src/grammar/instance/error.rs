@@ -58,6 +58,17 @@ pub enum InstanceGrammarError {
         /// Successors of its rule.
         expected: usize,
     },
+    /// A part is neither what its rule names, nor another template in the place of a template.
+    #[error("a part {part:?} cannot stand for {expected:?}")]
+    Part {
+        /// The part's symbol.
+        part: String,
+        /// The rule's.
+        expected: String,
+    },
+    /// A part is of no known symbol.
+    #[error("a part of unknown symbol {0:?}")]
+    UnknownPart(String),
     /// A derivation is too large.
     #[error("the derivation has more than {INSTANCE_LIMIT} instances")]
     TooLarge,

@@ -5,15 +5,17 @@
 //! derivation is the city.
 //!
 //! A placed non-terminal may carry `parts`: where each successor of its rule stands in this instance, or
-//! that it is absent. Without them the successors stand where the rule, with its mean transforms, puts
+//! that it is absent; a part may be of another template than the rule's. Without them the successors stand where the rule, with its mean transforms, puts
 //! them.
 
 mod check;
 mod derive;
 mod error;
+mod repeated;
 
 pub use derive::{INSTANCE_LIMIT, InstanceDerivation, TemplateInstance};
 pub use error::InstanceGrammarError;
+pub use repeated::{Posed, Repeated, repeated};
 
 use crate::shape::triangles::TriangleMesh;
 

@@ -8,6 +8,7 @@
 use serde_json::{Value, json};
 
 use crate::grammar::instance::{InstanceDerivation, InstanceGrammar, TemplateInstance};
+use crate::io::glb_container::{TooLong, glb_container};
 use crate::shape::triangles::TriangleMesh;
 
 /// Why a city cannot be written.
@@ -17,8 +18,8 @@ pub enum GlbError {
     #[error("no triangles to write")]
     Empty,
     /// The format cannot say so many bytes.
-    #[error("{0} bytes, more than a binary glTF can hold")]
-    TooLarge(u64),
+    #[error(transparent)]
+    TooLong(#[from] TooLong),
 }
 
 /// The bytes of a file.
@@ -82,26 +83,8 @@ pub fn to_bytes(
         document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
         document["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
     }
-    container(&document, file.binary)
-}
-
-/// Header, JSON chunk padded with spaces, binary chunk padded with zeros.
-fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, GlbError> {
-    let mut text = document.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let total = 12 + 8 + text.len() as u64 + 8 + binary.len() as u64;
-    let length = u32::try_from(total).map_err(|_| GlbError::TooLarge(total))?;
-    let mut out = Vec::with_capacity(total as usize);
-    out.extend(b"glTF");
-    out.extend(2u32.to_le_bytes());
-    out.extend(length.to_le_bytes());
-    for (kind, chunk) in [(b"JSON", text), (b"BIN\0", binary)] {
-        out.extend((chunk.len() as u32).to_le_bytes());
-        out.extend(kind);
-        out.extend(chunk);
-    }
-    Ok(out)
+    let text = document.to_string().into_bytes();
+    Ok(glb_container(text, file.binary)?)
 }
 
 /// z up to y up.

@@ -31,8 +31,8 @@ use crate::{Error, Result};
 pub const FORMAT: &str = "edifice/city-grammar";
 /// The version written, and the only one read.
 pub const VERSION: u64 = 1;
-/// Steps of the unit box.
-const STEPS: f64 = 4095.0;
+/// Steps of the unit box: the first of these on which all positions lie, or else the last.
+const STEPS: [f64; 2] = [4095.0, 65_535.0];
 
 /// Reads a grammar and checks that it derives.
 ///
@@ -132,6 +132,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 /// # Errors
 /// As [`packed_bytes`].
 pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
+    let steps = steps_of(grammar);
     let mut out = format!(
         "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {}, \"unit\": \"m\", \"up\": \"z\",\n  \
          \"reference_system\": {}, \"origin\": {}, \"axiom\": {}, \"steps\": {},\n  \"templates\": [",
@@ -139,10 +140,10 @@ pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
         serde_json::to_string(&grammar.reference_system)?,
         serde_json::to_string(&grammar.origin.map(Number))?,
         serde_json::to_string(&grammar.axiom)?,
-        serde_json::to_string(&Number(STEPS))?,
+        serde_json::to_string(&Number(steps))?,
     );
     for (i, t) in grammar.templates.iter().enumerate() {
-        let step = |v: f64| Number(v * STEPS);
+        let step = |v: f64| Number(v * steps);
         let positions = t.mesh.positions.iter();
         let positions = positions.flat_map(|p| [step(p[0] + 0.5), step(p[1] + 0.5), step(p[2])]);
         let template = FileTemplate {
@@ -171,6 +172,18 @@ pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
     }
     out.push_str("\n  ] }\n");
     Ok(out)
+}
+
+fn steps_of(grammar: &InstanceGrammar) -> f64 {
+    let on_grid = |steps: f64| {
+        let mut values = grammar.templates.iter().flat_map(|t| &t.mesh.positions);
+        values.all(|p| {
+            let whole = |v: f64| Number(v * steps).near().fract() == 0.0;
+            whole(p[0] + 0.5) && whole(p[1] + 0.5) && whole(p[2])
+        })
+    };
+    let [coarse, fine] = STEPS;
+    if on_grid(coarse) { coarse } else { fine }
 }
 
 /// A number that is written as an integer where it is one.

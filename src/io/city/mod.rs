@@ -7,13 +7,19 @@
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
 //! | `.glb` | no | [`glb`]: a node with instances for each template |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
+//! | `tileset.json` | no | [`tiles`]: 3D Tiles 1.1 |
+//! | `.geojson` | [`geojson`]: a shape on the ground | no |
+//! | `.json` | [`view_json`]: buildings that one sees | no |
 
 pub mod cityjson;
+pub mod geojson;
 pub mod glb;
 pub mod grammar_json;
 pub mod npz;
 pub mod obj;
 pub mod picture;
+pub mod tiles;
+pub mod view_json;
 
 use std::path::Path;
 

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::orientation::{half_turn, orient, upside_down};
 use crate::shape::triangles::{
     City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
     height_map, repair,
@@ -25,8 +26,6 @@ const MOST_SAMPLES: usize = 16_000;
 pub const CELLS: usize = 16;
 /// Columns per cell along a side.
 const SAMPLES: usize = 2;
-/// First moments below this share of the mean say nothing about the orientation.
-const SYMMETRIC: f64 = 0.004;
 
 /// The volume of a building between two cut planes.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +42,8 @@ pub struct Component {
     pub heights: Vec<f32>,
     /// Volume in cubic metres.
     pub volume: f64,
+    /// Whether half a turn does not change it.
+    pub symmetric: bool,
 }
 
 /// All components of a city.
@@ -99,26 +100,28 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
             part.append(&bottom);
         }
         part = part.welded(1e-6);
-        let Some(mut frame) = OrientedBox::around(&part) else {
+        let Some(frame) = OrientedBox::around(&part) else {
             continue;
         };
         let volume = part.volume_above(frame.base[2]);
-        let mut unit = in_unit_box(&part, &frame);
-        let mut heights = height_map(&unit, CELLS, SAMPLES);
-        if upside_down(&heights) {
-            frame.angle += std::f64::consts::PI;
-            unit = in_unit_box(&part, &frame);
-            heights.reverse();
-        }
-        components.push(Component {
+        let mesh = in_unit_box(&part, &frame);
+        let heights = height_map(&mesh, CELLS, SAMPLES);
+        let turned = upside_down(&heights);
+        let mut component = Component {
             building,
             slab,
             frame,
-            mesh: unit,
+            mesh,
             heights,
             volume,
-        });
+            symmetric: turned.is_none(),
+        };
+        if turned == Some(true) {
+            half_turn(&mut component);
+        }
+        components.push(component);
     }
+    orient(&mut components);
     components
 }
 
@@ -176,22 +179,5 @@ fn in_unit_box(mesh: &TriangleMesh, frame: &OrientedBox) -> TriangleMesh {
     TriangleMesh {
         positions: mesh.positions.iter().map(|&p| frame.to_unit(p)).collect(),
         triangles: mesh.triangles.clone(),
-    }
-}
-
-/// Whether the half turn puts more of the volume at positive x; at positive y, where x does not tell.
-fn upside_down(heights: &[f32]) -> bool {
-    let middle = (CELLS as f64 - 1.0) / 2.0;
-    let (mut x, mut y, mut total) = (0.0, 0.0, 0.0);
-    for (i, &h) in heights.iter().enumerate() {
-        let h = f64::from(h);
-        x += h * ((i % CELLS) as f64 - middle);
-        y += h * ((i / CELLS) as f64 - middle);
-        total += h;
-    }
-    let least = SYMMETRIC * total * CELLS as f64;
-    match x.abs() > least {
-        true => x < 0.0,
-        false => y < -least,
     }
 }

@@ -1,21 +1,46 @@
 //! From types to a grammar (Eq. 5 to 7).
 
-use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
+use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::parse_tree::ParseTree;
 use super::types::Types;
-use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
+use crate::grammar::instance::{
+    InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
+};
 use crate::shape::triangles::{City, TriangleMesh, merge_coplanar};
 
-/// Lengths are written in steps of 1 cm.
-const LENGTH: f64 = 100.0;
-/// Turns are written in steps of 0.01 degrees.
-const ANGLE: f64 = 100.0;
-/// Coordinates of templates take 12 bits.
-pub const TEMPLATE_STEPS: f64 = 4095.0;
-/// Coplanar triangles of a template are joined within this share of its box.
-const COPLANAR: f64 = 1e-3;
+/// How finely numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detail {
+    /// Steps of lengths in a metre.
+    length: f64,
+    /// Steps of turns in a degree.
+    angle: f64,
+    /// Steps of a template's box.
+    box_steps: f64,
+    /// Coplanar triangles of a template are joined within this share of its box.
+    coplanar: f64,
+}
+
+impl Detail {
+    /// Centimetres, hundredths of degrees, 12 bits: where templates stand for others, nothing finer is seen.
+    pub const COARSE: Self = Self {
+        length: 100.0,
+        angle: 100.0,
+        box_steps: 4095.0,
+        coplanar: 1e-3,
+    };
+    /// Millimetres, ten-thousandths of degrees, 16 bits: where each component has its own template.
+    pub const FINE: Self = Self {
+        length: 1000.0,
+        angle: 10_000.0,
+        box_steps: 65_535.0,
+        coplanar: 2e-5,
+    };
+}
+
 /// Axiom of the grammar.
 pub const AXIOM: &str = "City";
 
@@ -26,7 +51,7 @@ pub fn emit_tree(
     types: &Types,
     tree: &ParseTree,
 ) -> InstanceGrammar {
-    let mut grammar = terminals(city, components, types, false);
+    let mut grammar = terminals(city, components, types, &Detail::COARSE, false);
     grammar.rules.push(InstanceRule {
         symbol: AXIOM.to_owned(),
         weight: 1.0,
@@ -43,7 +68,7 @@ pub fn placed_components(
     types: &Types,
 ) -> Vec<(usize, [f64; 3], Placement)> {
     let one = |(i, c): (usize, &Component)| {
-        let mut placed = part(i, c, types, &Frame::WORLD);
+        let mut placed = part(i, c, types, &Frame::WORLD, &Detail::COARSE);
         let building = &city.buildings[c.building];
         placed.id = Some(building.id.clone());
         if i == 0 || components[i - 1].building != c.building {
@@ -54,11 +79,17 @@ pub fn placed_components(
     components.iter().enumerate().map(one).collect()
 }
 
-fn terminals(city: &City, components: &[Component], types: &Types, merge: bool) -> InstanceGrammar {
+fn terminals(
+    city: &City,
+    components: &[Component],
+    types: &Types,
+    detail: &Detail,
+    merge: bool,
+) -> InstanceGrammar {
     let templates = types.representatives.iter().enumerate();
     let template = |(kind, &c): (usize, &usize)| Template {
         symbol: terminal(kind),
-        mesh: template(&components[c].mesh, merge),
+        mesh: template(&components[c].mesh, detail, merge),
     };
     InstanceGrammar {
         name: city.name.clone(),
@@ -70,52 +101,132 @@ fn terminals(city: &City, components: &[Component], types: &Types, merge: bool) 
     }
 }
 
-/// The grammar of `best`: a terminal for each type, a non-terminal for each arrangement of parts that buildings
-/// have, the buildings in their places under the axiom, and the rules of the parse tree as patterns: the axiom
-/// does not lead to them, synthesis draws from them.
+/// The grammar of `best`: a terminal for each type of component, a non-terminal for each type of building, the buildings
+/// in their places under the axiom, and the repeated arrangements of buildings as patterns: the axiom does not lead to them,
+/// synthesis draws from them.
+///
+/// A building's rule has the mean transforms of its type; a building that differs from it by a centimetre
+/// keeps its parts. A single component whose building has no like is a terminal at once.
 pub fn emit(
     city: &City,
     components: &[Component],
     types: &Types,
-    patterns: &ParseTree,
+    buildings: &BuildingTypes,
+    patterns: &[Repeated],
+    detail: &Detail,
 ) -> InstanceGrammar {
-    let mut grammar = terminals(city, components, types, true);
-    let mut start = InstanceRule {
-        symbol: AXIOM.to_owned(),
-        weight: 1.0,
-        successors: Vec::new(),
-    };
-    let mut known: FxHashMap<String, usize> = FxHashMap::default();
-    let indexed: Vec<(usize, &Component)> = components.iter().enumerate().collect();
-    for parts in indexed.chunk_by(|a, b| a.1.building == b.1.building) {
-        let building = &city.buildings[parts[0].1.building];
-        let mut placed = match parts {
-            [(i, only)] => part(*i, only, types, &Frame::WORLD),
-            _ => {
-                let frame = Frame::of(parts[0].0, parts[0].1, types);
-                let parts = parts.iter().map(|(i, c)| part(*i, c, types, &frame));
-                let successors: Vec<Placement> = parts.collect();
-                let key = format!("{successors:?}");
-                let rule = *known.entry(key).or_insert_with(|| {
-                    grammar.rules.push(InstanceRule {
-                        symbol: format!("B{}", grammar.rules.len() + 1),
-                        weight: 0.0,
-                        successors,
-                    });
-                    grammar.rules.len() - 1
-                });
-                grammar.rules[rule].weight += 1.0;
-                let symbol = grammar.rules[rule].symbol.clone();
-                Placement::new(symbol, frame.at, frame.turn, [1.0; 3])
-            }
+    let mut grammar = terminals(city, components, types, detail, true);
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
+    for (b, label) in buildings.labels.iter().enumerate() {
+        if let Some(l) = label {
+            members[*l].push(b);
+        }
+    }
+    let mut start: Vec<(usize, Placement)> = Vec::new();
+    for (label, list) in members.iter().enumerate() {
+        let alone = list.len() == 1;
+        if let ([b], [i]) = (&list[..], &buildings.parts[list[0]][..])
+            && alone
+        {
+            start.push((*b, part(*i, &components[*i], types, &Frame::WORLD, detail)));
+            continue;
+        }
+        let placed = |&b: &usize| {
+            let frame = Frame::of(&components[buildings.parts[b][0]], detail);
+            let parts = buildings.parts[b].iter();
+            let parts = parts.map(|&i| part(i, &components[i], types, &frame, detail));
+            let parts: Vec<Placement> = parts.collect();
+            (b, frame, parts)
         };
+        let placed: Vec<(usize, Frame, Vec<Placement>)> = list.iter().map(placed).collect();
+        let mean: Vec<Placement> = (0..placed[0].2.len())
+            .map(|k| mean_part(placed.iter().map(|p| &p.2[k]), detail))
+            .collect();
+        let symbol = building_symbol(label);
+        for (b, frame, parts) in placed {
+            let mut instance = Placement::new(symbol.clone(), frame.at, frame.turn, [1.0; 3]);
+            if parts != mean {
+                instance.parts = parts.into_iter().map(Some).collect();
+            }
+            start.push((b, instance));
+        }
+        grammar.rules.push(InstanceRule {
+            symbol,
+            weight: list.len() as f64,
+            successors: mean,
+        });
+    }
+    start.sort_by_key(|s| s.0);
+    let named = start.into_iter().map(|(b, mut placed)| {
+        let building = &city.buildings[b];
         placed.id = Some(building.id.clone());
         placed.attributes = building.attributes.clone();
-        start.successors.push(placed);
-    }
-    grammar.rules.insert(0, start);
-    grammar.rules.extend(patterns.rules.iter().cloned());
+        placed
+    });
+    let axiom = InstanceRule {
+        symbol: AXIOM.to_owned(),
+        weight: 1.0,
+        successors: named.collect(),
+    };
+    grammar.rules.insert(0, axiom);
+    let patterns = patterns.iter().enumerate();
     grammar
+        .rules
+        .extend(patterns.map(|(i, p)| pattern(i, p, buildings.count)));
+    grammar
+}
+
+/// The rule of a pattern, over `types` types of buildings.
+fn pattern(index: usize, pattern: &Repeated, types: usize) -> InstanceRule {
+    let member = |m: &Posed| {
+        let symbol = match m.kind.checked_sub(types) {
+            Some(other) => pattern_symbol(other),
+            None => building_symbol(m.kind),
+        };
+        rounded(
+            Placement::new(symbol, m.at, m.turn, [1.0; 3]),
+            &Detail::COARSE,
+        )
+    };
+    InstanceRule {
+        symbol: pattern_symbol(index),
+        weight: pattern.count as f64,
+        successors: pattern.members.iter().map(member).collect(),
+    }
+}
+
+/// The template that most members have, at their mean transform.
+fn mean_part<'a>(parts: impl Iterator<Item = &'a Placement>, detail: &Detail) -> Placement {
+    let parts: Vec<&Placement> = parts.collect();
+    let key = |p: &Placement| (p.symbol.clone(), (p.turn / 90.0).round() as i64 % 4);
+    let mut counts: BTreeMap<(String, i64), usize> = BTreeMap::new();
+    for p in &parts {
+        *counts.entry(key(p)).or_default() += 1;
+    }
+    let most = counts.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0)));
+    let most = most.map(|m| m.0.clone()).unwrap_or_default();
+    let own: Vec<&Placement> = parts.into_iter().filter(|p| key(p) == most).collect();
+    let n = own.len() as f64;
+    let mean = |f: &dyn Fn(&Placement) -> f64| own.iter().map(|p| f(p)).sum::<f64>() / n;
+    let sin = mean(&|p| p.turn.to_radians().sin());
+    let cos = mean(&|p| p.turn.to_radians().cos());
+    let mean = Placement::new(
+        most.0,
+        [0, 1, 2].map(|k| mean(&|p| p.at[k])),
+        sin.atan2(cos).to_degrees(),
+        [0, 1, 2].map(|k| mean(&|p| p.size[k])),
+    );
+    rounded(mean, detail)
+}
+
+/// Symbol of a type of buildings.
+pub fn building_symbol(label: usize) -> String {
+    format!("B{}", label + 1)
+}
+
+/// Symbol of a pattern.
+fn pattern_symbol(index: usize) -> String {
+    format!("P{}", index + 1)
 }
 
 /// Symbol of a type.
@@ -135,8 +246,12 @@ impl Frame {
         turn: 0.0,
     };
 
-    fn of(index: usize, component: &Component, types: &Types) -> Self {
-        let placed = part(index, component, types, &Self::WORLD);
+    fn of(component: &Component, detail: &Detail) -> Self {
+        let turn = component.frame.angle.to_degrees();
+        let placed = rounded(
+            Placement::new("", component.frame.base, turn, [1.0; 3]),
+            detail,
+        );
         Self {
             at: placed.at,
             turn: placed.turn,
@@ -144,8 +259,24 @@ impl Frame {
     }
 }
 
+/// Lengths and turns in steps, turns from 0 to 360 degrees.
+fn rounded(mut placed: Placement, detail: &Detail) -> Placement {
+    let round = |v: f64| (v * detail.length).round() / detail.length;
+    placed.at = placed.at.map(|v| round(v) + 0.0);
+    placed.size = placed.size.map(|v| round(v).max(1.0 / detail.length));
+    let turn = (placed.turn.rem_euclid(360.0) * detail.angle).round() / detail.angle;
+    placed.turn = if turn >= 360.0 { 0.0 } else { turn };
+    placed
+}
+
 /// The template that stands for a component, in a frame: box to box, with the turn of its type.
-fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Placement {
+fn part(
+    index: usize,
+    component: &Component,
+    types: &Types,
+    frame: &Frame,
+    detail: &Detail,
+) -> Placement {
     let used = types.uses[index];
     let [w, d, h] = component.frame.size;
     let size = if used.quarter.is_multiple_of(2) {
@@ -161,24 +292,20 @@ fn part(index: usize, component: &Component, types: &Types, frame: &Frame) -> Pl
         shift[1] * cos - shift[0] * sin,
         shift[2],
     ];
-    let round = |v: f64| (v * LENGTH).round() / LENGTH;
-    let turn = ((turn - frame.turn).rem_euclid(360.0) * ANGLE).round() / ANGLE;
-    Placement::new(
-        terminal(used.kind),
-        at.map(|v| round(v) + 0.0),
-        if turn >= 360.0 { 0.0 } else { turn },
-        size.map(|v| round(v).max(1.0 / LENGTH)),
+    rounded(
+        Placement::new(terminal(used.kind), at, turn - frame.turn, size),
+        detail,
     )
 }
 
-/// A representative's mesh: coplanar triangles merged, coordinates on 12 bits.
-fn template(unit: &TriangleMesh, merge: bool) -> TriangleMesh {
+/// A representative's mesh: coplanar triangles merged, coordinates in steps of the box.
+fn template(unit: &TriangleMesh, detail: &Detail, merge: bool) -> TriangleMesh {
     let mesh = if merge {
-        merge_coplanar(unit, COPLANAR)
+        merge_coplanar(unit, detail.coplanar)
     } else {
         unit.clone()
     };
-    let grid = |v: f64| (v * TEMPLATE_STEPS).round() / TEMPLATE_STEPS;
+    let grid = |v: f64| (v * detail.box_steps).round() / detail.box_steps;
     let snapped = mesh
         .positions
         .iter()
@@ -187,5 +314,5 @@ fn template(unit: &TriangleMesh, merge: bool) -> TriangleMesh {
         positions: snapped.collect(),
         triangles: mesh.triangles,
     }
-    .welded(0.5 / TEMPLATE_STEPS)
+    .welded(0.5 / detail.box_steps)
 }

@@ -7,6 +7,7 @@
 //!    representative, its template, which takes the place of all its members: box to box, by an affine map.
 //! 3. **Parse tree** ([`parse_tree`], Sec. V). Types that stand near each other often and at like distances (Eq. 8 to 11)
 //!    are joined by communities, level by level, up to one root.
+//!    In `best`, [`patterns`]: types of buildings at like relative places.
 //! 4. **Grammar** ([`emission`], Eq. 5 to 7). Leaves are terminals, inner nodes non-terminals with a rule and
 //!    mean transforms; each instance keeps where its parts really stand.
 //!
@@ -16,7 +17,7 @@
 //! | features | vertex count of the simplified outline, width, height, depth, rotation, standardized and weighted | 16 x 16 height map in the box, turned to a canonical half turn; 12 principal components, weighted by volume |
 //! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, over the four quarter turns |
 //! | template | nearest to the mean, or of fewest triangles | medoid, coplanar triangles merged, 12 bits |
-//! | parse tree | Girvan-Newman | Louvain |
+//! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for, and [`patterns`] of them that repeat |
 //!
 //! # Deviations and readings
 //! - A(z) is computed exactly from the triangles instead of from rendered images, every 0.25 m. Second differences
@@ -29,19 +30,25 @@
 //!   what they replace.
 //! - Slabs are closed at the top, because another roof may stand on them than the one that they were cut from.
 //! - D (Eq. 11) is a distance; the graph's edge weight for communities is its inverse.
+//! - "Edges for distant node type pairs are omitted": an edge stays when it is among the four of least D of one of its nodes.
 //! - The mean of Eq. 9 is taken over the pairs of neighbours of the two types.
 
+pub mod building_types;
 pub mod components;
 pub mod emission;
 pub mod features;
+pub mod localization;
+mod orientation;
 pub mod parse_tree;
+pub mod patterns;
 pub mod proceduralize;
+pub mod synthesis;
 pub mod type_graph;
 pub mod types;
 
 pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use proceduralize::{
-    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, from_components,
-    largest, proceduralize, smallest,
+    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, Structure,
+    from_components, largest, proceduralize, smallest,
 };

@@ -3,12 +3,17 @@
 
 use std::collections::BTreeMap;
 
-use super::type_graph::{DistanceWeights, NEIGHBOUR, NodeInstance, neighbours, type_graph};
+use super::type_graph::{
+    DistanceWeights, NEIGHBOUR, NodeInstance, TypeEdge, neighbours, type_graph,
+};
 use crate::cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
 use crate::grammar::instance::{InstanceRule, Placement};
 
 /// Levels at most: the tolerance is doubled at each.
 const MOST_LEVELS: usize = 16;
+
+/// Edges of a node that are kept whatever the other node's are.
+const NEAREST: usize = 4;
 
 /// How communities are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,13 +60,12 @@ struct Grown {
 }
 
 /// Grows the tree from placed leaves: `leaves` are symbols of terminals, `instances` their uses with
-/// midpoints. At most `levels` levels.
+/// midpoints.
 pub fn grow(
     leaves: usize,
     instances: Vec<(usize, [f64; 3], Placement)>,
     detection: Detection,
     weights: DistanceWeights,
-    levels: usize,
 ) -> ParseTree {
     let mut tree = ParseTree {
         rules: Vec::new(),
@@ -76,7 +80,7 @@ pub fn grow(
     });
     let mut grown: Vec<Grown> = grown.collect();
     let mut tolerance = NEIGHBOUR;
-    for _ in 0..levels.min(MOST_LEVELS) {
+    for _ in 0..MOST_LEVELS {
         // Nodes that are still at the top, numbered anew.
         let mut active: Vec<usize> = grown.iter().map(|g| g.node).collect();
         active.sort_unstable();
@@ -94,6 +98,7 @@ pub fn grow(
             })
             .collect();
         let edges = type_graph(&plain, active.len(), tolerance, weights);
+        let edges = without_distant(edges, active.len());
         let near: Vec<_> = edges
             .iter()
             .map(|e| (e.nodes.0, e.nodes.1, 1.0 / e.distance))
@@ -120,6 +125,31 @@ pub fn grow(
     }
     tree.top = grown.into_iter().map(|g| g.placed).collect();
     tree
+}
+
+/// The edges among the [`NEAREST`] of least distance D of either node: "edges for distant node type pairs are omitted"
+/// (Sec. V.B).
+fn without_distant(edges: Vec<TypeEdge>, nodes: usize) -> Vec<TypeEdge> {
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    let by_distance = |a: &usize, b: &usize| {
+        edges[*a]
+            .distance
+            .total_cmp(&edges[*b].distance)
+            .then(a.cmp(b))
+    };
+    order.sort_by(by_distance);
+    let mut degree = vec![0usize; nodes];
+    let mut kept: Vec<usize> = Vec::new();
+    for e in order {
+        let (a, b) = edges[e].nodes;
+        if degree[a].min(degree[b]) < NEAREST {
+            kept.push(e);
+        }
+        degree[a] += 1;
+        degree[b] += 1;
+    }
+    kept.sort_unstable();
+    kept.into_iter().map(|e| edges[e]).collect()
 }
 
 /// Makes a node of `children`: groups their instances and replaces them by the groups.

@@ -1,12 +1,15 @@
 //! The whole pipeline.
 
+use super::building_types::{BuildingTypes, building_types};
 use super::components::{Decomposition, decompose};
-use super::emission::{emit, emit_tree, placed_components};
+use super::emission::{Detail, emit, emit_tree, placed_components};
+use super::features::geometric_features;
 use super::parse_tree::{Detection, ParseTree, grow};
+use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
-use super::types::{Types, best_types, paper_types};
+use super::types::{Types, best_types, distinct_types, paper_types};
 use crate::cluster::WardError;
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError};
+use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
 use crate::shape::triangles::City;
 
 /// How types are found.
@@ -91,8 +94,22 @@ pub struct Proceduralized {
     pub decomposition: Decomposition,
     /// Their types.
     pub types: Types,
-    /// Which types stand together.
-    pub tree: ParseTree,
+    /// What stands together.
+    pub structure: Structure,
+}
+
+/// What stands together in a city.
+#[derive(Debug, Clone)]
+pub enum Structure {
+    /// In `paper`: types of components, up to one root.
+    Tree(ParseTree),
+    /// In `best`: types of buildings that repeat at like places.
+    Patterns {
+        /// The types.
+        buildings: BuildingTypes,
+        /// The patterns, over types of buildings and other patterns.
+        patterns: Vec<Repeated>,
+    },
 }
 
 /// Makes a grammar of a city.
@@ -126,37 +143,39 @@ pub fn from_components(
         Budget::Templates(k) => k.clamp(1, n),
         Budget::Level(level) => n.checked_shr(level).unwrap_or(0).max(1),
     };
-    let types = match settings.mode {
-        Mode::Best => best_types(components, k)?,
-        Mode::Paper => paper_types(
-            components,
-            k,
-            &settings.weights,
-            settings.representative,
-            settings.seed,
-        ),
-    };
-    let placed = placed_components(city, components, &types);
-    let leaves = types.representatives.len();
-    let (detection, levels) = match settings.mode {
-        Mode::Paper => (Detection::GirvanNewman, usize::MAX),
-        Mode::Best => (Detection::Louvain, PATTERN_LEVELS),
-    };
-    let tree = grow(leaves, placed, detection, settings.distance, levels);
-    let grammar = match settings.mode {
-        Mode::Paper => emit_tree(city, components, &types, &tree),
-        Mode::Best => emit(city, components, &types, &tree),
+    let (grammar, types, structure) = match settings.mode {
+        Mode::Paper => {
+            let (weights, representative) = (&settings.weights, settings.representative);
+            let types = paper_types(components, k, weights, representative, settings.seed);
+            let placed = placed_components(city, components, &types);
+            let leaves = types.representatives.len();
+            let tree = grow(leaves, placed, Detection::GirvanNewman, settings.distance);
+            let grammar = emit_tree(city, components, &types, &tree);
+            (grammar, types, Structure::Tree(tree))
+        }
+        Mode::Best => {
+            let shape = geometric_features(components);
+            let (types, detail) = match settings.budget {
+                Budget::All => (distinct_types(components), Detail::FINE),
+                _ => (best_types(components, &shape, k)?, Detail::COARSE),
+            };
+            let buildings = building_types(components, &shape, city.buildings.len())?;
+            let patterns = patterns(components, &buildings);
+            let grammar = emit(city, components, &types, &buildings, &patterns, &detail);
+            let structure = Structure::Patterns {
+                buildings,
+                patterns,
+            };
+            (grammar, types, structure)
+        }
     };
     Ok(Proceduralized {
         grammar,
         decomposition,
         types,
-        tree,
+        structure,
     })
 }
-
-/// Levels of communities that become patterns in `best`.
-const PATTERN_LEVELS: usize = 1;
 
 /// Steps of the search for a number of templates.
 const SEARCH_STEPS: usize = 7;

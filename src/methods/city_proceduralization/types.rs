@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::components::{CELLS, Component};
-use super::features::{Points, geometric_features, paper_features};
+use super::features::{Points, paper_features};
 use super::proceduralize::{ProceduralizeError, Representative};
 use crate::cluster::{kmeans, lloyd, means, ward};
 use crate::rng;
@@ -113,6 +113,36 @@ fn renumbered(labels: &[usize]) -> (Vec<usize>, usize) {
     (out, numbers.len())
 }
 
+/// Steps of a box within which components are the same.
+const SAME: f64 = 65_536.0;
+
+/// A type for each distinct component: components whose triangles are the same, to 16 bits of their boxes, are of one type.
+pub fn distinct_types(components: &[Component]) -> Types {
+    let mut known: FxHashMap<Vec<i64>, usize> = FxHashMap::default();
+    let mut types = Types {
+        representatives: Vec::new(),
+        uses: Vec::with_capacity(components.len()),
+    };
+    for (i, c) in components.iter().enumerate() {
+        let triangles = c.mesh.corners().map(|t| {
+            let mut t = t.map(|p| p.map(|v| (v * SAME).round() as i64));
+            // From the least corner on, in the same sense.
+            let first = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+            t.rotate_left(first);
+            t
+        });
+        let mut triangles: Vec<[[i64; 3]; 3]> = triangles.collect();
+        triangles.sort_unstable();
+        let key = triangles.into_iter().flatten().flatten().collect();
+        let kind = *known.entry(key).or_insert_with(|| {
+            types.representatives.push(i);
+            types.representatives.len() - 1
+        });
+        types.uses.push(Use { kind, quarter: 0 });
+    }
+    types
+}
+
 /// Rounds of medoids.
 const ROUNDS: usize = 3;
 /// Representatives that a component is compared with, nearest in features first.
@@ -120,13 +150,16 @@ const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
 
-/// Ward's hierarchy of the geometric features, weighted by volume, equal components joined first, cut at `k`
+/// Ward's hierarchy of the geometric features `points`, weighted by volume, equal components joined first, cut at `k`
 /// types; then rounds of Lloyd, and of medoids under the mismatched volume over the four quarter turns.
 ///
 /// # Errors
 /// [`ProceduralizeError::Ward`].
-pub fn best_types(components: &[Component], k: usize) -> Result<Types, ProceduralizeError> {
-    let points = geometric_features(components);
+pub fn best_types(
+    components: &[Component],
+    points: &Points,
+    k: usize,
+) -> Result<Types, ProceduralizeError> {
     let d = points.dimension;
     // Equal components first: the hierarchy is over distinct ones.
     let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();

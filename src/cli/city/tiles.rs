@@ -1,0 +1,42 @@
+//! `edifice city tiles`.
+
+use std::path::PathBuf;
+
+use edifice::io::city::tiles;
+use edifice::{Error, Result};
+
+use super::data;
+use crate::cli::print;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The grammar.
+    grammar: PathBuf,
+    /// The folder to write `tileset.json` and its tiles to.
+    #[arg(short, long)]
+    output: PathBuf,
+    /// Most instances in a tile.
+    #[arg(long, default_value_t = tiles::MOST_INSTANCES)]
+    instances: usize,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    if args.instances == 0 {
+        return Err(Error::option("--instances", "a tile has at least one"));
+    }
+    let grammar = data::grammar(&args.grammar)?;
+    let derivation = grammar
+        .derive()
+        .map_err(|e| Error::content(&args.grammar, e))?;
+    let files = tiles::to_files(&grammar, &derivation, args.instances)
+        .map_err(|e| Error::content(&args.grammar, e))?;
+    std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, "create", e))?;
+    // The tileset comes last: it names no tile that is not there.
+    for (name, bytes) in &files {
+        edifice::io::write_atomic(&args.output.join(name), bytes)?;
+    }
+    let bytes: usize = files.iter().map(|f| f.1.len()).sum();
+    print::line(&format!("{} tiles, {bytes} bytes", files.len() - 1))
+}
