@@ -4,12 +4,12 @@ use super::views::{BACK, FRONT, Panel, plan, sheet};
 use super::{data, settings};
 use crate::experiments::Context;
 use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::methods::building_exteriors::baseline::Baseline;
 use crate::methods::building_exteriors::design::wanted_rows;
 use crate::methods::building_exteriors::house::{Database, Generated, Options, generate};
 use crate::model::hierarchy::learn;
 use crate::report::{Align, Table};
 use crate::rng::stream;
+use crate::tables::mixture::Baseline;
 use crate::{Error, Result};
 
 /// Columns that are given in Fig. 14: the bounding box and the garage.
