@@ -224,12 +224,18 @@ impl<'a> Context<'a> {
         Ok(())
     }
 
-    /// Writes another file beside the artefact, for example `figure_16.glb`, and links it.
+    /// Writes another file beside the artefact, for example `figure_16.glb`, and links it; a PNG is brought to 256 colours.
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be written.
     pub fn attach(&mut self, name: &str, bytes: &[u8], what: &str) -> Result<()> {
-        crate::file::write_atomic(&self.folder.join(name), bytes)?;
+        let path = self.folder.join(name);
+        if name.ends_with(".png") {
+            let few = report::few_colours(bytes).map_err(|e| Error::content(&path, e))?;
+            crate::file::write_atomic(&path, &few)?;
+        } else {
+            crate::file::write_atomic(&path, bytes)?;
+        }
         self.files.push(name.to_string());
         self.document.block(format!("[{name}]({name}): {what}"));
         Ok(())

@@ -1,6 +1,8 @@
-//! PNG files of at most 256 colours: half as large as others, and figures look the same.
+//! PNG files of at most 256 colours: half as large as others, and figures and pictures look the same.
 
 use std::collections::HashMap;
+
+use color_quant::NeuQuant;
 
 /// Colours of a palette.
 const COLOURS: usize = 256;
@@ -31,14 +33,60 @@ pub(super) fn png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, png::E
     let places: HashMap<[u8; 3], u8> = colours.iter().map(|c| (*c, nearest(c))).collect();
     let indices: Vec<u8> = pixels.iter().map(|pixel| places[pixel]).collect();
 
+    encoded(width, height, palette.concat(), &indices)
+}
+
+/// Brings a PNG of RGB pixels (a rendered picture, say, of many shades) to at most 256 colours, chosen by NeuQuant (Dekker 1994);
+/// other PNG files stay as they are.
+///
+/// # Errors
+/// Those of the PNG decoder, for bytes that are no PNG, and of the encoder.
+pub fn few_colours(bytes: &[u8]) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info()?;
+    let info = reader.info();
+    let plain = (info.color_type, info.bit_depth) == (png::ColorType::Rgb, png::BitDepth::Eight);
+    let Some(size) = reader.output_buffer_size().filter(|_| plain) else {
+        return Ok(bytes.to_vec());
+    };
+    let mut rgb = vec![0; size];
+    let frame = reader.next_frame(&mut rgb)?;
+    let (pixels, _) = rgb.as_chunks::<3>();
+    let rgba: Vec<u8> = pixels
+        .iter()
+        .flat_map(|&[r, g, b]| [r, g, b, 255])
+        .collect();
+    let chosen = NeuQuant::new(SAMPLE, COLOURS, &rgba);
+    let mut known: HashMap<[u8; 3], u8> = HashMap::new();
+    let mut index = |&[r, g, b]: &[u8; 3]| {
+        let found = known.entry([r, g, b]);
+        *found.or_insert_with(|| chosen.index_of(&[r, g, b, 255]) as u8)
+    };
+    let indices: Vec<u8> = pixels.iter().map(&mut index).collect();
+    Ok(encoded(
+        frame.width,
+        frame.height,
+        chosen.color_map_rgb(),
+        &indices,
+    )?)
+}
+
+/// Of so many pixels NeuQuant learns from one.
+const SAMPLE: i32 = 3;
+
+fn encoded(
+    width: u32,
+    height: u32,
+    palette: Vec<u8>,
+    indices: &[u8],
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(palette.concat());
+    encoder.set_palette(palette);
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&indices)?;
+    writer.write_image_data(indices)?;
     writer.finish()?;
     Ok(bytes)
 }
@@ -67,5 +115,27 @@ mod tests {
         let found = decoded(&png(514, 1, &many).unwrap());
         assert_eq!(found[..1536], many[..1536]);
         assert_eq!(found[1536..], [10, 10, 10, 201, 201, 201]);
+    }
+
+    #[test]
+    fn pictures_keep_their_look_in_few_colours() {
+        let (width, height) = (64, 64);
+        let shade = |i: usize| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, 128];
+        let rgb: Vec<u8> = (0..width * height).flat_map(shade).collect();
+        let mut whole = Vec::new();
+        let mut encoder = png::Encoder::new(&mut whole, width as u32, height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&rgb).unwrap();
+        writer.finish().unwrap();
+        let few = few_colours(&whole).unwrap();
+        let again = decoded(&few);
+        let far = rgb.iter().zip(&again).map(|(a, b)| a.abs_diff(*b));
+        assert!(far.map(f64::from).sum::<f64>() / (rgb.len() as f64) < 6.0);
+        let colours: std::collections::HashSet<&[u8]> = again.chunks(3).collect();
+        assert!(colours.len() <= 256);
+        // What has a palette stays; what is no PNG is an error.
+        assert_eq!(few_colours(&few).unwrap(), few);
+        assert!(few_colours(b"no picture").is_err());
     }
 }

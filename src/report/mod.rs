@@ -34,6 +34,7 @@ pub use dendrogram::{Dendrogram, Merge};
 pub use figure::{Figure, MOST_SVG_BYTES, Panel, write_figure, write_report_figure};
 pub use heat_map::HeatMap;
 pub use html::{Page, Section, index};
+pub use indexed::few_colours;
 pub use ranking::Ranking;
 pub use rows::{Row, csv_bytes, write_rows};
 pub use table::{Align, Table};

@@ -1,13 +1,17 @@
 //! Pictures of cities, one beside the other, from one place.
 
-use crate::scene::render::{Camera, render};
+use crate::scene::render::render;
+use crate::scene::trace::framing;
 use crate::scene::{Group, Instance, Material, Mesh, Scene};
 use crate::shape::triangles::City;
 
 /// Space between pictures, in pixels.
 const GAP: usize = 8;
 
-/// Draws cities from one place, as a PNG of one row; each picture is `width` x `height` pixels.
+/// From the south-west, downward; y is up.
+const VIEW: [f32; 3] = [0.35, -0.55, -0.75];
+
+/// Draws cities from one place, from which the first is seen whole, as a PNG of one row; each picture is `width` x `height` pixels.
 ///
 /// # Errors
 /// Those of the PNG encoder, which writes to memory.
@@ -16,7 +20,10 @@ pub fn side_by_side(
     width: usize,
     height: usize,
 ) -> Result<Vec<u8>, png::EncodingError> {
-    let camera = camera(cities);
+    let Some(first) = cities.first() else {
+        return Ok(Vec::new());
+    };
+    let camera = framing(&scene(first), VIEW, width as f32 / height as f32);
     let whole = cities.len() * (width + GAP) - GAP.min(cities.len() * (width + GAP));
     let mut rgb = vec![255; whole * height * 3];
     for (i, city) in cities.iter().enumerate() {
@@ -40,33 +47,6 @@ pub fn side_by_side(
 /// z up to y up.
 fn turned(p: [f64; 3]) -> [f32; 3] {
     [p[0] as f32, p[2] as f32, -p[1] as f32]
-}
-
-/// From the south-west, as high as wide.
-fn camera(cities: &[&City]) -> Camera {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (l, h) in cities
-        .iter()
-        .flat_map(|c| &c.buildings)
-        .filter_map(|b| b.mesh.bounds())
-    {
-        for k in 0..3 {
-            low[k] = low[k].min(l[k]);
-            high[k] = high[k].max(h[k]);
-        }
-    }
-    let middle = [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0);
-    let extent = (high[0] - low[0]).max(high[1] - low[1]).max(10.0);
-    let eye = [
-        middle[0] - 0.35 * extent,
-        middle[1] - 0.75 * extent,
-        low[2] + 0.55 * extent,
-    ];
-    Camera {
-        eye: turned(eye),
-        target: turned([middle[0], middle[1], low[2]]),
-        angle: 45.0,
-    }
 }
 
 /// A mesh a building, on a ground.
