@@ -96,7 +96,7 @@ fn a_constant_column_and_few_rows_are_warned_of() {
         "{messages}"
     );
     assert!(!messages.contains("`h` is constant"), "{messages}");
-    assert!(messages.contains("warning: 2 houses for"), "{messages}");
+    assert!(messages.contains("warning: 2 rows for"), "{messages}");
 }
 
 #[test]

@@ -67,18 +67,20 @@ impl InstanceGrammar {
                 format!("rules[{i}].weight")
             })?;
         }
-        // Before the parts: in a grammar with a cycle they say little.
+        // Before the parts: in a grammar with a cycle or a symbol that is not there they say little.
         self.check_cycles(&symbols)?;
         for (rule, r) in self.rules.iter().enumerate() {
+            let unknown = |s: &Placement| !symbols.contains_key(s.symbol.as_str());
+            if let Some(successor) = r.successors.iter().position(unknown) {
+                return Err(InstanceGrammarError::UnknownSymbol {
+                    rule,
+                    successor,
+                    symbol: r.successors[successor].symbol.clone(),
+                });
+            }
+        }
+        for (rule, r) in self.rules.iter().enumerate() {
             for (successor, s) in r.successors.iter().enumerate() {
-                if !symbols.contains_key(s.symbol.as_str()) {
-                    let symbol = s.symbol.clone();
-                    return Err(InstanceGrammarError::UnknownSymbol {
-                        rule,
-                        successor,
-                        symbol,
-                    });
-                }
                 let place = || format!("rules[{rule}].successors[{successor}]");
                 self.check_placement(s, &symbols, &place)?;
             }
