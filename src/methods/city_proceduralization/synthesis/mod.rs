@@ -2,7 +2,7 @@
 //!
 //! A building of type A that stands calls for its neighbours: where, in the grammar's city, a building of type A has
 //! a neighbour of type B, a B is put at the same place relative to it, if it lies inside the shape and on
-//! nothing that stands. Most often the neighbours are those of the very building that was copied; now and then ([`JUMP`])
+//! nothing that stands. Most often the neighbours are those of the very building that was copied; now and then (`JUMP`)
 //! those of another building of its type, the one copied least so far, so that the new city is no copy of a district.
 //! Where nothing more fits, a building that was copied least is tried at chance places, and the growth goes on from
 //! there.
