@@ -52,7 +52,8 @@ fn a_network_is_shown_and_goes_to_json_and_back() {
         serde_json::from_str(&output(&["show", &json, "--json"])).expect("JSON");
     assert_eq!(line["variables"].as_array().expect("a list").len(), 8);
     assert!(
-        complaint(&["convert", &asia, "-o", &path("a.txt")]).contains("expected .bif or .json")
+        complaint(&["convert", &asia, "-o", &path("a.txt")])
+            .contains("expected .bif, .xmlbif, .json")
     );
 }
 

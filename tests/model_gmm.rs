@@ -80,6 +80,7 @@ fn em_never_loses_log_posterior_and_converges() {
         let settings = Settings {
             covariance,
             restarts: 2,
+            gain: 0.0,
             ..Settings::default()
         };
         let fitted = fit(&points, 4, &settings, &mut stream(1, "fit", 0)).unwrap();

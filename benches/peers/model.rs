@@ -25,9 +25,12 @@ fn main() -> Outcome {
     let folder = std::env::args().skip(1).find(|a| !a.starts_with("--"));
     let folder = PathBuf::from(folder.ok_or("give a folder for the cases")?);
     fs::create_dir_all(&folder)?;
-    for (rows, columns, components, repeats) in
-        [(200, 49, 2, 9), (20_000, 49, 5, 3), (1_000_000, 8, 5, 1)]
-    {
+    for (rows, columns, components, repeats) in [
+        (200, 49, 2, 9),
+        (20_000, 20, 8, 3),
+        (20_000, 49, 5, 3),
+        (1_000_000, 8, 5, 1),
+    ] {
         mixture(&folder, rows, columns, components, repeats)?;
     }
     let asia = fs::read_to_string("datasets/model/asia.bif")?;
@@ -94,6 +97,7 @@ fn mixture(folder: &Path, n: usize, d: usize, k: usize, repeats: usize) -> Outco
             gain,
             max_rounds,
         },
+        gain: 0.0,
         ..Settings::default()
     };
     let most = 200;

@@ -1,19 +1,23 @@
 //! Models on the command line: Bayesian networks, models of tables, and the models of papers that have a [`Shown`].
 
 pub mod data;
+mod drawing;
 pub mod evaluate;
 pub mod given;
+pub mod learning;
+mod network;
 mod query;
 pub mod search;
+mod structure;
 mod tables;
 
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use edifice::file::{read_bytes, write_atomic};
+use edifice::file::read_bytes;
 use edifice::io::json::parse_json;
 use edifice::model::ModelError;
-use edifice::model::network::{FORMAT, Network};
+use edifice::model::network::{Evidence, FORMAT, Network};
 use edifice::{Error, Result};
 
 use super::{MODELS, print};
@@ -30,7 +34,10 @@ pub enum Command {
     /// Learn a hierarchical model with hidden styles from any table.
     #[command(after_help = "Examples:
   edifice model learn penguins.csv -o penguins.table-model.json
-  edifice model learn penguins.csv --schema penguins.schema.json --max-styles 8 -o penguins.table-model.json")]
+  edifice model learn penguins.csv --schema penguins.schema.json --max-styles 8 -o penguins.table-model.json
+  edifice model learn large.csv -o large.table-model.json --time-limit 60
+  edifice model learn large.csv -o large.table-model.json --from large.table-model.json
+  edifice model learn large.csv -o large.table-model.json --fit-only --styles 8 --kinds 4")]
     Learn(tables::LearnArgs),
     /// Print the log-likelihood of every row of a table under a model.
     #[command(after_help = "Examples:
@@ -66,15 +73,24 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Convert a Bayesian network between BIF and JSON.
+    /// Learn the structure of a Bayesian network from a table of categories.
     #[command(after_help = "Examples:
-  edifice model convert datasets/model/asia.bif -o asia.json")]
+  edifice model structure patients.csv -o patients.bif
+  edifice model structure patients.csv --score bic --forbid 'xray>smoke' --tier age,smoke --tier lung,xray -o patients.svg")]
+    Structure(structure::Args),
+    /// Convert a Bayesian network between BIF, XMLBIF and JSON, or draw it.
+    #[command(after_help = "Examples:
+  edifice model convert datasets/model/asia.bif -o asia.json
+  edifice model convert datasets/model/asia.bif --given smoke=yes -o asia.svg")]
     Convert {
-        /// The network (`*.bif`, or as JSON).
+        /// The network (`*.bif`, `*.xmlbif`, or as JSON).
         network: PathBuf,
-        /// The file to write: `*.bif` or `*.json`.
+        /// The file to write: `*.bif`, `*.xmlbif`, `*.json`, `*.dot`, or `*.svg` with posteriors as bars.
         #[arg(short, long, value_name = "OUT")]
         output: PathBuf,
+        /// Evidence of a drawing: VARIABLE=CATEGORY; repeatable.
+        #[arg(long)]
+        given: Vec<String>,
     },
 }
 
@@ -116,11 +132,20 @@ pub fn run(command: Command) -> Result<()> {
         Command::Evaluate(args) => return evaluate::run(&args),
         Command::Query(args) => return query::run(&args),
         Command::Show { model, json } => match read(&model)? {
-            Any::Network(network) => show_network(&network, json).map_err(at(&model))?,
+            Any::Network(network) => network::show(&network, json).map_err(at(&model))?,
             Any::Other(kind, bytes) => (kind.show)(&bytes, &model, json)?,
         },
-        Command::Convert { network, output } => {
-            convert(&network, &output)?;
+        Command::Structure(args) => return structure::run(&args),
+        Command::Convert {
+            network,
+            output,
+            given,
+        } => {
+            let network = network::network(&network)?;
+            let evidence = query::hard(&network, &given, Evidence::new())?;
+            let names = given.iter().filter_map(|g| g.split_once('='));
+            let names: Vec<String> = names.map(|(name, _)| name.to_owned()).collect();
+            network::convert(&network, &output, &evidence, &names)?;
             Vec::new()
         }
     };
@@ -131,22 +156,16 @@ fn at(path: &Path) -> impl Fn(ModelError) -> Error + '_ {
     move |error| Error::content(path, error)
 }
 
-fn is_bif(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("bif"))
-}
-
 fn read(path: &Path) -> Result<Any> {
     #[derive(serde::Deserialize)]
     struct Header {
         format: String,
     }
-    let bytes = read_bytes(path)?;
-    let text = || std::str::from_utf8(&bytes).map_err(|e| Error::content(path, e));
-    if is_bif(path) {
-        let network = Network::from_bif(text()?).map_err(at(path))?;
+    if let Some(network) = network::by_extension(path)? {
         return Ok(Any::Network(network));
     }
+    let bytes = read_bytes(path)?;
+    let text = || std::str::from_utf8(&bytes).map_err(|e| Error::content(path, e));
     let header: Header = parse_json(&bytes, path)?;
     if header.format == FORMAT {
         return Ok(Any::Network(Network::from_json(text()?).map_err(at(path))?));
@@ -163,54 +182,4 @@ fn read(path: &Path) -> Result<Any> {
             Err(Error::content(path, unknown))
         }
     }
-}
-
-fn show_network(network: &Network, json: bool) -> Result<Vec<String>, ModelError> {
-    let mut lines = Vec::new();
-    let mut variables = Vec::new();
-    for name in network.names() {
-        let (categories, parents) = (network.categories(name)?, network.parents(name)?);
-        let kind = match categories {
-            [] => "real".to_string(),
-            _ => categories.join(", "),
-        };
-        let given = match &parents[..] {
-            [] => String::new(),
-            _ => format!(", given {}", parents.join(", ")),
-        };
-        lines.push(format!("{name}: {kind}{given}"));
-        variables.push(serde_json::json!({
-            "name": name, "categories": categories, "parents": parents,
-        }));
-    }
-    match json {
-        true => Ok(vec![
-            serde_json::json!({"variables": variables}).to_string(),
-        ]),
-        false => Ok(lines),
-    }
-}
-
-/// Reads a Bayesian network.
-fn network(path: &Path) -> Result<Network> {
-    match read(path)? {
-        Any::Network(network) => Ok(network),
-        Any::Other(..) => Err(Error::content(path, NotANetwork)),
-    }
-}
-
-fn convert(from: &Path, to: &Path) -> Result<()> {
-    let network = network(from)?;
-    let text = if is_bif(to) {
-        network.to_bif().map_err(at(to))?
-    } else if to
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
-    {
-        network.to_json().map_err(at(to))? + "\n"
-    } else {
-        let message = format!("unknown format {:?}, expected .bif or .json", to.display());
-        return Err(Error::option("--output", message));
-    };
-    write_atomic(to, text.as_bytes())
 }

@@ -68,6 +68,8 @@ pub enum Outcome {
     Stalled,
     /// [`Stopping::max_rounds`] were run.
     MaxRounds,
+    /// The caller of [`run_while`] ended it; the parameters are those of the last round.
+    Interrupted,
 }
 
 /// Result of EM.
@@ -94,12 +96,29 @@ pub fn run<E: Em>(
     start: E::Model,
     stopping: &Stopping,
 ) -> Result<Fit<E::Model>, ModelError> {
+    run_while(em, start, stopping, &|| true)
+}
+
+/// Runs EM from `start` as long as `goes_on`, which is asked before every round.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_while<E: Em>(
+    em: &E,
+    start: E::Model,
+    stopping: &Stopping,
+    goes_on: &dyn Fn() -> bool,
+) -> Result<Fit<E::Model>, ModelError> {
     let (mut stats, mut log_likelihood) = em.expect(&start)?;
     let mut model = start;
     let mut log_posterior = log_likelihood + em.log_prior(&model);
     let mut trace = vec![log_posterior];
     let mut outcome = Outcome::MaxRounds;
     for _ in 0..stopping.max_rounds {
+        if !goes_on() {
+            outcome = Outcome::Interrupted;
+            break;
+        }
         let next = em.maximize(&stats)?;
         let (next_stats, next_likelihood) = em.expect(&next)?;
         let next_posterior = next_likelihood + em.log_prior(&next);

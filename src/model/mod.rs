@@ -3,7 +3,7 @@
 //! | module | what | learned by |
 //! | --- | --- | --- |
 //! | [`hierarchy`] | root style, second-level hidden variables, lateral edges (Fan and Wonka 2016, Sec. 5) | EM, Cheeseman-Stutz search |
-//! | [`network`] | discrete and linear Gaussian networks: exact inference, BIF, JSON | EM |
+//! | [`network`] | discrete, softmax and linear Gaussian networks: exact inference, BIF, XMLBIF, JSON | EM; [`network::structure`]: BDeu, BIC |
 //! | [`elimination`] | sums and maxima over products of tables | – |
 //! | [`gmm`] | Gaussian mixtures, number of components by MDL or BIC | EM |
 //! | [`density`] | mixtures, smoothed histograms, kernels, conditional densities | EM, counting |
@@ -17,6 +17,7 @@
 //! | --- | --- | --- |
 //! | a network with its tables; posteriors, explanations, draws | [`network`]: exact by [`elimination`], approximate on request | pyAgrum, pgmpy |
 //! | a network without numbers, rows with missing cells, hidden variables | [`network::Network::fit`] | pyAgrum, pgmpy (complete rows) |
+//! | a table of categories; the graph of a network | [`network::structure::search`] | pyAgrum, pgmpy |
 //! | a table of mixed columns, and no idea of its structure | [`hierarchy::learn`] | StepMix (latent classes), scikit-learn's `GaussianMixture` |
 //! | points of one kind of number; clusters, a density | [`gmm`] | scikit-learn, linfa |
 //! | one number, bounded, multimodal or given another | [`density`] | rv, SciPy |

@@ -3,8 +3,8 @@
 
 use super::Dataset;
 use super::mixture::Baseline;
+use crate::model::ModelError;
 use crate::model::hierarchy::{Settings, Variant, learn};
-use crate::model::{Cell, ModelError};
 
 /// A model of Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,27 +42,6 @@ impl Contender {
         }
     }
 
-    /// Whether it can be learned from a table, or asked for its rows.
-    ///
-    /// # Errors
-    /// [`ModelError::Missing`]: a mixture needs complete rows, and names the first cell that is missing.
-    pub fn check(self, data: &Dataset) -> Result<(), ModelError> {
-        if self != Contender::Gmm {
-            return Ok(());
-        }
-        for row in 0..data.table.rows() {
-            for column in data.table.columns() {
-                if column.cell(row) == Cell::Missing {
-                    return Err(ModelError::Missing {
-                        column: column.name().to_owned(),
-                        row,
-                    });
-                }
-            }
-        }
-        Ok(())
-    }
-
     fn variant(self) -> Option<Variant> {
         match self {
             Contender::Ours => Some(Variant::Full),
@@ -86,8 +65,6 @@ pub fn held_out(
     settings: &Settings,
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
-    contender.check(train)?;
-    contender.check(test)?;
     let logs = match contender.variant() {
         Some(variant) => {
             let settings = Settings {

@@ -34,12 +34,11 @@ struct Column {
 }
 
 impl Baseline {
-    /// Fits mixtures of 1 to `most` components to complete rows and keeps the one of least
-    /// description length.
+    /// Fits mixtures of 1 to `most` components and keeps the one of least description length; missing values are
+    /// integrated out.
     ///
     /// # Errors
-    /// [`ModelError::Missing`] for a missing value, which a joint density over concatenated
-    /// vectors has no place for.
+    /// [`ModelError::AllMissing`] for a column without any value; as [`select`].
     pub fn learn(
         train: &Table,
         prior: &LinearPrior,
@@ -49,8 +48,12 @@ impl Baseline {
         let mut columns = Vec::new();
         for column in train.columns() {
             let categories = column.categories().map(<[String]>::len);
-            let values = (0..train.rows()).map(|row| value(column.name(), column.cell(row), row));
-            let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+            let values = (0..train.rows()).map(|row| value(column.cell(row)));
+            let values: Vec<f64> = values.filter(|v| !v.is_nan()).collect();
+            if values.is_empty() {
+                let column = column.name().to_owned();
+                return Err(ModelError::AllMissing { column });
+            }
             let n = values.len().max(1) as f64;
             let mean = values.iter().sum::<f64>() / n;
             let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
@@ -69,7 +72,7 @@ impl Baseline {
         for row in values.chunks_mut(columns.len()) {
             jitter(&columns, row, &mut rng);
         }
-        let points = Points::new(columns.len(), &values)?;
+        let points = Points::with_missing(columns.len(), &values)?;
         let settings = Settings {
             prior: Prior::of_linear(prior, columns.len()),
             ..Settings::default()
@@ -91,24 +94,27 @@ impl Baseline {
         self.decode(self.mixture.mean(k))
     }
 
-    /// `log p(row)` of every complete row, nats, in the columns' own units.
+    /// `log p(row)` of what every row has, nats, in the columns' own units.
     ///
     /// # Errors
-    /// As [`Baseline::learn`].
+    /// [`ModelError::Unknown`] for a column that `data` lacks.
     pub fn log_likelihood(&self, data: &Table, seed: u64) -> Result<Vec<f64>, ModelError> {
         let d = self.columns.len();
         let values = encode(&self.columns, data)?;
-        let units: f64 = self.columns.iter().map(|c| c.scale.ln()).sum();
         let mut rng = stream(seed, "building_exteriors/dequantize", 1);
         let mut out = Vec::with_capacity(data.rows());
         for row in values.chunks(d) {
+            let seen = self.columns.iter().zip(row).filter(|(_, v)| !v.is_nan());
+            let units: f64 = seen.map(|(c, _)| c.scale.ln()).sum();
             let mut draws = Vec::with_capacity(DRAWS * d);
             for _ in 0..DRAWS {
                 let mut draw = row.to_vec();
                 jitter(&self.columns, &mut draw, &mut rng);
                 draws.extend(draw);
             }
-            let logs = self.mixture.log_density(&Points::new(d, &draws)?)?;
+            let logs = self
+                .mixture
+                .log_density(&Points::with_missing(d, &draws)?)?;
             let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let mean = logs.iter().map(|l| (l - top).exp()).sum::<f64>() / DRAWS as f64;
             out.push(top + mean.ln() - units);
@@ -144,24 +150,21 @@ impl Baseline {
     }
 }
 
-fn value(column: &str, cell: Cell, row: usize) -> Result<f64, ModelError> {
+fn value(cell: Cell) -> f64 {
     match cell {
-        Cell::Real(v) => Ok(v),
-        Cell::Code(c) => Ok(c as f64),
-        Cell::Missing => Err(ModelError::Missing {
-            column: column.to_owned(),
-            row,
-        }),
+        Cell::Real(v) => v,
+        Cell::Code(c) => c as f64,
+        Cell::Missing => f64::NAN,
     }
 }
 
-/// Standardised rows, one after the other.
+/// Standardised rows, one after the other; NaN is missing.
 fn encode(columns: &[Column], data: &Table) -> Result<Vec<f64>, ModelError> {
     let mut out = Vec::with_capacity(columns.len() * data.rows());
     for row in 0..data.rows() {
         for column in columns {
             let cell = data.column(&column.name)?.cell(row);
-            out.push((value(&column.name, cell, row)? - column.mean) / column.scale);
+            out.push((value(cell) - column.mean) / column.scale);
         }
     }
     Ok(out)

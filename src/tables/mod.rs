@@ -36,6 +36,16 @@ impl Dataset {
         }
     }
 
+    /// Number of attributes of real columns.
+    pub fn real_groups(&self) -> usize {
+        let real = |name: &String| {
+            let column = self.table.columns().iter().find(|c| c.name() == name);
+            column.is_some_and(|c| c.categories().is_none())
+        };
+        let first = self.groups.iter().filter_map(|g| g.columns.first());
+        first.filter(|name| real(name)).count()
+    }
+
     /// All attributes but one.
     ///
     /// # Errors

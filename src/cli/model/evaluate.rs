@@ -51,10 +51,6 @@ impl Splits {
         }
         let settings = self.search.settings()?;
         let contenders = self.contenders()?;
-        for contender in &contenders {
-            let complete = contender.check(data);
-            complete.map_err(|e| Error::content(path, incomplete(*contender, &e)))?;
-        }
         print::line("model,split,nll")?;
         let mut losses = vec![Vec::new(); contenders.len()];
         for index in 0..self.splits {
@@ -97,18 +93,6 @@ impl Splits {
             })
         };
         self.models.iter().map(known).collect()
-    }
-}
-
-/// A mixture needs complete rows.
-fn incomplete(contender: Contender, error: &ModelError) -> String {
-    match error {
-        ModelError::Missing { column, row } => format!(
-            "column `{column}`, row {}: missing, and `{}` needs complete rows (leave it out by --models)",
-            row + 1,
-            contender.name()
-        ),
-        other => other.to_string(),
     }
 }
 

@@ -55,7 +55,7 @@ enum Method {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let network = super::network(&args.network)?;
+    let network = super::network::network(&args.network)?;
     let evidence = evidence(&network, args)?;
     let at = super::at(&args.network);
     if let Some(count) = args.explain {
@@ -147,9 +147,9 @@ fn answers(
 }
 
 /// Reads `--given` and `--likely`.
-fn evidence(network: &Network, args: &Args) -> Result<Evidence> {
-    let mut evidence = Evidence::new();
-    for text in &args.given {
+/// Evidence in words: VARIABLE=CATEGORY, or VARIABLE=NUMBER,... for a real vector.
+pub fn hard(network: &Network, given: &[String], mut evidence: Evidence) -> Result<Evidence> {
+    for text in given {
         let bad = |problem: String| Error::option("--given", format!("{text:?}: {problem}"));
         let (name, value) = text
             .split_once('=')
@@ -161,6 +161,11 @@ fn evidence(network: &Network, args: &Args) -> Result<Evidence> {
             names => return Err(bad(format!("{value:?} is none of {}", names.join(", ")))),
         };
     }
+    Ok(evidence)
+}
+
+fn evidence(network: &Network, args: &Args) -> Result<Evidence> {
+    let mut evidence = hard(network, &args.given, Evidence::new())?;
     for text in &args.likely {
         let bad = |problem: String| Error::option("--likely", format!("{text:?}: {problem}"));
         let (name, value) = text

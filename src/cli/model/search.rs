@@ -22,6 +22,9 @@ pub struct Search {
     /// Refuse columns that are constant, instead of keeping them.
     #[arg(long)]
     refuse_constant: bool,
+    /// Most rows that the structure is searched on; the parameters are fitted to all.
+    #[arg(long, default_value_t = Settings::default().searched)]
+    searched_rows: usize,
     /// Seed of all random streams.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -39,6 +42,9 @@ impl Search {
         if self.max_kinds < 2 {
             return Err(Error::option("--max-kinds", "must be at least 2"));
         }
+        if self.searched_rows == 0 {
+            return Err(Error::option("--searched-rows", "must be at least 1"));
+        }
         let variant = if self.no_lateral_edges {
             Variant::NoLateral
         } else {
@@ -54,6 +60,7 @@ impl Search {
             styles: self.min_styles..=self.max_styles,
             most_states: self.max_kinds,
             constant,
+            searched: self.searched_rows,
             ..Settings::default()
         })
     }

@@ -1,11 +1,9 @@
 //! `edifice model schema`, `learn`, `score`, `sample` and `complete`: hierarchical models of any table.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use edifice::file::write_atomic;
 use edifice::model::Table;
-use edifice::model::hierarchy::learn as learn_model;
 use edifice::rng::stream;
 use edifice::tables::table_model::{FORMAT, TableModel};
 use edifice::{Error, Result};
@@ -13,7 +11,7 @@ use edifice::{Error, Result};
 use super::Shown;
 use super::data::{TableInput, csv_lines, read_model, read_rows};
 use super::given::evidence;
-use super::search::{Search, warnings};
+use super::learning::Learning;
 use crate::cli::print;
 
 /// Options of `learn`.
@@ -25,7 +23,7 @@ pub struct LearnArgs {
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]
-    search: Search,
+    learning: Learning,
     /// Print a line of JSON.
     #[arg(long)]
     json: bool,
@@ -79,15 +77,9 @@ pub fn schema(input: &TableInput) -> Result<()> {
 /// Runs `learn`.
 pub fn learn(args: &LearnArgs) -> Result<()> {
     let (data, schema) = args.input.read()?;
-    let settings = args.search.settings()?;
-    let start = Instant::now();
-    let learned = learn_model(&data.table, &data.groups, &settings, args.search.seed)
-        .map_err(|e| Error::content(&args.input.table, e))?;
-    let seconds = start.elapsed().as_secs_f64();
-    let model = learned.model;
-    for warning in warnings(&data.table, model.free_parameters()) {
-        print::message(&format!("warning: {warning}"));
-    }
+    let start = args.learning.from.as_deref().map(read_model).transpose()?;
+    let start = start.as_ref().map(|file| &file.model);
+    let found = args.learning.learn(&data, start, &args.input.table)?;
     if args.input.schema.is_none() {
         let kinds = schema
             .groups
@@ -99,20 +91,24 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
             kinds.join(", ").to_lowercase()
         ));
     }
-    let (rows, styles) = (data.table.rows(), model.styles());
-    let edges = model.lateral_edges().len();
-    let file = TableModel { schema, model };
+    let (rows, styles) = (data.table.rows(), found.model.styles());
+    let edges = found.model.lateral_edges().len();
+    let file = TableModel {
+        schema,
+        model: found.model,
+    };
     let text = file.to_json().map_err(Error::method)?;
     write_atomic(&args.output, text.as_bytes())?;
     print::message(&format!(
-        "{rows} rows: {styles} styles, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {seconds:.1} s",
-        learned.score
+        "{rows} rows: {styles} styles, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {:.1} s",
+        found.score, found.seconds
     ));
     match args.json {
         true => print::line(
             &serde_json::json!({
-                "rows": rows, "styles": styles, "lateral_edges": edges, "score": learned.score,
-                "bic": learned.bic, "seconds": seconds, "seed": args.search.seed,
+                "rows": rows, "styles": styles, "lateral_edges": edges, "score": found.score,
+                "bic": found.bic, "interrupted": found.interrupted, "seconds": found.seconds,
+                "seed": args.learning.search.seed,
             })
             .to_string(),
         ),

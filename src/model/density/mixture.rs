@@ -94,6 +94,8 @@ impl ScalarMixture {
         let (unit, weights): (Vec<f64>, Vec<f64>) = groups.unzip();
         let settings = Settings {
             restarts: 2,
+            // One dimension, and few groups of values: EM is run to its end.
+            gain: 0.0,
             ..Settings::default()
         };
         let points = Points::new(1, &unit)?.weighted(&weights)?;

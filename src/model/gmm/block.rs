@@ -9,7 +9,7 @@ use super::{Covariance, Mixture};
 /// Rows of one matrix product.
 pub(super) const BLOCK: usize = 256;
 /// Responsibilities below this are left out of the M step.
-const NEGLIGIBLE: f64 = 1e-14;
+pub(super) const NEGLIGIBLE: f64 = 1e-14;
 
 /// Buffers of one thread's blocks.
 pub(super) struct Work {
@@ -36,18 +36,17 @@ impl Work {
 }
 
 impl Steps<'_> {
-    /// Both steps' sums over the rows `from..to`.
+    /// Both steps' sums over complete rows, at most [`BLOCK`].
     pub(super) fn block(
         &self,
         model: &Mixture,
-        from: usize,
-        to: usize,
+        rows: &[usize],
         work: &mut Work,
         moments: &mut Moments,
     ) {
         let d = model.d;
-        let n = to - from;
-        for (x, i) in work.x.chunks_mut(d).zip(from..to) {
+        let n = rows.len();
+        for (x, &i) in work.x.chunks_mut(d).zip(rows) {
             for ((x, v), c) in x.iter_mut().zip(self.points.row(i)).zip(&self.centre) {
                 *x = v - c;
             }
@@ -83,7 +82,7 @@ impl Steps<'_> {
                 *l = norm - 0.5 * *q;
             }
         }
-        for (i, logs) in work.logs.chunks_mut(self.k).take(n).enumerate() {
+        for (&i, logs) in rows.iter().zip(work.logs.chunks_mut(self.k)) {
             let max = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let mut sum = 0.0;
             for l in logs.iter_mut() {
@@ -91,7 +90,7 @@ impl Steps<'_> {
                 *l = if shifted < -40.0 { 0.0 } else { shifted.exp() };
                 sum += *l;
             }
-            let weight = self.points.weight(from + i);
+            let weight = self.points.weight(i);
             moments.log_likelihood += weight * (max + sum.ln());
             let scale = weight / sum;
             logs.iter_mut().for_each(|l| *l *= scale);

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::super::error::ModelError;
 use super::super::linalg::{LN_2PI, categorical_of_logs, cholesky, log_sum_exp, lower_inverse};
+use super::missing::{Marginals, Pattern};
 use super::{Covariance, Points};
 
 /// A Gaussian mixture.
@@ -124,8 +125,11 @@ impl Mixture {
         k - 1 + k * d + covariance
     }
 
-    /// `log (w_k N(x; μ_k, Σ_k))` of every component.
+    /// `log (w_k N(x; μ_k, Σ_k))` of every component, missing coordinates (NaN) integrated out.
     pub(in crate::model) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
+        if x.iter().any(|v| v.is_nan()) {
+            return Marginals::new(self, Pattern::of(x)).log_joint(self, x);
+        }
         let d = self.d;
         (0..self.components())
             .map(|k| {
@@ -143,17 +147,29 @@ impl Mixture {
             .collect()
     }
 
-    /// `log p(x)` of every row, nats.
+    /// `log p(x)` of every row, nats; of what is observed, where values are missing.
     ///
     /// # Errors
     /// [`ModelError::Parameter`] for points of another dimension.
     pub fn log_density(&self, points: &Points) -> Result<Vec<f64>, ModelError> {
         self.check(points)?;
-        let rows: Vec<&[f64]> = points.rows().collect();
-        Ok(rows
-            .par_iter()
-            .map(|x| log_sum_exp(&self.log_joint(x)))
-            .collect())
+        let rows: Vec<usize> = (0..points.len()).collect();
+        let logs = rows.par_chunks(256).flat_map_iter(|rows| {
+            // Rows that follow each other often lack the same coordinates.
+            let mut last: Option<Marginals> = None;
+            rows.iter().map(move |&i| {
+                let x = points.row(i);
+                if !points.lacks(i) {
+                    return log_sum_exp(&self.log_joint(x));
+                }
+                let marginals = match last.take() {
+                    Some(same) if same.fits(x) => same,
+                    _ => Marginals::new(self, Pattern::of(x)),
+                };
+                log_sum_exp(&last.insert(marginals).log_joint(self, x))
+            })
+        });
+        Ok(logs.collect())
     }
 
     /// P(k | x) of every row.

@@ -13,7 +13,8 @@
 //!
 //! The number of components minimises `-log L + P/2 log(N d)` (MDL; Rissanen 1983, with the N d
 //! real numbers of the data as its length, as in Bouman's CLUSTER), or `-log L + P/2 log N` (BIC),
-//! with P free parameters: [`select`].
+//! with P free parameters: [`select`]. Missing values are integrated out ([`Points::with_missing`]), and the length counts
+//! the observed values.
 //!
 //! # Deviations and readings
 //! - The E step works on blocks of rows: a matrix product whitens a block, so that time per round
@@ -24,6 +25,7 @@
 mod block;
 #[cfg(feature = "linfa")]
 pub mod linfa;
+mod missing;
 mod mixture;
 mod points;
 mod select;
@@ -93,8 +95,10 @@ pub struct Settings {
     pub restarts: usize,
     /// Prior of every component.
     pub prior: Prior,
-    /// When EM stops.
+    /// When EM stops, besides [`Settings::gain`].
     pub stopping: Stopping,
+    /// Stop as well when a round gains less log posterior than this, nats a row (0: never for this reason).
+    pub gain: f64,
 }
 
 impl Default for Settings {
@@ -104,6 +108,7 @@ impl Default for Settings {
             restarts: 5,
             prior: Prior::default(),
             stopping: Stopping::default(),
+            gain: 1e-7,
         }
     }
 }
@@ -124,7 +129,8 @@ pub struct Fitted {
 /// Fits `k` components from [`Settings::restarts`] starts.
 ///
 /// # Errors
-/// [`ModelError::TooFewRows`] for fewer rows than components; a prior out of range.
+/// [`ModelError::TooFewRows`] for fewer rows than components, [`ModelError::AllMissing`] for a coordinate (its index)
+/// without a value; a prior out of range.
 ///
 /// # Examples
 /// ```
@@ -147,7 +153,7 @@ pub fn fit<R: Rng>(
     let starts: Result<Vec<Mixture>, ModelError> = (0..settings.restarts.max(1))
         .map(|_| steps.start(rng))
         .collect();
-    Ok(steps.result(em::restarts(&steps, starts?, &settings.stopping)?))
+    Ok(steps.result(em::restarts(&steps, starts?, &steps.stopping())?))
 }
 
 /// Runs EM from a given mixture.
@@ -167,5 +173,5 @@ pub fn fit_from(
     }
     let steps = Steps::new(points, start.components(), settings)?;
     let start = steps.centred(start);
-    Ok(steps.result(em::run(&steps, start, &settings.stopping)?))
+    Ok(steps.result(em::run(&steps, start, &steps.stopping())?))
 }

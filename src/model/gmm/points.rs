@@ -2,12 +2,14 @@
 
 use super::super::error::ModelError;
 
-/// Rows of d finite values, with weights.
+/// Rows of d values, with weights.
 #[derive(Clone, Debug)]
 pub struct Points<'a> {
     d: usize,
     values: &'a [f64],
     weights: Option<&'a [f64]>,
+    /// Whether any value is missing.
+    incomplete: bool,
 }
 
 impl<'a> Points<'a> {
@@ -16,6 +18,26 @@ impl<'a> Points<'a> {
     /// # Errors
     /// [`ModelError::Empty`], [`ModelError::Rows`] for a broken last row, [`ModelError::NotFinite`].
     pub fn new(d: usize, values: &'a [f64]) -> Result<Self, ModelError> {
+        Self::checked(d, values, f64::is_finite)
+    }
+
+    /// Rows of `d` values, one after the other; NaN is a missing value.
+    ///
+    /// # Errors
+    /// As [`Points::new`].
+    pub fn with_missing(d: usize, values: &'a [f64]) -> Result<Self, ModelError> {
+        let points = Self::checked(d, values, |v| v.is_finite() || v.is_nan())?;
+        Ok(Self {
+            incomplete: values.iter().any(|v| v.is_nan()),
+            ..points
+        })
+    }
+
+    fn checked(
+        d: usize,
+        values: &'a [f64],
+        allowed: impl Fn(f64) -> bool,
+    ) -> Result<Self, ModelError> {
         if d == 0 || values.is_empty() {
             return Err(ModelError::Empty { what: "points" });
         }
@@ -26,7 +48,7 @@ impl<'a> Points<'a> {
                 expected: values.len() / d + 1,
             });
         }
-        if let Some(i) = values.iter().position(|v| !v.is_finite()) {
+        if let Some(i) = values.iter().position(|v| !allowed(*v)) {
             return Err(ModelError::NotFinite {
                 column: (i % d).to_string(),
                 row: i / d,
@@ -37,6 +59,7 @@ impl<'a> Points<'a> {
             d,
             values,
             weights: None,
+            incomplete: false,
         })
     }
 
@@ -92,6 +115,20 @@ impl<'a> Points<'a> {
 
     pub(crate) fn weight(&self, i: usize) -> f64 {
         self.weights.map_or(1.0, |w| w[i])
+    }
+
+    /// Whether row `i` lacks a value.
+    pub(crate) fn lacks(&self, i: usize) -> bool {
+        self.incomplete && self.row(i).iter().any(|v| v.is_nan())
+    }
+
+    /// Number of values that are not missing, weighted.
+    pub fn observed(&self) -> f64 {
+        if !self.incomplete {
+            return self.total() * self.d as f64;
+        }
+        let seen = |i: usize| self.row(i).iter().filter(|v| !v.is_nan()).count() as f64;
+        (0..self.len()).map(|i| self.weight(i) * seen(i)).sum()
     }
 
     /// Sum of weights.

@@ -18,10 +18,9 @@ pub enum Criterion {
 impl Criterion {
     /// The criterion's value in nats; smaller is better.
     pub fn value(self, fitted: &Fitted, points: &Points) -> f64 {
-        let n = points.total();
         let length = match self {
-            Self::Mdl => n * points.dimension() as f64,
-            Self::Bic => n,
+            Self::Mdl => points.observed(),
+            Self::Bic => points.total(),
         };
         0.5 * fitted.mixture.free_parameters() as f64 * length.ln() - fitted.log_likelihood
     }

@@ -1,13 +1,15 @@
 //! E and M steps.
 
 use rand::Rng;
+use rustc_hash::FxHashMap;
 
 use super::super::chunks;
-use super::super::em::{Em, Fit};
+use super::super::em::{Em, Fit, Stopping};
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
 use super::super::linalg::log_sum_exp;
 use super::block::{BLOCK, Work};
+use super::missing::Pattern;
 use super::{Covariance, Fitted, Mixture, Points, Settings};
 
 /// Rows of one parallel piece of work.
@@ -58,14 +60,29 @@ impl<'a> Steps<'a> {
             }
         }
         let d = points.dimension();
-        let total = points.total();
+        let mut totals = vec![0.0; d];
+        for (i, x) in points.rows().enumerate() {
+            for (t, _) in totals.iter_mut().zip(x).filter(|(_, v)| !v.is_nan()) {
+                *t += points.weight(i);
+            }
+        }
+        if let Some(i) = totals.iter().position(|t| *t <= 0.0) {
+            return Err(ModelError::AllMissing {
+                column: i.to_string(),
+            });
+        }
         let mut centre = vec![0.0; d];
         for (i, x) in points.rows().enumerate() {
-            for (c, v) in centre.iter_mut().zip(x) {
+            let seen = centre
+                .iter_mut()
+                .zip(&totals)
+                .zip(x)
+                .filter(|(_, v)| !v.is_nan());
+            for ((c, total), v) in seen {
                 *c += points.weight(i) / total * v;
             }
         }
-        let scale = scale(points, &centre);
+        let scale = scale(points, &centre, &totals);
         Ok(Self {
             points,
             settings,
@@ -73,6 +90,15 @@ impl<'a> Steps<'a> {
             centre,
             scale,
         })
+    }
+
+    /// When EM stops: the gain a row is one of all rows.
+    pub fn stopping(&self) -> Stopping {
+        let stopping = self.settings.stopping;
+        Stopping {
+            gain: stopping.gain.max(self.settings.gain * self.points.total()),
+            ..stopping
+        }
     }
 
     /// The mixture relative to the centre.
@@ -110,19 +136,51 @@ impl<'a> Steps<'a> {
         let mut scaled = Vec::with_capacity(sample.len() * d);
         for &i in &sample {
             let row = self.points.row(i).iter().zip(&self.centre).zip(&self.scale);
-            scaled.extend(row.map(|((v, c), s)| (v - c) / s));
+            // A missing value counts as the overall mean.
+            scaled.extend(row.map(|((v, c), s)| if v.is_nan() { 0.0 } else { (v - c) / s }));
         }
         let labels = kmeans(&scaled, d, self.k, 5, rng);
         let mut moments = self.empty();
         let mut u = vec![1.0; d + 1];
         for (&i, label) in sample.iter().zip(labels) {
-            for ((u, v), c) in u[1..].iter_mut().zip(self.points.row(i)).zip(&self.centre) {
-                *u = v - c;
+            let x = self.points.row(i);
+            for ((u, v), c) in u[1..].iter_mut().zip(x).zip(&self.centre) {
+                *u = if v.is_nan() { 0.0 } else { v - c };
             }
-            let w = self.points.weight(i);
-            add_row(&mut moments.sums[label], &u, w, self.settings.covariance);
+            let (w, kind) = (self.points.weight(i), self.settings.covariance);
+            let sums = &mut moments.sums[label];
+            add_row(sums, &u, w, kind);
+            // ... with the overall variance.
+            for (i, s) in self
+                .scale
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| x[*i].is_nan())
+            {
+                let at = match kind {
+                    Covariance::Diagonal => 1 + d + i,
+                    _ => (i + 1) * (d + 2),
+                };
+                sums[at] += w * s * s;
+            }
         }
         self.maximize(&moments)
+    }
+
+    /// Rows grouped by the coordinates that they lack, in the order of the first of each group.
+    fn by_pattern(&self, rows: &[usize]) -> Vec<Vec<usize>> {
+        let mut place: FxHashMap<Pattern, usize> = FxHashMap::default();
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for &i in rows {
+            let at = *place
+                .entry(Pattern::of(self.points.row(i)))
+                .or_insert(groups.len());
+            if at == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[at].push(i);
+        }
+        groups
     }
 
     fn empty(&self) -> Moments {
@@ -150,9 +208,13 @@ impl Em for Steps<'_> {
             |range| {
                 let mut moments = self.empty();
                 let mut work = Work::new(d, self.k);
-                for from in range.clone().step_by(BLOCK) {
-                    let to = (from + BLOCK).min(range.end);
-                    self.block(model, from, to, &mut work, &mut moments);
+                let (incomplete, complete): (Vec<usize>, Vec<usize>) =
+                    range.partition(|&i| self.points.lacks(i));
+                for rows in complete.chunks(BLOCK) {
+                    self.block(model, rows, &mut work, &mut moments);
+                }
+                for rows in self.by_pattern(&incomplete) {
+                    self.incomplete(model, &rows, &mut moments);
                 }
                 Ok(moments)
             },
@@ -270,26 +332,36 @@ impl Em for Steps<'_> {
 }
 
 /// Standard deviation of each coordinate; where it is constant, its size, so that units never matter, or 1 for 0.
-fn scale(points: &Points, centre: &[f64]) -> Vec<f64> {
+/// `totals` are the weights of each coordinate's observed values.
+fn scale(points: &Points, centre: &[f64], totals: &[f64]) -> Vec<f64> {
     let mut squares = vec![0.0; centre.len()];
     for (i, x) in points.rows().enumerate() {
-        for ((s, v), c) in squares.iter_mut().zip(x).zip(centre) {
+        let seen = squares
+            .iter_mut()
+            .zip(x)
+            .zip(centre)
+            .filter(|((_, v), _)| !v.is_nan());
+        for ((s, v), c) in seen {
             *s += points.weight(i) * (v - c).powi(2);
         }
     }
-    let total = points.total();
-    let each = squares.iter().zip(centre).map(|(square, c)| {
-        let deviation = (square / total).sqrt();
-        match deviation > 1e-12 * c.abs() {
-            true => deviation,
-            false if *c != 0.0 => c.abs(),
-            false => 1.0,
-        }
-    });
+    let each = squares
+        .iter()
+        .zip(centre)
+        .zip(totals)
+        .map(|((square, c), total)| {
+            let deviation = (square / total).sqrt();
+            match deviation > 1e-12 * c.abs() {
+                true => deviation,
+                false if *c != 0.0 => c.abs(),
+                false => 1.0,
+            }
+        });
     each.collect()
 }
 
-fn add_row(sums: &mut [f64], u: &[f64], weight: f64, kind: Covariance) {
+/// Adds `weight u uᵀ`, or its diagonal.
+pub(super) fn add_row(sums: &mut [f64], u: &[f64], weight: f64, kind: Covariance) {
     let q = u.len();
     match kind {
         Covariance::Diagonal => {

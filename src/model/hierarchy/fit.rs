@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use super::super::chunks;
-use super::super::em::{Em, Fit, Stopping, run};
+use super::super::em::{Em, Fit, Outcome, Stopping, run_while};
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
 use super::super::table::MISSING;
@@ -118,10 +118,25 @@ impl<'a> Problem<'a> {
         "the row as a whole".to_owned()
     }
 
-    /// EM, then the Cheeseman-Stutz score.
-    pub fn fit(&self, start: Params, stopping: &Stopping) -> Result<Scored, ModelError> {
-        let Fit { model, .. } = run(self, start, stopping)?;
-        self.scored(model)
+    /// EM as long as `goes_on`, then the Cheeseman-Stutz score.
+    pub fn fit_while(
+        &self,
+        start: Params,
+        stopping: &Stopping,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Scored, ModelError> {
+        Ok(self.fit_told(start, stopping, goes_on)?.0)
+    }
+
+    /// As [`Self::fit_while`], and why EM ended.
+    pub fn fit_told(
+        &self,
+        start: Params,
+        stopping: &Stopping,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<(Scored, Outcome), ModelError> {
+        let Fit { model, outcome, .. } = run_while(self, start, stopping, goes_on)?;
+        Ok((self.scored(model)?, outcome))
     }
 
     /// The score at given parameters.

@@ -45,6 +45,10 @@
 //!   that it counts in units of the residual: where an attribute is constant within a state (no
 //!   second floor), a stronger one lowers the density of every row, and uninformative edges that
 //!   share the intercept raise the score.
+//! - Of more rows than [`Settings::searched`] the structure is searched on a sample, and only the parameters are fitted to
+//!   all: the search costs hundreds of EM runs, each linear in rows.
+//! - On large tables the second level is searched for two |S| only ([`Sweep`]), since every other |S| is then tried above
+//!   the best second level anyway.
 //! - After a sweep S gets new starts from the posteriors of all H_g. At the end every |S| is also
 //!   combined with the best second level found for any |S|, so that the choice of |S| does not
 //!   depend on the local optimum that the search of one |S| ended in.
@@ -57,6 +61,7 @@ mod draw;
 mod edges;
 mod fit;
 mod infer;
+mod learn;
 mod params;
 mod query;
 mod revise;
@@ -65,17 +70,18 @@ mod search;
 mod split;
 mod store;
 pub(crate) mod structure;
+mod watch;
 
 use std::ops::RangeInclusive;
 
 pub use super::conjugate::Priors;
 use super::em::Stopping;
-use super::error::ModelError;
 pub use super::standardize::Constant;
-use super::table::Table;
 pub use draw::Draws;
+pub use learn::{Fitted, Learned, Step, fit, fit_observed, learn, learn_observed, refine};
 pub use query::Hierarchy;
 pub use schema::Group;
+pub use watch::Observer;
 
 /// Which of the paper's models to learn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -89,6 +95,19 @@ pub enum Variant {
     NoSecondLevel,
     /// Model 3: no hidden variables, directed edges only.
     Directed,
+}
+
+/// For which cardinalities of S the second level is searched from the start; every other one gets the best second level
+/// that was found, and new starts for S above it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Sweep {
+    /// All (paper), unless the real columns of the rows searched have more than 10,000 values: then [`Sweep::Few`].
+    #[default]
+    Auto,
+    /// All (paper).
+    All,
+    /// Two, spread evenly in ratio; of the others only the best three are fitted to the end.
+    Few,
 }
 
 /// Settings of [`learn`].
@@ -114,6 +133,11 @@ pub struct Settings {
     pub stopping: Stopping,
     /// What to do with constant columns.
     pub constant: Constant,
+    /// For which cardinalities of S the second level is searched from the start.
+    pub sweep: Sweep,
+    /// Most rows that the structure is searched on: of more, so many are drawn, and the parameters of the structure found
+    /// are then fitted to all of them, until a round gains less than 1e-6 nats a row.
+    pub searched: usize,
 }
 
 impl Default for Settings {
@@ -133,145 +157,8 @@ impl Default for Settings {
             },
             stopping: Stopping::default(),
             constant: Constant::Refuse,
+            sweep: Sweep::default(),
+            searched: 3000,
         }
     }
-}
-
-/// One accepted configuration of the search.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Step {
-    /// |S|.
-    pub styles: usize,
-    /// |H_g| of every real group, in order.
-    pub cardinalities: Vec<usize>,
-    /// Number of lateral edges.
-    pub lateral_edges: usize,
-    /// Cheeseman-Stutz score, nats, on standardised columns.
-    pub score: f64,
-}
-
-/// Result of [`learn`].
-#[derive(Clone, Debug)]
-pub struct Learned {
-    /// The model of highest score.
-    pub model: Hierarchy,
-    /// Its Cheeseman-Stutz score, nats, on standardised columns.
-    pub score: f64,
-    /// Its BIC score `log P(O | Θ) - k/2 log n`, nats, on standardised columns.
-    pub bic: f64,
-    /// Every accepted configuration, by |S|.
-    pub trace: Vec<Step>,
-}
-
-/// Learns structure and parameters from `data`, whose columns `groups` assign to attributes.
-///
-/// Time per EM round is linear in rows; the same seed gives the same bytes with any number of
-/// threads.
-///
-/// # Errors
-/// A column that is unknown, constant, all missing or of mixed kind within its group; settings out
-/// of range; [`ModelError`] names the column.
-///
-/// # Examples
-/// ```
-/// use edifice::model::{Table, hierarchy::{Group, Settings, learn}};
-/// let n = 40;
-/// let width = (0..n).map(|i| Some(if i % 2 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
-/// let houses = Table::new()
-///     .real("width", width)?
-///     .binary("garage", (0..n).map(|i| Some(i % 2 == 1)))?;
-/// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
-/// let settings = Settings { styles: 2..=3, ..Settings::default() };
-/// let learned = learn(&houses, &groups, &settings, 1)?;
-/// assert_eq!(learned.model.styles(), 2);
-/// # Ok::<(), edifice::model::ModelError>(())
-/// ```
-pub fn learn(
-    data: &Table,
-    groups: &[Group],
-    settings: &Settings,
-    seed: u64,
-) -> Result<Learned, ModelError> {
-    settings.priors.check()?;
-    if *settings.styles.start() < 1 || settings.styles.is_empty() {
-        return Err(ModelError::parameter(
-            "styles",
-            "must be a range from 1 or more",
-        ));
-    }
-    if settings.most_states < 2 {
-        return Err(ModelError::parameter("most_states", "must be at least 2"));
-    }
-    let schema = schema::Schema::learn(data, groups, settings.constant)?;
-    let rows = schema.encode(data)?;
-    let search = search::Search {
-        schema: &schema,
-        rows: &rows,
-        settings,
-    };
-    let (scored, trace) = search.run(seed)?;
-    let penalty = 0.5 * scored.shape.free_parameters() as f64 * (rows.rows as f64).ln();
-    Ok(Learned {
-        score: scored.score,
-        bic: scored.stats.log_likelihood - penalty,
-        trace,
-        model: Hierarchy::new(schema, scored.shape, scored.params, settings.variant),
-    })
-}
-
-/// Result of [`fit`].
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// The model.
-    pub model: Hierarchy,
-    /// Cheeseman-Stutz score, nats, on standardised columns.
-    pub score: f64,
-}
-
-/// One run of EM for given cardinalities (`states` per real group, in order) without lateral
-/// edges, from k-means++ clusters of at most 10,000 of the rows: for data too large to search.
-/// Time is linear in rows; besides the data themselves one standardised copy is held.
-///
-/// # Errors
-/// As [`learn`]; [`ModelError::Parameter`] for cardinalities that do not fit the groups.
-pub fn fit(
-    data: &Table,
-    groups: &[Group],
-    styles: usize,
-    states: &[usize],
-    priors: &Priors,
-    stopping: &Stopping,
-    seed: u64,
-) -> Result<Fitted, ModelError> {
-    priors.check()?;
-    let schema = schema::Schema::learn(data, groups, Constant::Refuse)?;
-    if styles == 0 || states.len() != schema.groups.len() || states.contains(&0) {
-        let problem = format!(
-            "one cardinality for each of {} real groups",
-            schema.groups.len()
-        );
-        return Err(ModelError::parameter("states", problem));
-    }
-    let rows = schema.encode(data)?;
-    let selectors = states
-        .iter()
-        .map(|&k| structure::Selector::Hidden(k))
-        .collect();
-    let empty = structure::Selector::Style;
-    let structure = structure::Structure {
-        selectors,
-        ..structure::Structure::new(styles, &empty, states.len(), schema.codes.len())
-    };
-    let problem = fit::Problem::new(&schema, &rows, priors, structure)?;
-    let start = problem.start(&mut crate::rng::stream(seed, "fixed", 0))?;
-    let scored = problem.fit(start, stopping)?;
-    Ok(Fitted {
-        score: scored.score,
-        model: Hierarchy::new(
-            schema.clone(),
-            scored.shape,
-            scored.params,
-            Variant::NoLateral,
-        ),
-    })
 }

@@ -6,9 +6,6 @@
 //! out and its child given new values in its place; two values of a hidden variable are made one;
 //! and a second start raises all cardinalities before it looks for edges.
 
-use rand::Rng;
-use rayon::prelude::*;
-
 use super::super::error::ModelError;
 use super::edges::wide;
 use super::fit::{Problem, Scored};
@@ -17,6 +14,7 @@ use super::search::{Search, better};
 use super::structure::{Selector, Structure};
 use super::{Step, Variant};
 use crate::rng::stream;
+use rand::Rng;
 
 impl Search<'_> {
     /// Settles `best` and, where edges are allowed, a start that finds kinds before edges; then
@@ -42,19 +40,15 @@ impl Search<'_> {
         if let Some(other) = other?.filter(|other| other.score > best.score) {
             best = other;
         }
-        trace.push(self.step(&best));
-        let found: Result<Vec<Scored>, ModelError> = styles
-            .par_iter()
-            .map(|&s| self.restyle(&best, s, &mut stream(seed, "restyle settled", s as u64)))
-            .collect();
+        self.accept(&best, trace);
         let before = best.score;
-        for scored in found? {
-            trace.push(self.step(&scored));
+        for scored in self.restyle_all(&best, styles, seed, "restyle settled")? {
+            self.accept(&scored, trace);
             best = better(Some(best), scored);
         }
         if best.score > before {
             best = self.settle(best)?;
-            trace.push(self.step(&best));
+            self.accept(&best, trace);
         }
         Ok(best)
     }
@@ -67,7 +61,7 @@ impl Search<'_> {
         for g in 0..groups {
             best = self.raise(best, g)?;
         }
-        let fresh = self.restyle(&best, styles, rng)?;
+        let fresh = self.restyle(&best, styles, &self.settings.search, rng)?;
         if fresh.score > best.score {
             best = fresh;
             for g in 0..groups {
@@ -83,7 +77,7 @@ impl Search<'_> {
             let before = best.score;
             best = self.revise(best)?;
             best = self.with_edges(self.grow(best, &mut Vec::new())?)?;
-            if best.score <= before + self.settings.search.gain {
+            if self.watch.ended() || best.score <= before + self.settings.search.gain {
                 return Ok(best);
             }
         }
@@ -95,13 +89,16 @@ impl Search<'_> {
             let before = best.score;
             for g in 0..best.shape.groups() {
                 for p in best.shape.structure.parents[g].clone() {
+                    if self.watch.ended() {
+                        return Ok(best);
+                    }
                     best = self.without(best, p, g)?;
                 }
             }
             for g in 0..best.shape.groups() {
                 best = self.join(best, g)?;
             }
-            if best.score <= before + self.settings.search.gain {
+            if self.watch.ended() || best.score <= before + self.settings.search.gain {
                 return Ok(best);
             }
         }
@@ -114,7 +111,8 @@ impl Search<'_> {
         let mut structure = best.shape.structure.clone();
         structure.parents[g].retain(|&parent| parent != p);
         let problem = self.problem(structure)?;
-        let fit = problem.fit(problem.reparent(&best, &wide)?, &self.settings.search)?;
+        let start = problem.reparent(&best, &wide)?;
+        let fit = self.fit(&problem, start, &self.settings.search)?;
         let grown = self.raise(fit, g)?;
         Ok(if grown.score > best.score {
             grown
@@ -125,7 +123,7 @@ impl Search<'_> {
 
     /// Raises the cardinality of the hidden variable of `g` while the score rises.
     fn raise(&self, mut best: Scored, g: usize) -> Result<Scored, ModelError> {
-        while best.shape.states(g) < self.settings.most_states {
+        while best.shape.states(g) < self.settings.most_states && !self.watch.ended() {
             match self.raised(&best, g)? {
                 grown if grown.score > best.score => best = grown,
                 _ => break,
@@ -140,19 +138,20 @@ impl Search<'_> {
         let start = super::split::start(&problem, best, g)?;
         let mut structure = best.shape.structure.clone();
         structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
-        self.problem(structure)?.fit(start, &self.settings.search)
+        let problem = self.problem(structure)?;
+        self.fit(&problem, start, &self.settings.search)
     }
 
     /// Joins values of the hidden variable of `g` while the score rises.
     fn join(&self, mut best: Scored, g: usize) -> Result<Scored, ModelError> {
-        while best.shape.hidden(g) && best.shape.states(g) > 2 {
+        while best.shape.hidden(g) && best.shape.states(g) > 2 && !self.watch.ended() {
             let mut structure = best.shape.structure.clone();
             structure.selectors[g] = Selector::Hidden(best.shape.states(g) - 1);
             let problem = self.problem(structure)?;
             let Some(start) = joined(&problem, &best, g)? else {
                 break;
             };
-            match problem.fit(start, &self.settings.search)? {
+            match self.fit(&problem, start, &self.settings.search)? {
                 fit if fit.score > best.score => best = fit,
                 _ => break,
             }

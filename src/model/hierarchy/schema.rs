@@ -237,6 +237,17 @@ impl Rows {
     pub fn code(&self, row: usize) -> &[u32] {
         &self.codes[row * self.c..(row + 1) * self.c]
     }
+
+    /// The chosen rows, in the given order.
+    pub fn select(&self, chosen: &[usize]) -> Self {
+        Self {
+            rows: chosen.len(),
+            reals: chosen.iter().flat_map(|&i| self.real(i)).copied().collect(),
+            codes: chosen.iter().flat_map(|&i| self.code(i)).copied().collect(),
+            d: self.d,
+            c: self.c,
+        }
+    }
 }
 
 fn check_codes(

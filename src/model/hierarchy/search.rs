@@ -11,43 +11,56 @@ use super::Priors;
 use super::edges::{propose, states, wide};
 use super::fit::{Problem, Scored};
 use super::infer::Scratch;
+use super::params::Params;
 use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure};
-use super::{Settings, Step, Variant};
+use super::watch::Watch;
+use super::{Settings, Step, Sweep, Variant};
 use crate::rng::stream;
+
+/// Values of real columns up to which all |S| are searched from the start.
+const SMALL: usize = 10_000;
+
+/// Cardinalities of S that are fitted to the end on large tables, after short runs for all.
+const FINALISTS: usize = 3;
+/// Rounds of EM in a short run.
+const SHORT: usize = 10;
 
 /// What a search needs everywhere.
 pub(crate) struct Search<'a> {
     pub schema: &'a Schema,
     pub rows: &'a Rows,
     pub settings: &'a Settings,
+    pub watch: &'a Watch<'a>,
 }
 
 impl<'a> Search<'a> {
     /// Runs the search for every cardinality of S and keeps the first of highest score.
     pub fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
-        let styles: Vec<usize> = match self.settings.variant {
-            Variant::Directed => vec![1],
-            _ => self.settings.styles.clone().collect(),
-        };
-        let found: Result<Vec<(Scored, Vec<Step>)>, ModelError> = styles
+        let styles = self.styles();
+        type Found = Option<(Scored, Vec<Step>)>;
+        let swept = self.swept(&styles);
+        let found: Result<Vec<Found>, ModelError> = swept
             .par_iter()
-            .map(|&s| self.for_styles(s, &mut stream(seed, "hierarchy", s as u64)))
+            .map(|&s| {
+                // The first is searched even if the search has been ended: there is always a model.
+                if s != swept[0] && self.watch.ended() {
+                    return Ok(None);
+                }
+                let mut rng = stream(seed, "hierarchy", s as u64);
+                self.for_styles(s, &mut rng).map(Some)
+            })
             .collect();
         let mut best: Option<Scored> = None;
         let mut trace = Vec::new();
-        for (scored, steps) in found? {
+        for (scored, steps) in found?.into_iter().flatten() {
             trace.extend(steps);
             best = Some(better(best, scored));
         }
         // Whatever |S| found the best second level, every other |S| may have it as well.
         if let Some(leader) = best.clone().filter(|_| self.layered()) {
-            let found: Result<Vec<Scored>, ModelError> = styles
-                .par_iter()
-                .map(|&s| self.restyle(&leader, s, &mut stream(seed, "restyle", s as u64)))
-                .collect();
-            for scored in found? {
-                trace.push(self.step(&scored));
+            for scored in self.restyle_all(&leader, &styles, seed, "restyle")? {
+                self.accept(&scored, &mut trace);
                 best = Some(better(best, scored));
             }
         }
@@ -56,8 +69,118 @@ impl<'a> Search<'a> {
             best = self.with_edges(self.grow(best, &mut trace)?)?;
             best = self.polish(best, &styles, seed, &mut trace)?;
         }
+        Ok((self.settled(best)?, trace))
+    }
+
+    /// Goes on from a structure and its parameters.
+    pub fn improve(
+        &self,
+        structure: Structure,
+        params: Params,
+        seed: u64,
+    ) -> Result<(Scored, Vec<Step>), ModelError> {
+        let problem = self.problem(structure)?;
+        let mut best = self.fit(&problem, params, &self.settings.search)?;
+        let mut trace = Vec::new();
+        self.accept(&best, &mut trace);
+        if self.layered() {
+            best = self.with_edges(self.grow(best, &mut trace)?)?;
+            best = self.polish(best, &self.styles(), seed, &mut trace)?;
+        }
+        Ok((self.settled(best)?, trace))
+    }
+
+    /// Cardinalities of S to try.
+    fn styles(&self) -> Vec<usize> {
+        match self.settings.variant {
+            Variant::Directed => vec![1],
+            _ => self.settings.styles.clone().collect(),
+        }
+    }
+
+    /// Whether work is saved, as on large tables.
+    fn few(&self) -> bool {
+        match self.settings.sweep {
+            Sweep::Auto => self.rows.rows * self.rows.d > SMALL,
+            Sweep::All => false,
+            Sweep::Few => true,
+        }
+    }
+
+    /// Those of them for which the second level is searched from the start.
+    fn swept(&self, styles: &[usize]) -> Vec<usize> {
+        let (Some(&least), Some(&most)) = (styles.first(), styles.last()) else {
+            return Vec::new();
+        };
+        if !self.few() || styles.len() <= 2 || !self.layered() {
+            return styles.to_vec();
+        }
+        let ratio = most as f64 / least as f64;
+        let at = |share: f64| (least as f64 * ratio.powf(share)).round() as usize;
+        vec![at(0.25), at(0.75)]
+    }
+
+    /// EM run to its end.
+    fn settled(&self, best: Scored) -> Result<Scored, ModelError> {
         let problem = self.problem(best.shape.structure.clone())?;
-        Ok((problem.fit(best.params, &self.settings.stopping)?, trace))
+        self.fit(&problem, best.params, &self.settings.stopping)
+    }
+
+    /// EM as long as the search goes on.
+    pub(super) fn fit(
+        &self,
+        problem: &Problem,
+        start: Params,
+        stopping: &Stopping,
+    ) -> Result<Scored, ModelError> {
+        problem.fit_while(start, stopping, &|| self.watch.goes_on())
+    }
+
+    /// [`Self::restyle`] for each |S|, as long as the search goes on; on large tables only the best few are fitted to the
+    /// end.
+    pub(super) fn restyle_all(
+        &self,
+        given: &Scored,
+        styles: &[usize],
+        seed: u64,
+        name: &str,
+    ) -> Result<Vec<Scored>, ModelError> {
+        let stopping = match self.few() {
+            true => self.short(),
+            false => self.settings.search,
+        };
+        let found: Result<Vec<Option<Scored>>, ModelError> = styles
+            .par_iter()
+            .map(|&s| {
+                if self.watch.ended() {
+                    return Ok(None);
+                }
+                let mut rng = stream(seed, name, s as u64);
+                self.restyle(given, s, &stopping, &mut rng).map(Some)
+            })
+            .collect();
+        let mut found: Vec<Scored> = found?.into_iter().flatten().collect();
+        if self.few() {
+            found.sort_by(|a, b| b.score.total_cmp(&a.score));
+            found.truncate(FINALISTS);
+            let fitted: Result<Vec<Scored>, ModelError> = found
+                .into_par_iter()
+                .map(|scored| {
+                    let problem = self.problem(scored.shape.structure.clone())?;
+                    self.fit(&problem, scored.params, &self.settings.search)
+                })
+                .collect();
+            found = fitted?;
+        }
+        Ok(found)
+    }
+
+    /// When a short run of EM stops.
+    fn short(&self) -> Stopping {
+        Stopping {
+            max_rounds: SHORT,
+            ..self.settings.search
+        }
     }
 
     pub(super) fn problem(&self, structure: Structure) -> Result<Problem<'a>, ModelError> {
@@ -81,15 +204,17 @@ impl<'a> Search<'a> {
         if self.settings.variant == Variant::Directed {
             let structure = super::directed::propose(self, first);
             let best = self.restart(structure, rng)?;
-            let trace = vec![self.step(&best)];
+            let mut trace = Vec::new();
+            self.accept(&best, &mut trace);
             return Ok((best, trace));
         }
         let mut best = self.restart(first, rng)?;
         best = self.with_edges(best)?;
-        let mut trace = vec![self.step(&best)];
-        if self.layered() {
+        let mut trace = Vec::new();
+        self.accept(&best, &mut trace);
+        if self.layered() && !self.watch.ended() {
             best = self.grow(best, &mut trace)?;
-            let fresh = self.restyle(&best, styles, rng)?;
+            let fresh = self.restyle(&best, styles, &self.settings.search, rng)?;
             if fresh.score > best.score {
                 best = self.grow(fresh, &mut trace)?;
             }
@@ -104,16 +229,14 @@ impl<'a> Search<'a> {
         rng: &mut R,
     ) -> Result<Scored, ModelError> {
         let problem = self.problem(structure)?;
-        let short = Stopping {
-            max_rounds: 10,
-            ..self.settings.search
-        };
+        let short = self.short();
         let mut best: Option<Scored> = None;
         for _ in 0..self.settings.restarts.max(1) {
-            best = Some(better(best, problem.fit(problem.start(rng)?, &short)?));
+            let scored = self.fit(&problem, problem.start(rng)?, &short)?;
+            best = Some(better(best, scored));
         }
         let best = best.ok_or(ModelError::Empty { what: "starts" })?;
-        problem.fit(best.params, &self.settings.search)
+        self.fit(&problem, best.params, &self.settings.search)
     }
 
     /// Raises the cardinality of each hidden variable in turn while the score rises.
@@ -123,13 +246,13 @@ impl<'a> Search<'a> {
         trace: &mut Vec<Step>,
     ) -> Result<Scored, ModelError> {
         for g in 0..self.schema.groups.len() {
-            while best.shape.states(g) < self.settings.most_states {
+            while best.shape.states(g) < self.settings.most_states && !self.watch.ended() {
                 let grown = self.raised(&best, g)?;
                 if grown.score <= best.score {
                     break;
                 }
                 best = self.with_edges(grown)?;
-                trace.push(self.step(&best));
+                self.accept(&best, trace);
             }
         }
         Ok(best)
@@ -141,6 +264,9 @@ impl<'a> Search<'a> {
             return Ok(best);
         }
         for _ in 0..self.settings.edge_rounds {
+            if self.watch.ended() {
+                break;
+            }
             let problem = self.problem(best.shape.structure.clone())?;
             let wide = wide(&problem, &best)?;
             let structure = propose(&problem, &best, &wide, self.settings.most_parents);
@@ -150,7 +276,7 @@ impl<'a> Search<'a> {
             let problem = self.problem(structure)?;
             // The M step for the new edges, from the posteriors of the old model.
             let start = problem.reparent(&best, &wide)?;
-            let scored = problem.fit(start, &self.settings.search)?;
+            let scored = self.fit(&problem, start, &self.settings.search)?;
             if scored.score <= best.score {
                 break;
             }
@@ -170,6 +296,7 @@ impl<'a> Search<'a> {
         &self,
         given: &Scored,
         styles: usize,
+        stopping: &Stopping,
         rng: &mut R,
     ) -> Result<Scored, ModelError> {
         let problem = self.problem(given.shape.structure.clone())?;
@@ -214,16 +341,24 @@ impl<'a> Search<'a> {
         for _ in 0..self.settings.restarts.max(1) {
             let labels = kmeans(&features, width, styles, 12, rng);
             let start = problem.assigned(&all, &labels, &assigned)?;
-            let start = super::params::Params {
+            let start = Params {
                 linear: given.params.linear.clone(),
                 ..start
             };
-            best = Some(better(best, problem.fit(start, &self.settings.search)?));
+            let scored = self.fit(&problem, start, stopping)?;
+            best = Some(better(best, scored));
         }
         best.ok_or(ModelError::Empty { what: "starts" })
     }
 
-    pub(super) fn step(&self, scored: &Scored) -> Step {
+    /// Notes a configuration in the trace, and tells of it.
+    pub(super) fn accept(&self, scored: &Scored, trace: &mut Vec<Step>) {
+        let step = self.step(scored);
+        self.watch.accepted(&step);
+        trace.push(step);
+    }
+
+    fn step(&self, scored: &Scored) -> Step {
         let structure = &scored.shape.structure;
         Step {
             styles: structure.styles,

@@ -2,7 +2,7 @@
 //!
 //! Read are `network`, `variable` blocks with `type discrete`, and `probability` blocks with
 //! `table`, one line per configuration `(a, b) p, q;`, or `default`; properties and comments are
-//! skipped. Rows that are off 1 by rounding (less than 1e-3) are normalised. `default` fills at most
+//! skipped. A word in quotation marks may hold spaces and marks. Rows that are off 1 by rounding (less than 1e-3) are normalised. `default` fills at most
 //! [`MOST_DEFAULTS`] numbers in all: a line of it can stand for more than there is memory.
 
 use std::collections::HashMap;
@@ -57,22 +57,22 @@ impl Network {
     /// that the format cannot hold.
     pub fn to_bif(&self) -> Result<String, ModelError> {
         let mut out = String::from("network unknown {\n}\n");
+        let mut names = Vec::with_capacity(self.nodes.len());
+        let mut categories: Vec<Vec<String>> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            for word in node.categories.iter().chain([&node.name]) {
-                if word.is_empty()
-                    || word.contains(|c: char| c.is_whitespace() || "{}()[]|,;\"/".contains(c))
-                {
-                    return Err(ModelError::parameter(word, "cannot be written as a word"));
-                }
-            }
-            let list = node.categories.join(", ");
+            let name = written(&node.name)?;
+            let own: Result<Vec<String>, ModelError> =
+                node.categories.iter().map(|c| written(c)).collect();
+            let own = own?;
             out += &format!(
-                "variable {} {{\n  type discrete [ {} ] {{ {list} }};\n}}\n",
-                node.name,
-                node.categories.len()
+                "variable {name} {{\n  type discrete [ {} ] {{ {} }};\n}}\n",
+                own.len(),
+                own.join(", ")
             );
+            names.push(name);
+            categories.push(own);
         }
-        for node in &self.nodes {
+        for (node, name) in self.nodes.iter().zip(&names) {
             let Cpd::Table(table) = &node.cpd else {
                 return Err(ModelError::Kind {
                     column: node.name.clone(),
@@ -82,25 +82,17 @@ impl Network {
             };
             let row = |p: &[f64]| p.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
             if node.discrete.is_empty() {
-                out += &format!(
-                    "probability ( {} ) {{\n  table {};\n}}\n",
-                    node.name,
-                    row(table)
-                );
+                out += &format!("probability ( {name} ) {{\n  table {};\n}}\n", row(table));
                 continue;
             }
-            let names: Vec<&str> = node
-                .discrete
-                .iter()
-                .map(|&p| self.nodes[p].name.as_str())
-                .collect();
-            out += &format!("probability ( {} | {} ) {{\n", node.name, names.join(", "));
+            let given: Vec<&str> = node.discrete.iter().map(|&p| names[p].as_str()).collect();
+            out += &format!("probability ( {name} | {} ) {{\n", given.join(", "));
             for (i, p) in table.chunks(node.categories.len()).enumerate() {
                 let mut rest = i;
                 let mut words: Vec<&str> = Vec::new();
                 for &parent in node.discrete.iter().rev() {
                     let k = self.sizes[parent];
-                    words.push(&self.nodes[parent].categories[rest % k]);
+                    words.push(&categories[parent][rest % k]);
                     rest /= k;
                 }
                 words.reverse();
@@ -110,6 +102,23 @@ impl Network {
         }
         Ok(out)
     }
+}
+
+/// A word as it is written: in quotation marks where it would not be read as one word otherwise.
+fn written(word: &str) -> Result<String, ModelError> {
+    const MARKS: &str = "{}()[]|,;";
+    if word.is_empty()
+        || MARKS.chars().any(|m| word.chars().eq([m]))
+        || word.contains(['"', '\n', '\r'])
+    {
+        return Err(ModelError::parameter(word, "cannot be written as a word"));
+    }
+    let plain = !word.contains(|c: char| c.is_whitespace() || c == '/' || MARKS.contains(c));
+    Ok(if plain {
+        word.to_owned()
+    } else {
+        format!("\"{word}\"")
+    })
 }
 
 /// (line, word) with punctuation as words of its own.
@@ -201,7 +210,7 @@ impl Reader {
             if word == close {
                 return Ok(words);
             }
-            if "{}();".contains(&word) {
+            if ["{", "}", "(", ")", ";"].contains(&word.as_str()) {
                 return Err(self.wrong(&format!("`{close}` is needed, not `{word}`")));
             }
             if word != "," {

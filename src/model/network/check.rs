@@ -27,7 +27,7 @@ pub(super) fn check(
         return Err(ModelError::parameter(&v.name, problem));
     };
     match (&v.stated, d > 0) {
-        (Stated::Table(_) | Stated::Open, false) if p > 1 => Err(ModelError::Kind {
+        (Stated::Table(_), false) if p > 1 => Err(ModelError::Kind {
             column: v.name.clone(),
             got: "a table with a continuous parent",
             expected: "a softmax",
@@ -67,6 +67,13 @@ pub(super) fn check(
                 })
                 .collect();
             Ok(Cpd::Linear(linear?))
+        }
+        (Stated::Open, false) if p > 1 => {
+            let sizes = [configurations, k, p];
+            let size = sizes.iter().try_fold(1_usize, |n, &f| n.checked_mul(f));
+            let size =
+                size.ok_or_else(|| ModelError::parameter(&v.name, "has too many weights"))?;
+            Ok(Cpd::Softmax(vec![0.0; size]))
         }
         (Stated::Open, false) => Ok(Cpd::Table(vec![1.0 / k as f64; configurations * k])),
         (Stated::Open, true) => {

@@ -12,12 +12,14 @@ use super::super::em::Em;
 use super::super::error::ModelError;
 use super::super::gaussian::add_scatter;
 use super::evidence::{Asked, Known};
+use super::logistic::{self, Case};
 use super::{Cpd, Network};
 
-/// Expected counts per table, expected scatter per configuration of a real vector.
+/// Expected counts per table, expected scatter per configuration of a real vector, cases per configuration of a softmax.
 pub(super) struct Stats {
     counts: Vec<Vec<f64>>,
     scatter: Vec<Vec<Vec<f64>>>,
+    cases: Vec<Vec<Vec<Case>>>,
     log_likelihood: f64,
 }
 
@@ -46,7 +48,21 @@ impl Problem<'_> {
                     _ => Vec::new(),
                 })
                 .collect(),
+            cases: (0..nodes.len())
+                .map(|n| vec![Vec::new(); self.configurations(n)])
+                .collect(),
             log_likelihood: 0.0,
+        }
+    }
+
+    /// Configurations of the discrete parents of a softmax; 0 for other nodes.
+    fn configurations(&self, n: usize) -> usize {
+        let node = &self.start.nodes[n];
+        match &node.cpd {
+            Cpd::Softmax(weights) => {
+                weights.len() / (self.start.sizes[n] * (node.regressors.len() + 1))
+            }
+            _ => 0,
         }
     }
 
@@ -75,6 +91,30 @@ impl Problem<'_> {
                 let index = network.configuration(n, &assignment) * sizes[n] + assignment[n];
                 counts[index] += w;
                 advance(&vars, sizes, &mut assignment);
+            }
+        }
+        for (n, cases) in stats.cases.iter_mut().enumerate() {
+            if cases.is_empty() || barren[n] {
+                continue;
+            }
+            let node = &network.nodes[n];
+            let real = node.regressors.iter().map(|&c| question.known.real[c]);
+            let inputs: Vec<f64> = std::iter::once(1.0).chain(real).collect();
+            let mut shares = vec![vec![0.0; sizes[n]]; cases.len()];
+            let family = node.discrete.iter().copied().chain([n]);
+            let vars: Vec<usize> = family
+                .filter(|&v| question.known.discrete[v].is_none())
+                .collect();
+            let mut assignment = fixed.clone();
+            for w in beliefs.of(&vars) {
+                shares[network.configuration(n, &assignment)][assignment[n]] += w;
+                advance(&vars, sizes, &mut assignment);
+            }
+            for (cases, shares) in cases.iter_mut().zip(shares) {
+                if shares.iter().any(|r| *r > 0.0) {
+                    let inputs = inputs.clone();
+                    cases.push(Case { inputs, shares });
+                }
             }
         }
         for linked in &question.linked {
@@ -124,6 +164,10 @@ impl Em for Problem<'_> {
                 scatter
                     .zip(part.scatter.iter().flatten().flatten())
                     .for_each(|(a, b)| *a += b);
+                let cases = total.cases.iter_mut().flatten();
+                cases
+                    .zip(part.cases.into_iter().flatten())
+                    .for_each(|(a, b)| a.extend(b));
                 total.log_likelihood += part.log_likelihood;
             },
         )?;
@@ -151,7 +195,13 @@ impl Em for Problem<'_> {
                         })?;
                     }
                 }
-                Cpd::Softmax(_) => {}
+                Cpd::Softmax(weights) => {
+                    let size = weights.len() / stats.cases[n].len();
+                    for (weights, cases) in weights.chunks_mut(size).zip(&stats.cases[n]) {
+                        // The objective is concave: it does not matter where the start is.
+                        weights.copy_from_slice(&logistic::fit(&vec![0.0; size], cases));
+                    }
+                }
             }
         }
         Ok(network)
@@ -169,7 +219,7 @@ impl Em for Problem<'_> {
                     .iter()
                     .map(|l| self.priors.linear.log_density(l))
                     .sum(),
-                Cpd::Softmax(_) => 0.0,
+                Cpd::Softmax(weights) => logistic::log_prior(weights),
             })
             .sum()
     }
@@ -186,7 +236,7 @@ impl Em for Problem<'_> {
             .iter()
             .zip(&after.nodes)
             .map(|(a, b)| match (&a.cpd, &b.cpd) {
-                (Cpd::Table(a), Cpd::Table(b)) => far(a, b),
+                (Cpd::Table(a), Cpd::Table(b)) | (Cpd::Softmax(a), Cpd::Softmax(b)) => far(a, b),
                 (Cpd::Linear(a), Cpd::Linear(b)) => a
                     .iter()
                     .zip(b)

@@ -1,6 +1,5 @@
 //! MAP parameters of a network, from data with missing values and hidden variables: from a table
 //! to standardised evidence, so that one prior serves all, and back to the columns' own units.
-//! Weights of a softmax are not learned: they stay as stated.
 
 use rand::{Rng, RngExt};
 
@@ -49,7 +48,7 @@ pub struct Fitted {
 type Scales = Vec<(f64, f64)>;
 
 impl Network {
-    /// Learns tables and linear Gaussians from `data`, whose columns carry the variables' names
+    /// Learns tables, linear Gaussians and softmax weights from `data`, whose columns carry the variables' names
     /// (`name[i]` for the coordinates of a vector); a variable without columns is hidden.
     ///
     /// # Errors
@@ -170,7 +169,10 @@ impl Network {
                         }
                     }
                 }
-                Cpd::Softmax(_) => {}
+                Cpd::Softmax(weights) => {
+                    let small = |w: &mut f64| *w = 0.1 * (rng.random::<f64>() - 0.5);
+                    weights.iter_mut().for_each(small);
+                }
             }
         }
         network
@@ -180,8 +182,19 @@ impl Network {
     fn rescale(&mut self, scales: &[(f64, f64)]) {
         for node in &mut self.nodes {
             let own: Vec<(f64, f64)> = node.coordinates.clone().map(|c| scales[c]).collect();
-            let Cpd::Linear(states) = &mut node.cpd else {
-                continue;
+            let states = match &mut node.cpd {
+                Cpd::Linear(states) => states,
+                // w · (x - m) / s + w_0 = (w / s) · x + w_0 - Σ w m / s.
+                Cpd::Softmax(weights) => {
+                    for weights in weights.chunks_mut(node.regressors.len() + 1) {
+                        for (i, &c) in node.regressors.iter().enumerate() {
+                            weights[i + 1] /= scales[c].1;
+                            weights[0] -= weights[i + 1] * scales[c].0;
+                        }
+                    }
+                    continue;
+                }
+                Cpd::Table(_) => continue,
             };
             for state in states {
                 let (p, d) = (state.p, state.d);

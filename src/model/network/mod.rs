@@ -29,18 +29,26 @@
 //!   single posterior then leaves out what is independent of the variable given the evidence, too, so that evidence there
 //!   is not checked for contradictions.
 //!
+//! - Softmax weights are learned with a weak Gaussian prior (precision 0.01 on standardised inputs), since rows that a plane
+//!   separates have no largest likelihood.
+//!
 //! Sources: Koller and Friedman 2009, Ch. 9, 13 and 14; Dechter 1999; Lauritzen 1992.
 
 mod approximate;
 mod bif;
 mod check;
+mod dot;
 mod evidence;
 mod expect;
 mod learn;
+mod logistic;
 mod query;
 mod sample;
 mod score;
 mod store;
+pub mod structure;
+#[cfg(feature = "io")]
+mod xmlbif;
 
 use std::collections::{HashMap, HashSet};
 
@@ -127,7 +135,7 @@ impl Variable {
         Self::new(name, &[], dimension, parents, Stated::Linear(states))
     }
 
-    /// Discrete, with a table to be learned.
+    /// Discrete, with a table to be learned; with continuous parents, a softmax to be learned.
     pub fn discrete(name: &str, categories: &[&str], parents: &[&str]) -> Self {
         Self::new(name, categories, 0, parents, Stated::Open)
     }
@@ -309,6 +317,21 @@ impl Network {
                 column: name.to_owned(),
                 got: "without a table",
                 expected: "discrete with a table",
+            }),
+        }
+    }
+
+    /// The weights of a softmax, laid out as in [`Variable::softmax`].
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`], [`ModelError::Kind`] when it is no softmax.
+    pub fn weights(&self, name: &str) -> Result<&[f64], ModelError> {
+        match &self.nodes[self.find(name)?].cpd {
+            Cpd::Softmax(weights) => Ok(weights),
+            _ => Err(ModelError::Kind {
+                column: name.to_owned(),
+                got: "without weights",
+                expected: "a softmax",
             }),
         }
     }

@@ -1,0 +1,195 @@
+//! How `model learn` and `building learn` run: with progress, a time limit, and an end on request that keeps the best so far.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use edifice::model::em::Outcome;
+use edifice::model::hierarchy::{
+    Hierarchy, Learned, Settings, Step, fit_observed, learn_observed, refine,
+};
+use edifice::model::{ModelError, Table};
+use edifice::tables::Dataset;
+use edifice::{Error, Result};
+
+use super::search::{Search, warnings};
+use crate::cli::print;
+
+/// Time between two lines of progress.
+const TELL: Duration = Duration::from_secs(10);
+
+/// Ctrl-C was pressed.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Options of learning one model.
+#[derive(clap::Args)]
+pub struct Learning {
+    #[command(flatten)]
+    pub search: Search,
+    /// End after so many seconds with the best model so far (as Ctrl-C does).
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
+    /// Go on from a model that was learned before from such a table, for example one that was interrupted.
+    #[arg(long, value_name = "MODEL", conflicts_with = "fit_only")]
+    pub from: Option<PathBuf>,
+    /// Do not search: fit `--styles` styles and `--kinds` kinds of each attribute, without lateral edges.
+    #[arg(long, requires = "styles", requires = "kinds")]
+    fit_only: bool,
+    /// Styles of `--fit-only`.
+    #[arg(long, requires = "fit_only")]
+    styles: Option<usize>,
+    /// Kinds of each continuous attribute of `--fit-only`.
+    #[arg(long, requires = "fit_only")]
+    kinds: Option<usize>,
+}
+
+/// What was learned.
+pub struct Found {
+    /// The model.
+    pub model: Hierarchy,
+    /// Cheeseman-Stutz score, nats.
+    pub score: f64,
+    /// BIC score, nats, where a structure was searched.
+    pub bic: Option<f64>,
+    /// Whether a limit or Ctrl-C ended it.
+    pub interrupted: bool,
+    /// Seconds that it took.
+    pub seconds: f64,
+}
+
+impl Learning {
+    /// Learns from `data`, going on from `start` if there is one. `path` names the table in errors.
+    pub fn learn(&self, data: &Dataset, start: Option<&Hierarchy>, path: &Path) -> Result<Found> {
+        if let Some(limit) = self.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
+            let problem = format!("{limit} is not a positive number of seconds");
+            return Err(Error::option("--time-limit", problem));
+        }
+        let settings = self.search.settings()?;
+        // Set once per process; a second command in the same process keeps the first handler, which does the same.
+        let _ = ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+            print::message("stopping with the best model so far; Ctrl-C again stops at once");
+        });
+        let watch = Watch::new(self.time_limit.map(seconds));
+        let found = self.found(data, start, &settings, &watch);
+        let mut found = found.map_err(|e| Error::content(path, e))?;
+        found.seconds = watch.start.elapsed().as_secs_f64();
+        if found.interrupted {
+            print::message(&format!(
+                "ended after {:.1} s: this is the best model so far; `--from` goes on from it",
+                found.seconds
+            ));
+        }
+        self.warn(&data.table, &found.model);
+        Ok(found)
+    }
+
+    fn found(
+        &self,
+        data: &Dataset,
+        start: Option<&Hierarchy>,
+        settings: &Settings,
+        watch: &Watch,
+    ) -> std::result::Result<Found, ModelError> {
+        let seed = self.search.seed;
+        let observer = |step: Option<&Step>| watch.tell(step);
+        if let (Some(styles), Some(kinds)) = (self.styles, self.kinds) {
+            let states = vec![kinds; data.real_groups()];
+            let (table, groups) = (&data.table, &data.groups);
+            let fitted = fit_observed(table, groups, styles, &states, settings, seed, &observer)?;
+            return Ok(Found {
+                model: fitted.model,
+                score: fitted.score,
+                bic: None,
+                interrupted: fitted.outcome == Outcome::Interrupted,
+                seconds: 0.0,
+            });
+        }
+        let learned: Learned = match start {
+            Some(model) => refine(model, &data.table, settings, seed, &observer)?,
+            None => learn_observed(&data.table, &data.groups, settings, seed, &observer)?,
+        };
+        Ok(Found {
+            model: learned.model,
+            score: learned.score,
+            bic: Some(learned.bic),
+            interrupted: learned.interrupted,
+            seconds: 0.0,
+        })
+    }
+
+    fn warn(&self, table: &Table, model: &Hierarchy) {
+        for warning in warnings(table, model.free_parameters()) {
+            print::message(&format!("warning: {warning}"));
+        }
+    }
+}
+
+/// A time limit; one beyond what a clock counts is none.
+fn seconds(limit: f64) -> Duration {
+    Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX)
+}
+
+/// Tells of progress from time to time, and when to end.
+struct Watch {
+    start: Instant,
+    limit: Option<Duration>,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    tried: usize,
+    best: Option<Step>,
+    told: Duration,
+}
+
+impl Watch {
+    fn new(limit: Option<Duration>) -> Self {
+        Self {
+            start: Instant::now(),
+            limit,
+            state: Mutex::default(),
+        }
+    }
+
+    fn tell(&self, step: Option<&Step>) -> ControlFlow<()> {
+        let elapsed = self.start.elapsed();
+        if let Ok(mut state) = self.state.lock() {
+            state.accept(step);
+            if elapsed >= state.told + TELL {
+                state.told = elapsed;
+                print::message(&state.line(elapsed));
+            }
+        }
+        match STOP.load(Ordering::Relaxed) || self.limit.is_some_and(|limit| elapsed >= limit) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
+
+impl State {
+    fn accept(&mut self, step: Option<&Step>) {
+        let Some(step) = step else { return };
+        self.tried += 1;
+        if self.best.as_ref().is_none_or(|b| step.score > b.score) {
+            self.best = Some(step.clone());
+        }
+    }
+
+    fn line(&self, elapsed: Duration) -> String {
+        let seconds = elapsed.as_secs();
+        match &self.best {
+            None => format!("{seconds} s: fitting"),
+            Some(best) => format!(
+                "{seconds} s: {} configurations accepted, best so far {} styles, {} lateral edges, score {:.1}",
+                self.tried, best.styles, best.lateral_edges, best.score
+            ),
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! `edifice model structure`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use edifice::model::network::structure::{Score, Search, search};
+use edifice::{Error, Result};
+
+use super::data::TableInput;
+use crate::cli::print;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    input: TableInput,
+    /// The file to write: `*.bif`, `*.xmlbif`, `*.json`, `*.dot` or `*.svg`.
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// What is maximised.
+    #[arg(long, value_enum, default_value_t = Kind::Bdeu)]
+    score: Kind,
+    /// Rows that the prior of BDeu is worth.
+    #[arg(long, default_value_t = 1.0)]
+    ess: f64,
+    /// Most parents of one variable.
+    #[arg(long, default_value_t = Search::default().most_parents)]
+    max_parents: usize,
+    /// An edge that must be there: PARENT>CHILD; repeatable.
+    #[arg(long, value_name = "EDGE")]
+    require: Vec<String>,
+    /// An edge that must not be there: PARENT>CHILD; repeatable.
+    #[arg(long, value_name = "EDGE")]
+    forbid: Vec<String>,
+    /// Variables of one tier, separated by commas; repeated from the earliest tier: none has a parent in a later one.
+    #[arg(long)]
+    tier: Vec<String>,
+    /// New climbs from the best after random moves.
+    #[arg(long, default_value_t = Search::default().restarts)]
+    restarts: usize,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print a line of JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is maximised.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Kind {
+    /// Log marginal likelihood (Bayesian Dirichlet, equivalent and uniform).
+    Bdeu,
+    /// Log likelihood less half the logarithm of the rows for each free parameter.
+    Bic,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let (data, _) = args.input.read()?;
+    let settings = Search {
+        score: match args.score {
+            Kind::Bdeu => Score::Bdeu(args.ess),
+            Kind::Bic => Score::Bic,
+        },
+        most_parents: args.max_parents,
+        required: edges("--require", &args.require)?,
+        forbidden: edges("--forbid", &args.forbid)?,
+        tiers: args.tier.iter().map(|t| words(t)).collect(),
+        restarts: args.restarts,
+        ..Search::default()
+    };
+    let start = Instant::now();
+    let found = search(&data.table, &settings, args.seed);
+    let found = found.map_err(|e| Error::content(&args.input.table, e))?;
+    let seconds = start.elapsed().as_secs_f64();
+    super::network::write(&found.network, &args.output)?;
+    for (parent, child) in &found.edges {
+        print::message(&format!("{parent} -> {child}"));
+    }
+    print::message(&format!(
+        "{} variables, {} rows: {} edges, score {:.2}, {} moves, {} families, {seconds:.2} s",
+        data.table.columns().len(),
+        data.table.rows(),
+        found.edges.len(),
+        found.score,
+        found.moves,
+        found.families
+    ));
+    match args.json {
+        true => print::line(&summary(
+            &found.edges,
+            found.score,
+            seconds,
+            args.seed,
+            &args.output,
+        )),
+        false => Ok(()),
+    }
+}
+
+fn summary(edges: &[(String, String)], score: f64, seconds: f64, seed: u64, file: &Path) -> String {
+    serde_json::json!({
+        "edges": edges, "score": score, "seconds": seconds, "seed": seed, "file": file,
+    })
+    .to_string()
+}
+
+fn words(list: &str) -> Vec<String> {
+    list.split(',').map(|w| w.trim().to_owned()).collect()
+}
+
+fn edges(option: &str, texts: &[String]) -> Result<Vec<(String, String)>> {
+    let edge = |text: &String| match text.split_once('>') {
+        Some((parent, child)) => Ok((parent.trim().to_owned(), child.trim().to_owned())),
+        None => Err(Error::option(
+            option,
+            format!("{text:?}: expected PARENT>CHILD"),
+        )),
+    };
+    texts.iter().map(edge).collect()
+}

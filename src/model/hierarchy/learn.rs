@@ -1,0 +1,285 @@
+//! Learning from a table: structure and parameters, or parameters alone.
+
+use std::ops::ControlFlow;
+
+use super::super::em::{Outcome, Stopping};
+use super::super::error::ModelError;
+use super::super::table::Table;
+use super::fit::{Problem, Scored};
+use super::schema::{Rows, Schema};
+use super::search::Search;
+use super::structure::{Selector, Structure};
+use super::watch::Watch;
+use super::{Group, Hierarchy, Observer, Priors, Settings, Variant};
+use crate::rng::stream;
+
+/// Gain at which the parameters of all rows are settled, where the structure was searched on some: nats a row.
+const SETTLED: f64 = 1e-6;
+
+/// One accepted configuration of the search.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Step {
+    /// |S|.
+    pub styles: usize,
+    /// |H_g| of every real group, in order.
+    pub cardinalities: Vec<usize>,
+    /// Number of lateral edges.
+    pub lateral_edges: usize,
+    /// Cheeseman-Stutz score, nats, on standardised columns of the rows searched.
+    pub score: f64,
+}
+
+/// Result of [`learn`].
+#[derive(Clone, Debug)]
+pub struct Learned {
+    /// The model of highest score.
+    pub model: Hierarchy,
+    /// Its Cheeseman-Stutz score, nats, on standardised columns of all rows.
+    pub score: f64,
+    /// Its BIC score `log P(O | Θ) - k/2 log n`, nats, on standardised columns of all rows.
+    pub bic: f64,
+    /// Every accepted configuration, by |S|.
+    pub trace: Vec<Step>,
+    /// Whether the observer ended the search: the model is the best so far.
+    pub interrupted: bool,
+}
+
+/// Learns structure and parameters from `data`, whose columns `groups` assign to attributes.
+///
+/// Time per EM round is linear in rows; the same seed gives the same bytes with any number of
+/// threads.
+///
+/// # Errors
+/// A column that is unknown, constant, all missing or of mixed kind within its group; settings out
+/// of range; [`ModelError`] names the column.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, hierarchy::{Group, Settings, learn}};
+/// let n = 40;
+/// let width = (0..n).map(|i| Some(if i % 2 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
+/// let houses = Table::new()
+///     .real("width", width)?
+///     .binary("garage", (0..n).map(|i| Some(i % 2 == 1)))?;
+/// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
+/// let settings = Settings { styles: 2..=3, ..Settings::default() };
+/// let learned = learn(&houses, &groups, &settings, 1)?;
+/// assert_eq!(learned.model.styles(), 2);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
+pub fn learn(
+    data: &Table,
+    groups: &[Group],
+    settings: &Settings,
+    seed: u64,
+) -> Result<Learned, ModelError> {
+    learn_observed(data, groups, settings, seed, &|_| ControlFlow::Continue(()))
+}
+
+/// As [`learn`], watched: a search that is ended early returns the best model so far.
+///
+/// # Errors
+/// As [`learn`].
+pub fn learn_observed(
+    data: &Table,
+    groups: &[Group],
+    settings: &Settings,
+    seed: u64,
+    observer: &Observer,
+) -> Result<Learned, ModelError> {
+    check(settings)?;
+    let schema = Schema::learn(data, groups, settings.constant)?;
+    let work = Work::new(&schema, data, settings, seed)?;
+    work.learn(observer, |search| search.run(seed))
+}
+
+/// Goes on from a model that was learned before, from the same kind of table: its attributes, cardinalities and edges are
+/// where the search starts, and its columns stay standardised as they are. For a search that was interrupted, or new rows.
+///
+/// # Errors
+/// As [`learn`]; a category that the model does not know; [`ModelError::Parameter`] for a model of another variant.
+pub fn refine(
+    model: &Hierarchy,
+    data: &Table,
+    settings: &Settings,
+    seed: u64,
+    observer: &Observer,
+) -> Result<Learned, ModelError> {
+    check(settings)?;
+    if model.variant != settings.variant {
+        let problem = format!("the model given is {:?}", model.variant);
+        return Err(ModelError::parameter("variant", problem));
+    }
+    let work = Work::new(&model.schema, data, settings, seed)?;
+    let structure = model.shape.structure.clone();
+    work.learn(observer, |search| {
+        search.improve(structure, model.params.clone(), seed)
+    })
+}
+
+fn check(settings: &Settings) -> Result<(), ModelError> {
+    settings.priors.check()?;
+    if *settings.styles.start() < 1 || settings.styles.is_empty() {
+        return Err(ModelError::parameter(
+            "styles",
+            "must be a range from 1 or more",
+        ));
+    }
+    if settings.most_states < 2 {
+        return Err(ModelError::parameter("most_states", "must be at least 2"));
+    }
+    if settings.searched == 0 {
+        return Err(ModelError::parameter("searched", "must be at least 1"));
+    }
+    Ok(())
+}
+
+/// All rows, and those that are searched on.
+struct Work<'a> {
+    schema: &'a Schema,
+    settings: &'a Settings,
+    rows: Rows,
+    /// `None`: all of them.
+    sample: Option<Rows>,
+}
+
+impl<'a> Work<'a> {
+    fn new(
+        schema: &'a Schema,
+        data: &Table,
+        settings: &'a Settings,
+        seed: u64,
+    ) -> Result<Self, ModelError> {
+        let rows = schema.encode(data)?;
+        let sample = (rows.rows > settings.searched).then(|| {
+            let mut rng = stream(seed, "hierarchy/searched", 0);
+            let chosen = rand::seq::index::sample(&mut rng, rows.rows, settings.searched);
+            let mut chosen = chosen.into_vec();
+            chosen.sort_unstable();
+            rows.select(&chosen)
+        });
+        Ok(Self {
+            schema,
+            settings,
+            rows,
+            sample,
+        })
+    }
+
+    /// Searches, then fits what was found to all rows.
+    fn learn(
+        &self,
+        observer: &Observer,
+        search: impl FnOnce(&Search) -> Result<(Scored, Vec<Step>), ModelError>,
+    ) -> Result<Learned, ModelError> {
+        let watch = Watch::new(observer);
+        let (settings, schema) = (self.settings, self.schema);
+        let (mut scored, trace) = search(&Search {
+            schema,
+            rows: self.sample.as_ref().unwrap_or(&self.rows),
+            settings,
+            watch: &watch,
+        })?;
+        if self.sample.is_some() {
+            let structure = scored.shape.structure.clone();
+            let problem = Problem::new(schema, &self.rows, &settings.priors, structure)?;
+            let stopping = Stopping {
+                gain: settings.stopping.gain.max(SETTLED * self.rows.rows as f64),
+                ..settings.stopping
+            };
+            scored = problem.fit_while(scored.params, &stopping, &|| watch.goes_on())?;
+        }
+        let penalty = 0.5 * scored.shape.free_parameters() as f64 * (self.rows.rows as f64).ln();
+        Ok(Learned {
+            score: scored.score,
+            bic: scored.stats.log_likelihood - penalty,
+            trace,
+            interrupted: watch.ended(),
+            model: Hierarchy::new(
+                schema.clone(),
+                scored.shape,
+                scored.params,
+                settings.variant,
+            ),
+        })
+    }
+}
+
+/// Result of [`fit`].
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The model.
+    pub model: Hierarchy,
+    /// Cheeseman-Stutz score, nats, on standardised columns.
+    pub score: f64,
+    /// Why EM ended.
+    pub outcome: Outcome,
+}
+
+/// One run of EM for given cardinalities (`states` per real group, in order) without lateral
+/// edges, from k-means++ clusters of at most 10,000 of the rows: for data too large to search.
+/// Time is linear in rows; besides the data themselves one standardised copy is held.
+///
+/// # Errors
+/// As [`learn`]; [`ModelError::Parameter`] for cardinalities that do not fit the groups.
+pub fn fit(
+    data: &Table,
+    groups: &[Group],
+    styles: usize,
+    states: &[usize],
+    priors: &Priors,
+    stopping: &Stopping,
+    seed: u64,
+) -> Result<Fitted, ModelError> {
+    let settings = Settings {
+        priors: *priors,
+        stopping: *stopping,
+        ..Settings::default()
+    };
+    let go_on = |_: Option<&Step>| ControlFlow::Continue(());
+    fit_observed(data, groups, styles, states, &settings, seed, &go_on)
+}
+
+/// As [`fit`], with priors, stopping and constant columns as in `settings`, watched before every round.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_observed(
+    data: &Table,
+    groups: &[Group],
+    styles: usize,
+    states: &[usize],
+    settings: &Settings,
+    seed: u64,
+    observer: &Observer,
+) -> Result<Fitted, ModelError> {
+    check(settings)?;
+    let schema = Schema::learn(data, groups, settings.constant)?;
+    if styles == 0 || states.len() != schema.groups.len() || states.contains(&0) {
+        let problem = format!(
+            "one cardinality for each of {} real groups",
+            schema.groups.len()
+        );
+        return Err(ModelError::parameter("states", problem));
+    }
+    let rows = schema.encode(data)?;
+    let selectors = states.iter().map(|&k| Selector::Hidden(k)).collect();
+    let structure = Structure {
+        selectors,
+        ..Structure::new(styles, &Selector::Style, states.len(), schema.codes.len())
+    };
+    let problem = Problem::new(&schema, &rows, &settings.priors, structure)?;
+    let start = problem.start(&mut stream(seed, "fixed", 0))?;
+    let watch = Watch::new(observer);
+    let (scored, outcome) = problem.fit_told(start, &settings.stopping, &|| watch.goes_on())?;
+    Ok(Fitted {
+        score: scored.score,
+        outcome,
+        model: Hierarchy::new(
+            schema.clone(),
+            scored.shape,
+            scored.params,
+            Variant::NoLateral,
+        ),
+    })
+}

@@ -1,0 +1,46 @@
+//! What watches a search, and may end it.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::Step;
+
+/// Called with every accepted configuration, and with `None` before every round of EM, from any thread.
+/// [`ControlFlow::Break`] ends the search with the best configuration so far.
+pub type Observer<'a> = dyn Fn(Option<&Step>) -> ControlFlow<()> + Sync + 'a;
+
+/// An observer, and whether it has ended the search.
+pub(crate) struct Watch<'a> {
+    observer: &'a Observer<'a>,
+    ended: AtomicBool,
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(observer: &'a Observer<'a>) -> Self {
+        Self {
+            observer,
+            ended: AtomicBool::new(false),
+        }
+    }
+
+    /// Whether the search shall go on; once it shall not, it never shall.
+    pub fn goes_on(&self) -> bool {
+        self.tell(None);
+        !self.ended()
+    }
+
+    /// Tells of an accepted configuration.
+    pub fn accepted(&self, step: &Step) {
+        self.tell(Some(step));
+    }
+
+    pub fn ended(&self) -> bool {
+        self.ended.load(Ordering::Relaxed)
+    }
+
+    fn tell(&self, step: Option<&Step>) {
+        if !self.ended() && (self.observer)(step).is_break() {
+            self.ended.store(true, Ordering::Relaxed);
+        }
+    }
+}
