@@ -17,10 +17,11 @@ mod learning;
 mod mixture_figures;
 mod reasons;
 mod speed;
+pub mod study;
 mod views;
 
 use super::{Artefact, Context, Experiment};
-use crate::model::hierarchy::{Constant, Settings};
+use crate::model::hierarchy::{Constant, Settings, Sweep};
 
 /// The paper's tables and figures.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -138,7 +139,7 @@ const ARTEFACTS: &[Artefact] = &[
 ];
 
 /// Settings of every model: cardinalities as in the paper at the paper's budget, up to 12 styles by
-/// default. Columns that are constant among the training houses stay.
+/// default, each searched in full on all rows. Columns that are constant among the training houses stay.
 fn settings(ctx: &mut Context) -> Settings {
     let most = ctx.budget().choose(3, 12, 25);
     ctx.setting("most_styles", most);
@@ -147,6 +148,8 @@ fn settings(ctx: &mut Context) -> Settings {
         most_states: ctx.budget().choose(4, 25, 25),
         restarts: ctx.budget().choose(1, 4, 4),
         constant: Constant::Keep,
+        sweep: Sweep::All,
+        searched: usize::MAX,
         ..Settings::default()
     }
 }

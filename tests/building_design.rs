@@ -81,8 +81,53 @@ fn two_observed_boxes_keep_their_bits_and_the_attributes_are_reached() {
 }
 
 #[test]
+fn observed_floors_that_nobody_asked_for_are_kept_unless_the_shares_are_given() {
+    let database = database();
+    let high = |i: &usize| {
+        database.buildings[*i]
+            .boxes
+            .iter()
+            .any(|b| database.buildings[*i].floors_of(b) == 3)
+    };
+    let i = (0..200).find(high).unwrap();
+    let mut partial = database.buildings[i].clone();
+    let floors: Vec<usize> = partial.boxes.iter().map(|b| partial.floors_of(b)).collect();
+    let tallest = floors.iter().position(|f| *f == 3).unwrap();
+    partial.boxes = vec![partial.boxes[tallest]];
+    partial.facades.clear();
+    partial.special.clear();
+    // A model that thinks of two floors.
+    let mut wanted = row(&database, i);
+    wanted[6] += wanted[8];
+    wanted[8] = 0.0;
+    let build = |given: bool| {
+        let mut rng = stream(1, "tests/floors", 0);
+        around(
+            "h",
+            &partial,
+            &wanted,
+            &std::array::from_fn(|c| given && (6..9).contains(&c)),
+            &database,
+            &without(i),
+            &mut rng,
+        )
+    };
+    let house = build(false).unwrap().building;
+    assert!(house.boxes.contains(&partial.boxes[0]));
+    assert!(matches!(
+        build(true),
+        Err(CompleteError::Floors {
+            floors: 3,
+            wanted: 2,
+            ..
+        })
+    ));
+}
+
+#[test]
 fn an_observed_front_stays_as_it_is_on_its_walls() {
     let database = database();
+    let mut hidden = Vec::new();
     for i in (1..200).step_by(20) {
         let partial = front_of(&database.buildings[i]);
         let before = walls_of_pieces(&partial);
@@ -97,7 +142,15 @@ fn an_observed_front_stays_as_it_is_on_its_walls() {
             &options,
             &mut rng,
         );
-        let house = house.unwrap().building;
+        let house = match house {
+            Ok(house) => house.building,
+            // A front of several depths is not always met; how often is judged at the end.
+            Err(CompleteError::Hidden) => {
+                hidden.push(i);
+                continue;
+            }
+            Err(e) => panic!("house {i}: {e}"),
+        };
         let after = walls_of_pieces(&house);
         for (piece, wall) in partial.facades.iter().zip(&before) {
             let at = wall.unwrap().at;
@@ -109,6 +162,10 @@ fn an_observed_front_stays_as_it_is_on_its_walls() {
             assert!(stands, "house {i}: {piece:?}");
         }
     }
+    assert!(
+        hidden.len() <= 1,
+        "no arrangement for the fronts of {hidden:?}"
+    );
 }
 
 #[test]

@@ -3,10 +3,13 @@
 use std::path::PathBuf;
 
 use edifice::experiments::building_exteriors::houses::{
-    DEPENDENCIES, House, KINDS, SHIPPED, SHIPPED_SEED, STYLES, houses,
+    DEPENDENCIES, Family, House, KINDS, SHIPPED, SHIPPED_SEED, STYLES, houses,
 };
 use edifice::io::building_json;
 use edifice::methods::building_exteriors::attributes::{GROUPS, Level, attributes};
+use edifice::methods::building_exteriors::house::model::expected_volume;
+use edifice::methods::building_exteriors::house::{Joining, model};
+use edifice::methods::building_exteriors::mass::is_sound;
 use edifice::model::hierarchy::Priors;
 
 fn folder() -> PathBuf {
@@ -65,13 +68,59 @@ fn all_styles_occur_and_every_house_has_plausible_attributes() {
             (values[5] * values[6] - values[3]).abs() < 1e-9,
             "{name}: far = bcr / arf.0"
         );
-        // The front porch stands beside the garage, never on it.
-        let garage_right = values[9] * values[0] + values[11] / 2.0;
-        let porch_left = values[15] * values[0] - values[17] / 2.0;
+        // The front porch stands beside the garage, never on it; in mirrored plans on its other side.
+        let ends = |c: usize| {
+            let (at, half) = (values[c] * values[0], values[c + 2] / 2.0);
+            (at - half, at + half)
+        };
         if values[11] > 0.0 && values[17] > 0.0 {
-            assert!(porch_left > garage_right, "{name}");
+            let (garage, porch) = (ends(9), ends(15));
+            assert!(porch.0 > garage.1 || porch.1 < garage.0, "{name}");
         }
     }
+}
+
+#[test]
+fn plans_are_of_ten_families_and_garages_stand_in_front_beside_and_behind() {
+    let made = houses(SHIPPED_SEED, SHIPPED);
+    for family in Family::ALL {
+        let count = made.iter().filter(|h| h.family == family).count();
+        assert!(count > 0, "{family:?}");
+    }
+    let common = Family::ALL.into_iter().filter(|family| {
+        let own = made.iter().filter(|h| h.family == *family);
+        own.count() >= SHIPPED / 20
+    });
+    assert!(common.count() >= 8);
+    let mut places = std::collections::BTreeSet::new();
+    for house in &made {
+        let row = attributes(&house.building).unwrap();
+        let (x, y) = (row[9].unwrap(), row[10].unwrap());
+        if x > 0.0 {
+            places.insert(((3.0 * y) as usize, x > 0.5));
+        }
+    }
+    // Thirds of the depth from the front, and left and right.
+    for third in 0..3 {
+        assert!(places.contains(&(third, false)), "{places:?}");
+    }
+    assert!(places.contains(&(1, true)), "{places:?}");
+}
+
+#[test]
+fn no_window_is_hidden_and_every_house_is_closed() {
+    use rayon::prelude::*;
+    let made = houses(SHIPPED_SEED, SHIPPED);
+    made.par_iter().for_each(|house| {
+        let name = &house.building.name;
+        let made = model(&house.building, Joining::Boxes).unwrap();
+        assert!(made.unplaced.is_empty(), "{name}: {:?}", made.unplaced);
+        assert_eq!(made.report.shells, 1, "{name}");
+        let expected = expected_volume(&house.building, Joining::Boxes, made.openings);
+        let error = (made.report.volume - expected).abs() / expected;
+        assert!(error < 1e-9, "{name}: volume off by {error:e}");
+        assert!(is_sound(&house.building), "{name}");
+    });
 }
 
 /// Kind of `group` of a house.
@@ -87,10 +136,10 @@ fn plans_and_walls_have_the_numbers_that_were_drawn() {
         let row = attributes(&house.building).unwrap();
         let value = |c: usize| row[c].unwrap();
         // Coverage: mean by kind and width, noise of 0.005 within 2.5 deviations, millimetres.
-        let mean = [0.85, 0.80, 0.75][kind(&house, "bcr")] - 0.009 * (value(0) - 14.0);
+        let mean = [0.86, 0.80, 0.74][kind(&house, "bcr")] - 0.009 * (value(0) - 14.0);
         assert!((value(3) - mean).abs() < 0.0135, "{name}: bcr");
         // Boundary, with the coverage as measured.
-        let mean = [4.85, 5.11][kind(&house, "bdry")] + 0.03 * (value(0) - 14.0);
+        let mean = [5.06, 5.36][kind(&house, "bdry")] + 0.03 * (value(0) - 14.0);
         let bdry = mean - 3.0 * (value(3) - 0.8);
         assert!((value(4) - bdry).abs() < 0.055, "{name}: bdry");
         let aligned = match (kind(&house, "arf"), kind(&house, "alignment")) {

@@ -78,7 +78,7 @@ fn completed(ctx: &Context, learned: &Learned, index: usize) -> Result<(Building
 }
 
 fn cell(ctx: &Context) -> [usize; 2] {
-    ctx.budget().choose([60, 44], [360, 260], [360, 260])
+    ctx.budget().choose([60, 44], [320, 232], [320, 232])
 }
 
 fn watched(building: &Building) -> Result<crate::methods::building_exteriors::house::Model> {

@@ -37,7 +37,7 @@ fn row(database: &Database, house: usize) -> [f64; 49] {
 }
 
 fn cell(ctx: &Context) -> [usize; 2] {
-    ctx.budget().choose([60, 44], [340, 250], [340, 250])
+    ctx.budget().choose([60, 44], [304, 224], [304, 224])
 }
 
 fn target(row: &[f64; 49]) -> FacadeTarget {

@@ -25,27 +25,31 @@ const WILD_SEED: u64 = 1;
 
 /// One method on one house.
 #[derive(Debug, Clone)]
-struct Unit {
-    dataset: &'static str,
-    method: &'static str,
-    house: usize,
-    wanted: Vec<f64>,
+pub(super) struct Unit {
+    /// Set, which names the random stream; a house of `shipped` is no donor of itself.
+    pub dataset: &'static str,
+    /// Method.
+    pub method: &'static str,
+    /// Index of the house.
+    pub house: usize,
+    /// The attributes wanted.
+    pub wanted: Vec<f64>,
 }
 
 /// What came of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct Answer {
+pub(super) struct Answer {
     /// Mass columns from those wanted.
-    mass_z: f64,
+    pub mass_z: f64,
     /// All 39 from those wanted; mass columns where there are no facades.
-    max_z: f64,
-    mean_z: f64,
+    pub max_z: f64,
+    pub mean_z: f64,
     /// All 39 from the repaired row.
-    repaired_z: f64,
-    valid: bool,
-    watertight: bool,
-    seconds: f64,
-    evaluations: u64,
+    pub repaired_z: f64,
+    pub valid: bool,
+    pub watertight: bool,
+    pub seconds: f64,
+    pub evaluations: u64,
 }
 
 /// The artefact `generation`.
@@ -120,7 +124,8 @@ pub(super) fn rows_of(table: &Data) -> Vec<Vec<f64>> {
     (0..table.rows()).map(row).collect()
 }
 
-fn answer(unit: &Unit, database: &Database, seed: u64) -> Result<Answer> {
+/// Runs one method on one house and measures what came of it.
+pub(super) fn answer(unit: &Unit, database: &Database, seed: u64) -> Result<Answer> {
     let leave_out = (unit.dataset == "shipped").then_some(unit.house);
     let name = format!("building_exteriors/generation/{}", unit.dataset);
     let mut rng = stream(seed, &name, unit.house as u64);

@@ -64,9 +64,16 @@ pub fn read(path: &Path) -> Result<Vec<Building>> {
 /// # Errors
 /// [`Error::Io`] when the file cannot be written.
 pub fn write(building: &Building, path: &Path) -> Result<()> {
-    let text =
-        serde_json::to_string_pretty(&file(building)).map_err(|e| Error::content(path, e))?;
-    write_atomic(path, format!("{text}\n").as_bytes())
+    let text = to_string(building).map_err(|e| Error::content(path, e))?;
+    write_atomic(path, text.as_bytes())
+}
+
+/// The text of one building, indented.
+///
+/// # Errors
+/// None that a checked building has.
+pub fn to_string(building: &Building) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(&file(building)).map(|text| format!("{text}\n"))
 }
 
 /// Writes a database, one building a line.

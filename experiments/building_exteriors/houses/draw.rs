@@ -4,10 +4,10 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::styles::Kinds;
+use super::styles::{GARAGES, Kinds, Place};
 
 /// What the plan and the walls must come to; lengths in metres, positions as shares of the bounding
-/// box of the ground floor.
+/// box of the ground floor, before a mirrored house is mirrored.
 #[derive(Debug, Clone)]
 pub(super) struct Numbers {
     pub width: f64,
@@ -20,7 +20,12 @@ pub(super) struct Numbers {
     pub arf: [f64; 3],
     /// How far the front rooms stand out.
     pub front_step: f64,
+    /// How far the wall beside a garage beside the house steps in.
+    pub side_step: f64,
+    /// How far the wall behind a garage behind the house steps in.
+    pub yard: f64,
     pub garage: Option<Part>,
+    pub place: Option<Place>,
     pub front_porch: Option<Part>,
     pub back_porch: Option<Part>,
     /// How far the back wall steps in beside a back porch.
@@ -48,8 +53,10 @@ const BBOX: [(f64, f64, usize); 5] = [
     (17.0, 13.5, 2),
     (13.5, 12.5, 3),
 ];
-const BCR: [f64; 3] = [0.85, 0.80, 0.75];
-const BDRY: [f64; 2] = [4.85, 5.11];
+const BCR: [f64; 3] = [0.86, 0.80, 0.74];
+const BDRY: [f64; 2] = [5.06, 5.36];
+/// Mean of [`Numbers::front_step`] (m).
+const FRONT_STEP: f64 = 1.6;
 const WWR: [[f64; 4]; 3] = [
     [0.13, 0.12, 0.07, 0.08],
     [0.18, 0.19, 0.10, 0.12],
@@ -57,8 +64,8 @@ const WWR: [[f64; 4]; 3] = [
 ];
 const SYMMETRY: [[f64; 4]; 3] = [
     [0.72, 0.74, 0.70, 0.71],
-    [0.42, 0.68, 0.70, 0.68],
-    [0.26, 0.36, 0.45, 0.43],
+    [0.55, 0.68, 0.70, 0.68],
+    [0.38, 0.36, 0.45, 0.43],
 ];
 
 pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
@@ -87,27 +94,39 @@ pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
         }
     };
 
-    let garage = (kinds.garage > 0).then(|| {
-        let (w, in_left, in_front) = ([3.3, 5.7][kinds.garage - 1], 0.5, 0.45);
+    let place = GARAGES[kinds.garage].map(|(_, place)| place);
+    let garage = GARAGES[kinds.garage].map(|(cars, place)| {
         // Large houses have large garages.
-        let w = w + 0.14 * (width - 14.0) + noise(0.07);
+        let w = [3.5, 5.7][cars - 1] + 0.14 * (width - 14.0) + noise(0.07);
         let d = 5.7 + 0.12 * (depth - 12.0) + noise(0.07);
+        let in_left = 0.5 + noise(0.12) + w / 2.0;
+        let in_front = noise(0.09) + d / 2.0;
+        let y = match place {
+            Place::Front => 0.45 + in_front,
+            Place::Beside => FRONT_STEP + 0.7 + in_front,
+            Place::Behind => depth - 0.45 - in_front,
+        };
         Part {
-            x: (in_left + noise(0.12) + w / 2.0) / width,
-            y: (in_front + noise(0.09) + d / 2.0) / depth,
+            x: in_left / width,
+            y: y / depth,
             width: w,
             depth: d,
             height: 2.45 + 0.04 * (height - 3.0) + noise(0.03),
         }
     });
-    // The front porch follows the garage, which stands on its left, and grows with the house.
+    // The front porch follows the garage, which stands on its left, and grows with the house. Where a house is
+    // mirrored, the distance is linear in the garage's place from the other side; its height tells that there is one.
     let beside = garage.map_or([0.0; 4], |g| [g.x, g.y, g.width, g.height]);
+    let from_right = match garage {
+        Some(g) if kinds.mirrored => 0.42 * g.height - 1.0,
+        _ => 0.0,
+    };
     let front_porch = matches!(kinds.porch, 1 | 2).then(|| Part {
-        x: 0.12 + beside[0] + 0.04 * beside[2] + noise(0.004),
-        y: 0.088 + 0.09 * beside[1] + noise(0.002),
+        x: 0.12 + beside[0] + 0.04 * beside[2] + from_right + noise(0.004),
+        y: 0.10 + 0.05 * beside[1] + noise(0.002),
         width: 2.3 + 0.15 * (width - 14.0) + noise(0.06),
-        depth: 1.6 + noise(0.06),
-        height: 2.2 + 0.14 * beside[3] + noise(0.02),
+        depth: 1.8 + noise(0.06),
+        height: 2.45 + 0.05 * beside[3] + noise(0.02),
     });
     let back_porch = matches!(kinds.porch, 2 | 3).then(|| {
         let d = 1.9 + 0.1 * (depth - 12.0) + noise(0.05);
@@ -119,7 +138,9 @@ pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
             height: 2.4 + noise(0.03),
         }
     });
-    let front_step = 1.25 + noise(0.05);
+    let front_step = FRONT_STEP + noise(0.05);
+    let side_step = 3.2 + noise(0.05);
+    let yard = 3.0 + noise(0.05);
     let back_step = 1.4 + noise(0.06);
     let wwr = WWR[kinds.wwr].map(|mean| mean + noise(0.008));
     let symmetry = SYMMETRY[kinds.symmetry].map(|mean| mean + noise(0.025));
@@ -133,7 +154,10 @@ pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
         bdry,
         arf,
         front_step,
+        side_step,
+        yard,
         garage,
+        place,
         front_porch,
         back_porch,
         back_step,

@@ -1,140 +1,206 @@
 //! A plan of overlapping boxes that has the drawn numbers.
 //!
 //! ```text
-//!  y = D        +-----+------+          wing, and behind it a back porch
-//!       notch   | wing | porch
-//!  +--bump--+---+-----+------+ D - n_d
-//!  |      middle (tall to the right)  |
-//!  +-+ garage +--+ porch +---+ room   |  y = front step
-//!    +--------+  +-------+   +--------+  y = 0
+//!  y = D     +-- wings --+------+ porch
+//!   garage   |           +------+ D - back step
+//!  +-behind--+                  |       the main body: a rectangle less what the parts take
+//!  +---+   main body            |       and less the cuts of the plan's family
+//!  garage                       |       ([`super::families`])
+//!  beside   +--+ porch +--+ room|  y = front step
+//!      +----+  +-------+  +-----+  y = 0
 //! ```
-//! The notch at the back left takes away the area that the coverage asks for; the bump inside it
-//! adds twice its depth to the perimeter. Both are solved for in closed form.
+//! Around garage and porches the walls are as their kinds say, whatever the family, so that how much of them is
+//! seen tells nothing of the rest of the plan. The cuts are solved for in closed form: recesses for the boundary,
+//! their widths and cut corners for the coverage.
+
+use rand::{Rng, RngExt};
 
 use super::draw::{Numbers, Part};
-use super::styles::Kinds;
-use crate::shape::{BoxStyle, MassBox, PlanUnion, Rect, Ridge, Roof, RoofStyle};
+use super::families::Family;
+use super::storeys::{self, millimetres};
+use super::styles::{Kinds, Place};
+use crate::shape::{BoxStyle, MassBox, PlanUnion, Rect};
 
 pub(super) struct Plan {
     pub floor_height: f64,
     pub boxes: Vec<MassBox>,
+    pub family: Family,
 }
 
-/// Depth of the notch as a share of the depth of the house.
-const NOTCH: f64 = 0.40;
+/// Free wall between two parts, or a part and a corner (m).
+const CLEAR: f64 = 0.05;
+/// How far a wing behind or beside a garage laps over it (m).
+const LAP: f64 = 0.1;
+/// Thinnest wing and narrowest recess of the main body (m).
+const THINNEST: f64 = 1.5;
+const NARROWEST: f64 = 1.2;
+/// Least width of the room in front beside the parts (m).
+const ROOM: f64 = 2.0;
 
-/// The boxes, or `None` when the numbers do not fit together.
-pub(super) fn build(n: &Numbers, kinds: &Kinds) -> Option<Plan> {
-    let (w, d) = (n.width, n.depth);
-    let floor = millimetres(n.floor_height);
-    let notch_depth = NOTCH * d;
-    let back = d - notch_depth;
-    let step = n.front_step;
-    let room = 0.3 * w;
+/// The rectangle around the house with what garage and porches take from its main body.
+pub(super) struct Site {
+    pub width: f64,
+    pub depth: f64,
+    /// Taken from the main body.
+    pub taken: Vec<Rect>,
+    pub garage: Option<Rect>,
+    pub front: Option<Rect>,
+    pub rear: Option<Rect>,
+    /// Free stretches of the walls on the outermost lines: front, back, left, right.
+    pub free: [[f64; 2]; 4],
+    /// Deepest cuts of the corners back left, back right, front left, front right.
+    pub deepest: [f64; 4],
+}
 
-    let garage = n.garage.map(|p| place(&p, w, d));
-    let front = n.front_porch.map(|p| place(&p, w, d));
-    let rear = n.back_porch.map(|p| place(&p, w, d));
-    check_front(garage, front, w - room, step, back)?;
-    // Where the wing's back wall steps in for the porch, or the right wall without one.
-    let wing_end = rear.map_or(w, |p| p.x);
-    if rear.is_some_and(|p| p.right() > w - 0.02 || p.y > d - n.back_step - 0.1) {
-        return None;
-    }
-
-    // Solids without notch and bump, to see how much area and boundary is missing.
-    let wing = |start: f64| Rect::new(start, back - 0.5, wing_end - start, notch_depth + 0.5);
-    let mut ground = vec![
-        Rect::new(0.0, step, w, back - step),
-        Rect::new(w - room, 0.0, room, step + 1.0),
-        wing(0.0),
-    ];
-    if rear.is_some() {
-        let depth = notch_depth - n.back_step + 0.5;
-        ground.push(Rect::new(
-            wing_end - 0.5,
-            back - 0.5,
-            w - wing_end + 0.5,
-            depth,
-        ));
-    }
-    let parts = [garage, front, rear];
-    let solid: Vec<Rect> = ground
-        .iter()
-        .copied()
-        .chain(parts.into_iter().flatten())
+/// A plan of a family drawn at random, or `None` when the numbers do not fit together or into the family.
+pub(super) fn build(n: &Numbers, kinds: &Kinds, rng: &mut impl Rng) -> Option<Plan> {
+    let site = Site::new(n, rng)?;
+    let parts: Vec<Rect> = [site.garage, site.front, site.rear]
+        .into_iter()
+        .flatten()
         .collect();
-    let full = PlanUnion::new(&solid);
-    let area = n.bcr * w * d;
-    let bump_depth = (n.bdry * area.sqrt() - full.perimeter()) / 2.0;
-    if !(0.15..notch_depth - 0.3).contains(&bump_depth) {
+    let area = n.bcr * n.width * n.depth;
+    let perimeter = n.bdry * area.sqrt();
+    let with_parts = |main: &[Rect]| {
+        let all: Vec<Rect> = main.iter().chain(&parts).copied().collect();
+        PlanUnion::new(&all)
+    };
+    let whole = with_parts(&less(&site, &[]));
+    let recess = (perimeter - whole.perimeter()) / 2.0;
+    let family = Family::draw(rng);
+    let cuts = family.cuts(&site, whole.area() - area, recess, rng)?;
+    let main = less(&site, &cuts);
+    let body = PlanUnion::new(&main).soundness();
+    if body.parts != 1 || body.courtyard || body.thickness < THINNEST || body.gap < NARROWEST {
         return None;
     }
-    // The bump is half as wide as the notch.
-    let notch = (full.area() - area) / (notch_depth - bump_depth / 2.0);
-    if !(0.3..wing_end - 0.25).contains(&notch) {
+    // Cuts that overlap, or lie beside the body, take less.
+    let plan = with_parts(&main);
+    let off = |a: f64, b: f64| (a - b).abs() > 1e-6 * b;
+    if off(plan.area(), area) || off(plan.perimeter(), perimeter) {
         return None;
     }
-    ground[2] = wing(notch);
-    ground.push(Rect::new(
-        notch / 4.0,
-        back - 0.5,
-        notch / 2.0,
-        bump_depth + 0.5,
-    ));
-
-    let mut boxes: Vec<MassBox> = ground
-        .iter()
-        .map(|r| mass_box(BoxStyle::Main, r, floor))
-        .collect();
-    let total = area / n.arf[0];
-    for k in 1..n.floors {
-        let tall = n.arf[k] * total / (back - step);
-        if tall > w {
-            return None;
-        }
-        let slab = Rect::new(w - tall, step, tall, back - step);
-        boxes.push(mass_box(BoxStyle::Main, &slab, floor * (k + 1) as f64));
-    }
-    let styles = [BoxStyle::Garage, BoxStyle::Porch, BoxStyle::Porch];
-    let heights = [n.garage, n.front_porch, n.back_porch];
-    for ((style, place), part) in styles.into_iter().zip(parts).zip(heights) {
-        if let (Some(place), Some(part)) = (place, part) {
-            boxes.push(mass_box(style, &place, part.height));
-        }
-    }
-    for (i, b) in boxes.iter_mut().enumerate() {
-        b.roof.style = kinds.roofs[i % kinds.roofs.len()];
-        b.roof.pitch = if b.roof.style == RoofStyle::Flat {
-            0.0
-        } else {
-            30.0
-        };
-    }
+    let boxes = storeys::boxes(&site, n, kinds, &main, rng)?;
     Some(Plan {
-        floor_height: floor,
+        floor_height: millimetres(n.floor_height),
         boxes,
+        family,
     })
 }
 
-/// Garage, front porch and room stand in a row without touching, in front of the middle.
-fn check_front(
-    garage: Option<Rect>,
-    porch: Option<Rect>,
-    room: f64,
-    step: f64,
-    back: f64,
-) -> Option<()> {
-    let clear = 0.05;
-    let mut last = 0.0;
-    for part in [garage, porch].into_iter().flatten() {
-        let meets_the_wall = part.top() > step + clear && part.top() < back;
-        if part.x < last + clear || part.y < clear || part.y > step - clear || !meets_the_wall {
-            return None;
+impl Site {
+    fn new(n: &Numbers, rng: &mut impl Rng) -> Option<Self> {
+        let (w, d, step) = (n.width, n.depth, n.front_step);
+        let garage = n.garage.map(|p| place(&p, w, d));
+        let front = n.front_porch.map(|p| place(&p, w, d));
+        let rear = n.back_porch.map(|p| place(&p, w, d));
+        let mut taken = Vec::new();
+        let mut free = [[0.0, w], [0.0, w], [0.0, d], [0.0, d]];
+        let mut deepest = [0.52 * d; 4];
+        // Where the room in front may begin.
+        let mut room = None;
+        let mut left: f64 = 0.0;
+        match (garage, n.place) {
+            (Some(g), Some(Place::Front)) => {
+                stands_before(&g, step, d)?;
+                room = Some(g.right());
+            }
+            (Some(g), Some(Place::Beside)) => {
+                let fits = g.x > CLEAR && g.right() > n.side_step + CLEAR && g.y > step + CLEAR;
+                let wing = d - g.top();
+                if !fits || wing < 0.6 {
+                    return None;
+                }
+                taken.push(Rect::new(0.0, 0.0, n.side_step, g.top() - LAP));
+                left = n.side_step;
+                room = Some(left);
+                free[2] = [g.top() - LAP, d];
+                deepest[0] = wing - THINNEST;
+            }
+            (Some(g), Some(Place::Behind)) => {
+                if g.x < CLEAR || g.top() > d - CLEAR || g.y > d - n.yard - LAP {
+                    return None;
+                }
+                let corner = Rect::new(0.0, d - n.yard, g.right() - LAP, n.yard);
+                taken.push(corner);
+                free[1][0] = corner.right();
+                free[2][1] = d - n.yard;
+                deepest[0] = 0.0;
+            }
+            _ => {}
         }
-        last = part.right();
+        if let Some(p) = front {
+            stands_before(&p, step, d)?;
+            if p.x < left.max(garage.map_or(0.0, |g| g.right())) + CLEAR {
+                return None;
+            }
+            room = Some(p.right());
+        }
+        if let Some(right) = room {
+            let most = w - ROOM - right - 0.35;
+            if most < 0.0 {
+                return None;
+            }
+            let gap = 0.35 + rng.random::<f64>().powi(2) * most.min(0.25 * w);
+            let start = right.max(left) + gap;
+            taken.push(Rect::new(left, 0.0, start - left, step));
+            free[0][0] = start;
+            free[2][0] = free[2][0].max(step);
+            deepest[2] = 0.0;
+        }
+        if let Some(p) = rear {
+            let wing = p.x - free[1][0];
+            if p.right() > w - 0.02 || p.y > d - n.back_step - 0.1 || wing < THINNEST {
+                return None;
+            }
+            // The porch leans on a wing to its left.
+            taken.push(Rect::new(p.x, d - n.back_step, w - p.x, n.back_step));
+            free[1][1] = p.x;
+            free[3][1] = d - n.back_step;
+            deepest[1] = 0.0;
+        }
+        Some(Self {
+            width: w,
+            depth: d,
+            taken,
+            garage,
+            front,
+            rear,
+            free,
+            deepest,
+        })
     }
-    (last + clear < room).then_some(())
+}
+
+/// Whether a part before the front wall stands out of it and meets it.
+fn stands_before(part: &Rect, step: f64, depth: f64) -> Option<()> {
+    let meets = part.top() > step + CLEAR && part.top() < 0.7 * depth;
+    (part.x > CLEAR && part.y > CLEAR && part.y < step - CLEAR && meets).then_some(())
+}
+
+/// The main body less what the parts and the cuts take, as disjoint rectangles.
+fn less(site: &Site, cuts: &[Rect]) -> Vec<Rect> {
+    let gone = || site.taken.iter().chain(cuts);
+    let lines = |extent: f64, edges: fn(&Rect) -> [f64; 2]| {
+        let mut at: Vec<f64> = gone().flat_map(edges).chain([0.0, extent]).collect();
+        at.retain(|v| (-1e-9..=extent + 1e-9).contains(v));
+        at.sort_by(f64::total_cmp);
+        at.dedup_by(|a, b| *a - *b < 1e-9);
+        at
+    };
+    let xs = lines(site.width, |r| [r.x, r.right()]);
+    let ys = lines(site.depth, |r| [r.y, r.top()]);
+    let mut cells = Vec::new();
+    for x in xs.windows(2) {
+        for y in ys.windows(2) {
+            let (mx, my) = ((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
+            let is_gone = |r: &Rect| r.x < mx && mx < r.right() && r.y < my && my < r.top();
+            if !gone().any(is_gone) {
+                cells.push(Rect::new(x[0], y[0], x[1] - x[0], y[1] - y[0]));
+            }
+        }
+    }
+    cells
 }
 
 /// A part in plan, in metres.
@@ -147,31 +213,5 @@ fn place(part: &Part, width: f64, depth: f64) -> Rect {
     )
 }
 
-/// A box with its edges on whole millimetres, as a surveyor would note them; roofs come later.
-fn mass_box(style: BoxStyle, plan: &Rect, height: f64) -> MassBox {
-    let (left, right) = (millimetres(plan.x), millimetres(plan.right()));
-    let (front, back) = (millimetres(plan.y), millimetres(plan.top()));
-    MassBox {
-        style,
-        x: tenths((left + right) / 2.0),
-        y: tenths((front + back) / 2.0),
-        width: millimetres(right - left),
-        depth: millimetres(back - front),
-        height: millimetres(height),
-        roof: Roof {
-            style: RoofStyle::Flat,
-            pitch: 0.0,
-            ridge: Ridge::X,
-        },
-    }
-}
-
-/// Rounds to millimetres.
-pub(super) fn millimetres(metres: f64) -> f64 {
-    (metres * 1e3).round() / 1e3
-}
-
-/// Rounds to tenths of a millimetre, where centres of boxes lie.
-fn tenths(metres: f64) -> f64 {
-    (metres * 1e4).round() / 1e4
-}
+/// Styles of the parts in the order of [`Site`].
+pub(super) const PARTS: [BoxStyle; 3] = [BoxStyle::Garage, BoxStyle::Porch, BoxStyle::Porch];

@@ -15,7 +15,7 @@ pub(super) struct Kinds {
     pub bdry: usize,
     /// 0 one floor, 1 large and 2 small upper floor, 3 three floors.
     pub arf: usize,
-    /// Cars in the garage.
+    /// Index into [`GARAGES`].
     pub garage: usize,
     /// 0 none, 1 front, 2 front and back, 3 back.
     pub porch: usize,
@@ -31,18 +31,48 @@ pub(super) struct Kinds {
     pub windows: Vec<ElementStyle>,
     /// Special elements present.
     pub special: Vec<Special>,
+    /// Whether the plan is mirrored left to right.
+    pub mirrored: bool,
 }
 
+/// Where a garage stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Before the front wall, on the left.
+    Front,
+    /// Beside the left wall.
+    Beside,
+    /// Behind the back wall, on the left.
+    Behind,
+}
+
+/// Kinds of garages: cars and place.
+pub(super) const GARAGES: [Option<(usize, Place)>; 6] = [
+    None,
+    Some((1, Place::Front)),
+    Some((2, Place::Front)),
+    Some((1, Place::Beside)),
+    Some((2, Place::Beside)),
+    Some((1, Place::Behind)),
+];
+
+/// Kinds of porches.
+const PORCHES: usize = 4;
+
 impl Kinds {
-    /// The kinds in the order of [`super::KINDS`].
+    /// The kinds in the order of [`super::KINDS`]; garages and porches of mirrored plans are kinds of their own.
     pub fn numbers(&self) -> [usize; super::KINDS.len()] {
+        let apart = |kind: usize, kinds: usize| match self.mirrored && kind > 0 {
+            true => kind + kinds,
+            false => kind,
+        };
         [
             self.bbox,
             self.bcr,
             self.bdry,
             self.arf,
-            self.garage,
-            self.porch,
+            apart(self.garage, GARAGES.len()),
+            apart(self.porch, PORCHES),
             self.wwr,
             self.symmetry,
             self.alignment,
@@ -57,8 +87,8 @@ pub(super) struct Style {
     bcr: [f64; 3],
     bdry: [f64; 2],
     arf: [f64; 4],
-    garage: [f64; 3],
-    porch: [f64; 4],
+    garage: [f64; 6],
+    porch: [f64; PORCHES],
     wwr: [f64; 3],
     symmetry: [f64; 3],
     alignment: [f64; 3],
@@ -68,6 +98,8 @@ pub(super) struct Style {
     window: [f64; 5],
     /// Chimney, tower.
     special: [f64; 2],
+    /// Garages on the right.
+    mirrored: bool,
 }
 
 /// Cottage, ranch, bungalow, town house, suburban house, modern cube, Victorian.
@@ -77,7 +109,7 @@ pub(super) const STYLES: [Style; 7] = [
         bcr: [0.8, 0.2, 0.0],
         bdry: [0.9, 0.1],
         arf: [1.0, 0.0, 0.0, 0.0],
-        garage: [0.75, 0.25, 0.0],
+        garage: [0.60, 0.0, 0.0, 0.05, 0.0, 0.35],
         porch: [0.25, 0.65, 0.1, 0.0],
         wwr: [0.9, 0.1, 0.0],
         symmetry: [0.85, 0.15, 0.0],
@@ -85,13 +117,14 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [0.0, 1.0, 0.1],
         window: [1.0, 0.1, 0.2, 0.05, 0.1],
         special: [0.8, 0.0],
+        mirrored: false,
     },
     Style {
         bbox: [0.0, 1.0, 0.0, 0.0, 0.0],
         bcr: [0.1, 0.7, 0.2],
         bdry: [0.3, 0.7],
         arf: [1.0, 0.0, 0.0, 0.0],
-        garage: [0.1, 0.2, 0.7],
+        garage: [0.1, 0.0, 0.0, 0.3, 0.6, 0.0],
         porch: [0.1, 0.2, 0.6, 0.1],
         wwr: [0.3, 0.7, 0.0],
         symmetry: [0.1, 0.7, 0.2],
@@ -99,13 +132,14 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [0.0, 0.2, 1.0],
         window: [0.1, 1.0, 0.1, 0.3, 0.4],
         special: [0.6, 0.0],
+        mirrored: true,
     },
     Style {
         bbox: [0.5, 0.5, 0.0, 0.0, 0.0],
         bcr: [0.3, 0.6, 0.1],
         bdry: [0.7, 0.3],
         arf: [1.0, 0.0, 0.0, 0.0],
-        garage: [0.3, 0.7, 0.0],
+        garage: [0.3, 0.6, 0.0, 0.0, 0.0, 0.1],
         porch: [0.1, 0.8, 0.0, 0.1],
         wwr: [0.8, 0.2, 0.0],
         symmetry: [0.2, 0.7, 0.1],
@@ -113,13 +147,14 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [0.05, 1.0, 0.5],
         window: [0.3, 0.2, 1.0, 0.4, 0.1],
         special: [0.3, 0.0],
+        mirrored: false,
     },
     Style {
         bbox: [0.0, 0.0, 0.9, 0.1, 0.0],
         bcr: [0.85, 0.15, 0.0],
         bdry: [0.9, 0.1],
         arf: [0.0, 0.85, 0.15, 0.0],
-        garage: [0.4, 0.6, 0.0],
+        garage: [0.4, 0.1, 0.0, 0.0, 0.0, 0.5],
         porch: [0.6, 0.2, 0.0, 0.2],
         wwr: [0.6, 0.4, 0.0],
         symmetry: [0.9, 0.1, 0.0],
@@ -127,13 +162,14 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [0.0, 1.0, 0.15],
         window: [1.0, 0.1, 0.6, 0.5, 0.1],
         special: [0.5, 0.05],
+        mirrored: false,
     },
     Style {
         bbox: [0.0, 0.0, 0.0, 1.0, 0.0],
         bcr: [0.0, 0.25, 0.75],
         bdry: [0.1, 0.9],
         arf: [0.0, 0.3, 0.7, 0.0],
-        garage: [0.0, 0.15, 0.85],
+        garage: [0.0, 0.15, 0.85, 0.0, 0.0, 0.0],
         porch: [0.0, 0.3, 0.7, 0.0],
         wwr: [0.1, 0.8, 0.1],
         symmetry: [0.1, 0.5, 0.4],
@@ -141,13 +177,14 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [0.0, 0.7, 1.0],
         window: [0.7, 0.3, 1.0, 0.8, 0.3],
         special: [0.9, 0.3],
+        mirrored: false,
     },
     Style {
         bbox: [0.0, 0.0, 0.6, 0.4, 0.0],
         bcr: [0.5, 0.0, 0.5],
         bdry: [0.5, 0.5],
         arf: [0.0, 0.6, 0.4, 0.0],
-        garage: [0.8, 0.2, 0.0],
+        garage: [0.7, 0.0, 0.0, 0.3, 0.0, 0.0],
         porch: [0.2, 0.0, 0.1, 0.7],
         wwr: [0.0, 0.15, 0.85],
         symmetry: [0.1, 0.1, 0.8],
@@ -155,13 +192,14 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [1.0, 0.0, 0.0],
         window: [0.0, 0.7, 0.2, 0.0, 1.0],
         special: [0.05, 0.0],
+        mirrored: true,
     },
     Style {
         bbox: [0.0, 0.0, 0.0, 0.0, 1.0],
         bcr: [0.2, 0.8, 0.0],
         bdry: [0.4, 0.6],
         arf: [0.0, 0.0, 0.0, 1.0],
-        garage: [0.5, 0.5, 0.0],
+        garage: [0.5, 0.0, 0.0, 0.1, 0.0, 0.4],
         porch: [0.3, 0.1, 0.5, 0.1],
         wwr: [0.1, 0.6, 0.3],
         symmetry: [0.6, 0.4, 0.0],
@@ -169,6 +207,7 @@ pub(super) const STYLES: [Style; 7] = [
         roof: [0.3, 1.0, 0.3],
         window: [1.0, 0.0, 0.7, 0.9, 0.2],
         special: [0.9, 0.85],
+        mirrored: false,
     },
 ];
 
@@ -204,6 +243,7 @@ pub(super) fn draw_kinds(style: usize, rng: &mut impl Rng) -> Kinds {
         roofs: present(&ROOFS, &style.roof, rng),
         windows: present(&WINDOWS, &style.window, rng),
         special: present(&SPECIAL, &style.special, rng),
+        mirrored: style.mirrored,
     }
 }
 

@@ -25,8 +25,12 @@ pub(super) fn reconciled(
             row[axis] = (row[axis].max(extent) * 1e3).ceil() / 1e3;
         }
     }
-    let shares = [row[6], row[7], row[8]];
-    let floors = 1 + shares[1..].iter().filter(|s| **s > 0.02).count();
+    let floors = |row: &[f64; 49]| 1 + row[7..9].iter().filter(|s| **s > 0.02).count();
+    let most = partial.boxes.iter().map(|b| partial.floors_of(b)).max();
+    if most.unwrap_or(0) > floors(&row) && !given[5..9].contains(&true) {
+        raise_floors(&mut row, partial);
+    }
+    let floors = floors(&row);
     for (index, b) in partial.boxes.iter().enumerate() {
         let own = partial.floors_of(b);
         if own > floors {
@@ -54,6 +58,27 @@ pub(super) fn reconciled(
     }
     (known[0], known[1]) = (true, true);
     Ok((row, known))
+}
+
+/// Moves the shares of the floors (columns 6 to 8), and the floor area ratio with them, so that each floor has at least the
+/// area that the observed boxes have there.
+fn raise_floors(row: &mut [f64; 49], partial: &Building) {
+    let area = |floor: usize| {
+        let reaching = partial
+            .boxes
+            .iter()
+            .filter(|b| partial.floors_of(b) > floor);
+        let plans: Vec<_> = reaching.map(MassBox::plan).collect();
+        PlanUnion::new(&plans).area()
+    };
+    let bounds = row[0] * row[1];
+    let wanted = row[5] * bounds;
+    let areas = [0, 1, 2].map(|floor| (row[6 + floor] * wanted).max(area(floor)));
+    let total: f64 = areas.iter().sum();
+    for (floor, area) in areas.into_iter().enumerate() {
+        row[6 + floor] = area / total;
+    }
+    row[5] = total / bounds;
 }
 
 fn outside(partial: &Building, hull: &[[f64; 2]; 2], axis: usize, bound: f64) -> CompleteError {

@@ -147,7 +147,7 @@ pub fn merged(building: &Building, boxes: &[&MassBox]) -> Vec<Roofed> {
 }
 
 /// The rectangles inside a union of rectangles that no other one contains.
-pub(crate) fn largest_rectangles(plans: &[Rect]) -> Vec<Rect> {
+pub fn largest_rectangles(plans: &[Rect]) -> Vec<Rect> {
     let lines = |f: fn(&Rect) -> [f64; 2]| {
         let mut v: Vec<f64> = plans.iter().flat_map(f).collect();
         v.sort_by(f64::total_cmp);
