@@ -26,6 +26,54 @@ pub fn glb_container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, 
     Ok(out)
 }
 
+/// Why bytes are no binary glTF.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ContainerError {
+    /// Another version than 2.
+    #[error("binary glTF of version {0}, expected 2")]
+    Version(u32),
+    /// The file ends within a chunk.
+    #[error("the file ends within its header or a chunk")]
+    Truncated,
+    /// The first chunk is not JSON.
+    #[error("the first chunk is not JSON")]
+    NoJson,
+}
+
+/// The JSON and the binary chunk of a file that starts with `glTF`.
+///
+/// # Errors
+/// [`ContainerError`].
+pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ContainerError> {
+    let word = |bytes: &[u8], at: usize| {
+        let four = bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
+        four.map(u32::from_le_bytes)
+            .ok_or(ContainerError::Truncated)
+    };
+    let version = word(bytes, 4)?;
+    if version != 2 {
+        return Err(ContainerError::Version(version));
+    }
+    let mut rest = bytes.get(12..).ok_or(ContainerError::Truncated)?;
+    type Chunk<'b> = Option<(&'b [u8], &'b [u8])>;
+    let mut chunk = || -> Result<Chunk, ContainerError> {
+        if rest.is_empty() {
+            return Ok(None);
+        }
+        let length = word(rest, 0)? as usize;
+        let kind = rest.get(4..8).ok_or(ContainerError::Truncated)?;
+        let body = rest.get(8..).and_then(|b| b.get(..length));
+        let body = body.ok_or(ContainerError::Truncated)?;
+        rest = &rest[8 + length..];
+        Ok(Some((kind, body)))
+    };
+    let Some((b"JSON", text)) = chunk()? else {
+        return Err(ContainerError::NoJson);
+    };
+    let binary = chunk()?.filter(|(kind, _)| *kind == b"BIN\0");
+    Ok((text, binary.map(|(_, body)| body)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@
 //! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
 //! | `.obj` | [`obj`]: an object or group is a building | yes |
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
-//! | `.glb` | no | [`glb`]: a node with instances for each template |
+//! | `.glb`, `.gltf` | [`gltf`]: a node is a building | `.glb`, [`glb`]: a node with instances for each template |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
 //! | `tileset.json` | no | [`tiles`]: 3D Tiles 1.1 |
 //! | `.geojson` | [`geojson`]: a shape on the ground | no |
@@ -14,6 +14,9 @@
 pub mod cityjson;
 pub mod geojson;
 pub mod glb;
+pub mod gltf;
+mod gltf_data;
+mod gltf_transform;
 pub mod grammar_json;
 pub mod npz;
 pub mod obj;
@@ -37,7 +40,7 @@ pub enum CityError {
     #[error("no buildings with triangles")]
     NoBuildings,
     /// An extension that is no city format.
-    #[error("unknown city format; expected .npz, .obj, .city.json or .city.jsonl")]
+    #[error("unknown city format; expected .npz, .obj, .glb, .gltf, .city.json or .city.jsonl")]
     UnknownFormat,
     /// Coordinates look like degrees.
     #[error(
@@ -68,6 +71,7 @@ pub fn read(path: &Path) -> Result<City> {
     let city = match packed::extension(path).as_str() {
         "npz" => npz::read(path)?,
         "obj" => obj::read(path)?,
+        "glb" | "gltf" => gltf::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,
         _ => return Err(Error::content(path, CityError::UnknownFormat)),
     };

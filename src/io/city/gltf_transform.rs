@@ -1,0 +1,53 @@
+//! Transforms of glTF's nodes: 4 x 4 matrices, column after column.
+
+/// A matrix.
+pub(super) type Matrix = [f64; 16];
+
+/// Leaves everything where it is.
+pub(super) const IDENTITY: Matrix = [
+    1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+];
+
+/// Scale, then rotation (a quaternion x, y, z, w), then translation.
+pub(super) fn composed(t: Option<[f64; 3]>, r: Option<[f64; 4]>, s: Option<[f64; 3]>) -> Matrix {
+    let [tx, ty, tz] = t.unwrap_or_default();
+    let [x, y, z, w] = r.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let [a, b, c] = s.unwrap_or([1.0; 3]);
+    let (xx, yy, zz) = (2.0 * x * x, 2.0 * y * y, 2.0 * z * z);
+    let (xy, xz, yz) = (2.0 * x * y, 2.0 * x * z, 2.0 * y * z);
+    let (wx, wy, wz) = (2.0 * w * x, 2.0 * w * y, 2.0 * w * z);
+    [
+        a * (1.0 - yy - zz),
+        a * (xy + wz),
+        a * (xz - wy),
+        0.0,
+        b * (xy - wz),
+        b * (1.0 - xx - zz),
+        b * (yz + wx),
+        0.0,
+        c * (xz + wy),
+        c * (yz - wx),
+        c * (1.0 - xx - yy),
+        0.0,
+        tx,
+        ty,
+        tz,
+        1.0,
+    ]
+}
+
+/// `a` after `b`.
+pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| (0..4).map(|k| a[4 * k + i % 4] * b[i / 4 * 4 + k]).sum())
+}
+
+/// A point where the matrix puts it.
+pub(super) fn applied(m: &Matrix, p: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i])
+}
+
+/// Below 0 where the matrix mirrors.
+pub(super) fn determinant(m: &Matrix) -> f64 {
+    m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2])
+        + m[8] * (m[1] * m[6] - m[5] * m[2])
+}
