@@ -11,6 +11,7 @@ mod figure_9;
 mod judge;
 mod recovery;
 mod scaling;
+pub mod study;
 pub mod synthetic;
 mod table_1;
 

@@ -28,6 +28,7 @@
 //! takes them from there. Time a unit inside its function (it runs on one thread), never around [`Context::units`].
 
 mod frame;
+mod generic;
 pub mod layouts;
 pub mod peers;
 mod picture;
@@ -58,7 +59,16 @@ pub const ALL: &[&Experiment] = &[
 /// Every method that sweeps can run.
 const STUDIES: &[fn() -> Study] = &[
     // One line each.
+    building_exteriors::study::generate,
+    building_exteriors::study::learn,
+    city_proceduralization::study::proceduralize,
     facade_grammar::study::infer,
+    generic::annealing::study,
+    generic::genetic::study,
+    generic::gmm::study,
+    generic::network::study,
+    procedural_logic::study::retrieval,
+    structure_completion::study::complete,
 ];
 
 /// Every method that sweeps can run.

@@ -16,6 +16,7 @@ pub mod outline;
 mod readings;
 mod retrieval_search;
 pub mod shipped;
+pub mod study;
 pub mod trivial;
 pub mod words;
 

@@ -13,6 +13,7 @@ mod picture;
 mod plausibility;
 mod published;
 mod results;
+pub mod study;
 mod timing;
 mod weights;
 

@@ -1,15 +1,16 @@
 //! The studies of this paper, for sweeps.
 
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::sweep::{Better, Outcome, Study};
-use crate::grammar::{Costs, evaluate};
-use crate::io::{ReadOptions, read_facade};
+use super::likeness::likeness;
+use crate::experiments::sweep::{Better, Given, Outcome, Study};
+use crate::grammar::{Costs, Grammar, evaluate};
+use crate::io::{ReadOptions, read_facade, read_grammar};
 use crate::methods::facade_grammar::{
     self, Exploit, Method, Operations, Protect, Readings, infer_observed,
 };
@@ -62,14 +63,20 @@ struct Infer {
     split_cost: f64,
     /// Cost of a repeat.
     repeat_cost: f64,
+    /// Cost of each symbol of a rule.
+    successor_cost: f64,
     /// `lambda_1` of Eq. 5.
     lambda_rule: f64,
     /// `lambda_2` of Eq. 5.
     lambda_lines: f64,
-    /// Protection of important regions (Sec. 4.7), of `adp-paper` and `importance`.
+    /// Protection of important regions (Sec. 4.7), of `adp-paper` and `importance`: drawn for each walk, once for a run, or never.
     protection: Protection,
+    /// Most draws of protected regions for a walk.
+    draws: usize,
     /// Exploitation from this many rules tried before, of `adp-paper`; 0 for all reasonable rules (Eq. 4).
     remembered: usize,
+    /// Probability of exploring in the last iteration, of `adp-paper`; the first has 0.9.
+    last_epsilon: f64,
 }
 
 impl Default for Infer {
@@ -82,18 +89,27 @@ impl Default for Infer {
             ops: vec![Operation::Repeat],
             split_cost: settings.costs.split,
             repeat_cost: settings.costs.repeat,
+            successor_cost: settings.costs.successor,
             lambda_rule: settings.lambda_rule,
             lambda_lines: settings.lambda_lines,
             protection: Protection::Walk,
+            draws: Protect::DRAWS,
             remembered: 0,
+            last_epsilon: settings.readings.last_epsilon,
         }
     }
 }
 
 /// Grammar inference on one facade.
 pub fn infer() -> Study {
-    const METRICS: &[(&str, Better)] = &[("cost", Better::Lower), ("rules", Better::Lower)];
-    let about = "grammar inference on facade layouts (Wu et al. 2014)";
+    const METRICS: &[(&str, Better)] = &[
+        ("cost", Better::Lower),
+        ("rules", Better::Lower),
+        ("precision", Better::Higher),
+        ("recall", Better::Higher),
+        ("f_score", Better::Higher),
+    ];
+    let about = "grammar inference on facade layouts (Wu et al. 2014); precision, recall and F where a grammar `NAME.grammar.json` or `NAME.cga` lies beside the facade";
     Study::new(
         "facade_grammar/infer",
         about,
@@ -103,11 +119,13 @@ pub fn infer() -> Study {
     )
 }
 
-fn run(settings: &Infer, path: &Path, seed: u64) -> Result<Outcome> {
-    let facade = read_facade(path, &ReadOptions::default())?;
+fn run(settings: &Infer, given: &Given) -> Result<Outcome> {
+    let facade = read_facade(given.path, &ReadOptions::default())?;
+    let reference = reference(given.path)?;
     let costs = Costs {
         split: settings.split_cost,
         repeat: settings.repeat_cost,
+        successor: settings.successor_cost,
         ..Costs::default()
     };
     let mut found = Outcome::default();
@@ -119,7 +137,8 @@ fn run(settings: &Infer, path: &Path, seed: u64) -> Result<Outcome> {
         let observer = move |step: crate::optim::Step| {
             told.borrow_mut().push([step.iteration as f64, step.best])
         };
-        let seed = seed
+        let seed = given
+            .seed
             .wrapping_mul(settings.restarts.max(1))
             .wrapping_add(restart);
         let asked = asked(settings, costs, seed);
@@ -140,15 +159,34 @@ fn run(settings: &Infer, path: &Path, seed: u64) -> Result<Outcome> {
             found
                 .metrics
                 .insert("rules".into(), outcome.grammar.rules.len() as f64);
+            if let Some(reference) = &reference {
+                let like = likeness(&outcome.grammar, reference)?;
+                for (name, value) in [
+                    ("precision", like.precision),
+                    ("recall", like.recall),
+                    ("f_score", like.f_score),
+                ] {
+                    found.metrics.insert(name.into(), value);
+                }
+            }
         }
         found.bound = outcome.lower_bound.or(found.bound);
     }
     Ok(found)
 }
 
+/// The grammar that lies beside a facade, where there is one.
+fn reference(path: &Path) -> Result<Option<Grammar>> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().unwrap_or_default();
+    let beside =
+        ["grammar.json", "cga"].map(|ending| path.with_file_name(format!("{stem}.{ending}")));
+    let found: Option<PathBuf> = beside.into_iter().find(|p| p.is_file());
+    found.map(|path| read_grammar(&path)).transpose()
+}
+
 fn asked(settings: &Infer, costs: Costs, seed: u64) -> facade_grammar::Settings {
     let has = |operation| settings.ops.contains(&operation);
-    let readings = Readings::default();
     facade_grammar::Settings {
         method: match settings.method {
             MethodName::Best => Method::AdpBest,
@@ -172,14 +210,16 @@ fn asked(settings: &Infer, costs: Costs, seed: u64) -> facade_grammar::Settings 
         readings: Readings {
             protection: match settings.protection {
                 Protection::Never => Protect::Never,
-                Protection::Walk => readings.protection,
+                Protection::Walk => Protect::Walk {
+                    draws: settings.draws,
+                },
                 Protection::Run => Protect::Run,
             },
             exploitation: match settings.remembered {
                 0 => Exploit::AllRules,
                 most => Exploit::Remembered(most),
             },
-            ..readings
+            last_epsilon: settings.last_epsilon,
         },
     }
 }

@@ -51,6 +51,8 @@ pub fn unpack(name: &str, folder: &Path) -> Result<PathBuf> {
             return Err(Error::content(&named, NotShipped));
         }
         Some(DirEntry::File(file)) => write(&place, file.contents())?,
+        // Tasks of a sweep may be reading it.
+        Some(DirEntry::Dir(_)) if is_whole(name, folder) => {}
         Some(DirEntry::Dir(_)) => {
             // The digest is over the folder's files: none that an older program left may stay.
             match std::fs::remove_dir_all(&place) {
@@ -68,6 +70,31 @@ pub fn unpack(name: &str, folder: &Path) -> Result<PathBuf> {
         }
     }
     Ok(place)
+}
+
+/// Whether a shipped folder stands below `folder` with all its files and no others.
+fn is_whole(name: &str, folder: &Path) -> bool {
+    let within = format!("{name}/");
+    let mut wanted = 0;
+    for (path, bytes) in files() {
+        if path.starts_with(&within) {
+            wanted += 1;
+            if std::fs::read(folder.join(path)).ok().as_deref() != Some(bytes) {
+                return false;
+            }
+        }
+    }
+    count(&folder.join(name)).is_some_and(|found| found == wanted)
+}
+
+/// Files below a folder.
+fn count(folder: &Path) -> Option<usize> {
+    let mut found = 0;
+    for entry in std::fs::read_dir(folder).ok()? {
+        let path = entry.ok()?.path();
+        found += if path.is_dir() { count(&path)? } else { 1 };
+    }
+    Some(found)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {

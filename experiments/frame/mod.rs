@@ -14,6 +14,7 @@ pub use context::Context;
 pub use options::{Args, Budget, Options};
 pub use progress::Progress;
 pub use run::{Report, main, run, run_to_end};
+pub(super) use run::{SWEEPS, write_index};
 
 /// One table or figure of a paper.
 pub struct Artefact {

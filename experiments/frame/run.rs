@@ -195,19 +195,18 @@ fn make(
     Ok(ctx.skipped)
 }
 
-/// Writes `OUT/index.html` over every paper found there, so that papers run one by one add up.
-fn write_index(out: &Path) -> Result<PathBuf> {
+/// Folder of sweeps under the report.
+pub const SWEEPS: &str = "sweeps";
+
+/// Writes `OUT/index.html` over every paper found there, and then every sweep, so that those run one by one add up.
+pub fn write_index(out: &Path) -> Result<PathBuf> {
     // Of two runs that end at once, the second writes the page that has both.
     let _lock = Lock::wait(out)?;
-    let fail = |e| Error::io(out, "read", e);
-    let mut folders = Vec::new();
-    for entry in std::fs::read_dir(out).map_err(fail)? {
-        let path = entry.map_err(fail)?.path();
-        if path.join("run.json").is_file() {
-            folders.push(path);
-        }
+    let mut folders = made_in(out)?;
+    let sweeps = out.join(SWEEPS);
+    if sweeps.is_dir() {
+        folders.extend(made_in(&sweeps)?);
     }
-    folders.sort();
     let pages: Vec<Page> = folders
         .iter()
         .map(|folder| page(folder, &Run::read(&folder.join("run.json"))))
@@ -215,6 +214,20 @@ fn write_index(out: &Path) -> Result<PathBuf> {
     let path = out.join("index.html");
     crate::file::write_atomic(&path, report::index(&pages).as_bytes())?;
     Ok(path)
+}
+
+/// Folders with a `run.json`, by name.
+fn made_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let fail = |e| Error::io(folder, "read", e);
+    let mut folders = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(fail)? {
+        let path = entry.map_err(fail)?.path();
+        if path.join("run.json").is_file() {
+            folders.push(path);
+        }
+    }
+    folders.sort();
+    Ok(folders)
 }
 
 /// One paper's part of the index.
@@ -228,9 +241,11 @@ fn page(folder: &Path, run: &Run) -> Page {
             markdown,
             files: made.files.clone(),
             made: format!(
-                "seed {}, budget {}, version {}, {:.1} s on {} threads, {}{}",
-                made.seed,
-                made.budget,
+                "{}, version {}, {:.1} s on {} threads, {}{}",
+                match made.budget.as_str() {
+                    "sweep" => "sweep, processor time".to_owned(),
+                    budget => format!("seed {}, budget {budget}", made.seed),
+                },
                 made.version,
                 made.wall_seconds,
                 made.machine.threads,

@@ -1,5 +1,6 @@
 //! A sweep as one file: what was asked, what was planned, what was found, and by which program; and a check of it.
 
+use std::collections::HashSet;
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -8,8 +9,9 @@ use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 use super::collect::{RESULTS, TIMES, collect};
-use super::journal::read_all;
-use super::plan::{PLAN, Plan, program};
+use super::instances::belonging;
+use super::journal::{Keep, read_all};
+use super::plan::{Head, PLAN, Plan, Task, program};
 use super::run::entry;
 use super::study::Study;
 use crate::experiments::frame::provenance::{self, Machine};
@@ -46,7 +48,7 @@ pub struct Verified {
     pub different: Vec<String>,
 }
 
-/// Packs a sweep's file, plan, results, journals and instances.
+/// Packs a sweep's file, plan, results, times, instances and what was learnt from.
 ///
 /// # Errors
 /// [`Error::Io`].
@@ -56,10 +58,16 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
     for name in [PLAN, RESULTS, TIMES] {
         files.push((name.into(), out.join(name)));
     }
-    for (index, instance) in plan.head.instances.iter().enumerate() {
-        let path = out.join(&instance.path);
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        files.push((format!("instances/{index}/{name}"), path.clone()));
+    for (folder, instances) in [
+        ("instances", &plan.head.instances),
+        ("learn", &plan.head.learn),
+    ] {
+        for (index, instance) in instances.iter().enumerate() {
+            for path in belonging(&out.join(&instance.path))? {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                files.push((format!("{folder}/{index}/{name}"), path.clone()));
+            }
+        }
     }
     let mut listed = Vec::new();
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
@@ -127,9 +135,14 @@ pub fn verify(bundle: &Path, folder: &Path, studies: &[Study], sample: usize) ->
         }
     }
     let mut plan = Plan::read(folder)?;
-    for (index, instance) in plan.head.instances.iter_mut().enumerate() {
-        let name = instance.path.file_name().unwrap_or_default().to_owned();
-        instance.path = PathBuf::from(format!("instances/{index}")).join(name);
+    let Head {
+        instances, learn, ..
+    } = &mut plan.head;
+    for (place, instances) in [("instances", instances), ("learn", learn)] {
+        for (index, instance) in instances.iter_mut().enumerate() {
+            let name = instance.path.file_name().unwrap_or_default().to_owned();
+            instance.path = PathBuf::from(format!("{place}/{index}")).join(name);
+        }
     }
     rerun(&plan, folder, plan.study(studies)?, sample)
 }
@@ -139,14 +152,22 @@ fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Ver
     let path = folder.join(RESULTS);
     let table = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
     let again = folder.join("again");
-    let chosen = sample.min(plan.tasks.len());
+    // A task without a result has nothing to compare with.
+    let finished = finished(&table, &path)?;
+    let has_result = |task: &&Task| {
+        let arm = plan.head.arms[task.arm].name.clone();
+        let instance = plan.head.instances[task.instance].name.clone();
+        finished.contains(&(arm, instance, task.seed.to_string()))
+    };
+    let tasks: Vec<&Task> = plan.tasks.iter().filter(has_result).collect();
+    let chosen = sample.min(tasks.len());
     let mut different = Vec::new();
     let journal = super::journal::Journal::open(&again, (0, 1))?;
     for k in 0..chosen {
-        let task = &plan.tasks[k * plan.tasks.len() / chosen];
+        let task = tasks[k * tasks.len() / chosen];
         journal.put(&entry(plan, folder, study, task))?;
     }
-    let known = read_all(&again)?;
+    let known = read_all(&again, Keep::Presence)?;
     let sampled = Plan {
         head: plan.head.clone(),
         tasks: plan
@@ -159,7 +180,7 @@ fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Ver
     collect(&sampled, &again)?;
     let path = again.join(RESULTS);
     let found = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-    let before: std::collections::HashSet<&str> = table.lines().collect();
+    let before: HashSet<&str> = table.lines().collect();
     different.extend(
         found
             .lines()
@@ -170,4 +191,17 @@ fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Ver
         rerun: sampled.tasks.len(),
         different,
     })
+}
+
+/// Arm, instance and seed of each task that has a result.
+fn finished(table: &str, path: &Path) -> Result<HashSet<(String, String, String)>> {
+    let mut finished = HashSet::new();
+    for record in csv::Reader::from_reader(table.as_bytes()).records() {
+        let record = record.map_err(|e| Error::content(path, e))?;
+        let cell = |k: usize| record.get(k).unwrap_or_default().to_owned();
+        if cell(4) != "failure" {
+            finished.insert((cell(1), cell(2), cell(3)));
+        }
+    }
+    Ok(finished)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::journal::{Damaged, Entry, Known, read_all};
+use super::journal::{Damaged, Entry, Keep, Known, read_all};
 use super::plan::Plan;
 use super::study::Outcome;
 use crate::{Error, Result, file};
@@ -53,7 +53,7 @@ pub fn state(plan: &Plan, out: &Path) -> Result<State> {
         entries,
         damaged,
         foreign,
-    } = read_all(out)?;
+    } = read_all(out, Keep::Presence)?;
     let name = |arm: &super::definition::Arm| ArmState {
         arm: arm.name.clone(),
         ..ArmState::default()
@@ -109,8 +109,8 @@ pub struct Record {
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn records(plan: &Plan, out: &Path) -> Result<Vec<Record>> {
-    let mut entries = read_all(out)?.entries;
+pub fn records(plan: &Plan, out: &Path, keep: Keep) -> Result<Vec<Record>> {
+    let mut entries = read_all(out, keep)?.entries;
     let record = |task: &super::plan::Task| {
         let entry = entries.remove(&task.key);
         let (outcome, failure, seconds) = match entry {
@@ -134,7 +134,7 @@ pub fn records(plan: &Plan, out: &Path) -> Result<Vec<Record>> {
 /// # Errors
 /// [`Error::Io`].
 pub fn collect(plan: &Plan, out: &Path) -> Result<(usize, usize)> {
-    let records = records(plan, out)?;
+    let records = records(plan, out, Keep::Metrics)?;
     let mut results = String::from("study,arm,instance,seed,metric,value\n");
     let mut times = String::from("arm,instance,seed,seconds\n");
     let (mut rows, mut timed) = (0, 0);

@@ -3,9 +3,9 @@
 //! A process that is killed, or a disk that is full, leaves half a line at most, which is cut off when the file is opened again; a line that
 //! was damaged otherwise is left where it is and named, and its task counts as missing.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -118,11 +118,22 @@ pub struct Known {
     pub foreign: usize,
 }
 
+/// What of the outcomes is kept in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// That there is one.
+    Presence,
+    /// Metrics and bounds.
+    Metrics,
+    /// Everything.
+    All,
+}
+
 /// Reads all journals of a sweep's folder, whether or not they are being written.
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn read_all(out: &Path) -> Result<Known> {
+pub fn read_all(out: &Path, keep: Keep) -> Result<Known> {
     let folder = out.join(FOLDER);
     let mut known = Known::default();
     let listed = match std::fs::read_dir(&folder) {
@@ -136,26 +147,43 @@ pub fn read_all(out: &Path) -> Result<Known> {
     paths.retain(|path| path.extension().is_some_and(|e| e == "jsonl"));
     paths.sort();
     for path in paths {
-        let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, "read", e))?;
-        for (index, line) in bytes.split_inclusive(|b| *b == b'\n').enumerate() {
-            // The last line of a journal in use may be half written.
-            if line.last() != Some(&b'\n') {
-                break;
-            }
-            match serde_json::from_slice::<Entry>(line) {
-                Ok(entry) if entry.program != program() => known.foreign += 1,
-                Ok(entry) => known.add(entry),
-                Err(_) => known.damaged.push(Damaged {
-                    path: path.clone(),
-                    line: index + 1,
-                }),
-            }
-        }
+        known.read(&path, keep)?;
     }
     Ok(known)
 }
 
 impl Known {
+    fn read(&mut self, path: &Path, keep: Keep) -> Result<()> {
+        let fail = |e| Error::io(path, "read", e);
+        let mut reader = BufReader::new(File::open(path).map_err(fail)?);
+        let mut line = Vec::new();
+        for number in 1.. {
+            line.clear();
+            reader.read_until(b'\n', &mut line).map_err(fail)?;
+            // The last line of a journal in use may be half written.
+            if line.last() != Some(&b'\n') {
+                break;
+            }
+            match serde_json::from_slice::<Entry>(&line) {
+                Ok(entry) if entry.program != program() => self.foreign += 1,
+                Ok(mut entry) => {
+                    if let Some(outcome) = entry.outcome.as_mut().filter(|_| keep != Keep::All) {
+                        outcome.trace = Vec::new();
+                        if keep == Keep::Presence {
+                            outcome.metrics = BTreeMap::new();
+                        }
+                    }
+                    self.add(entry);
+                }
+                Err(_) => self.damaged.push(Damaged {
+                    path: path.to_path_buf(),
+                    line: number,
+                }),
+            }
+        }
+        Ok(())
+    }
+
     fn add(&mut self, entry: Entry) {
         match self.entries.get(&entry.key) {
             Some(before) if before.outcome.is_some() || entry.outcome.is_none() => {}

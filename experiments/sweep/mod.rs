@@ -12,19 +12,23 @@
 //! | `report/` | tables and figures |
 //! | `data/` | unpacked data sets |
 //!
-//! A key is a hash of study, settings, instance, seed and version of the program. So a changed arm is run alone, and results
+//! A key is a hash of study, settings, instance, what is learnt from, seed and version of the program. So a changed arm is run alone, and results
 //! of another version are not mixed in.
 
 pub mod bundle;
 pub mod collect;
 pub mod definition;
+pub mod examples;
+pub mod instances;
 pub mod journal;
 pub mod plan;
 pub mod report;
 pub mod run;
+mod shared;
 pub mod statistics;
 pub mod study;
 pub mod submit;
 
 pub use plan::Plan;
-pub use study::{Better, Outcome, Study};
+pub(super) use shared::Shared;
+pub use study::{Better, Given, Outcome, Study};

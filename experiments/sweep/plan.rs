@@ -1,6 +1,5 @@
 //! The plan: every task of a sweep, keyed by its content.
 
-use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -9,31 +8,19 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use super::definition::{Arm, ReportOptions, TaskOptions, arms, read};
+use super::instances::{Instance, files};
 use super::study::Study;
-use crate::experiments::frame::{datasets, provenance};
+use crate::experiments::frame::lock::Lock;
+use crate::experiments::frame::provenance;
 use crate::{Error, Result, file};
 
 /// Name of the plan in a sweep's folder.
 pub const PLAN: &str = "plan.jsonl";
 
-/// Folder of unpacked data sets in a sweep's folder.
-const DATA: &str = "data";
-
-/// A file that the study runs on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Instance {
-    /// Its file name up to the first dot, with the folder where two have one name.
-    pub name: String,
-    /// Where it is; relative paths are relative to the sweep's folder.
-    pub path: PathBuf,
-    /// SHA-256 of its bytes.
-    pub digest: String,
-}
-
 /// One run of one arm on one instance with one seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Task {
-    /// Hash of study, settings, instance, seed and version of the program.
+    /// Hash of study, settings, instance, what is learnt from, seed and version of the program.
     pub key: String,
     /// Index of the arm.
     pub arm: usize,
@@ -64,6 +51,9 @@ pub struct Head {
     pub arms: Vec<Arm>,
     /// Instances.
     pub instances: Vec<Instance>,
+    /// Files that are learnt from; none where the study does not learn, or learns from the other instances.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub learn: Vec<Instance>,
     /// Number of tasks.
     pub tasks: usize,
 }
@@ -81,11 +71,9 @@ pub struct Plan {
 #[derive(Debug, thiserror::Error)]
 enum PlanError {
     #[error(
-        "no file is called so, neither as a path nor below the study's folder of data sets ({0})"
+        "the study learns from other files than the instance: name several instances, or files by `learn`"
     )]
-    NoInstance(String),
-    #[error("the pattern is not one: {0}")]
-    Pattern(String),
+    NothingToLearn,
     #[error("this is no plan of a sweep: {0}")]
     NotAPlan(String),
     #[error(
@@ -96,6 +84,8 @@ enum PlanError {
         "the sweep file has changed since the plan was made; run `edifice sweep plan`, which keeps the results of tasks that are still wanted"
     )]
     Changed,
+    #[error("there is no plan here; run `edifice sweep plan` or `edifice sweep run`")]
+    NoPlan,
     #[error("it ends after {found} of {wanted} tasks")]
     Short { found: usize, wanted: usize },
     #[error("there is no study `{0}` in this program")]
@@ -108,15 +98,26 @@ pub fn program() -> &'static str {
 }
 
 impl Plan {
-    /// Makes the plan of a sweep file. Data sets that ship are unpacked below `out`.
+    /// Makes the plan of a sweep file. Data sets that ship are unpacked below `out`, which is there; another process that does the same
+    /// is waited for.
     ///
     /// # Errors
     /// What reading the file says, [`Error::Content`] where there is no instance.
     pub fn make(sweep: &Path, out: &Path, studies: &[Study]) -> Result<Self> {
         let definition = read(sweep, studies)?;
+        let _lock = Lock::wait(out)?;
         let study = &studies[definition.study];
         let arms = arms(sweep, &definition, study)?;
-        let instances = instances(sweep, out, study, &definition.data)?;
+        let instances = files(sweep, out, study, &definition.data)?;
+        let mut learn = files(sweep, out, study, &definition.learn)?;
+        learn.retain(|file| instances.iter().all(|instance| instance.path != file.path));
+        if study.learns && learn.is_empty() && instances.len() < 2 {
+            return Err(Error::content(sweep, PlanError::NothingToLearn));
+        }
+        let database = match study.learns {
+            true => learnt_from(if learn.is_empty() { &instances } else { &learn }),
+            false => String::new(),
+        };
         let mut tasks = Vec::with_capacity(arms.len() * instances.len() * definition.seeds.len());
         for (a, arm) in arms.iter().enumerate() {
             let settings = Value::Object(arm.settings.clone()).to_string();
@@ -128,6 +129,7 @@ impl Plan {
                     &settings,
                     &instance.name,
                     &instance.digest,
+                    &database,
                 ] {
                     common.update((part.len() as u64).to_le_bytes());
                     common.update(part);
@@ -157,6 +159,7 @@ impl Plan {
             task: definition.task.clone(),
             arms,
             instances,
+            learn,
             tasks: tasks.len(),
         };
         Ok(Self { head, tasks })
@@ -182,7 +185,10 @@ impl Plan {
     /// [`Error::Io`]; [`Error::Input`] or [`Error::Content`] where it is none, not whole, or of another version.
     pub fn read(out: &Path) -> Result<Self> {
         let path = out.join(PLAN);
-        let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let text = std::fs::read_to_string(&path).map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => Error::content(out, PlanError::NoPlan),
+            _ => Error::io(&path, "read", e),
+        })?;
         let mut lines = text.lines();
         let head = lines.next().unwrap_or_default();
         let not = |e: serde_json::Error| Error::content(&path, PlanError::NotAPlan(e.to_string()));
@@ -219,11 +225,26 @@ impl Plan {
             plan.write(out)?;
             return Ok(plan);
         }
+        Self::current(sweep, out)
+    }
+
+    /// The plan in a folder, which is that of the sweep file as it stands.
+    ///
+    /// # Errors
+    /// As [`Plan::read`]; [`Error::Content`] when the file has changed since.
+    pub fn current(sweep: &Path, out: &Path) -> Result<Self> {
         let plan = Self::read(out)?;
         match plan.head.sweep == provenance::digest(sweep)? {
             true => Ok(plan),
             false => Err(Error::content(sweep, PlanError::Changed)),
         }
+    }
+
+    /// A short hash of all tasks.
+    pub fn digest(&self) -> String {
+        let mut hash = Sha256::new();
+        self.tasks.iter().for_each(|task| hash.update(&task.key));
+        provenance::hex(&hash.finalize()[..6])
     }
 
     /// The plan's study.
@@ -239,78 +260,24 @@ impl Plan {
     pub fn path(&self, out: &Path, task: &Task) -> PathBuf {
         out.join(&self.head.instances[task.instance].path)
     }
+
+    /// Where the files are that a task of a study that learns may learn from.
+    pub fn database(&self, out: &Path, task: &Task) -> Vec<PathBuf> {
+        let head = &self.head;
+        let place = |file: &Instance| out.join(&file.path);
+        if !head.learn.is_empty() {
+            return head.learn.iter().map(place).collect();
+        }
+        let others = head.instances.iter().enumerate();
+        others
+            .filter(|(index, _)| *index != task.instance)
+            .map(|(_, file)| place(file))
+            .collect()
+    }
 }
 
-/// The files that match the patterns, each once, by name.
-fn instances(
-    sweep: &Path,
-    out: &Path,
-    study: &Study,
-    patterns: &[String],
-) -> Result<Vec<Instance>> {
-    let mut paths: Vec<(PathBuf, PathBuf)> = Vec::new();
-    for pattern in patterns {
-        let mut found = matching(sweep, pattern)?;
-        let absolute = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
-        let mut found: Vec<(PathBuf, PathBuf)> = found
-            .drain(..)
-            .map(|p| (absolute(p.clone()), absolute(p)))
-            .collect();
-        if found.is_empty() {
-            let folder = datasets::unpack(study.data, &out.join(DATA))?;
-            let below = folder.join(pattern);
-            let inside = matching(sweep, &below.to_string_lossy())?;
-            let relative = |p: &PathBuf| {
-                p.strip_prefix(out)
-                    .map(Path::to_path_buf)
-                    .unwrap_or_else(|_| p.clone())
-            };
-            found = inside.into_iter().map(|p| (relative(&p), p)).collect();
-        }
-        if found.is_empty() {
-            let error = PlanError::NoInstance(format!("datasets/{}", study.data));
-            return Err(Error::input(sweep, format!("data = {pattern:?}"), error));
-        }
-        paths.extend(found);
-    }
-    let mut seen = HashSet::new();
-    paths.retain(|(_, at)| seen.insert(at.clone()));
-    let stem = |path: &Path| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.split('.').next().unwrap_or_default().to_owned()
-    };
-    let mut names: Vec<String> = paths.iter().map(|(_, at)| stem(at)).collect();
-    let mut once = HashSet::new();
-    if !names.iter().all(|name| once.insert(name.clone())) {
-        names = paths
-            .iter()
-            .map(|(path, _)| path.to_string_lossy().replace('\\', "/"))
-            .collect();
-    }
-    let mut instances = Vec::new();
-    for (name, (path, at)) in names.into_iter().zip(paths) {
-        let digest = provenance::digest(&at)?;
-        instances.push(Instance { name, path, digest });
-    }
-    instances.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(instances)
-}
-
-/// Files that match a pattern, in order.
-fn matching(sweep: &Path, pattern: &str) -> Result<Vec<PathBuf>> {
-    let bad = |e: &dyn std::fmt::Display| {
-        Error::input(
-            sweep,
-            format!("data = {pattern:?}"),
-            PlanError::Pattern(e.to_string()),
-        )
-    };
-    let mut files = Vec::new();
-    for entry in glob::glob(pattern).map_err(|e| bad(&e))? {
-        let path = entry.map_err(|e| bad(&e))?;
-        if path.is_file() {
-            files.push(path);
-        }
-    }
-    Ok(files)
+/// Names and digests of files that are learnt from, as one text.
+fn learnt_from(files: &[Instance]) -> String {
+    let lines = files.iter().map(|f| format!("{} {}\n", f.name, f.digest));
+    lines.collect()
 }

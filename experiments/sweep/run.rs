@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
-use super::journal::{Entry, Journal, read_all};
+use super::instances::changed;
+use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task, program};
-use super::study::Study;
+use super::study::{Given, Study};
 use crate::experiments::frame::Progress;
 use crate::rng::stream;
 use crate::{Error, Result};
@@ -38,6 +39,11 @@ pub struct Ran {
 #[error("shards are counted from 0: `i/n` with i below n")]
 struct NoShard;
 
+/// An instance that is not what it was.
+#[derive(Debug, thiserror::Error)]
+#[error("the file has changed since the plan was made, or is gone; run `edifice sweep plan`")]
+struct Changed;
+
 /// Reads `i/n`.
 ///
 /// # Errors
@@ -54,7 +60,8 @@ pub fn shard(text: &str) -> Result<(usize, usize)> {
 /// Runs the tasks of a shard on all threads; every `n`th task belongs to it, from the `i`th. Stops when `stop` is set; what is finished is kept.
 ///
 /// # Errors
-/// [`Error::Io`] when a result cannot be kept, [`Error::Interrupted`]. A task that fails is a result.
+/// [`Error::Io`] when a result cannot be kept, [`Error::Content`] when an instance has changed since the plan was made,
+/// [`Error::Interrupted`]. A task that fails is a result.
 pub fn run(
     plan: &Plan,
     out: &Path,
@@ -64,7 +71,12 @@ pub fn run(
     stop: &AtomicBool,
 ) -> Result<Ran> {
     let journal = Journal::open(out, shard)?;
-    let known = read_all(out)?.entries;
+    // Results are filed under what the files were when the plan was made.
+    let files = plan.head.instances.iter().chain(&plan.head.learn);
+    if let Some(path) = changed(files, out)? {
+        return Err(Error::content(&path, Changed));
+    }
+    let known = read_all(out, Keep::Presence)?.entries;
     let ours: Vec<&Task> = plan.tasks.iter().skip(shard.0).step_by(shard.1).collect();
     let open = |task: &&&Task| match known.get(&task.key) {
         None => true,
@@ -100,8 +112,17 @@ pub fn run(
 /// Runs one task.
 pub fn entry(plan: &Plan, out: &Path, study: &Study, task: &Task) -> Entry {
     let arm = &plan.head.arms[task.arm];
+    let database = match study.learns {
+        true => plan.database(out, task),
+        false => Vec::new(),
+    };
+    let given = Given {
+        path: &plan.path(out, task),
+        database: &database,
+        seed: chance(plan, task),
+    };
     let start = ThreadTime::now();
-    let found = study.run(&arm.settings, &plan.path(out, task), chance(plan, task));
+    let found = study.run(&arm.settings, &given);
     let seconds = start.elapsed().as_secs_f64();
     let (outcome, failure) = match found {
         Ok(outcome) => (Some(outcome), None),

@@ -1,7 +1,7 @@
 //! Studies: methods with typed settings, which a sweep can vary.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use schemars::{JsonSchema, schema_for};
 use serde::de::DeserializeOwned;
@@ -46,7 +46,19 @@ pub struct Setting {
     pub meaning: String,
 }
 
-type Run = Box<dyn Fn(&Map<String, Value>, &Path, u64) -> Result<Outcome> + Send + Sync>;
+/// What a task is given beside its settings.
+#[derive(Debug, Clone, Copy)]
+pub struct Given<'a> {
+    /// File of the instance. Files beside it that have its name up to the first dot belong to it.
+    pub path: &'a Path,
+    /// Files to learn from, in order of name, of studies that [learn](Study::learning): those that the sweep names, or else its
+    /// other instances. The instance is not among them.
+    pub database: &'a [PathBuf],
+    /// Seed of all chance.
+    pub seed: u64,
+}
+
+type Run = Box<dyn Fn(&Map<String, Value>, &Given) -> Result<Outcome> + Send + Sync>;
 type Check = Box<dyn Fn(&Map<String, Value>) -> std::result::Result<(), String> + Send + Sync>;
 
 /// A method that sweeps can run: a function and the type of its settings.
@@ -59,6 +71,8 @@ pub struct Study {
     pub data: &'static str,
     /// Its metrics; the first is what a report is about unless the file says otherwise.
     pub metrics: &'static [(&'static str, Better)],
+    /// Whether it learns from files beside the instance.
+    pub learns: bool,
     settings: Vec<Setting>,
     defaults: Map<String, Value>,
     check: Check,
@@ -66,14 +80,13 @@ pub struct Study {
 }
 
 impl Study {
-    /// A study of settings `S`, whose doc comments are their meanings. `run` is given the settings, the file of an instance and
-    /// a seed, and finds the same for the same.
+    /// A study of settings `S`, whose doc comments are their meanings. `run` finds the same for the same.
     pub fn new<S>(
         name: &'static str,
         about: &'static str,
         data: &'static str,
         metrics: &'static [(&'static str, Better)],
-        run: fn(&S, &Path, u64) -> Result<Outcome>,
+        run: fn(&S, &Given) -> Result<Outcome>,
     ) -> Self
     where
         S: Serialize + DeserializeOwned + JsonSchema + Default + 'static,
@@ -90,13 +103,23 @@ impl Study {
             about,
             data,
             metrics,
+            learns: false,
             settings: settings(&schema_for!(S).to_value(), &defaults),
             defaults,
             check: Box::new(move |settings| typed(settings).map(|_| ())),
-            run: Box::new(move |settings, instance, seed| {
+            run: Box::new(move |settings, given| {
                 let settings = typed(settings).map_err(Error::method)?;
-                run(&settings, instance, seed)
+                run(&settings, given)
             }),
+        }
+    }
+
+    /// The same study, which learns from files beside the instance ([`Given::database`]).
+    #[must_use]
+    pub fn learning(self) -> Self {
+        Self {
+            learns: true,
+            ..self
         }
     }
 
@@ -126,13 +149,8 @@ impl Study {
     ///
     /// # Errors
     /// What the method says.
-    pub fn run(
-        &self,
-        settings: &Map<String, Value>,
-        instance: &Path,
-        seed: u64,
-    ) -> Result<Outcome> {
-        (self.run)(settings, instance, seed)
+    pub fn run(&self, settings: &Map<String, Value>, given: &Given) -> Result<Outcome> {
+        (self.run)(settings, given)
     }
 }
 

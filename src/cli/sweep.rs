@@ -1,5 +1,6 @@
 //! `edifice sweep`: ablations and comparisons from one file.
 
+mod examples;
 mod studies;
 mod submit;
 
@@ -21,6 +22,8 @@ use super::print;
 pub enum Command {
     /// List the studies with every setting, its type, default and meaning
     Studies(studies::Options),
+    /// List the sweep files that ship with the program (the papers' ablations), or print one
+    Examples(examples::Options),
     /// Write the plan: arms, instances, tasks
     #[command(after_help = "Example: edifice sweep plan ablation.toml --out ablation")]
     Plan(Common),
@@ -77,6 +80,9 @@ pub struct Report {
     /// Compare on what all arms have, though tasks are missing or failed
     #[arg(long)]
     allow_missing: bool,
+    /// Put a copy beside the papers' reports, and into the index.html of that folder
+    #[arg(long, value_name = "DIR")]
+    into: Option<PathBuf>,
 }
 
 /// Options of `bundle`.
@@ -107,13 +113,14 @@ pub fn run(command: Command) -> Result<()> {
     let studies = all_studies();
     match command {
         Command::Studies(options) => studies::list(&studies, &options),
+        Command::Examples(options) => examples::show(&options),
         Command::Plan(common) => plan(&common, &studies),
         Command::Run(options) => tasks(&options, &studies, Wanted::Missing),
         Command::Retry(options) => tasks(&options, &studies, Wanted::MissingAndFailed),
         Command::Submit(options) => submit::submit(&options, &studies),
         Command::Status(common) => status(&common),
         Command::Collect(common) => {
-            let plan = Plan::read(&common.out)?;
+            let plan = Plan::current(&common.sweep, &common.out)?;
             let (rows, tasks) = collect(&plan, &common.out)?;
             print::message(&format!(
                 "{rows} rows of {tasks} finished tasks in {}",
@@ -125,14 +132,19 @@ pub fn run(command: Command) -> Result<()> {
             )
         }
         Command::Report(options) => {
-            let plan = Plan::read(&options.common.out)?;
+            let plan = Plan::current(&options.common.sweep, &options.common.out)?;
             collect(&plan, &options.common.out)?;
             let study = plan.study(&studies)?;
             let text = report::report(&plan, &options.common.out, study, options.allow_missing)?;
-            print::line(text.trim_end())
+            print::line(text.trim_end())?;
+            if let Some(into) = &options.into {
+                let index = report::publish(&options.common.sweep, &options.common.out, into)?;
+                print::message(&format!("report in {}", index.display()));
+            }
+            Ok(())
         }
         Command::Bundle(options) => {
-            let plan = Plan::read(&options.common.out)?;
+            let plan = Plan::current(&options.common.sweep, &options.common.out)?;
             let files = bundle::bundle(
                 &plan,
                 &options.common.sweep,
@@ -213,7 +225,7 @@ fn tasks(options: &Run, studies: &[Study], wanted: Wanted) -> Result<()> {
 }
 
 fn status(common: &Common) -> Result<()> {
-    let plan = Plan::read(&common.out)?;
+    let plan = Plan::current(&common.sweep, &common.out)?;
     let state = state(&plan, &common.out)?;
     print::line("finished  failed  missing  arm")?;
     let mut left = 0;

@@ -8,6 +8,7 @@ use super::{Item, facades, mean_error, paper, plus_minus, split};
 use crate::experiments::Context;
 use crate::methods::structure_completion::layout::Element;
 use crate::methods::structure_completion::measure::agreement;
+use crate::methods::structure_completion::partial::PartialLayout;
 use crate::methods::structure_completion::policy::{Budget, PaperModel, Scene, optimize};
 use crate::methods::structure_completion::score::{TERMS, Term};
 use crate::methods::structure_completion::task::Task;
@@ -32,14 +33,7 @@ fn title(left_out: usize) -> String {
     }
 }
 
-fn hide(
-    item: &Item,
-    k: usize,
-    seed: u64,
-) -> (
-    crate::methods::structure_completion::partial::PartialLayout,
-    Vec<Element>,
-) {
+fn hide(item: &Item, k: usize, seed: u64) -> (PartialLayout, Vec<Element>) {
     Task::Side50.hide(&item.layout, &mut stream(seed, "figure 18", k as u64))
 }
 
@@ -52,20 +46,31 @@ fn complete(
     seed: u64,
 ) -> Result<Found> {
     let (partial, hidden) = hide(item, k, seed);
-    let mut scene = Scene::new(model, &partial);
-    if let Some(weight) = scene.weights.get_mut(left_out) {
-        *weight = 0.0;
-    }
-    let found = optimize(&scene, budget, 1, seed).map_err(Error::method)?;
-    let added = found
-        .candidates
-        .into_iter()
-        .next()
-        .map_or(Vec::new(), |c| c.added);
+    let left_out: Vec<usize> = (left_out < TERMS).then_some(left_out).into_iter().collect();
+    let added = without(&partial, &left_out, model, budget, seed)?;
     Ok(Found {
         f1: agreement(&added, &hidden, 0.5).f1,
         added,
     })
+}
+
+/// The elements that the paper's method adds when some scoring functions, by index, weigh nothing.
+pub fn without(
+    partial: &PartialLayout,
+    left_out: &[usize],
+    model: &PaperModel,
+    budget: &Budget,
+    seed: u64,
+) -> Result<Vec<Element>> {
+    let mut scene = Scene::new(model, partial);
+    for &term in left_out {
+        if let Some(weight) = scene.weights.get_mut(term) {
+            *weight = 0.0;
+        }
+    }
+    let found = optimize(&scene, budget, 1, seed).map_err(Error::method)?;
+    let best = found.candidates.into_iter().next();
+    Ok(best.map_or(Vec::new(), |c| c.added))
 }
 
 fn shown(item: &Item, k: usize, seed: u64, title: String, added: &[Element]) -> Tiles {

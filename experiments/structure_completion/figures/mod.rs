@@ -10,6 +10,8 @@ pub mod figure_18;
 pub mod figure_20;
 pub mod figure_8;
 
+pub use figure_18::without;
+
 use super::data::{self, Item};
 use crate::experiments::Context;
 use crate::methods::structure_completion::completion::Completion;
@@ -23,13 +25,16 @@ const ELEMENTS: std::ops::RangeInclusive<usize> = 8..=90;
 /// Facades with at least eight windows and at most 90 elements; those in scope only, where there are enough.
 pub fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
     let mut items = data::items(ctx)?;
-    items.retain(|i| {
-        i.layout.count(Class::Window) >= 8 && ELEMENTS.contains(&i.layout.elements.len())
-    });
+    items.retain(in_size);
     if items.iter().filter(|i| i.in_scope).count() > items.len() / 2 {
         items.retain(|i| i.in_scope);
     }
     Ok(items)
+}
+
+/// Whether a facade has at least eight windows and at most 90 elements.
+pub fn in_size(item: &Item) -> bool {
+    item.layout.count(Class::Window) >= 8 && ELEMENTS.contains(&item.layout.elements.len())
 }
 
 /// Up to `count` facades at equal distances, at most half of all, and the others, for learning.

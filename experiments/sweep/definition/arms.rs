@@ -53,7 +53,16 @@ pub fn arms(path: &Path, definition: &Definition, study: &Study) -> Result<Vec<A
             settings: with(check(&entry.set)?),
         });
     }
-    for entry in &definition.file.grid {
+    for grid in &definition.file.grid {
+        let entry = grid.get_ref();
+        let wrong = |message: String| Err(definition.wrong(path, &grid.span(), message));
+        if entry.set.is_empty() && entry.zip.is_empty() {
+            return wrong("this grid varies nothing: write set.NAME = [...]".into());
+        }
+        if let Some(name) = entry.set.keys().find(|name| entry.zip.contains_key(*name)) {
+            let name = name.get_ref();
+            return wrong(format!("`{name}` is varied twice, by set and by zip"));
+        }
         let sets = lists(path, definition, study, &entry.set)?;
         let zips = lists(path, definition, study, &entry.zip)?;
         for varied in combinations(&sets, &zipped(path, definition, &entry.zip, &zips)?) {
@@ -68,12 +77,21 @@ pub fn arms(path: &Path, definition: &Definition, study: &Study) -> Result<Vec<A
         }
     }
     for settings in &definition.file.exclude {
-        let without = check(settings)?;
+        let without = check(settings.get_ref())?;
+        let before = arms.len();
         arms.retain(|arm| {
             without
                 .iter()
                 .any(|(name, value)| arm.settings.get(name) != Some(value))
         });
+        // Most often a value that is written otherwise in the grid.
+        if without.is_empty() || arms.len() == before {
+            let message = match without.is_empty() {
+                true => "this [[exclude]] names no setting",
+                false => "no arm has these settings: nothing is left out",
+            };
+            return Err(definition.wrong(path, &settings.span(), message.into()));
+        }
     }
     let fail = |error: ArmError| Error::content(path, error);
     if arms.is_empty() {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::place::{place, suggestion};
+use super::task::TaskOptions;
 use crate::experiments::sweep::study::{Better, Study};
 use crate::{Error, Result};
 
@@ -21,6 +22,7 @@ pub(super) type Lists = BTreeMap<Spanned<String>, Spanned<Vec<toml::Value>>>;
 pub(super) struct File {
     study: Spanned<String>,
     data: Spanned<Vec<String>>,
+    learn: Option<Spanned<Vec<String>>>,
     seeds: Option<Spanned<Seeds>>,
     pair: Option<Spanned<Vec<String>>>,
     #[serde(default)]
@@ -28,13 +30,11 @@ pub(super) struct File {
     #[serde(default)]
     pub arm: Vec<ArmEntry>,
     #[serde(default)]
-    pub grid: Vec<GridEntry>,
+    pub grid: Vec<Spanned<GridEntry>>,
     #[serde(default)]
-    pub exclude: Vec<Settings>,
-    #[serde(default)]
-    report: ReportOptions,
-    #[serde(default)]
-    task: TaskOptions,
+    pub exclude: Vec<Spanned<Settings>>,
+    report: Option<Spanned<ReportOptions>>,
+    task: Option<Spanned<TaskOptions>>,
 }
 
 #[derive(Deserialize)]
@@ -80,34 +80,14 @@ pub struct ReportOptions {
     pub targets: Vec<f64>,
 }
 
-/// What a task needs of a machine.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct TaskOptions {
-    /// Processors.
-    pub cpus: u32,
-    /// Memory, as Slurm writes it.
-    pub mem: String,
-    /// Tasks are packed into jobs of about this long, such as `30min`.
-    pub pack: String,
-}
-
-impl Default for TaskOptions {
-    fn default() -> Self {
-        Self {
-            cpus: 1,
-            mem: "1G".into(),
-            pack: "30min".into(),
-        }
-    }
-}
-
 /// A checked sweep file, its arms still as written.
 pub struct Definition {
     /// Index among the studies.
     pub study: usize,
     /// Patterns of instances.
     pub data: Vec<String>,
+    /// Patterns of files to learn from.
+    pub learn: Vec<String>,
     /// Seeds.
     pub seeds: Vec<u64>,
     /// Whether all arms meet the same chance on an instance and seed.
@@ -160,6 +140,12 @@ pub fn read(path: &Path, studies: &[Study]) -> Result<Definition> {
             "no instances are named".into(),
         ));
     }
+    if let Some(learn) = &file.learn
+        && !studies[study].learns
+    {
+        let message = format!("`{named}` learns from no files");
+        return Err(wrong(path, &text, &learn.span(), message));
+    }
     let seeds = match file.seeds.as_ref().map(Spanned::get_ref) {
         None => vec![0],
         Some(Seeds::Count(count)) => (0..u64::from(*count)).collect(),
@@ -185,26 +171,61 @@ pub fn read(path: &Path, studies: &[Study]) -> Result<Definition> {
         None => true,
         Some(pair) => pair.get_ref().iter().any(|word| word == "seed"),
     };
-    let metrics = studies[study].metrics;
-    if let Some(metric) = &file.report.metric
-        && metrics.iter().all(|(name, _)| name != metric)
-    {
-        let message = format!(
-            "[report]: the study has no metric `{metric}`{}",
-            suggestion(metric, metrics.iter().map(|(name, _)| *name))
-        );
-        return Err(wrong(path, &text, &(0..0), message));
+    let (report, task) = (options(&file.report), options(&file.task));
+    if let Err(message) = check_report(&report.1, studies[study].metrics) {
+        return Err(wrong(path, &text, &report.0, message));
+    }
+    if let Err(message) = task.1.check() {
+        return Err(wrong(path, &text, &task.0, message));
     }
     Ok(Definition {
         study,
         data: file.data.get_ref().clone(),
+        learn: file
+            .learn
+            .clone()
+            .map_or_else(Vec::new, Spanned::into_inner),
         seeds,
         paired_seeds,
-        report: file.report.clone(),
-        task: file.task.clone(),
+        report: report.1,
+        task: task.1,
         file,
         text,
     })
+}
+
+/// A table of the file and where it is.
+fn options<T: Clone + Default>(table: &Option<Spanned<T>>) -> (std::ops::Range<usize>, T) {
+    let table = table.as_ref();
+    table.map_or_else(Default::default, |t| (t.span(), t.get_ref().clone()))
+}
+
+/// Why a report cannot be asked for so.
+fn check_report(
+    report: &ReportOptions,
+    metrics: &[(&'static str, Better)],
+) -> std::result::Result<(), String> {
+    if let Some(metric) = &report.metric
+        && metrics.iter().all(|(name, _)| name != metric)
+    {
+        let near = suggestion(metric, metrics.iter().map(|(name, _)| *name));
+        return Err(format!("metric: the study has no metric `{metric}`{near}"));
+    }
+    if let Some(word) = report.anytime.as_ref().filter(|w| *w != "evaluations") {
+        return Err(format!(
+            "anytime: curves are over `evaluations`, not `{word}`"
+        ));
+    }
+    match report
+        .targets
+        .iter()
+        .find(|t| !(t.is_finite() && **t >= 1.0))
+    {
+        Some(bad) => Err(format!(
+            "targets: {bad} is no multiple of the best value, at least 1"
+        )),
+        None => Ok(()),
+    }
 }
 
 /// serde's message about an unknown key, with the nearest right one.

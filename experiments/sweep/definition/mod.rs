@@ -3,7 +3,9 @@
 mod arms;
 mod file;
 mod place;
+mod task;
 
 pub use arms::{Arm, arms};
-pub use file::{Definition, ReportOptions, TaskOptions, read};
+pub use file::{Definition, ReportOptions, read};
 pub use place::nearest;
+pub use task::TaskOptions;

@@ -1,6 +1,6 @@
 //! What the results say of each arm, and of each against the reference.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::experiments::sweep::collect::Record;
 use crate::experiments::sweep::plan::Plan;
@@ -52,13 +52,13 @@ impl Question {
     }
 }
 
-/// Values of the metric: `[arm][instance]`, by seed.
+/// Values of the metric: `[arm][unit]`, by seed.
 pub type Values = Vec<Vec<BTreeMap<u64, f64>>>;
 
 /// One arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Mean over the instances that all arms have.
+    /// Mean over the units that all arms have.
     pub interval: Option<Interval>,
     /// Mean paired difference to the reference; none for the reference itself.
     pub difference: Option<Interval>,
@@ -66,7 +66,7 @@ pub struct Line {
     pub test: Option<Signed>,
     /// Its p-value after Holm's correction over all arms.
     pub adjusted: Option<f64>,
-    /// Instances on which the arm is better than the reference, equal, and worse.
+    /// Units on which the arm is better than the reference, equal, and worse.
     pub counts: (usize, usize, usize),
     /// Mean of value over bound less 1, where bounds are known.
     pub gap: Option<f64>,
@@ -81,7 +81,9 @@ pub struct Comparison {
     pub question: Question,
     /// By arm.
     pub lines: Vec<Line>,
-    /// Instances that all arms have values of.
+    /// What a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the splits of it, or its parts.
+    pub unit: &'static str,
+    /// Units that all arms have values of.
     pub common: Vec<usize>,
     /// Mean ranks over those.
     pub ranks: Option<Ranks>,
@@ -92,8 +94,23 @@ pub struct Comparison {
 /// Compares the arms.
 pub fn compare(plan: &Plan, study: &Study, records: &[Record]) -> Comparison {
     let question = Question::of(plan, study);
-    let (arms, instances) = (plan.head.arms.len(), plan.head.instances.len());
-    let mut values: Values = vec![vec![BTreeMap::new(); instances]; arms];
+    let arms = plan.head.arms.len();
+    let seeds: BTreeSet<u64> = records.iter().map(|record| record.seed).collect();
+    let by_seed = plan.head.instances.len() == 1 && seeds.len() > 1;
+    let units = match by_seed {
+        true => seeds.len(),
+        false => plan.head.instances.len(),
+    };
+    let unit = |record: &Record| match by_seed {
+        true => seeds.range(..record.seed).count(),
+        false => record.instance,
+    };
+    let mut values: Values = vec![vec![BTreeMap::new(); units]; arms];
+    // Bounds are those of the first metric.
+    let bounded = study
+        .metrics
+        .first()
+        .is_some_and(|(name, _)| *name == question.metric);
     let mut gaps: Vec<Vec<f64>> = vec![Vec::new(); arms];
     let mut failed = vec![0; arms];
     for record in records {
@@ -104,13 +121,13 @@ pub fn compare(plan: &Plan, study: &Study, records: &[Record]) -> Comparison {
         let Some(&value) = outcome.metrics.get(&question.metric) else {
             continue;
         };
-        values[record.arm][record.instance].insert(record.seed, value);
-        if let Some(bound) = outcome.bound.filter(|bound| *bound > 0.0) {
+        values[record.arm][unit(record)].insert(record.seed, value);
+        if let Some(bound) = outcome.bound.filter(|bound| bounded && *bound > 0.0) {
             gaps[record.arm].push(value / bound - 1.0);
         }
     }
     let everywhere = |i: &usize| values.iter().all(|arm| !arm[*i].is_empty());
-    let common: Vec<usize> = (0..instances).filter(everywhere).collect();
+    let common: Vec<usize> = (0..units).filter(everywhere).collect();
     let mean = |values: &BTreeMap<u64, f64>| values.values().sum::<f64>() / values.len() as f64;
     let reference = question.reference;
     let tests: Vec<Option<Signed>> = (0..arms)
@@ -173,6 +190,7 @@ pub fn compare(plan: &Plan, study: &Study, records: &[Record]) -> Comparison {
     Comparison {
         lines,
         ranks: ranks(&rows),
+        unit: if by_seed { "seeds" } else { "instances" },
         common,
         values,
         question,

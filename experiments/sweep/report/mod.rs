@@ -2,12 +2,15 @@
 
 mod compare;
 mod figures;
+mod publish;
 
 pub use compare::{Comparison, Line, Question, compare};
+pub use publish::publish;
 
 use std::path::Path;
 
 use super::collect::{Record, records};
+use super::journal::Keep;
 use super::plan::Plan;
 use super::study::Study;
 use crate::report::{Align, Figure, Page, Section, Table, index, write_figure};
@@ -36,7 +39,7 @@ enum ReportError {
 /// # Errors
 /// [`Error::Content`] when tasks have no result and `allow_missing` is not said; [`Error::Io`].
 pub fn report(plan: &Plan, out: &Path, study: &Study, allow_missing: bool) -> Result<String> {
-    let records = records(plan, out)?;
+    let records = records(plan, out, Keep::All)?;
     check(plan, out, &records, allow_missing)?;
     let comparison = compare(plan, study, &records);
     if comparison.common.is_empty() {
@@ -48,8 +51,16 @@ pub fn report(plan: &Plan, out: &Path, study: &Study, allow_missing: bool) -> Re
     let figures = [
         ("ranks", figures::ranking(plan, &comparison)),
         ("profiles", figures::profiles(plan, &comparison)),
-        ("targets", figures::targets(plan, &comparison, &records)),
+        (
+            "targets",
+            figures::targets(plan, study, &comparison, &records),
+        ),
+        (
+            "anytime",
+            figures::anytime(plan, study, &comparison, &records),
+        ),
     ];
+    let seconds: f64 = records.iter().map(|record| record.seconds).sum();
     let mut text = format!(
         "# {}\n\n{}\n\n{}\n",
         study.name,
@@ -78,6 +89,7 @@ pub fn report(plan: &Plan, out: &Path, study: &Study, allow_missing: bool) -> Re
         }],
     };
     write("report.html", &index(&[page]))?;
+    publish::provenance(plan, study, seconds, &folder)?;
     Ok(text)
 }
 
@@ -113,14 +125,18 @@ fn summary(plan: &Plan, comparison: &Comparison) -> String {
     let seeds = plan.tasks.len() / (head.arms.len() * head.instances.len()).max(1);
     let reference = &head.arms[comparison.question.reference].name;
     let mut text = format!(
-        "{} arms, {} instances, {seeds} seeds; compared by `{}` on the {} instances that all arms have. Means with 95 % bootstrap \
+        "{} arms, {} instances, {seeds} seeds; compared by `{}` on the {} {} that all arms have. Means with 95 % bootstrap \
          intervals over instances and seeds; differences to `{reference}` are paired, p by Wilcoxon's signed-rank test with Holm's correction, effect \
          the matched-pairs rank biserial correlation (positive: larger values than the reference).",
         head.arms.len(),
         head.instances.len(),
         comparison.question.metric,
-        comparison.common.len()
+        comparison.common.len(),
+        comparison.unit
     );
+    if comparison.unit == "seeds" {
+        text += " There is one instance: what is tested over its seeds says nothing of others.";
+    }
     if let Some(ranks) = &comparison.ranks {
         text += &format!(" Friedman p {}.", probability(ranks.p));
     }
@@ -139,9 +155,12 @@ fn table(plan: &Plan, comparison: &Comparison) -> Table {
             "p",
             "p (Holm)",
             "effect",
-            "gap to bound",
-            "failed",
         ]);
+    let bounded = comparison.lines.iter().any(|line| line.gap.is_some());
+    if bounded {
+        table = table.numbers(["gap to bound"]);
+    }
+    table = table.numbers(["failed"]);
     for (arm, line) in plan.head.arms.iter().zip(&comparison.lines) {
         let range = |low: f64, high: f64| format!("{} to {}", short(low), short(high));
         let mut cells = vec![arm.name.clone()];
@@ -168,10 +187,12 @@ fn table(plan: &Plan, comparison: &Comparison) -> Table {
             line.test
                 .map_or_else(String::new, |test| format!("{:.2}", test.effect)),
         );
-        cells.push(
-            line.gap
-                .map_or_else(String::new, |gap| format!("{:.2} %", 100.0 * gap)),
-        );
+        if bounded {
+            cells.push(
+                line.gap
+                    .map_or_else(String::new, |gap| format!("{:.2} %", 100.0 * gap)),
+            );
+        }
         cells.push(line.failed.to_string());
         table.row(cells);
     }

@@ -6,8 +6,9 @@ mod snakemake;
 use std::path::Path;
 
 use super::collect::state;
-use super::plan::Plan;
-use crate::{Error, Result};
+use super::journal::{Keep, read_all};
+use super::plan::{Plan, Task};
+use crate::Result;
 
 pub use slurm::{ArrayLimit, array_limit, scripts};
 pub use snakemake::snakefile;
@@ -15,7 +16,9 @@ pub use snakemake::snakefile;
 /// How a plan is cut into jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packing {
-    /// Shards, each a job.
+    /// Tasks that have no result yet.
+    pub tasks: usize,
+    /// Shards, each a job; none where nothing is left to run.
     pub shards: usize,
     /// Seconds that a job may take: three times what is expected.
     pub limit: u64,
@@ -24,45 +27,28 @@ pub struct Packing {
 /// Seconds of a task before any was measured.
 const GUESS: f64 = 10.0;
 
-/// Packs tasks into jobs of about the wanted length, by the measured mean time of a task.
+/// Packs the tasks without a result into jobs of about the wanted length, by the measured mean time of a task.
 ///
 /// # Errors
-/// [`Error::Option`] when the length is none, [`Error::Io`].
+/// [`crate::Error::Io`].
 pub fn packing(plan: &Plan, out: &Path) -> Result<Packing> {
-    let wanted = duration(&plan.head.task.pack)?;
+    let wanted = plan.head.task.pack_seconds();
+    let known = read_all(out, Keep::Presence)?.entries;
+    let open = |(_, task): &(usize, &Task)| !known.contains_key(&task.key);
+    let tasks = plan.tasks.iter().enumerate().filter(open);
+    let tasks: Vec<usize> = tasks.map(|(index, _)| index).collect();
     let seconds = state(plan, out)?.mean_seconds.unwrap_or(GUESS).max(1e-3);
     let per_job = (wanted / seconds).floor().max(1.0);
-    let shards = (plan.tasks.len() as f64 / per_job).ceil().max(1.0);
-    let longest = (plan.tasks.len() as f64 / shards).ceil() * seconds;
+    let shards = (tasks.len() as f64 / per_job).ceil() as usize;
+    // A shard is every nth task of the plan, and those without a result may all be in one.
+    let mut by_shard = vec![0u32; shards];
+    tasks.iter().for_each(|index| by_shard[index % shards] += 1);
+    let longest = f64::from(by_shard.into_iter().max().unwrap_or(0)) * seconds;
     Ok(Packing {
-        shards: shards as usize,
+        tasks: tasks.len(),
+        shards,
         limit: (3.0 * longest).max(600.0).ceil() as u64,
     })
-}
-
-/// Seconds of `90s`, `30min`, `2h`, `1.5h`.
-fn duration(text: &str) -> Result<f64> {
-    let bad = || {
-        Error::option(
-            "pack",
-            format!("`{text}` is no length of time such as 90s, 30min or 2h"),
-        )
-    };
-    let split = text
-        .find(|c: char| !c.is_ascii_digit() && c != '.')
-        .ok_or_else(bad)?;
-    let (number, unit) = text.split_at(split);
-    let factor = match unit.trim() {
-        "s" => 1.0,
-        "min" => 60.0,
-        "h" => 3600.0,
-        _ => return Err(bad()),
-    };
-    let number: f64 = number.parse().map_err(|_| bad())?;
-    match number > 0.0 {
-        true => Ok(number * factor),
-        false => Err(bad()),
-    }
 }
 
 /// A path as one word of a shell.

@@ -20,7 +20,7 @@ pub fn list(studies: &[Study], options: &Options) -> Result<()> {
         let study = |study: &Study| {
             serde_json::json!({
                 "name": study.name, "about": study.about, "data": study.data,
-                "metrics": study.metrics, "settings": study.settings(),
+                "metrics": study.metrics, "learns": study.learns, "settings": study.settings(),
             })
         };
         let all: Vec<_> = studies.iter().map(study).collect();
@@ -30,8 +30,13 @@ pub fn list(studies: &[Study], options: &Options) -> Result<()> {
         let metrics: Vec<&str> = study.metrics.iter().map(|(name, _)| *name).collect();
         print::line(&format!("{}: {}", study.name, study.about))?;
         print::line(&format!(
-            "  data below datasets/{}; metrics {}",
+            "  data below datasets/{}{}; metrics {}",
             study.data,
+            if study.learns {
+                ", learns from `learn` or from the other instances"
+            } else {
+                ""
+            },
             metrics.join(", ")
         ))?;
         for setting in study.settings() {

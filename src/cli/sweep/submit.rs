@@ -45,6 +45,14 @@ pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
     let (sweep, out) = (absolute(&common.sweep)?, absolute(&common.out)?);
     let program = std::env::current_exe().map_err(|e| Error::io("edifice".as_ref(), "find", e))?;
     let packing = packing(&plan, &out)?;
+    if packing.shards == 0 {
+        print::message("every task has a result: nothing to submit");
+        let nothing: [&Path; 0] = [];
+        return super::json(
+            common,
+            &serde_json::json!({ "tasks": 0, "jobs": 0, "files": nothing }),
+        );
+    }
     let mut written: Vec<PathBuf> = Vec::new();
     let mut write = |name: &str, text: &str| {
         let path = out.join(name);
@@ -65,7 +73,7 @@ pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
         }
         Engine::Snakemake => write(
             "Snakefile",
-            &snakefile(&plan, &sweep, &out, &program, packing),
+            &snakefile(&plan, &sweep, &out, &program, packing)?,
         )?,
     }
     for path in &written {
@@ -73,8 +81,7 @@ pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
     }
     print::message(&format!(
         "{} tasks in {} jobs",
-        plan.tasks.len(),
-        packing.shards
+        packing.tasks, packing.shards
     ));
     if !options.dry_run {
         match options.engine {
@@ -86,7 +93,7 @@ pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
     }
     super::json(
         common,
-        &serde_json::json!({ "tasks": plan.tasks.len(), "jobs": packing.shards, "files": written }),
+        &serde_json::json!({ "tasks": packing.tasks, "jobs": packing.shards, "files": written }),
     )
 }
 

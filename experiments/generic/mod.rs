@@ -1,0 +1,7 @@
+//! Studies of the generic layers, for sweeps: models and optimizers without buildings.
+
+pub mod annealing;
+pub mod genetic;
+pub mod gmm;
+mod knapsack;
+pub mod network;

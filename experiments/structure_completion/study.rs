@@ -1,0 +1,239 @@
+//! The studies of this paper, for sweeps.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::data::{self, Item};
+use super::figures::{in_size, without};
+use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
+use crate::io::{ReadOptions, read_source};
+use crate::methods::structure_completion::layout::{Class, Element, Layout, scope};
+use crate::methods::structure_completion::measure::{agreement, area_iou};
+use crate::methods::structure_completion::method::{self, Method};
+use crate::methods::structure_completion::model::Model;
+use crate::methods::structure_completion::policy::{Budget, PaperModel};
+use crate::methods::structure_completion::score::{TERMS, Term};
+use crate::methods::structure_completion::task::Task;
+use crate::rng::stream;
+use crate::{Error, Result};
+
+/// A way to complete a layout.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum MethodName {
+    Best,
+    Paper,
+    Annealing,
+    LowRank,
+    Lattice,
+    LatticeOpen,
+    Mirror,
+    Nearest,
+}
+
+/// What is hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum TaskName {
+    R20,
+    R50,
+    Side50,
+    Corner36,
+    Bottom40,
+}
+
+/// A scoring function (Sec. 4).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum TermName {
+    Aspect,
+    Spacing,
+    Regularity,
+    Completeness,
+    Pattern,
+    Alignment,
+    Compatibility,
+    Coverage,
+    Border,
+    Symmetry,
+}
+
+/// Settings of completion.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+struct Complete {
+    /// Method of completion.
+    method: MethodName,
+    /// What is hidden.
+    task: TaskName,
+    /// Scoring functions whose weight is set to 0, of `paper`.
+    left_out: Vec<TermName>,
+    /// Policies of a generation, of `paper`.
+    population: usize,
+    /// Generations after the first, of `paper`.
+    generations: u64,
+    /// Candidates of each policy, of `paper`.
+    draws: usize,
+}
+
+impl Default for Complete {
+    fn default() -> Self {
+        Self {
+            method: MethodName::Best,
+            task: TaskName::Side50,
+            left_out: Vec::new(),
+            population: Budget::PAPER.population,
+            generations: Budget::PAPER.generations,
+            draws: Budget::PAPER.draws,
+        }
+    }
+}
+
+/// Completion of one facade by a model learnt from others.
+pub fn complete() -> Study {
+    const METRICS: &[(&str, Better)] = &[
+        ("f1", Better::Higher),
+        ("iou", Better::Higher),
+        ("count_error", Better::Lower),
+    ];
+    let about = "completion of facade layouts (Fan et al. 2014): part of a facade is hidden, and completed by what others teach";
+    Study::new(
+        "structure_completion/complete",
+        about,
+        "facade_grammar",
+        METRICS,
+        run,
+    )
+    .learning()
+}
+
+/// Why a facade is not completed.
+#[derive(Debug, thiserror::Error)]
+enum Refused {
+    #[error("only `paper` weighs scoring functions: leave `left_out` empty for other methods")]
+    LeftOut,
+    #[error("nothing of the facade is hidden")]
+    NothingHidden,
+}
+
+fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
+    let layout = item(given.path)?.layout;
+    let task = settings.task.task();
+    let (partial, hidden) = task.hide(&layout, &mut stream(given.seed, "figure 18", 0));
+    if hidden.is_empty() {
+        return Err(Error::content(given.path, Refused::NothingHidden));
+    }
+    let key = format!("{} {:?}", given.seed, given.database);
+    let added: Vec<Element> = if settings.method == MethodName::Paper {
+        static MODELS: Shared<PaperModel> = Shared::new();
+        let model = MODELS.get(key, || {
+            PaperModel::train(&layouts(given)?, given.seed).map_err(Error::method)
+        })?;
+        let budget = Budget {
+            population: settings.population,
+            generations: settings.generations,
+            draws: settings.draws,
+        };
+        let left_out: Vec<usize> = settings.left_out.iter().map(|term| term.index()).collect();
+        without(&partial, &left_out, &model, &budget, given.seed)?
+    } else {
+        if !settings.left_out.is_empty() {
+            return Err(Error::method(Refused::LeftOut));
+        }
+        static MODELS: Shared<Model> = Shared::new();
+        let model = MODELS.get(key, || {
+            Model::train(layouts(given)?, given.seed).map_err(Error::method)
+        })?;
+        let rng = &mut stream(given.seed, "completion", 0);
+        let found = method::complete(settings.method.method(), &partial, &model, 1, rng);
+        let first = found.first().into_iter();
+        first
+            .flat_map(|c| c.added.iter().map(|a| a.element))
+            .collect()
+    };
+    // Judged by what was hidden, as the benchmark judges all methods.
+    let mut found = Outcome::default();
+    for (name, value) in [
+        ("f1", agreement(&added, &hidden, 0.5).f1),
+        ("iou", area_iou(&added, &hidden)),
+        (
+            "count_error",
+            (added.len() as f64 - hidden.len() as f64).abs(),
+        ),
+    ] {
+        found.metrics.insert(name.into(), value);
+    }
+    Ok(found)
+}
+
+fn item(path: &std::path::Path) -> Result<Item> {
+    let layout = data::elements(read_source(path, &ReadOptions::default())?, path)?;
+    Ok(Item {
+        dataset: "sweep",
+        in_scope: scope::in_scope(&layout),
+        layout,
+    })
+}
+
+/// The layouts of the database that have a window and a size that can be learnt from; those in scope only, where there are enough.
+fn layouts(given: &Given) -> Result<Vec<Layout>> {
+    let mut items: Vec<Item> = given
+        .database
+        .iter()
+        .map(|path| item(path))
+        .collect::<Result<_>>()?;
+    items.retain(|item| item.layout.count(Class::Window) > 0);
+    if items.iter().any(in_size) {
+        items.retain(in_size);
+    }
+    if items.iter().filter(|i| i.in_scope).count() > items.len() / 2 {
+        items.retain(|i| i.in_scope);
+    }
+    Ok(items.into_iter().map(|item| item.layout).collect())
+}
+
+impl TaskName {
+    fn task(self) -> Task {
+        match self {
+            TaskName::R20 => Task::R20,
+            TaskName::R50 => Task::R50,
+            TaskName::Side50 => Task::Side50,
+            TaskName::Corner36 => Task::Corner36,
+            TaskName::Bottom40 => Task::Bottom40,
+        }
+    }
+}
+
+impl MethodName {
+    fn method(self) -> Method {
+        match self {
+            MethodName::Best => Method::Best,
+            MethodName::Paper => Method::Paper,
+            MethodName::Annealing => Method::Annealing,
+            MethodName::LowRank => Method::LowRank,
+            MethodName::Lattice => Method::Lattice,
+            MethodName::LatticeOpen => Method::LatticeOpen,
+            MethodName::Mirror => Method::Mirror,
+            MethodName::Nearest => Method::Nearest,
+        }
+    }
+}
+
+impl TermName {
+    /// Place among the weights.
+    fn index(self) -> usize {
+        let term = match self {
+            TermName::Aspect => Term::Aspect,
+            TermName::Spacing => Term::Spacing,
+            TermName::Regularity => Term::Regularity,
+            TermName::Completeness => Term::Completeness,
+            TermName::Pattern => Term::Pattern,
+            TermName::Alignment => Term::Alignment,
+            TermName::Compatibility => Term::Compatibility,
+            TermName::Coverage => Term::Coverage,
+            TermName::Border => Term::Border,
+            TermName::Symmetry => Term::Symmetry,
+        };
+        Term::ALL.iter().position(|t| *t == term).unwrap_or(TERMS)
+    }
+}

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# The studio in a real browser: each editor's story from opening to the saved file. Installs what it needs itself:
+# playwright-core from npm into a folder of its own, and chromium from Debian where there is none.
+#   tests/external/studio/run.sh [EDIFICE] [SCREENSHOTS]
+# EDIFICE is the program (built by cargo where it is not given); pictures go to SCREENSHOTS, a new folder by default.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../../.."
+
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
+if [ -z "$browser" ]; then
+    if ! command -v apt-get >/dev/null || ! apt-get install -y --no-install-recommends chromium; then
+        printf 'studio: no chromium here, and none to install: the browser stories did not run\n' >&2
+        exit 1
+    fi
+    browser=$(command -v chromium)
+fi
+program=${1:-}
+if [ -z "$program" ]; then
+    cargo build --quiet --bin edifice
+    program=${CARGO_TARGET_DIR:-target}/debug/edifice
+fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp tests/external/studio/*.mjs "$work"
+(cd "$work" && npm init -y >/dev/null && npm install --no-audit --no-fund --silent playwright-core@1)
+pictures=${2:-$work/pictures}
+mkdir -p "$pictures"
+EDIFICE=$(realpath "$program") BROWSER=$browser PICTURES=$(realpath "$pictures") node "$work/stories.mjs"

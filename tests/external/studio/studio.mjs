@@ -1,0 +1,79 @@
+// A studio and a page of it.
+
+import { spawn } from "node:child_process";
+import { mkdtempSync, readFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const { EDIFICE, BROWSER, PICTURES } = process.env;
+
+/** Starts the program in a folder of its own; its address. */
+export async function studio(args = []) {
+  const folder = mkdtempSync(join(tmpdir(), "studio-"));
+  const child = spawn(EDIFICE, ["studio", "--no-open", ...args], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  const address = await new Promise((found, failed) => {
+    let text = "";
+    child.stdout.on("data", (bytes) => {
+      text += bytes;
+      if (text.includes("\n")) found(text.split("\n")[0]);
+    });
+    child.on("exit", (code) => failed(new Error(`the studio ended with ${code}`)));
+  });
+  return {
+    address,
+    folder,
+    read: (name) => readFileSync(join(folder, name)),
+    /** Ends it as Ctrl-C does; its exit code. */
+    end: () =>
+      new Promise((ended) => {
+        child.removeAllListeners("exit");
+        child.on("exit", (code, signal) => ended(code ?? signal));
+        child.kill("SIGINT");
+      }),
+  };
+}
+
+/** A browser; as root it needs the first flag, and without a graphics card the last. */
+export function browser() {
+  return chromium.launch({
+    executablePath: BROWSER,
+    args: ["--no-sandbox", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader"],
+  });
+}
+
+/** A page that fails when it asks another machine for anything, or has an error of its own. */
+export async function open(context, address) {
+  const page = await context.newPage();
+  const faults = [];
+  const own = new URL(address).origin;
+  page.on("request", (r) => {
+    if (!r.url().startsWith(own) && !/^(blob|data):/.test(r.url())) faults.push(`asked ${r.url()}`);
+  });
+  page.on("pageerror", (e) => faults.push(String(e)));
+  page.on("console", (m) => {
+    // What the server refuses is told to the user, and the browser notes it too.
+    if (m.type() === "error" && !/status of 4\d\d/.test(m.text())) faults.push(m.text());
+  });
+  await page.goto(address);
+  return { page, faults };
+}
+
+/** The document that the page shows, once it is not busy. */
+export async function shown(page) {
+  await page.waitForFunction(() => window.studio && !window.studio.busy);
+  return page.evaluate(() => window.studio.doc);
+}
+
+/** Waits until the document has another revision, and is not busy. */
+export async function changed(page, act) {
+  const before = (await shown(page)).revision;
+  const start = performance.now();
+  await act();
+  await page.waitForFunction((r) => window.studio.doc.revision !== r && !window.studio.busy, before, { timeout: 60_000, polling: 20 });
+  changed.times.push(performance.now() - start);
+  return page.evaluate(() => window.studio.doc);
+}
+changed.times = [];
+
+export const picture = (page, name) => page.screenshot({ path: join(PICTURES, `${name}.png`) });
