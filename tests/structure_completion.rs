@@ -252,6 +252,40 @@ fn bad_partial_layouts_are_named() {
 }
 
 #[test]
+fn the_first_overlap_is_that_of_all_pairs() {
+    for case in 0..2000 {
+        let mut rng = stream(9, "overlaps", case);
+        let count = rng.random_range(0..12);
+        let mut observed = Vec::new();
+        for _ in 0..count {
+            let class = Class::ALL[rng.random_range(0..4)];
+            // Some have no area, and many meet at an edge.
+            let mut place = |most: i32| f64::from(rng.random_range(0..=most)) * 2.5;
+            let (w, h) = (place(8), place(6));
+            let rect = Rect::new(place(24), place(14), w, h);
+            observed.push(Element::new(class, rect));
+        }
+        let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
+        let wrong = pairs
+            .clone()
+            .find(|&(a, b)| observed[a].excludes(&observed[b]));
+        let partial = PartialLayout {
+            width: 90.0,
+            height: 60.0,
+            observed,
+            unknown: None,
+            forbidden: Vec::new(),
+        };
+        let found = match partial.check() {
+            Ok(()) => None,
+            Err(PartialError::Overlap { first, second, .. }) => Some((first, second)),
+            Err(other) => panic!("{other}"),
+        };
+        assert_eq!(found, wrong, "case {case}");
+    }
+}
+
+#[test]
 fn labels_are_told_by_their_beginning() {
     for (label, class) in [
         ("window", Some(Class::Window)),

@@ -137,8 +137,17 @@ impl Epsilon {
         end: 1.0,
     };
 
+    /// Whether both are probabilities, and positive unless they are equal.
+    fn is_valid(self) -> bool {
+        let share = |p: f64| p > 0.0 && p <= 1.0;
+        (share(self.start) && share(self.end)) || (self.start == 0.0 && self.end == 0.0)
+    }
+
     /// The probability at `iteration` of `iterations`.
     pub fn at(self, iteration: u64, iterations: u64) -> f64 {
+        if self.start == self.end {
+            return self.start;
+        }
         let progress = iteration as f64 / (iterations.max(2) - 1) as f64;
         self.start * (self.end / self.start).powf(progress)
     }
@@ -160,6 +169,16 @@ pub enum AdpError {
     /// Not a single iteration was asked for.
     #[error("approximate dynamic programming needs at least one iteration")]
     NoIterations,
+    /// [`Epsilon`] is out of range.
+    #[error(
+        "probabilities of exploring from {start} to {end} are out of range: above 0, at most 1, or both 0"
+    )]
+    Epsilon {
+        /// At the first iteration.
+        start: f64,
+        /// At the last.
+        end: f64,
+    },
     /// The cost of no walk was a number.
     #[error("approximate dynamic programming stopped: {0}")]
     Stopped(String),
@@ -189,7 +208,8 @@ impl<H, V> Adp<H, V> {
     /// Lend the approximation (`&mut`) to [`Adp::new`] to keep what it has learnt.
     ///
     /// # Errors
-    /// [`AdpError`] when there is no iteration to run or no walk has a cost that is a number.
+    /// [`AdpError`] when there is no iteration to run, an exploration probability is out of range, or no walk has a cost that
+    /// is a number.
     pub fn run<P>(
         self,
         process: &mut P,
@@ -202,6 +222,10 @@ impl<H, V> Adp<H, V> {
     {
         if self.iterations == 0 {
             return Err(AdpError::NoIterations);
+        }
+        if !self.epsilon.is_valid() {
+            let Epsilon { start, end } = self.epsilon;
+            return Err(AdpError::Epsilon { start, end });
         }
         let iterations = self.iterations;
         let limits = |state: Search<Vec<P::Action>>| state.max_iters(iterations);
@@ -271,5 +295,31 @@ where
             false => state,
         };
         Ok((state.cost(cost), None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exploration_falls_from_start_to_end_and_is_checked() {
+        let falling = Epsilon::default();
+        assert_eq!((falling.at(0, 5), falling.at(0, 1)), (0.9, 0.9));
+        assert!((falling.at(4, 5) - 0.1).abs() < 1e-12);
+        let never = Epsilon {
+            start: 0.0,
+            end: 0.0,
+        };
+        assert!(never.is_valid() && never.at(3, 5) == 0.0);
+        for (start, end) in [
+            (f64::NAN, 0.1),
+            (0.9, f64::NAN),
+            (0.0, 0.5),
+            (1.5, 0.5),
+            (0.9, -0.1),
+        ] {
+            assert!(!Epsilon { start, end }.is_valid());
+        }
     }
 }

@@ -17,6 +17,17 @@ pub enum GridError {
         /// Index of the variable.
         variable: usize,
     },
+    /// A value to try is not a number.
+    #[error("variable {variable}, value {index} is not a number")]
+    Value {
+        /// Index of the variable.
+        variable: usize,
+        /// Index among its values.
+        index: usize,
+    },
+    /// The grid has more points than can be counted.
+    #[error("the grid has more points than can be counted")]
+    TooLarge,
     /// The cost could not be evaluated, or is a number nowhere.
     #[error("{0}")]
     Cost(String),
@@ -93,7 +104,8 @@ where
 /// Complexity: one evaluation per point, the product of the lengths.
 ///
 /// # Errors
-/// [`GridError::Empty`] when a variable has no values, [`GridError::Cost`] when `cost` fails.
+/// [`GridError::Empty`] when a variable has no values, [`GridError::Value`] for one that is not a number,
+/// [`GridError::TooLarge`], [`GridError::Cost`] when `cost` fails.
 ///
 /// # Examples
 /// ```
@@ -112,6 +124,15 @@ pub fn minimize<E: std::fmt::Display>(
     let empty = axes.iter().position(Vec::is_empty);
     if let Some(variable) = empty.or(axes.is_empty().then_some(0)) {
         return Err(GridError::Empty { variable });
+    }
+    for (variable, values) in axes.iter().enumerate() {
+        if let Some(index) = values.iter().position(|v| v.is_nan()) {
+            return Err(GridError::Value { variable, index });
+        }
+    }
+    let counted = axes.iter().try_fold(1_usize, |n, v| n.checked_mul(v.len()));
+    if counted.is_none() {
+        return Err(GridError::TooLarge);
     }
     let grid = Grid {
         points: points(axes),
@@ -140,5 +161,11 @@ mod tests {
         assert_eq!(error, Err(GridError::Cost("no cost".into())));
         let error = minimize(&[vec![1.0], vec![]], |_| Ok::<_, String>(1.0));
         assert_eq!(error, Err(GridError::Empty { variable: 1 }));
+        let error = minimize(&[vec![1.0], vec![0.0, f64::NAN]], |_| Ok::<_, String>(1.0));
+        let (variable, index) = (1, 1);
+        assert_eq!(error, Err(GridError::Value { variable, index }));
+        let wide = vec![vec![0.0; 1 << 16]; 4];
+        let error = minimize(&wide, |_| Ok::<_, String>(1.0));
+        assert_eq!(error, Err(GridError::TooLarge));
     }
 }

@@ -1,5 +1,6 @@
 //! Partial layouts: elements that are observed, wall that is known, and the rest, which is unknown.
 
+use super::layout::places::Places;
 use super::layout::{Class, Element};
 use crate::shape::Rect;
 
@@ -95,9 +96,21 @@ impl PartialLayout {
                 });
             }
         }
+        let count = self.observed.len();
+        let mean = |size: fn(&Rect) -> f64| {
+            let sizes = self.observed.iter().map(|e| size(&e.rect));
+            sizes.sum::<f64>() / count.max(1) as f64
+        };
+        let size = [mean(|r| r.width), mean(|r| r.height)];
+        let mut places = Places::new([width, height], size, count);
         for (second, b) in self.observed.iter().enumerate() {
-            let earlier = self.observed[..second].iter();
-            if let Some(first) = earlier.clone().position(|a| a.excludes(b)) {
+            let excluded = |first: u32| self.observed[first as usize].excludes(b);
+            if !places.any_near(&b.rect, excluded) {
+                places.insert(second as u32, &b.rect);
+                continue;
+            }
+            let mut earlier = self.observed[..second].iter();
+            if let Some(first) = earlier.position(|a| a.excludes(b)) {
                 return Err(PartialError::Overlap {
                     first,
                     first_class: self.observed[first].class,

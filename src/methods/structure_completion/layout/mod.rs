@@ -2,6 +2,7 @@
 
 pub mod extract;
 pub mod lines;
+pub(super) mod places;
 pub mod scope;
 
 use serde::{Deserialize, Serialize};

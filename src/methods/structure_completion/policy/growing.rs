@@ -5,7 +5,7 @@ use rand::{Rng, RngExt};
 use super::scene::{Extent, Item, Scene};
 use crate::methods::structure_completion::layout::Element;
 
-use super::places::Places;
+use super::super::layout::places::Places;
 
 /// Two elements are on one line where their centres differ by less than this share of the size.
 const SAME_LINE: f64 = 0.35;

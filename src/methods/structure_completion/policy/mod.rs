@@ -31,7 +31,6 @@ mod grow;
 mod growing;
 mod model;
 mod optimize;
-mod places;
 mod process;
 mod scene;
 

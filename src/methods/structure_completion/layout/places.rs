@@ -1,4 +1,4 @@
-//! The items of a candidate by place: what is near a rectangle, or next on a line, without a look at all items.
+//! Items by place: what is near a rectangle, or next on a line, without a look at all items.
 //!
 //! The facade is cut into cells of about the mean size of an element; an item is listed in every cell that its
 //! rectangle meets. For elements that hardly overlap a query looks at a bounded number of items.
@@ -10,7 +10,7 @@ const END: u32 = u32::MAX;
 
 /// Items by cell.
 #[derive(Debug, Clone)]
-pub(super) struct Places {
+pub(in super::super) struct Places {
     cell: [f64; 2],
     counts: [usize; 2],
     /// The entry of each cell that was made last.
