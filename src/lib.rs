@@ -28,11 +28,14 @@
 //! | `io` | [`io`]: file formats of facades, grammars, buildings and scenes |
 //! | `report` | [`report`]: tables and figures |
 //! | `linfa` (default) | [linfa]'s traits for Gaussian mixtures: [`model::gmm::linfa`] |
-//! | `cli` (default) | [`experiments`] and the programs; includes `io` and `report` |
+//! | `cli` (default) | [`experiments`], [`editing`] and the programs; includes `io` and `report` |
+//! | `studio` (default) | [`studio`]: documents in the browser, `edifice studio`; includes `cli` |
 //!
 //! [linfa]: https://docs.rs/linfa
 
 pub mod cluster;
+#[cfg(feature = "cli")]
+pub mod editing;
 pub mod error;
 #[cfg(feature = "cli")]
 #[path = "../experiments/mod.rs"]
@@ -51,6 +54,8 @@ pub mod report;
 pub mod rng;
 pub mod scene;
 pub mod shape;
+#[cfg(feature = "studio")]
+pub mod studio;
 pub mod tables;
 
 pub use error::{Error, Result};

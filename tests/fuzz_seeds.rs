@@ -11,6 +11,8 @@ use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
 use edifice::methods::structure_completion::model::Model as CompletionModel;
 use edifice::model::network::Network;
+use edifice::tables::schema::Schema;
+use edifice::tables::table_model::TableModel;
 
 /// Whether the reader of that name takes the bytes.
 fn read(reader: &str, bytes: &[u8]) -> bool {
@@ -24,6 +26,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
             building_json::parse_lines(bytes, path).is_ok() || one
         }
         "city_grammar" => city::grammar_json::parse(bytes, path).is_ok(),
+        "city_gltf" => city::gltf::parse(bytes, path).is_ok(),
         "city_json" => city::cityjson::parse(bytes, path).is_ok(),
         "city_npz" => city::npz::parse(bytes.to_vec(), path).is_ok(),
         "city_obj" => city::obj::parse(bytes, path).is_ok(),
@@ -49,6 +52,12 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
             parse_json::<ModelFile>(bytes, path).is_ok_and(|file| Model::try_from(file).is_ok())
         }
         "network_json" => text.is_some_and(|t| Network::from_json(t).is_ok()),
+        "table_csv" => building_csv::parse(bytes, path).is_ok_and(|table| {
+            let schema = Schema::guess(&table.header, &table.rows);
+            schema.is_ok_and(|s| s.read(&table.header, &table.rows).is_ok())
+        }),
+        "table_model" => text.is_some_and(|t| TableModel::from_json(t).is_ok()),
+        "xmlbif" => text.is_some_and(|t| Network::from_xmlbif(t).is_ok()),
         "partial_facade" => facade_json::parse_annotated(bytes, path).is_ok(),
         other => panic!("no reader for fuzz/seeds/{other}"),
     }
@@ -76,5 +85,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 23);
+    assert_eq!(targets, 27);
 }

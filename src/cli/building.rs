@@ -67,7 +67,7 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
     /// Add, move, resize and remove boxes of a house; with a model, a house around the edited boxes is suggested.
     #[command(after_help = "Examples:
   edifice building edit house.building.json --resize 0=9,7,2.9 -o edited --format json,png
-  edifice building edit house.building.json --add garage@2,3,3.5,6,2.5 --model model.houses.json -o edited")]
+  edifice building edit house.building.json --add garage@2,3,3.5,6,2.5 --suggest -o edited")]
     Edit(design::EditArgs),
     /// Check that houses are closed, in one shell, and that nothing overlaps or is hidden; exit code 1 names what is wrong.
     #[command(after_help = "Examples:

@@ -4,6 +4,7 @@ mod compare;
 mod data;
 mod derive;
 mod draw;
+mod edit;
 mod locate;
 mod proceduralize;
 mod show;
@@ -20,7 +21,7 @@ pub enum Command {
   edifice city proceduralize midtown.npz -o midtown.city-grammar.json
   edifice city proceduralize delft.city.json --templates 500 -o delft.city-grammar.json.gz --glb delft.glb
   edifice city proceduralize midtown.npz --mode paper --level 2 --weights height=3 -o paper.city-grammar.json
-Reads .npz, .obj, .city.json, .city.jsonl; z up, metres.")]
+Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metres.")]
     Proceduralize(proceduralize::Args),
     /// Derive the city of a grammar.
     #[command(after_help = "Examples:
@@ -28,6 +29,12 @@ Reads .npz, .obj, .city.json, .city.jsonl; z up, metres.")]
   edifice city derive midtown.city-grammar.json -o midtown.obj
 OBJ and CityJSON are z up, in metres; glTF is y up.")]
     Derive(derive::Args),
+    /// Change sizes of templates and weights of rules.
+    #[command(after_help = "Examples:
+  edifice city edit midtown.city-grammar.json 'scale t12=1,1,1.5' -o taller.city-grammar.json
+Edits, made in turn: scale TEMPLATE=FX,FY,FZ (factors of width, depth and height wherever it stands); weight RULE=W, the rules
+counted from 0 as in the file.")]
+    Edit(edit::Args),
     /// Compare two cities, or a city and a grammar.
     #[command(after_help = "Examples:
   edifice city compare midtown.npz midtown.city-grammar.json --resolution 0.5")]
@@ -63,6 +70,7 @@ pub fn run(command: Command) -> edifice::Result<()> {
     match command {
         Command::Proceduralize(args) => proceduralize::run(&args),
         Command::Derive(args) => derive::run(&args),
+        Command::Edit(args) => edit::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Show(args) => show::run(&args),
         Command::Draw(args) => draw::run(&args),

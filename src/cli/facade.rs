@@ -1,11 +1,11 @@
 //! Facade files on the command line.
 
 mod complete;
+mod edit;
 mod hide;
 mod input;
 mod mask;
 mod overview;
-mod partial;
 mod score;
 mod train;
 
@@ -44,6 +44,8 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
     Train(train::Args),
     /// Complete a facade of which only a part is seen.
     Complete(complete::Args),
+    /// Add, move, resize, relabel and remove elements of a layout.
+    Edit(edit::Args),
     /// Hide a part of a whole facade, to see how it is completed.
     #[command(
         after_help = "Example:\n  edifice facade hide monge_42.png --task side50 --seed 1 -o partial.facade.json"
@@ -78,6 +80,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Convert(options) => convert(&options),
         Command::Train(args) => train::run(&args),
         Command::Complete(args) => complete::run(&args),
+        Command::Edit(args) => edit::run(&args),
         Command::Hide(args) => hide::run(&args),
         Command::Score(args) => score::run(&args),
     }

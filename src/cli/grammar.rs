@@ -1,6 +1,7 @@
 //! Split grammars on the command line.
 
 mod derive;
+mod edit;
 mod infer;
 mod show;
 
@@ -14,6 +15,8 @@ pub enum Command {
     Infer(infer::Args),
     /// Derive a facade from a grammar, at its own or another size.
     Derive(derive::Args),
+    /// Edit the rules of a grammar: sizes, symbols, parts, repeats.
+    Edit(edit::Args),
     /// Show the rules of a grammar, what it costs and what it derives.
     Show(show::Args),
 }
@@ -23,6 +26,7 @@ pub fn run(command: Command) -> edifice::Result<()> {
     match command {
         Command::Infer(args) => infer::run(&args),
         Command::Derive(args) => derive::run(&args),
+        Command::Edit(args) => edit::run(&args),
         Command::Show(args) => show::run(&args),
     }
 }

@@ -10,6 +10,8 @@ mod model;
 mod print;
 mod reading;
 mod reproduce;
+#[cfg(feature = "studio")]
+mod studio;
 mod sweep;
 
 use std::process::ExitCode;
@@ -47,6 +49,9 @@ enum Command {
     /// Ablations and comparisons from one file, on this machine or a cluster.
     #[command(subcommand)]
     Sweep(sweep::Command),
+    /// Edit facades, grammars, houses and cities by hand, in the browser.
+    #[cfg(feature = "studio")]
+    Studio(studio::Args),
     /// Run the experiments of the papers and write the report.
     Reproduce(reproduce::Args),
 }
@@ -67,6 +72,8 @@ pub fn run() -> ExitCode {
         Command::City(command) => city::run(command),
         Command::Model(command) => model::run(command),
         Command::Sweep(command) => sweep::run(command),
+        #[cfg(feature = "studio")]
+        Command::Studio(args) => studio::run(args),
         Command::Reproduce(args) => reproduce::run(args),
     };
     match outcome {

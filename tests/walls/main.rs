@@ -37,6 +37,24 @@ const WALLS: &[(&str, &[&str])] = &[
             "tables", "optim", "cluster", "scene", "layout",
         ],
     ),
+    (
+        "editing",
+        &[
+            "error",
+            "rng",
+            "file",
+            "grammar",
+            "io",
+            "methods",
+            "shape",
+            "model",
+            "tables",
+            "scene",
+            "layout",
+            "experiments",
+        ],
+    ),
+    ("studio", &["error", "file", "io", "editing"]),
     // `main.rs` sees `cli` alone; `cli` sees the whole library.
     ("main", &["cli"]),
     (
@@ -57,6 +75,8 @@ const WALLS: &[(&str, &[&str])] = &[
             "scene",
             "layout",
             "experiments",
+            "editing",
+            "studio",
         ],
     ),
 ];

@@ -20,6 +20,7 @@ const OWN: &[(&str, &str)] = &[
 const REGISTRIES: &[&str] = &[
     "src/methods/mod.rs",
     "src/cli/mod.rs",
+    "src/editing/mod.rs",
     "experiments/mod.rs",
     "experiments/peers.rs",
 ];

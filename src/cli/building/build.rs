@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use edifice::editing::building_exteriors::is_file_name;
 use edifice::io::building_csv::{self, TextTable};
 use edifice::io::footprint;
 use edifice::methods::building_exteriors::attributes::COLUMNS;
@@ -104,12 +105,6 @@ fn orders(table: &TextTable, path: &Path, given: bool) -> Result<Vec<Order>> {
         });
     }
     Ok(orders)
-}
-
-/// Letters, digits, `-` and `_`, so that a name stays within its folder.
-pub fn is_file_name(name: &str) -> bool {
-    let usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    !name.is_empty() && name.len() <= 100 && name.chars().all(usual)
 }
 
 /// Runs `generate`.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use edifice::editing::building_exteriors::is_file_name;
 use edifice::io::building_json;
 use edifice::methods::building_exteriors::attributes::COLUMNS;
 use edifice::methods::building_exteriors::design::{completions, observed};
@@ -10,7 +11,6 @@ use edifice::model::{Cell, Table};
 use edifice::rng::stream;
 use edifice::{Error, Result};
 
-use super::build::is_file_name;
 use super::data::{self, Input};
 use super::produce::Making;
 use crate::cli::model::data::csv_lines;

@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use edifice::Error;
 use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::model::hierarchy::learn;
 
 use super::data::Input;
-use crate::cli::model::search::{Search, warnings};
+use crate::cli::model::learning::Learning;
 use crate::cli::print;
 
 /// Options.
@@ -19,7 +18,7 @@ pub struct Args {
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]
-    search: Search,
+    learning: Learning,
     /// Print a line of JSON.
     #[arg(long)]
     json: bool,
@@ -28,15 +27,15 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> edifice::Result<()> {
     let data = args.input.read()?;
-    let settings = args.search.settings()?;
-    let start = std::time::Instant::now();
-    let learned = learn(&data.table, &data.groups, &settings, args.search.seed)
-        .map_err(|e| Error::content(&args.input.input, e))?;
-    let seconds = start.elapsed().as_secs_f64();
-    let model = learned.model;
-    for warning in warnings(&data.table, model.free_parameters()) {
-        print::message(&format!("warning: {warning}"));
-    }
+    let start = args
+        .learning
+        .from
+        .as_deref()
+        .map(super::data::model)
+        .transpose()?;
+    let start = start.as_ref().map(|file| &file.model);
+    let found = args.learning.learn(&data, start, &args.input.input)?;
+    let model = found.model;
     let (styles, edges) = (model.styles(), model.lateral_edges().len());
     let cardinalities = model.cardinalities();
     let groups = data.groups;
@@ -45,14 +44,14 @@ pub fn run(args: &Args) -> edifice::Result<()> {
     edifice::io::write_atomic(&args.output, text.as_bytes())?;
     let houses = data.table.rows();
     print::message(&format!(
-        "{houses} houses: {styles} styles, kinds {cardinalities:?}, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {seconds:.1} s",
-        learned.score
+        "{houses} houses: {styles} styles, kinds {cardinalities:?}, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {:.1} s",
+        found.score, found.seconds
     ));
     if args.json {
         let summary = serde_json::json!({
             "houses": houses, "styles": styles, "cardinalities": cardinalities,
-            "lateral_edges": edges, "score": learned.score, "bic": learned.bic,
-            "seconds": seconds, "seed": args.search.seed,
+            "lateral_edges": edges, "score": found.score, "bic": found.bic,
+            "interrupted": found.interrupted, "seconds": found.seconds, "seed": args.learning.search.seed,
         });
         print::line(&summary.to_string())?;
     }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use edifice::editing::building_exteriors::scene_of;
 use edifice::io::scene_png::picture_png;
 use edifice::io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice::methods::building_exteriors::house::scene::{Placed, scene};
@@ -44,11 +45,6 @@ pub fn database(path: Option<&Path>) -> Result<Database> {
         }
     };
     Database::new(buildings).map_err(|e| Error::content(&path, e))
-}
-
-/// The scene of one house, its colours chosen by its name.
-pub fn scene_of(building: &Building, model: &Model) -> Scene {
-    scene(&[placed(building, model, [0.0; 2])])
 }
 
 fn placed<'a>(building: &'a Building, model: &'a Model, at: [f64; 2]) -> Placed<'a> {

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use edifice::editing::city_proceduralization::fill;
 use edifice::io::city::{geojson, grammar_json};
-use edifice::methods::city_proceduralization::synthesis::{Shape, synthesize};
+use edifice::methods::city_proceduralization::synthesis::Shape;
 use edifice::{Error, Result};
 
 use super::{data, derive};
@@ -15,8 +16,17 @@ pub struct Args {
     /// The grammar.
     grammar: PathBuf,
     /// The shape to fill: a polygon in metres (GeoJSON).
-    #[arg(long)]
-    shape: PathBuf,
+    #[arg(long, required_unless_present = "polygon")]
+    shape: Option<PathBuf>,
+    /// The same as numbers, corner by corner: `X,Y,X,Y,...`.
+    #[arg(
+        long,
+        value_name = "X,Y,...",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with = "shape"
+    )]
+    polygon: Vec<f64>,
     /// Seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -35,36 +45,37 @@ pub fn run(args: &Args) -> Result<()> {
         derive::check_output(&args.output)?;
     }
     let grammar = data::grammar(&args.grammar)?;
-    let mut shape = Shape {
-        rings: geojson::read(&args.shape)?,
+    let shape = Shape {
+        rings: match &args.shape {
+            Some(path) => geojson::read(path)?,
+            None => vec![corners(&args.polygon)?],
+        },
     };
-    // Near the origin, where millimetres are kept.
-    let low = shape.bounds().map_or([0.0; 2], |b| b.0.map(f64::floor));
-    for p in shape.rings.iter_mut().flatten() {
-        *p = [p[0] - low[0], p[1] - low[1]];
-    }
-    let mut made =
-        synthesize(&grammar, &shape, args.seed).map_err(|e| Error::content(&args.grammar, e))?;
-    made.origin = [low[0], low[1], 0.0];
-    let derivation = made
-        .derive()
-        .map_err(|e| Error::content(&args.grammar, e))?;
+    let area = shape.area();
+    let (made, derivation) =
+        fill(&grammar, shape, args.seed).map_err(|e| Error::content(&args.grammar, e))?;
     let count = derivation.buildings.len();
-    if count == 0 {
-        return Err(Error::content(
-            &args.shape,
-            "no building fits into the shape",
-        ));
-    }
     match is_grammar {
         true => grammar_json::write(&made, &args.output)?,
         false => derive::write(&made, &derivation, &args.output, true)?,
     }
     if args.json {
         let summary = serde_json::json!({
-            "buildings": count, "area": shape.area(), "seed": args.seed,
+            "buildings": count, "area": area, "seed": args.seed,
         });
         return print::line(&summary.to_string());
     }
-    print::line(&format!("{count} buildings on {:.0} m2", shape.area()))
+    print::line(&format!("{count} buildings on {:.0} m2", area))
+}
+
+/// The corners of a polygon.
+fn corners(numbers: &[f64]) -> Result<Vec<[f64; 2]>> {
+    let (corners, rest) = numbers.as_chunks::<2>();
+    match corners.len() >= 3 && rest.is_empty() && numbers.iter().all(|v| v.is_finite()) {
+        true => Ok(corners.to_vec()),
+        false => Err(Error::option(
+            "--polygon",
+            "expected X,Y of at least three corners",
+        )),
+    }
 }

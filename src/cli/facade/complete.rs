@@ -3,15 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use edifice::editing::structure_completion::{Wanted, complete, file, shipped_model};
 use edifice::io::{facade_json, read_bytes, write_atomic, write_facade};
-use edifice::methods::structure_completion::completion::Completion;
-use edifice::methods::structure_completion::layout::scope;
-use edifice::methods::structure_completion::method::{self, Method};
-use edifice::methods::structure_completion::model::{Model, shipped_model};
+use edifice::methods::structure_completion::method::Method;
+use edifice::methods::structure_completion::model::Model;
 use edifice::shape::{AnnotatedFacade, Rect};
-use edifice::{Error, Result, rng};
+use edifice::{Error, Result};
 
-use super::partial::{Given, Wanted};
 use super::{input, mask, overview};
 use crate::cli::print;
 use crate::cli::reading::Reading;
@@ -78,9 +76,10 @@ pub fn run(args: &Args) -> Result<()> {
     let Some(method) = Method::of_option(&args.method) else {
         return Err(Error::option("--method", "unknown method"));
     };
-    let model = match &args.model {
-        Some(path) => read_model(path)?,
-        None => shipped_model().map_err(Error::method)?,
+    let own = args.model.as_deref().map(read_model).transpose()?;
+    let model = match &own {
+        Some(model) => model,
+        None => shipped_model()?,
     };
     let mut annotated = input::annotated(&args.input, &args.reading)?;
     add_unknown(args, &mut annotated)?;
@@ -90,29 +89,20 @@ pub fn run(args: &Args) -> Result<()> {
         pins: &args.pin,
         forbidden: &args.forbid,
     };
-    let given = Given::new(annotated, &wanted, &args.input)?;
-    for warning in &given.warnings {
+    let answers = complete(
+        annotated,
+        &wanted,
+        method,
+        model,
+        args.count.into(),
+        args.seed,
+        &args.input,
+    )?;
+    for warning in &answers.warnings {
         print::message(&format!("warning: {warning}"));
     }
-    let completions = if given.partial.has_unknown() {
-        let mut stream = rng::stream(args.seed, "facade complete", 0);
-        method::complete(
-            method,
-            &given.partial,
-            &model,
-            args.count.into(),
-            &mut stream,
-        )
-    } else {
-        print::message("nothing is unknown: the layout is returned as it is");
-        vec![Completion {
-            added: Vec::new(),
-            score: 0.0,
-            mass: 1.0,
-        }]
-    };
-    warn_scope(&given, &completions);
-    let whole: Vec<AnnotatedFacade> = completions.iter().map(|c| given.completed(c)).collect();
+    let whole = answers.whole();
+    let (given, completions) = (answers.given, answers.completions);
     let files = write(args, &whole)?;
     if let Some(sheet) = &args.svg {
         let name = |k: usize| format!("{} (mass {:.2})", k + 1, completions[k].mass);
@@ -171,18 +161,6 @@ fn add_unknown(args: &Args, annotated: &mut AnnotatedFacade) -> Result<()> {
     Ok(())
 }
 
-/// Says when the result is no lattice of windows, which the method is made for.
-fn warn_scope(given: &Given, completions: &[Completion]) {
-    let Some(best) = completions.first() else {
-        return;
-    };
-    if !scope::in_scope(&given.layout(best)) {
-        print::message(
-            "warning: out of scope: the completed facade has no regular lattice of at least 8 windows; expect less of it",
-        );
-    }
-}
-
 /// Writes the best completion to a file, or all of them to a folder; the file of each.
 fn write(args: &Args, whole: &[AnnotatedFacade]) -> Result<Vec<Option<PathBuf>>> {
     let out = &args.output;
@@ -200,7 +178,7 @@ fn write(args: &Args, whole: &[AnnotatedFacade]) -> Result<Vec<Option<PathBuf>>>
                 files.push(None);
                 continue;
             }
-            (false, _) => out.join(format!("completion_{}.facade.json", k + 1)),
+            (false, _) => out.join(file(k + 1)),
         };
         if path
             .extension()

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use edifice::editing::structure_completion;
 use edifice::experiments::structure_completion::data;
-use edifice::io::{self, Source, facade_json};
+use edifice::io;
 use edifice::methods::structure_completion::layout::Layout;
-use edifice::shape::{AnnotatedFacade, Note, Rect, is_background};
+use edifice::shape::{AnnotatedFacade, Rect};
 use edifice::{Error, Result};
 
 use crate::cli::reading::{self, Reading};
@@ -36,21 +37,7 @@ pub fn rect(text: &str) -> std::result::Result<Rect, String> {
 /// tilings, label pictures and CMP files.
 pub fn annotated(path: &Path, reading: &Reading) -> Result<AnnotatedFacade> {
     let source = reading::source(path, &reading.options()?)?;
-    if let Source::Layout(facade) = &source {
-        let bytes = io::read_bytes(path)?;
-        // Boxes of LabelMe and COCO are layouts too, without annotations.
-        let annotated = facade_json::parse_annotated(&bytes, path)
-            .unwrap_or_else(|_| AnnotatedFacade::plain(facade.clone()));
-        let told =
-            annotated.unknown.is_some() || annotated.notes.iter().any(|n| *n != Note::default());
-        let wall = facade.regions.iter().any(|r| is_background(&r.label));
-        if told || !wall {
-            return Ok(annotated);
-        }
-    }
-    Ok(AnnotatedFacade::plain(data::facade(&data::elements(
-        source, path,
-    )?)?))
+    structure_completion::annotated(source, &io::read_bytes(path)?, path)
 }
 
 /// Whole layouts to learn from: files, and the facade files of folders.

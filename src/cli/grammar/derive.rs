@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::grammar::{Derivation, Grammar, check, derive_at, size_independent};
+use edifice::editing::split_grammar::{Wish, derived};
+use edifice::grammar::{Derivation, Grammar, check};
 use edifice::io::{read_grammar, write_facade};
-use edifice::layout::resize::align;
 use edifice::shape::Facade;
-use edifice::{Error, Result, rng};
+use edifice::{Error, Result};
 
 use crate::cli::print;
 
@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 fn derive(args: &Args) -> Result<Facade> {
     let path = &args.grammar;
-    let mut grammar = read_grammar(path)?;
+    let grammar = read_grammar(path)?;
     for warning in check(&grammar).map_err(|e| Error::content(path, e))? {
         print::message(&format!("warning: {}: {warning}", path.display()));
     }
@@ -72,60 +72,27 @@ fn derive(args: &Args) -> Result<Facade> {
         args.width.unwrap_or(own.width),
         args.height.unwrap_or(own.height),
     );
-    let own = (own.width, own.height);
-    let mut facade = match (width, height) == own {
-        true => {
-            let derivation = at_size(args, &grammar, index, own)?;
-            warn_of_shrunk(args, &grammar, &derivation);
-            derivation.facade
-        }
-        false => {
-            grammar = size_independent(&grammar);
-            resized(args, &grammar, index, own, (width, height))?
-        }
+    let wish = Wish {
+        start: index,
+        size: Some((width, height)),
+        seed: args.seed,
+        align: !args.no_align,
     };
+    let made = derived(&grammar, &wish).map_err(|e| Error::content(path, e))?;
+    warn_of_shrunk(args, &grammar, &made.derivation);
+    if !made.unequal.is_empty() {
+        let labels = made.unequal.join(", ");
+        print::message(&format!(
+            "warning: {}: not all terminals that are equal at the own size could stay so: {labels}",
+            path.display()
+        ));
+    }
+    let mut facade = made.facade;
     if grammar.starts.len() == 1 && facade.name == grammar.starts[0].symbol {
         // The grammar says no more than its axiom: call the facade as its file.
         facade.name = stem(path);
     }
     Ok(facade)
-}
-
-/// The facade at another size than its own, aligned unless that is switched off.
-fn resized(
-    args: &Args,
-    grammar: &Grammar,
-    index: usize,
-    own: (f64, f64),
-    size: (f64, f64),
-) -> Result<Facade> {
-    let derivation = at_size(args, grammar, index, size)?;
-    warn_of_shrunk(args, grammar, &derivation);
-    if args.no_align {
-        return Ok(derivation.facade);
-    }
-    // The same seed draws the same rules.
-    let own = at_size(args, grammar, index, own)?;
-    let aligned = align(&own, &derivation).map_err(Error::method)?;
-    if !aligned.unequal.is_empty() {
-        let labels = aligned.unequal.join(", ");
-        let path = args.grammar.display();
-        print::message(&format!(
-            "warning: {path}: not all terminals that are equal at the own size could stay so: {labels}"
-        ));
-    }
-    Ok(aligned.facade)
-}
-
-/// A derivation with the rules that the seed draws.
-fn at_size(
-    args: &Args,
-    grammar: &Grammar,
-    index: usize,
-    (width, height): (f64, f64),
-) -> Result<Derivation> {
-    let mut rng = rng::stream(args.seed, "grammar derive", 0);
-    derive_at(grammar, index, width, height, &mut rng).map_err(|e| Error::content(&args.grammar, e))
 }
 
 /// Says how many rules have absolute sizes that shrank, and which of them most.

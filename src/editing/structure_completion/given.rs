@@ -3,17 +3,21 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use edifice::methods::structure_completion::completion::Completion;
-use edifice::methods::structure_completion::layout::{Class, Element, Layout};
-use edifice::methods::structure_completion::partial::PartialLayout;
-use edifice::shape::{AnnotatedFacade, Facade, Note, Rect, Region, is_background};
-use edifice::{Error, Result};
+use crate::methods::structure_completion::completion::Completion;
+use crate::methods::structure_completion::layout::{Class, Element, Layout};
+use crate::methods::structure_completion::partial::PartialLayout;
+use crate::shape::{AnnotatedFacade, Facade, Note, Rect, Region, is_background};
+use crate::{Error, Result};
 
-/// What the options ask for.
+/// What is asked for beside the layout.
 pub struct Wanted<'a> {
+    /// Width of the outline, if another.
     pub width: Option<f64>,
+    /// Height of the outline, if another.
     pub height: Option<f64>,
+    /// Elements of an earlier completion that stay, by their ids.
     pub pins: &'a [String],
+    /// Where no element may be added.
     pub forbidden: &'a [Rect],
 }
 
@@ -28,7 +32,12 @@ pub struct Given {
 }
 
 impl Given {
-    /// Drops elements of an earlier completion that are not pinned, changes the outline, checks what is left.
+    /// Drops elements of an earlier completion that are not pinned, changes the outline, checks what is left; the path only
+    /// names the layout.
+    ///
+    /// # Errors
+    /// [`Error::Option`] for a pin that is not there or cannot stay, or a bad outline; [`Error::Content`] for what the outline
+    /// does not hold.
     pub fn new(annotated: AnnotatedFacade, wanted: &Wanted, path: &Path) -> Result<Self> {
         let mut warnings = Vec::new();
         let (mut regions, mut notes) = (Vec::new(), Vec::new());

@@ -1,0 +1,40 @@
+//! `edifice city edit`.
+
+use std::path::PathBuf;
+
+use edifice::editing::CommandError;
+use edifice::editing::city_proceduralization::{CityEdit, edit};
+use edifice::io::city::grammar_json;
+use edifice::{Error, Result};
+
+use super::data;
+use crate::cli::print;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The grammar.
+    grammar: PathBuf,
+    /// Edits.
+    #[arg(required = true, value_name = "EDIT", value_parser = parse)]
+    edits: Vec<CityEdit>,
+    /// The grammar to write (`*.city-grammar.json`, or with `.gz`).
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+fn parse(text: &str) -> std::result::Result<CityEdit, String> {
+    text.parse().map_err(|e: CommandError| e.to_string())
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let grammar = data::grammar(&args.grammar)?;
+    let edited = edit(&grammar, &args.edits).map_err(|e| Error::content(&args.grammar, e))?;
+    grammar_json::write(&edited, &args.output)?;
+    print::line(&format!(
+        "{}: {} rules",
+        args.output.display(),
+        edited.rules.len()
+    ))
+}

@@ -1,0 +1,51 @@
+//! `edifice facade edit`.
+
+use std::path::PathBuf;
+
+use edifice::editing::structure_completion::{FacadeEdit, edit};
+use edifice::io::{facade_json, write_atomic};
+use edifice::{Error, Result};
+
+use super::input;
+use crate::cli::print;
+use crate::cli::reading::Reading;
+
+/// Options of `facade edit`.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  edifice facade edit partial.facade.json 'add window@1.5,4,1.2,1.7' 'move added_3=6,0' -o edited.facade.json
+  edifice facade edit sketch.facade.json 'relabel #2=door' 'unknown 0,0,6,9' -o edited.facade.json
+
+Edits, made in turn: add LABEL@X,Y,W,H; move ID=X,Y; resize ID=W,H; relabel ID=LABEL; remove ID; unknown X,Y,W,H;
+known INDEX (of the unknown rectangles, from 0); outline W,H. ID is an element's id, or #K for the K-th in the file, from 0.
+An element that is added, moved, resized or relabelled is observed: `facade complete` keeps it.")]
+pub struct Args {
+    /// Layout to read
+    #[arg(value_name = "LAYOUT")]
+    input: PathBuf,
+    /// Edits
+    #[arg(required = true, value_name = "EDIT", value_parser = parse)]
+    edits: Vec<FacadeEdit>,
+    /// File to write
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+fn parse(text: &str) -> std::result::Result<FacadeEdit, String> {
+    text.parse()
+        .map_err(|e: edifice::editing::CommandError| e.to_string())
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let layout = input::annotated(&args.input, &args.reading)?;
+    let edited = edit(&layout, &args.edits).map_err(|e| Error::content(&args.input, e))?;
+    write_atomic(
+        &args.output,
+        facade_json::annotated_to_string(&edited).as_bytes(),
+    )?;
+    let count = edited.facade.regions.len();
+    print::line(&format!("{}: {count} elements", args.output.display()))
+}

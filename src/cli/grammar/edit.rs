@@ -1,0 +1,53 @@
+//! `edifice grammar edit`.
+
+use std::path::PathBuf;
+
+use edifice::editing::CommandError;
+use edifice::editing::split_grammar::{GrammarEdit, edit};
+use edifice::grammar::{Costs, check};
+use edifice::io::{read_grammar, write_grammar};
+use edifice::{Error, Result};
+
+use crate::cli::print;
+
+/// Options of `edifice grammar edit`.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  edifice grammar edit fig9.grammar.json 'border 2.0=0.5' -o edited.grammar.json
+  edifice grammar edit fig9.grammar.json 'symbol 3.1=Door' 'insert 0.2=Cornice:4' -o edited.grammar.json
+
+Edits, made in turn: resize RULE.PART=SIZE; border RULE.PART=SHIFT (between this part and the next); symbol RULE.PART=NAME;
+insert RULE.PART=NAME:SIZE (before this part); remove RULE.PART; repeat RULE (a split of equal periods); weight RULE=W;
+outline W,H. Rules and parts are counted from 0, as in the file. Sizes are made relative first, so that what is inside an
+edited region follows it.")]
+pub struct Args {
+    /// Grammar to read: .grammar.json or .cga, also as .gz
+    grammar: PathBuf,
+    /// Edits
+    #[arg(required = true, value_name = "EDIT", value_parser = parse)]
+    edits: Vec<GrammarEdit>,
+    /// Grammar to write: .grammar.json or .cga
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+}
+
+fn parse(text: &str) -> std::result::Result<GrammarEdit, String> {
+    text.parse().map_err(|e: CommandError| e.to_string())
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let path = &args.grammar;
+    let grammar = read_grammar(path)?;
+    let edited = edit(&grammar, &args.edits).map_err(|e| Error::content(path, e))?;
+    for warning in check(&edited).map_err(|e| Error::content(path, e))? {
+        print::message(&format!("warning: {}: {warning}", path.display()));
+    }
+    write_grammar(&edited, &args.output)?;
+    let cost = (Costs::default().grammar(&edited) * 1e9).round() / 1e9;
+    print::line(&format!(
+        "{}: {} rules, cost {cost}",
+        args.output.display(),
+        edited.rules.len()
+    ))
+}

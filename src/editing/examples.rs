@@ -1,0 +1,79 @@
+//! Documents to begin with: shipped data, and an empty facade to draw on.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{EDITORS, State, open};
+use crate::experiments::shipped_bytes;
+use crate::{Error, Result};
+
+/// Something to begin with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct Example {
+    /// What it is asked for by.
+    pub id: &'static str,
+    /// Kind of document.
+    pub kind: &'static str,
+    /// A few words.
+    pub title: &'static str,
+    /// A sentence.
+    pub about: &'static str,
+    /// Where it is.
+    #[serde(skip)]
+    pub source: Source,
+}
+
+/// Where an example is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// A file that ships.
+    File(&'static str),
+    /// A line of a file that ships, from 0, under a name of its own.
+    Line(&'static str, usize, &'static str),
+    /// A text under a name.
+    Text(&'static str, &'static str),
+}
+
+/// All of them, those of one editor after those of another.
+pub fn examples() -> impl Iterator<Item = &'static Example> {
+    EDITORS.iter().flat_map(|e| e.examples)
+}
+
+/// No example has this id.
+#[derive(Debug, thiserror::Error)]
+#[error("there is no example {0:?}")]
+pub struct NoExample(pub String);
+
+/// Opens an example.
+///
+/// # Errors
+/// [`NoExample`]; a test keeps all of them readable.
+pub fn example(id: &str) -> Result<Arc<dyn State>> {
+    let found = examples().find(|e| e.id == id);
+    let example = found.ok_or_else(|| Error::method(NoExample(id.to_owned())))?;
+    match example.source {
+        Source::File(path) => open(Path::new(path), shipped_bytes(path)?),
+        Source::Line(path, line, name) => {
+            let mut lines = shipped_bytes(path)?.split(|b| *b == b'\n');
+            let name = format!("{name}.building.json");
+            open(Path::new(&name), lines.nth(line).unwrap_or_default())
+        }
+        Source::Text(name, text) => open(Path::new(name), text.as_bytes()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_opens_in_its_editor_and_shows() {
+        for e in examples() {
+            let state = example(e.id).unwrap();
+            assert_eq!(state.kind(), e.kind, "{}", e.id);
+            assert!(state.view().unwrap().is_object(), "{}", e.id);
+            assert!(!state.bytes().unwrap().is_empty());
+        }
+        assert!(example("none").is_err());
+    }
+}

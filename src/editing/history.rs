@@ -1,0 +1,142 @@
+//! A document: its first state and the commands since. Undo and redo are places in that list.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::script::{Shell, script};
+use super::{CommandError, State, Step};
+use crate::Result;
+
+/// Commands that were done at once, and are undone at once.
+struct Entry {
+    commands: Vec<Value>,
+    steps: Vec<Step>,
+}
+
+/// A document with its history.
+pub struct Document {
+    start: Arc<dyn State>,
+    entries: Vec<Entry>,
+    at: usize,
+    revision: u64,
+}
+
+/// An entry of the log.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Logged {
+    /// In words.
+    pub said: String,
+    /// The commands.
+    pub commands: Vec<Value>,
+    /// Whether it is done, or was undone.
+    pub done: bool,
+}
+
+impl Document {
+    /// A document without edits.
+    pub fn new(start: Arc<dyn State>) -> Self {
+        Self {
+            start,
+            entries: Vec::new(),
+            at: 0,
+            revision: 0,
+        }
+    }
+
+    /// The state it is in.
+    pub fn state(&self) -> &Arc<dyn State> {
+        let last = self.entries[..self.at].last().and_then(|e| e.steps.last());
+        last.map_or(&self.start, |s| &s.state)
+    }
+
+    /// Grows with every change, undo and redo.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Does commands in turn, all of them or none. What was undone is forgotten.
+    ///
+    /// # Errors
+    /// As [`State::apply`]; [`CommandError::Nothing`] without commands.
+    pub fn edit(&mut self, commands: &[Value]) -> Result<()> {
+        if commands.is_empty() {
+            return Err(CommandError::Nothing.into());
+        }
+        let mut steps = Vec::with_capacity(commands.len());
+        let mut state = self.state().clone();
+        for command in commands {
+            let step = state.apply(command)?;
+            state = step.state.clone();
+            steps.push(step);
+        }
+        self.entries.truncate(self.at);
+        self.entries.push(Entry {
+            commands: commands.to_vec(),
+            steps,
+        });
+        self.at += 1;
+        self.revision += 1;
+        Ok(())
+    }
+
+    /// Takes back the last edit; whether there was one.
+    pub fn undo(&mut self) -> bool {
+        self.move_to(self.at.checked_sub(1))
+    }
+
+    /// Does again what was taken back; whether there was something.
+    pub fn redo(&mut self) -> bool {
+        self.move_to(Some(self.at + 1).filter(|at| *at <= self.entries.len()))
+    }
+
+    fn move_to(&mut self, at: Option<usize>) -> bool {
+        let Some(at) = at else { return false };
+        self.at = at;
+        self.revision += 1;
+        true
+    }
+
+    /// Whether there is something to undo, and to redo.
+    pub fn can(&self) -> (bool, bool) {
+        (self.at > 0, self.at < self.entries.len())
+    }
+
+    /// All commands, those undone last.
+    pub fn log(&self) -> Vec<Logged> {
+        let logged = |(k, e): (usize, &Entry)| Logged {
+            said: e
+                .steps
+                .iter()
+                .map(|s| s.said.as_str())
+                .collect::<Vec<_>>()
+                .join("; "),
+            commands: e.commands.clone(),
+            done: k < self.at,
+        };
+        self.entries.iter().enumerate().map(logged).collect()
+    }
+
+    /// What the last edit wants the user to know.
+    pub fn warnings(&self) -> Vec<String> {
+        let last = self.entries[..self.at].last();
+        let steps = last.into_iter().flat_map(|e| &e.steps);
+        steps.flat_map(|s| s.warnings.clone()).collect()
+    }
+
+    /// The shell script that makes the present state from the first one.
+    ///
+    /// # Errors
+    /// As [`State::bytes`].
+    pub fn script(&self) -> Result<String> {
+        let steps = self.entries[..self.at].iter().flat_map(|e| &e.steps);
+        let shells: Vec<Shell> = steps.map(|s| s.shell.clone()).collect();
+        let target = format!("{}{}", self.state().name(), self.state().ending());
+        Ok(script(
+            &target,
+            self.start.ending(),
+            &self.start.bytes()?,
+            &shells,
+        ))
+    }
+}

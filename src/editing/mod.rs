@@ -1,0 +1,217 @@
+//! Documents and their edits as values: what `edifice studio` does by hand and the commands do one at a time.
+//!
+//! A document has a [`State`]: a house, a facade that is being completed, a grammar, a city. A command takes a state to
+//! the next one; the [`Document`](history::Document) keeps the list of commands, so that undo and redo are places in that
+//! list. Every command is also a line of shell ([`script`]): the same functions serve both, so that the script of a
+//! document, run without the studio, writes the same bytes as saving it.
+//!
+//! # Commands
+//! A command is a JSON object; `do` names it. Edits inside it are written as on the command line.
+//!
+//! | kind | `do` | fields | command line |
+//! | --- | --- | --- | --- |
+//! | `house` | `edit` | `edits` (`add garage@X,Y,W,D,H`, `move 0=X,Y`, `resize 0=W,D,H`, `remove 0`), `suggest`, `seed` | `building edit` |
+//! | | `variations` | `count`, `seed` | `building variations` |
+//! | | `choose` | `answer`, from 1 | the file of that answer |
+//! | `completion` | `edit` | `edits` (`add door@X,Y,W,H`, `move ID=X,Y`, `resize ID=W,H`, `relabel ID=window`, `remove ID`, `unknown X,Y,W,H`, `known INDEX`, `outline W,H`) | `facade edit` |
+//! | | `complete` | `count`, `seed`, `method`, `pins`, `forbid` | `facade complete` |
+//! | | `choose` | `answer`, from 1 | the file of that answer |
+//! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `remove RULE.PART`, `repeat RULE`, `outline W,H`) | `grammar edit` |
+//! | `city` | `edit` | `edits` (`scale TEMPLATE=FX,FY,FZ`, `weight RULE=W`) | `city edit` |
+//! | | `synthesize` | `polygon`, `seed` | `city synthesize` |
+
+pub mod building_exteriors;
+pub mod city_proceduralization;
+pub mod examples;
+pub mod facade_grammar;
+pub mod history;
+pub mod script;
+pub mod split_grammar;
+pub mod structure_completion;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use crate::{Error, Result};
+use examples::Example;
+use script::Shell;
+
+/// What can be opened, tried in this order.
+pub const EDITORS: &[Editor] = &[
+    building_exteriors::EDITOR,
+    city_proceduralization::EDITOR,
+    structure_completion::EDITOR,
+    facade_grammar::EDITOR,
+];
+
+/// What an editor makes of a file; `None` where it is for another one.
+pub type Opened = Option<Result<Arc<dyn State>>>;
+
+/// A kind of document.
+pub struct Editor {
+    /// Its kind, as states name it.
+    pub kind: &'static str,
+    /// Reads a file that it suits; `None` for one that is of another kind. The path only names the file.
+    pub open: fn(&Path, &[u8]) -> Opened,
+    /// Documents to begin with.
+    pub examples: &'static [Example],
+}
+
+/// A document at one moment: a value that commands take to the next one.
+pub trait State: Send + Sync {
+    /// `house`, `completion`, `grammar` or `city`.
+    fn kind(&self) -> &'static str;
+
+    /// The document's name.
+    fn name(&self) -> &str;
+
+    /// How the names of its files end, for example `.building.json`.
+    fn ending(&self) -> &'static str;
+
+    /// Its file.
+    ///
+    /// # Errors
+    /// When a value cannot be written in the format.
+    fn bytes(&self) -> Result<Vec<u8>>;
+
+    /// All that a page shows of it.
+    ///
+    /// # Errors
+    /// When it cannot be measured or drawn.
+    fn view(&self) -> Result<Value>;
+
+    /// The state after a command.
+    ///
+    /// # Errors
+    /// [`CommandError`] for a command that is none, or what its method says of a command that cannot be done.
+    fn apply(&self, command: &Value) -> Result<Step>;
+
+    /// Formats of [`State::export`], as endings of file names.
+    fn formats(&self) -> &'static [&'static str];
+
+    /// The document in another format.
+    ///
+    /// # Errors
+    /// [`CommandError::Format`] for an unknown format.
+    fn export(&self, format: &str) -> Result<Vec<u8>>;
+}
+
+/// What a command came to.
+pub struct Step {
+    /// The new state.
+    pub state: Arc<dyn State>,
+    /// The command in words.
+    pub said: String,
+    /// The same as a line of shell.
+    pub shell: Shell,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Why a command cannot be done.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// It is no command of this kind of document.
+    #[error("not a command of this document: {0}")]
+    Form(#[from] serde_json::Error),
+    /// An edit cannot be read.
+    #[error("{edit:?}: {message}")]
+    Edit {
+        /// The edit.
+        edit: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// There is no such answer.
+    #[error("there is no answer {wanted}: there are {count}")]
+    Answer {
+        /// Number of the answer, from 1.
+        wanted: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A count out of range.
+    #[error("{count} answers: expected 1 to {most}")]
+    Count {
+        /// Answers asked for.
+        count: usize,
+        /// The most there can be.
+        most: usize,
+    },
+    /// More regions than a page can show.
+    #[error("{count} regions: more than the {most} that are shown")]
+    Regions {
+        /// Regions of the facade.
+        count: usize,
+        /// The most that are shown.
+        most: usize,
+    },
+    /// A document has no such format.
+    #[error("this document cannot be written as {0:?}")]
+    Format(String),
+    /// Nothing was asked for.
+    #[error("nothing to edit")]
+    Nothing,
+}
+
+impl From<CommandError> for Error {
+    fn from(error: CommandError) -> Self {
+        Self::method(error)
+    }
+}
+
+/// Opens a file in the editor that suits it; the path only names the file.
+///
+/// # Errors
+/// [`Error::Content`] for a file that no editor knows, or what its reader says.
+pub fn open(path: &Path, bytes: &[u8]) -> Result<Arc<dyn State>> {
+    let opened = EDITORS.iter().find_map(|e| (e.open)(path, bytes));
+    opened.unwrap_or_else(|| {
+        Err(Error::content(
+            path,
+            "no editor knows this kind of file: expected .facade.json, .grammar.json, .cga, .building.json or .city-grammar.json",
+        ))
+    })
+}
+
+/// Reads a command.
+fn parse<T: serde::de::DeserializeOwned>(command: &Value) -> Result<T> {
+    Ok(T::deserialize(command).map_err(CommandError::from)?)
+}
+
+/// Numbers with commas between them.
+pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let read = |t: &str| t.trim().parse().ok().filter(|v: &f64| v.is_finite());
+    let values: Option<Vec<f64>> = text.split(',').map(read).collect();
+    let values = values.and_then(|v| v.try_into().ok());
+    values.ok_or_else(|| format!("{text:?}: expected {N} numbers"))
+}
+
+/// Numbers as they are written in edits; they read back to the same bits.
+fn written(values: &[f64]) -> String {
+    let texts: Vec<String> = values.iter().map(f64::to_string).collect();
+    texts.join(",")
+}
+
+/// Answer `wanted`, counted from 1.
+fn answer<T>(answers: &[T], wanted: usize) -> Result<&T> {
+    let found = wanted.checked_sub(1).and_then(|k| answers.get(k));
+    let count = answers.len();
+    Ok(found.ok_or(CommandError::Answer { wanted, count })?)
+}
+
+/// Checks a number of answers.
+fn count_of_answers(count: usize, most: usize) -> Result<usize> {
+    match (1..=most).contains(&count) {
+        true => Ok(count),
+        false => Err(CommandError::Count { count, most }.into()),
+    }
+}
+
+/// Whether a file's name, without `.gz`, ends so.
+fn ends(path: &Path, ending: &str) -> bool {
+    let name = path.to_string_lossy().to_lowercase();
+    name.trim_end_matches(".gz").ends_with(ending)
+}

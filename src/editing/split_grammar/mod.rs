@@ -1,0 +1,8 @@
+//! Edits of split grammars and their derivation, as the commands do them (Wu et al. 2014, Sec. 5: a change to one
+//! region changes every region of its rule).
+
+mod derivation;
+mod edits;
+
+pub use derivation::{DeriveError, Derived, Wish, derived};
+pub use edits::{GrammarEdit, GrammarEditError, edit};

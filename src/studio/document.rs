@@ -1,0 +1,158 @@
+//! A document with the file that it came from.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::editing::history::Document;
+use crate::editing::{self, State};
+use crate::file::write_atomic;
+use crate::{Error, Result, io};
+
+/// An open document.
+pub struct Open {
+    /// Its history.
+    pub document: Document,
+    /// Folder that it is saved in.
+    folder: PathBuf,
+    /// Name of the file it is saved as.
+    file: String,
+    /// What the file held when it was read or written last; `None` before it is saved.
+    known: Option<Vec<u8>>,
+    saved_at: u64,
+    milliseconds: f64,
+}
+
+/// Why a document is not saved.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The studio may not write.
+    #[error("the studio was started with --read-only")]
+    ReadOnly,
+    /// A file is there that is not this document's.
+    #[error(
+        "{0} exists and was changed by another program, or is another file; save again to replace it"
+    )]
+    Changed(String),
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] Error),
+}
+
+impl Open {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or no editor knows it.
+    pub fn file(path: &Path) -> Result<Self> {
+        let bytes = io::read_bytes(path)?;
+        Ok(Self::new(editing::open(path, &bytes)?, Some(path)))
+    }
+
+    /// A document; it is saved beside its file, or in the present folder.
+    pub fn new(start: Arc<dyn State>, path: Option<&Path>) -> Self {
+        let folder = path.and_then(Path::parent).map(Path::to_path_buf);
+        let own = path.and_then(|p| p.file_name()?.to_str());
+        // What was read from another format is saved beside it, under a name of its own.
+        let own = own.filter(|name| name.ends_with(start.ending()));
+        let file = own.map_or_else(|| file_name(start.as_ref()), str::to_owned);
+        let known = own.and(path).and_then(|p| std::fs::read(p).ok());
+        Self {
+            document: Document::new(start),
+            folder: folder.unwrap_or_default(),
+            file,
+            known,
+            saved_at: 0,
+            milliseconds: 0.0,
+        }
+    }
+
+    /// Does commands.
+    ///
+    /// # Errors
+    /// As [`Document::edit`].
+    pub fn edit(&mut self, commands: &[Value]) -> Result<()> {
+        let start = std::time::Instant::now();
+        self.document.edit(commands)?;
+        self.milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        Ok(())
+    }
+
+    /// Writes the file and the script beside it; their names.
+    ///
+    /// # Errors
+    /// [`SaveError`].
+    pub fn save(&mut self, overwrite: bool) -> Result<[String; 2], SaveError> {
+        let script = format!("{}.sh", self.stem());
+        let (path, beside) = (self.folder.join(&self.file), self.folder.join(&script));
+        let there = match std::fs::read(&path) {
+            Ok(bytes) => Some(bytes),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
+            Err(e) => return Err(Error::io(&path, "read", e).into()),
+        };
+        if !overwrite && there.is_some() && there != self.known {
+            return Err(SaveError::Changed(self.file.clone()));
+        }
+        let bytes = self.document.state().bytes()?;
+        let text = self.document.script()?;
+        // The script first: whoever has the document has what made it.
+        write_atomic(&beside, text.as_bytes())?;
+        write_atomic(&path, &bytes)?;
+        self.known = Some(bytes);
+        self.saved_at = self.document.revision();
+        Ok([self.file.clone(), script])
+    }
+
+    /// The file's name without the ending of its kind.
+    pub fn stem(&self) -> &str {
+        let ending = self.document.state().ending();
+        self.file.strip_suffix(ending).unwrap_or(&self.file)
+    }
+
+    /// What a list of documents says of it.
+    pub fn summary(&self, id: &str) -> Value {
+        let state = self.document.state();
+        json!({
+            "id": id, "kind": state.kind(), "name": self.stem(), "revision": self.document.revision(),
+            "unsaved": self.document.revision() != self.saved_at,
+        })
+    }
+
+    /// All of it.
+    ///
+    /// # Errors
+    /// As [`State::view`].
+    pub fn whole(&self, id: &str) -> Result<Value> {
+        let (undo, redo) = self.document.can();
+        let state = self.document.state();
+        let mut whole = self.summary(id);
+        whole["undo"] = undo.into();
+        whole["redo"] = redo.into();
+        whole["file"] = self.file.as_str().into();
+        whole["formats"] = json!(state.formats());
+        whole["warnings"] = json!(self.document.warnings());
+        whole["log"] = json!(self.document.log());
+        whole["milliseconds"] = self.milliseconds.into();
+        whole["view"] = state.view()?;
+        Ok(whole)
+    }
+}
+
+/// A name for the file of a document that has none: nothing in it leads out of a folder.
+fn file_name(state: &dyn State) -> String {
+    let usual = |c: char| {
+        if c.is_alphanumeric() || "-_".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
+    let stem: String = state.name().chars().take(80).map(usual).collect();
+    let stem = if stem.is_empty() {
+        "untitled".to_owned()
+    } else {
+        stem
+    };
+    format!("{stem}{}", state.ending())
+}

@@ -1,0 +1,94 @@
+//! The server on this machine's own address.
+
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::path::Path;
+use std::sync::Arc;
+
+use axum::Router;
+
+use super::guard::{Guard, guard};
+use super::{Settings, Studio, router};
+use crate::{Error, Result};
+
+/// A studio that listens, before it answers.
+pub struct Running {
+    listener: TcpListener,
+    app: Router,
+    address: String,
+}
+
+/// Opens the files and listens on the loopback address only.
+///
+/// # Errors
+/// A file that cannot be opened, a port that is taken, no randomness for the token.
+pub fn start(settings: &Settings) -> Result<Running> {
+    let studio = Arc::new(Studio::new(settings)?);
+    let at = SocketAddr::from((Ipv4Addr::LOCALHOST, settings.port));
+    let name = at.to_string();
+    let fail = |action| move |e| Error::io(Path::new(&name), action, e);
+    let listener = TcpListener::bind(at).map_err(fail("listen on"))?;
+    listener.set_nonblocking(true).map_err(Error::method)?;
+    let port = listener.local_addr().map_err(Error::method)?.port();
+    let token = token()?;
+    Ok(Running {
+        app: guarded(router(studio), Guard::new(port, token.clone())),
+        address: format!("http://127.0.0.1:{port}/#token={token}"),
+        listener,
+    })
+}
+
+/// The routes behind the guard: the outer router has none of its own, so that nothing is routed before.
+fn guarded(routes: Router, who: Guard) -> Router {
+    let checked = axum::middleware::from_fn_with_state(who, guard);
+    Router::new().fallback_service(routes).layer(checked)
+}
+
+/// 128 bits from the operating system, the one thing here that no seed decides.
+fn token() -> Result<String> {
+    let mut bytes = [0_u8; 16];
+    getrandom::fill(&mut bytes).map_err(Error::method)?;
+    Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
+}
+
+impl Running {
+    /// The address with its token.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// Answers until `end` comes.
+    ///
+    /// # Errors
+    /// When the system stops the server.
+    pub fn serve(self, end: impl Future<Output = ()> + Send + 'static) -> Result<()> {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(2)
+            .enable_all()
+            .build()
+            .map_err(Error::method)?;
+        let served = runtime.block_on(async {
+            let listener = tokio::net::TcpListener::from_std(self.listener)?;
+            let server = axum::serve(listener, self.app);
+            // An open connection, or an edit that still runs, does not hold up the end.
+            tokio::select! {
+                served = async { server.await } => served,
+                () = end => Ok(()),
+            }
+        });
+        runtime.shutdown_background();
+        served.map_err(Error::method)
+    }
+
+    /// Answers until Ctrl-C.
+    ///
+    /// # Errors
+    /// As [`Self::serve`].
+    pub fn serve_until_interrupted(self) -> Result<()> {
+        self.serve(async {
+            // Without the signal there is nothing to wait for but the system ending the process.
+            if tokio::signal::ctrl_c().await.is_err() {
+                std::future::pending::<()>().await;
+            }
+        })
+    }
+}

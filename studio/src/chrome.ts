@@ -1,0 +1,102 @@
+// What stands around every editor: the bar above, the log, the exports.
+
+import * as api from "./api";
+import { button, h, section, tidy } from "./dom";
+import type { Session } from "./session";
+
+const KINDS = { house: "House", completion: "Completion", grammar: "Facade by its grammar", city: "City" };
+
+/** The name of a kind of document. */
+export function kindName(kind: api.Summary["kind"]): string {
+  return KINDS[kind];
+}
+
+/** The bar above an editor. */
+export function bar(session: Session<unknown>, readOnly: boolean, leave: () => void): HTMLElement {
+  const name = h("h1", {});
+  const kind = h("span", { class: "kind" });
+  const undo = button("Undo", () => session.undo(), { "aria-keyshortcuts": "Control+Z", title: "Ctrl+Z" });
+  const redo = button("Redo", () => session.redo(), { "aria-keyshortcuts": "Control+Shift+Z", title: "Ctrl+Shift+Z" });
+  const save = button("Save", () => session.save(), {
+    class: "primary",
+    "aria-keyshortcuts": "Control+S",
+    title: readOnly ? "The studio was started with --read-only" : "Ctrl+S",
+    disabled: readOnly,
+  });
+  const seed = h("input", { type: "number", min: 0, step: 1, value: session.seed, "aria-label": "Seed" });
+  seed.addEventListener("change", () => {
+    session.seed = Math.max(0, Math.floor(Number(seed.value) || 0));
+    seed.value = String(session.seed);
+  });
+  const anew = button("Draw anew", () => {
+    session.seed += 1;
+    seed.value = String(session.seed);
+  }, { title: "The next seed, for the next answers", class: "quiet" });
+  const show = () => {
+    name.textContent = session.doc.name + (session.doc.unsaved ? " •" : "");
+    name.title = session.doc.unsaved ? "not saved" : "";
+    kind.textContent = kindName(session.doc.kind);
+    undo.disabled = session.busy || !session.doc.undo;
+    redo.disabled = session.busy || !session.doc.redo;
+  };
+  session.onChange(show);
+  show();
+  return h(
+    "header",
+    { class: "bar" },
+    button("Studio", leave, { class: "home", "aria-label": "All documents" }),
+    h("div", { class: "title" }, name, kind),
+    h("div", { class: "group" }, undo, redo),
+    h("div", { class: "group seed" }, h("label", {}, h("span", {}, "Seed"), seed), anew),
+    save,
+  );
+}
+
+/** The list of commands, and what the document can be written as. */
+export function footer(session: Session<unknown>): HTMLElement {
+  const log = h("ol", { class: "log" });
+  const empty = h("p", { class: "hint" }, "Nothing was changed yet. Each edit is a command that is listed here.");
+  const time = h("p", { class: "hint" });
+  const exports = h("div", { class: "row" });
+  const keep = async (blob: Promise<Blob>, name: string) => {
+    await session.calmly(async () => {
+      const url = URL.createObjectURL(await blob);
+      h("a", { href: url, download: name }).click();
+      setTimeout(() => URL.revokeObjectURL(url), 10_000);
+    });
+  };
+  const show = () => {
+    const { doc } = session;
+    log.replaceChildren(...doc.log.map((l) => h("li", { class: l.done ? "" : "undone" }, l.said)));
+    empty.hidden = doc.log.length > 0;
+    time.textContent = doc.milliseconds > 0 ? `Last edit: ${tidy(doc.milliseconds, 0)} ms` : "";
+    exports.replaceChildren(
+      button("Script", () => keep(api.script(doc.id), `${doc.name}.sh`), { class: "quiet" }),
+      ...doc.formats.map((f) =>
+        button(f.toUpperCase(), () => keep(api.exported(doc.id, f), `${doc.name}.${f}`), { class: "quiet" }),
+      ),
+    );
+  };
+  session.onChange(show);
+  show();
+  return h("div", {}, section("Commands", empty, log, time), section("Download", exports));
+}
+
+/** Undo, redo and save by the usual keys. */
+export function keys(session: Session<unknown>, readOnly: boolean): (event: KeyboardEvent) => void {
+  return (event) => {
+    if (!(event.ctrlKey || event.metaKey)) return;
+    const key = event.key.toLowerCase();
+    const typing = event.target instanceof HTMLInputElement;
+    if (key === "s") {
+      event.preventDefault();
+      if (!readOnly) void session.save();
+    } else if (key === "z" && !typing) {
+      event.preventDefault();
+      void (event.shiftKey ? session.redo() : session.undo());
+    } else if (key === "y" && !typing) {
+      event.preventDefault();
+      void session.redo();
+    }
+  };
+}

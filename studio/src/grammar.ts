@@ -1,0 +1,264 @@
+// The editor of facades by their grammar: a change to one region changes every region of its rule (Wu et al. 2014, Sec. 5).
+
+import type { Doc } from "./api";
+import { button, field, h, s, section, swap, tidy } from "./dom";
+import { Drawing, place, type Rect, snap } from "./drawing";
+import type { Editor, Session } from "./session";
+
+interface Part {
+  symbol: string;
+  size: number | null;
+  relative: boolean | null;
+}
+
+interface Rule {
+  symbol: string;
+  weight: number | null;
+  operation: string;
+  axis: "x" | "y" | null;
+  parts: Part[];
+  text: string;
+  cost: number;
+}
+
+type Terminal = [string, number, number, number, number, [number, number] | null];
+type Inner = [number, number, number, number, number, number];
+
+interface View {
+  unit: string;
+  width: number;
+  height: number;
+  terminals: Terminal[];
+  nonTerminals: Inner[];
+  colors: Record<string, [number, number, number]>;
+  rules: Rule[];
+  starts: { name: string; width: number; height: number }[];
+  start: number;
+  seed: number;
+  stochastic: boolean;
+  size: [number, number] | null;
+  cost: number;
+  bound: number | null;
+}
+
+/** What is selected: a rule, or one part of it; and the region where it was clicked. */
+interface Selection {
+  rule: number;
+  part: number | null;
+  region: Rect | null;
+}
+
+const four = (v: number) => tidy(v, 4);
+const rectOf = ([, , x, y, width, height]: Inner): Rect => ({ x, y, width, height });
+const holds = (r: Rect, [x, y]: [number, number]) => x >= r.x && x <= r.x + r.width && y >= r.y && y <= r.y + r.height;
+
+/** Which parts stand in a region of this extent, in order, and the length of a unit of relative size. */
+function layout(rule: Rule, extent: number): { order: number[]; scale: number } | null {
+  const n = rule.parts.length;
+  const all = [...Array(n).keys()];
+  let order: number[];
+  if (rule.operation === "split") order = all;
+  else if (rule.operation === "repeat") {
+    const period = rule.parts.reduce((sum, p) => sum + (p.size ?? 0), 0);
+    order = Array.from({ length: Math.max(1, Math.round(extent / period)) }, () => all).flat();
+  } else return null;
+  const sum = (relative: boolean) => order.reduce((t, k) => t + (rule.parts[k].relative === relative ? (rule.parts[k].size ?? 0) : 0), 0);
+  const relative = sum(true);
+  return { order, scale: relative > 0 ? (extent - sum(false)) / relative : 1 };
+}
+
+/** The editor. */
+export function grammar(session: Session<View>): Editor<View> {
+  const drawing = new Drawing("Facade derived from the grammar. Click a region; click again for the region around it.");
+  const stage = h("div", { class: "stage" }, drawing.svg as unknown as HTMLElement);
+  const panel = h("div", {});
+  let selection: Selection | null = null;
+  let trail: Selection[] = [];
+  let size: [number, number] | null = null;
+
+  const edit = (...edits: string[]) => session.run(() => [{ do: "edit", edits }]);
+  const derive = (to: [number, number] | null, seed = session.doc.view.seed, start = session.doc.view.start) =>
+    session.run(() => [{ do: "derive", size: to, seed, start }]);
+
+  /** Selects what is at a point, or what is around it when it is selected already. */
+  function pick(at: [number, number]) {
+    const { view } = session.doc;
+    const inner = view.nonTerminals.filter((n) => holds(rectOf(n), at)).sort((a, b) => b[1] - a[1]);
+    const terminal = view.terminals.find(([, x, y, width, height]) => holds({ x, y, width, height }, at));
+    const next: Selection[] = [];
+    if (terminal?.[5]) next.push({ rule: terminal[5][0], part: terminal[5][1], region: inner[0] ? rectOf(inner[0]) : null });
+    for (const n of inner) next.push({ rule: n[0], part: null, region: rectOf(n) });
+    const same = trail.length === next.length && trail.every((t, k) => t.rule === next[k].rule && t.part === next[k].part);
+    const now = same && selection ? trail.findIndex((t) => t.rule === selection!.rule && t.part === selection!.part) : -1;
+    trail = next;
+    selection = next[(now + 1) % Math.max(next.length, 1)] ?? null;
+    show(session.doc);
+  }
+
+  function handles(view: View): SVGElement[] {
+    if (!selection?.region) return [];
+    const rule = view.rules[selection.rule];
+    const r = selection.region;
+    if (!rule?.axis) return [];
+    const along = rule.axis === "x";
+    const made = layout(rule, along ? r.width : r.height);
+    if (!made) return [];
+    const out: SVGElement[] = [];
+    let at = along ? r.x : r.y;
+    const thick = 7 * drawing.pixel();
+    made.order.slice(0, rule.parts.length - 1).forEach((part, k) => {
+      const own = rule.parts[part];
+      at += (own.size ?? 0) * (own.relative ? made.scale : 1);
+      const here = at;
+      const line = s("rect", {
+        class: `border ${rule.axis}`,
+        ...place(along ? { x: here - thick / 2, y: r.y, width: thick, height: r.height } : { x: r.x, y: here - thick / 2, width: r.width, height: thick }),
+      });
+      line.append(s("title", {}, `Border between ${own.symbol} and ${rule.parts[k + 1].symbol}: drag it`));
+      drawing.draggable(line, () => (dx, dy, done) => {
+        const by = along ? dx : dy;
+        line.setAttribute("transform", along ? `translate(${by},0)` : `translate(0,${by})`);
+        if (done) void edit(`border ${selection!.rule}.${part}=${four(by / (own.relative ? made.scale : 1))}`);
+      });
+      out.push(line);
+    });
+    return out;
+  }
+
+  /** The right and upper edge, to derive at another size. */
+  function edges(view: View): SVGElement[] {
+    const t = 8 * drawing.pixel();
+    const right = s("rect", { class: "edge x", ...place({ x: view.width, y: 0, width: t, height: view.height }) });
+    const upper = s("rect", { class: "edge y", ...place({ x: 0, y: view.height, width: view.width, height: t }) });
+    const resize = (dx: number, dy: number, done: boolean) => {
+      const own = view.starts[view.start];
+      const grid = Math.max(own.width, own.height) / 200;
+      const w = Math.max(own.width / 10, snap(view.width + dx, grid));
+      const hh = Math.max(own.height / 10, snap(view.height + dy, grid));
+      size = done ? null : [w, hh];
+      outline();
+      if (done) void derive([w, hh]);
+    };
+    drawing.draggable(right, () => (dx, _dy, done) => resize(dx, 0, done));
+    drawing.draggable(upper, () => (_dx, dy, done) => resize(0, dy, done));
+    return [right, upper];
+  }
+
+  const ghost = s("rect", { class: "ghost" });
+  function outline() {
+    ghost.setAttribute("visibility", size ? "visible" : "hidden");
+    for (const [k, v] of Object.entries(place({ x: 0, y: 0, width: size?.[0] ?? 0, height: size?.[1] ?? 0 }))) ghost.setAttribute(k, String(v));
+  }
+
+  function draw(view: View) {
+    drawing.frame({ x: 0, y: 0, width: view.width, height: view.height });
+    const cells = view.terminals.map(([label, x, y, width, height]) => {
+      const known = /^(wall|window|door|balcony|shop|roof|sky)/i.exec(label)?.[1].toLowerCase();
+      const cell = s("rect", { ...place({ x, y, width, height }), class: `terminal ${known ?? ""}` }, s("title", {}, label));
+      if (!known) cell.style.fill = `color-mix(in srgb, rgb(${view.colors[label].join(",")}) 45%, var(--paper))`;
+      return cell;
+    });
+    const lit: SVGElement[] = [];
+    if (selection) {
+      for (const n of view.nonTerminals) if (n[0] === selection.rule) lit.push(s("rect", { ...place(rectOf(n)), class: selection.part === null ? "lit" : "lit weak" }));
+      if (selection.part !== null)
+        for (const [, x, y, width, height, origin] of view.terminals)
+          if (origin?.[0] === selection.rule && origin[1] === selection.part) lit.push(s("rect", { ...place({ x, y, width, height }), class: "lit" }));
+    }
+    outline();
+    drawing.layer.replaceChildren(s("g", { class: selection ? "cells dim" : "cells" }, ...cells), ...lit, ghost, ...edges(view), ...handles(view));
+  }
+
+  function select(rule: number, part: number | null = null) {
+    const region = session.doc.view.nonTerminals.find((n) => n[0] === rule);
+    selection = { rule, part, region: region ? rectOf(region) : null };
+    trail = [];
+    show(session.doc);
+  }
+
+  function text(label: string, value: string, set: (value: string) => void): HTMLInputElement {
+    const input = h("input", { type: "text", value, "aria-label": label, spellcheck: "false", list: "symbols" });
+    input.addEventListener("change", () => {
+      if (input.value !== "" && input.value !== value) set(input.value);
+    });
+    return input;
+  }
+
+  function inspector(view: View): HTMLElement {
+    const rule = selection ? view.rules[selection.rule] : undefined;
+    if (!selection || !rule) return section("Rule", h("p", { class: "hint" }, "Click a region of the facade: all regions of its rule light up. Click again for the region around it."));
+    const r = selection.rule;
+    const count = view.nonTerminals.filter((n) => n[0] === r).length;
+    const symbols = [...new Set([...view.rules.map((o) => o.symbol), ...view.rules.flatMap((o) => o.parts.map((p) => p.symbol))])].sort();
+    const parts = rule.parts.map((p, k) => {
+      const at = `${r}.${k}`;
+      const row = h("tr", { class: selection!.part === k ? "selected" : "" }, h("td", {}, text(`Symbol of part ${k + 1}`, p.symbol, (v) => edit(`symbol ${at}=${v}`))));
+      if (p.size !== null) {
+        const input = h("input", { type: "number", step: "any", value: tidy(p.size, 3), "aria-label": `Size of part ${k + 1}` });
+        input.addEventListener("change", () => edit(`resize ${at}=${Number(input.value)}`));
+        row.append(
+          h("td", {}, input),
+          h(
+            "td",
+            { class: "row" },
+            button("Copy", () => edit(`insert ${at}=${p.symbol}:${four(p.size!)}`), { class: "quiet", title: "Insert a copy before this part", "aria-label": `Insert a copy of part ${k + 1}` }),
+            rule.parts.length > 1 ? button("✕", () => edit(`remove ${at}`), { class: "quiet", "aria-label": `Remove part ${k + 1}` }) : null,
+          ),
+        );
+      }
+      return row;
+    });
+    const along = rule.axis === "x" ? "left to right" : rule.axis === "y" ? "bottom to top" : "row by row";
+    return section(
+      `Rule of ${rule.symbol}`,
+      h("p", { class: "hint" }, `${rule.operation} ${along}, cost ${tidy(rule.cost)}; ${count} ${count === 1 ? "region" : "regions"}`),
+      h("datalist", { id: "symbols" }, ...symbols.map((v) => h("option", { value: v }))),
+      h("table", { class: "parts" }, h("tbody", {}, ...parts)),
+      h("div", { class: "row" }, rule.operation === "split" ? button("Turn into a repeat", () => edit(`repeat ${r}`)) : null, rule.weight !== null ? field("Weight", rule.weight, (v) => edit(`weight ${r}=${v}`)) : null),
+    );
+  }
+
+  function show(doc: Doc<View>) {
+    const { view } = doc;
+    if (selection && !view.rules[selection.rule]) selection = null;
+    if (selection?.region) {
+      // The region that was clicked may have moved with the edit.
+      const now = view.nonTerminals.filter((n) => n[0] === selection!.rule).map(rectOf);
+      const far = (r: Rect) => Math.hypot(r.x - selection!.region!.x, r.y - selection!.region!.y);
+      selection.region = now.sort((a, b) => far(a) - far(b))[0] ?? null;
+    }
+    draw(view);
+    const own = view.starts[view.start];
+    const proof = view.bound === null ? "" : Math.abs(view.bound - view.cost) < 0.05 ? ", proven least" : `, none costs less than ${tidy(view.bound)}`;
+    const rules = view.rules.map((rule, k) =>
+      h(
+        "li",
+        {},
+        h("button", { type: "button", class: "rule", "aria-pressed": String(selection?.rule === k), onclick: () => select(k) }, h("b", {}, rule.symbol), h("span", {}, rule.weight === null ? rule.text : `${rule.text}`)),
+      ),
+    );
+    const set = (w: number, hh: number) => derive([w, hh]);
+    swap(
+      panel,
+      inspector(view),
+      section("Grammar", h("p", { class: "hint" }, `${view.rules.length} rules, cost ${tidy(view.cost)}${proof}; ${view.terminals.length} terminal regions`), h("ol", { class: "rules" }, ...rules)),
+      section(
+        "Size",
+        h("div", { class: "fields" }, field(`Width (${view.unit})`, view.width, (v) => set(v, view.height)), field(`Height (${view.unit})`, view.height, (v) => set(view.width, v))),
+        h(
+          "div",
+          { class: "row" },
+          view.size ? button("Back to its own", () => derive(null), { class: "quiet" }) : null,
+          view.size ? button("Make it its own", () => edit(`outline ${four(view.width)},${four(view.height)}`), { class: "quiet" }) : null,
+          view.stochastic ? button("Draw another", () => derive(view.size, ++session.seed)) : null,
+        ),
+        h("p", { class: "hint" }, `Its own size is ${tidy(own.width)} × ${tidy(own.height)}. Drag the right or upper edge.`),
+      ),
+    );
+  }
+
+  drawing.svg.addEventListener("click", (event) => {
+    if (!(event.target as Element).matches(".border, .edge")) pick(drawing.at(event));
+  });
+  return { stage, panel, show, close: () => {} };
+}

@@ -1,0 +1,10 @@
+//! The studio without a browser: its documents, its API, who may ask it, and that saved scripts give the same bytes.
+
+#![cfg(feature = "studio")]
+
+mod api;
+mod guard;
+mod saving;
+mod scripts;
+mod socket;
+mod speed;
