@@ -3,6 +3,7 @@
 pub mod relief;
 pub mod render;
 pub mod trace;
+mod vectors;
 
 /// A surface.
 #[derive(Debug, Clone, PartialEq)]

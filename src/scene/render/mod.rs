@@ -4,16 +4,15 @@
 
 mod camera;
 mod depth;
-mod vector;
 
 pub use camera::Camera;
 
 use rayon::prelude::*;
 
+use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
 use crate::scene::{Group, Instance, Mesh, Scene};
 use camera::View;
 use depth::DepthBuffer;
-use vector::{V, add, cross, dot, sub, times, unit};
 
 /// Rays per pixel along each axis.
 const SAMPLES: usize = 2;

@@ -11,7 +11,6 @@
 mod framing;
 mod light;
 mod tree;
-mod vectors;
 
 pub use framing::framing;
 
@@ -19,8 +18,8 @@ use rayon::prelude::*;
 
 use super::Scene;
 use super::render::{Camera, Picture};
+use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
 use light::{Seen, World, encoded};
-use vectors::{V, add, cross, dot, sub, times, unit};
 
 /// Rays along each axis of a pixel on an edge.
 const SAMPLES: usize = 3;

@@ -1,0 +1,11 @@
+//! Houses: attributes, learning, generation, design, files and commands.
+
+mod attributes;
+mod commands;
+mod contradictions;
+mod design;
+mod errors;
+mod fuzz;
+mod generation;
+mod io;
+mod shipped;

@@ -1,0 +1,5 @@
+//! Cities: grammars, files and commands.
+
+mod commands;
+mod gltf;
+mod grammar;

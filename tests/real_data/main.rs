@@ -1,0 +1,11 @@
+//! What holds on real facades and houses; skipped where there are none.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod completion;
+mod facades;
+mod grammar;
+mod houses;
+mod joint;
+mod procedural_logic;

@@ -1,0 +1,7 @@
+//! The repository itself: shipped data, sizes, installed program, artefacts.
+
+mod datasets;
+mod experiments;
+mod installed;
+#[cfg(unix)]
+mod sizes;

@@ -1,0 +1,10 @@
+//! Structure completion: search, score, chain, weights and commands.
+
+mod bad_input;
+mod chain;
+mod commands;
+mod policy;
+mod score;
+mod search;
+mod support;
+mod weights;

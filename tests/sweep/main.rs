@@ -1,0 +1,6 @@
+//! Sweeps: definition, runs, refusals, reports.
+
+mod papers;
+mod refusals;
+mod robust;
+mod running;
