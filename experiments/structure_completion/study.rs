@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::data::{self, Item};
-use super::figures::{in_size, without};
+use super::figures::{drawn, in_size, without};
 use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
 use crate::io::{ReadOptions, read_source};
 use crate::methods::structure_completion::layout::{Class, Element, Layout, scope};
@@ -12,62 +12,21 @@ use crate::methods::structure_completion::measure::{agreement, area_iou};
 use crate::methods::structure_completion::method::{self, Method};
 use crate::methods::structure_completion::model::Model;
 use crate::methods::structure_completion::policy::{Budget, PaperModel};
-use crate::methods::structure_completion::score::{TERMS, Term};
+use crate::methods::structure_completion::score::Term;
 use crate::methods::structure_completion::task::Task;
 use crate::rng::stream;
 use crate::{Error, Result};
-
-/// A way to complete a layout.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-enum MethodName {
-    Best,
-    Paper,
-    Annealing,
-    LowRank,
-    Lattice,
-    LatticeOpen,
-    Mirror,
-    Nearest,
-}
-
-/// What is hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-enum TaskName {
-    R20,
-    R50,
-    Side50,
-    Corner36,
-    Bottom40,
-}
-
-/// A scoring function (Sec. 4).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-enum TermName {
-    Aspect,
-    Spacing,
-    Regularity,
-    Completeness,
-    Pattern,
-    Alignment,
-    Compatibility,
-    Coverage,
-    Border,
-    Symmetry,
-}
 
 /// Settings of completion.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Complete {
     /// Method of completion.
-    method: MethodName,
+    method: Method,
     /// What is hidden.
-    task: TaskName,
+    task: Task,
     /// Scoring functions whose weight is set to 0, of `paper`.
-    left_out: Vec<TermName>,
+    left_out: Vec<Term>,
     /// Policies of a generation, of `paper`.
     population: usize,
     /// Generations after the first, of `paper`.
@@ -79,8 +38,8 @@ struct Complete {
 impl Default for Complete {
     fn default() -> Self {
         Self {
-            method: MethodName::Best,
-            task: TaskName::Side50,
+            method: Method::Best,
+            task: Task::Side50,
             left_out: Vec::new(),
             population: Budget::PAPER.population,
             generations: Budget::PAPER.generations,
@@ -118,13 +77,13 @@ enum Refused {
 
 fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
     let layout = item(given.path)?.layout;
-    let task = settings.task.task();
-    let (partial, hidden) = task.hide(&layout, &mut stream(given.seed, "figure 18", 0));
+    let mut drawn = drawn(&layout, given.seed);
+    let (partial, hidden) = settings.task.hide(&layout, &mut drawn);
     if hidden.is_empty() {
         return Err(Error::content(given.path, Refused::NothingHidden));
     }
     let key = format!("{} {:?}", given.seed, given.database);
-    let added: Vec<Element> = if settings.method == MethodName::Paper {
+    let added: Vec<Element> = if settings.method == Method::Paper {
         static MODELS: Shared<PaperModel> = Shared::new();
         let model = MODELS.get(key, || {
             PaperModel::train(&layouts(given)?, given.seed).map_err(Error::method)
@@ -134,7 +93,7 @@ fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
             generations: settings.generations,
             draws: settings.draws,
         };
-        let left_out: Vec<usize> = settings.left_out.iter().map(|term| term.index()).collect();
+        let left_out: Vec<usize> = settings.left_out.iter().map(|&term| term as usize).collect();
         without(&partial, &left_out, &model, &budget, given.seed)?
     } else {
         if !settings.left_out.is_empty() {
@@ -145,7 +104,7 @@ fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
             Model::train(layouts(given)?, given.seed).map_err(Error::method)
         })?;
         let rng = &mut stream(given.seed, "completion", 0);
-        let found = method::complete(settings.method.method(), &partial, &model, 1, rng);
+        let found = method::complete(settings.method, &partial, &model, 1, rng);
         let first = found.first().into_iter();
         first
             .flat_map(|c| c.added.iter().map(|a| a.element))
@@ -190,50 +149,4 @@ fn layouts(given: &Given) -> Result<Vec<Layout>> {
         items.retain(|i| i.in_scope);
     }
     Ok(items.into_iter().map(|item| item.layout).collect())
-}
-
-impl TaskName {
-    fn task(self) -> Task {
-        match self {
-            TaskName::R20 => Task::R20,
-            TaskName::R50 => Task::R50,
-            TaskName::Side50 => Task::Side50,
-            TaskName::Corner36 => Task::Corner36,
-            TaskName::Bottom40 => Task::Bottom40,
-        }
-    }
-}
-
-impl MethodName {
-    fn method(self) -> Method {
-        match self {
-            MethodName::Best => Method::Best,
-            MethodName::Paper => Method::Paper,
-            MethodName::Annealing => Method::Annealing,
-            MethodName::LowRank => Method::LowRank,
-            MethodName::Lattice => Method::Lattice,
-            MethodName::LatticeOpen => Method::LatticeOpen,
-            MethodName::Mirror => Method::Mirror,
-            MethodName::Nearest => Method::Nearest,
-        }
-    }
-}
-
-impl TermName {
-    /// Place among the weights.
-    fn index(self) -> usize {
-        let term = match self {
-            TermName::Aspect => Term::Aspect,
-            TermName::Spacing => Term::Spacing,
-            TermName::Regularity => Term::Regularity,
-            TermName::Completeness => Term::Completeness,
-            TermName::Pattern => Term::Pattern,
-            TermName::Alignment => Term::Alignment,
-            TermName::Compatibility => Term::Compatibility,
-            TermName::Coverage => Term::Coverage,
-            TermName::Border => Term::Border,
-            TermName::Symmetry => Term::Symmetry,
-        };
-        Term::ALL.iter().position(|t| *t == term).unwrap_or(TERMS)
-    }
 }

@@ -6,14 +6,14 @@ use super::super::picture::panel;
 use super::super::row;
 use super::{Item, facades, mean_error, paper, plus_minus, split};
 use crate::experiments::Context;
-use crate::methods::structure_completion::layout::Element;
+use crate::methods::structure_completion::layout::{Element, Layout};
 use crate::methods::structure_completion::measure::agreement;
 use crate::methods::structure_completion::partial::PartialLayout;
 use crate::methods::structure_completion::policy::{Budget, PaperModel, Scene, optimize};
 use crate::methods::structure_completion::score::{TERMS, Term};
 use crate::methods::structure_completion::task::Task;
 use crate::report::{Align, Figure, Table, Tiles};
-use crate::rng::stream;
+use crate::rng::{Stream, stream};
 use crate::{Error, Result};
 
 /// Facades in the picture of Fig. 17.
@@ -33,19 +33,24 @@ fn title(left_out: usize) -> String {
     }
 }
 
-fn hide(item: &Item, k: usize, seed: u64) -> (PartialLayout, Vec<Element>) {
-    Task::Side50.hide(&item.layout, &mut stream(seed, "figure 18", k as u64))
+/// What decides which part of a layout is hidden: the same in these figures and in sweeps, whatever other facades are
+/// completed.
+pub fn drawn(layout: &Layout, seed: u64) -> Stream {
+    stream(seed, &format!("figure 18, {}", layout.name), 0)
+}
+
+fn hide(item: &Item, seed: u64) -> (PartialLayout, Vec<Element>) {
+    Task::Side50.hide(&item.layout, &mut drawn(&item.layout, seed))
 }
 
 fn complete(
     item: &Item,
-    k: usize,
     left_out: usize,
     model: &PaperModel,
     budget: &Budget,
     seed: u64,
 ) -> Result<Found> {
-    let (partial, hidden) = hide(item, k, seed);
+    let (partial, hidden) = hide(item, seed);
     let left_out: Vec<usize> = (left_out < TERMS).then_some(left_out).into_iter().collect();
     let added = without(&partial, &left_out, model, budget, seed)?;
     Ok(Found {
@@ -73,8 +78,8 @@ pub fn without(
     Ok(best.map_or(Vec::new(), |c| c.added))
 }
 
-fn shown(item: &Item, k: usize, seed: u64, title: String, added: &[Element]) -> Tiles {
-    let (partial, _) = hide(item, k, seed);
+fn shown(item: &Item, seed: u64, title: String, added: &[Element]) -> Tiles {
+    let (partial, _) = hide(item, seed);
     let (w, h) = (item.layout.width, item.layout.height);
     panel(title, w, h, &partial.observed, added)
 }
@@ -89,12 +94,12 @@ pub fn figure_17(ctx: &mut Context) -> Result<()> {
         4,
     )
     .cell(220.0, 220.0);
-    for (k, (item, found)) in items.iter().zip(&found).enumerate().take(SHOWN) {
+    for (item, found) in items.iter().zip(&found).take(SHOWN) {
         let (w, h) = (item.layout.width, item.layout.height);
-        figure = figure.panel(shown(item, k, seed, item.layout.name.clone(), &[]));
+        figure = figure.panel(shown(item, seed, item.layout.name.clone(), &[]));
         for (f, name) in found.iter().zip(["all terms", "without symmetry"]) {
             let title = format!("{name}: F1 {:.2}", f.f1);
-            figure = figure.panel(shown(item, k, seed, title, &f.added));
+            figure = figure.panel(shown(item, seed, title, &f.added));
         }
         figure = figure.panel(panel("truth".into(), w, h, &item.layout.elements, &[]));
     }
@@ -117,7 +122,7 @@ pub fn figure_18(ctx: &mut Context) -> Result<()> {
         for (f, &left_out) in found.iter().zip(&terms) {
             let name = title(left_out).replace("without", "no");
             let title = format!("{name}: {:.2}", f.f1);
-            figure = figure.panel(shown(item, 0, seed, title, &f.added));
+            figure = figure.panel(shown(item, seed, title, &f.added));
         }
     }
     ctx.figure("figure_18", &figure)?;
@@ -135,15 +140,14 @@ fn measure(ctx: &mut Context, terms: &[usize]) -> Result<(PaperModel, Vec<Item>,
         .choose(Budget::SMALL, Budget::PAPER, Budget::PAPER);
     ctx.setting("candidates", budget.candidates());
     let seed = ctx.seed();
-    let units: Vec<(usize, &Item, usize)> = chosen
+    let units: Vec<(&Item, usize)> = chosen
         .iter()
-        .enumerate()
-        .flat_map(|(k, item)| terms.iter().map(move |&t| (k, *item, t)))
+        .flat_map(|item| terms.iter().map(move |&t| (*item, t)))
         .collect();
     let found: Vec<Found> = ctx.units(
         &units,
-        |(_, i, t)| format!("{}/{}/{}", i.dataset, i.layout.name, title(*t)),
-        |&(k, item, left_out)| complete(item, k, left_out, &model, &budget, seed),
+        |(i, t)| format!("{}/{}/{}", i.dataset, i.layout.name, title(*t)),
+        |&(item, left_out)| complete(item, left_out, &model, &budget, seed),
     )?;
     let mut found = found.into_iter();
     let rows = chosen

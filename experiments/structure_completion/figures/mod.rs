@@ -10,7 +10,7 @@ pub mod figure_18;
 pub mod figure_20;
 pub mod figure_8;
 
-pub use figure_18::without;
+pub use figure_18::{drawn, without};
 
 use super::data::{self, Item};
 use crate::experiments::Context;

@@ -1,5 +1,7 @@
 //! The table of methods.
 
+use serde::{Deserialize, Serialize};
+
 use super::annealing;
 use super::baselines;
 use super::best::modes;
@@ -10,7 +12,9 @@ use super::policy;
 use crate::rng::Stream;
 
 /// A way to complete a layout.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Elements by expected F1 from exact draws, symmetry and transfer.
     Best,

@@ -2,6 +2,7 @@
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
 
 use super::layout::{Element, Layout};
 use super::partial::PartialLayout;
@@ -9,7 +10,9 @@ use crate::rng::Stream;
 use crate::shape::Rect;
 
 /// What is hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Task {
     /// A random 20 % of the elements are observed; nothing is known of the rest of the facade.
     R20,

@@ -63,6 +63,7 @@ pub const LEAST: f64 = -30.0;
 
 /// The scoring functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
     /// Element aspect ratio (Eq. 1).
