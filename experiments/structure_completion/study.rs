@@ -93,7 +93,11 @@ fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
             generations: settings.generations,
             draws: settings.draws,
         };
-        let left_out: Vec<usize> = settings.left_out.iter().map(|&term| term as usize).collect();
+        let left_out: Vec<usize> = settings
+            .left_out
+            .iter()
+            .map(|&term| term as usize)
+            .collect();
         without(&partial, &left_out, &model, &budget, given.seed)?
     } else {
         if !settings.left_out.is_empty() {
