@@ -82,7 +82,7 @@ class Table:
 class Split:
     """What is learned from and scored, standardised by the rows learned from."""
 
-    def __init__(self, table, test, atoms, seed):
+    def __init__(self, table, test, seed):
         train = np.setdiff1d(np.arange(len(table.x)), test)
         self.mean, scale = np.nanmean(table.x[train], 0), np.nanstd(table.x[train], 0)
         self.scale = np.where(scale > 0, scale, 1.0)
@@ -92,11 +92,6 @@ class Split:
         self.train = self.low[train] + rng.random((len(train), len(table.names))) * (self.high - self.low)[train]
         self.lo, self.hi = self.low[test], self.high[test]
         self.codes, self.test_codes, self.sizes = table.codes[train], table.codes[test], table.sizes
-        # What is taken out of a log probability of intervals: own units but at atoms.
-        size = np.log(table.high - table.low)[test]
-        for j, name in enumerate(table.names):
-            size[np.isin(table.x[test][:, j], atoms.get(name, [])), j] = 0.0
-        self.out = np.nansum(size, 1)
         self.filled, self.filled_codes = self.imputed()
 
     def imputed(self):
@@ -112,8 +107,6 @@ class Split:
             codes[codes[:, j] < 0, j] = np.bincount(known).argmax()
         return reals, codes
 
-    def loss(self, log_mass):
-        return -(log_mass - self.out)
 
 
 def log_interval(low, high, mean, sd):
@@ -347,11 +340,22 @@ def kernels(split, seed):
 PEERS = {"gmm, codes": gmm_coded, "gmm, by class": gmm_class, "StepMix": stepmix, "kernels": kernels}
 
 
-def one(arguments):
-    path, index, name = arguments
+def one(path, index, name):
+    """Minus the mean log probability of the held-out rows' intervals."""
     ours = json.loads(path.read_text())
-    split = Split(Table(ours["columns"]), np.array(ours["tests"][index]), ours["atoms"][index], index)
-    return float(split.loss(PEERS[name](split, index)).mean())
+    split = Split(Table(ours["columns"]), np.array(ours["tests"][index]), index)
+    return float(-PEERS[name](split, index).mean())
+
+
+def sizes(ours):
+    """By split, the mean log size of the rows' intervals that are at no atom: what is taken out of log probabilities."""
+    table, out = Table(ours["columns"]), []
+    for test, atoms in zip(ours["tests"], ours["atoms"]):
+        size = np.log(table.high - table.low)[test]
+        for j, name in enumerate(table.names):
+            size[np.isin(table.x[test][:, j], atoms.get(name, [])), j] = 0.0
+        out.append(np.nansum(size, 1).mean())
+    return np.array(out)
 
 
 def compare(folder, chosen):
@@ -366,15 +370,15 @@ def compare(folder, chosen):
         for name in PEERS:
             own = known.setdefault(name, [])
             for index in range(len(own), len(ours["tests"])):
-                own.append(one((path, index, name)))
+                own.append(one(path, index, name))
                 kept.write_text(json.dumps(known))
                 print(table, name, index, round(own[-1], 4), file=sys.stderr, flush=True)
-            losses[name] = own
+            losses[name] = own + sizes(ours)
         report(table, losses)
 
 
 def report(table, losses):
-    reference = np.array(losses.get("extended", losses["kernels"]))
+    reference = np.array(losses["extended"])
     spread = lambda v: np.std(v, ddof=1) / np.sqrt(len(v))
     print(f"\n| {table} | nats | standard error | above extended | standard error |\n| --- | --- | --- | --- | --- |")
     for name, own in sorted(losses.items(), key=lambda item: np.mean(item[1])):

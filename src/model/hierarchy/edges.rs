@@ -147,7 +147,7 @@ struct Families<'a> {
 
 /// Share of the rows that may lack a value of a real group that is a parent, where categories are parents as well: values
 /// that are missing by the thousand (at atoms) would each be integrated out of all their children.
-const MOST_MISSING: f64 = 0.1;
+const MOST_MISSING: f64 = 0.05;
 
 /// Real groups that may be parents: as published, all.
 fn parents(problem: &Problem, categories: bool) -> Vec<bool> {

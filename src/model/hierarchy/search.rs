@@ -32,10 +32,20 @@ pub(crate) struct Search<'a> {
     pub schema: &'a Schema,
     pub rows: &'a Rows,
     pub settings: &'a Settings,
+    /// Whether edges from categories are searched.
+    pub categories: bool,
     pub watch: &'a Watch<'a>,
 }
 
 impl<'a> Search<'a> {
+    /// The same search without edges from categories.
+    pub fn without_category_edges(&self) -> Self {
+        Self {
+            categories: false,
+            ..*self
+        }
+    }
+
     /// Runs the search for every cardinality of S and keeps the first of highest score.
     pub fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
         let styles = self.styles();
@@ -262,7 +272,7 @@ impl<'a> Search<'a> {
     /// Expected statistics over all columns, of categories as well where edges from these are searched or there.
     pub(super) fn wide(&self, problem: &Problem, scored: &Scored) -> Result<Wide, ModelError> {
         let there = scored.shape.structure.shifts.iter().any(|l| !l.is_empty());
-        wide(problem, scored, self.settings.category_edges || there)
+        wide(problem, scored, self.categories || there)
     }
 
     /// Searches lateral edges around a fit; the better of the fits with the old and the new ones.
