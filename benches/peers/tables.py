@@ -337,7 +337,7 @@ def kernels(split, seed):
     return out
 
 
-PEERS = {"gmm, codes": gmm_coded, "gmm, by class": gmm_class, "StepMix": stepmix, "kernels": kernels}
+PEERS = {"kernels": kernels, "StepMix": stepmix, "gmm, codes": gmm_coded, "gmm, by class": gmm_class}
 
 
 def one(path, index, name):

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Dataset;
 use super::marginal::choose;
-use super::transform::Transform;
+use super::transform::{Bounds, Tails, Transform};
 use crate::model::conjugate::LinearPrior;
 use crate::model::hierarchy::Group;
 use crate::model::{Cell, Column, ModelError, Table};
@@ -199,6 +199,26 @@ impl Encoding {
 }
 
 impl Encoded {
+    /// Its atoms and its transform in words; `None` where the column enters as it is.
+    pub fn said(&self) -> Option<String> {
+        let mut parts = Vec::new();
+        if !self.atoms.is_empty() {
+            let atoms: Vec<String> = self.atoms.iter().map(f64::to_string).collect();
+            parts.push(format!("{} as `{}`", atoms.join(", "), self.category));
+        }
+        match self.transform.bounds {
+            Bounds::None => {}
+            Bounds::Positive { offset } => parts.push(format!("log(1 + x / {offset:.4})")),
+            Bounds::Share { offset } => {
+                parts.push(format!("log((x + {offset}) / (1 - x + {offset}))"));
+            }
+        }
+        if let Some(Tails { centre, scale }) = self.transform.tails {
+            parts.push(format!("tails from {centre:.4} +- {scale:.4}"));
+        }
+        (!parts.is_empty()).then(|| format!("{}: {}", self.column, parts.join("; ")))
+    }
+
     /// The categories: `other`, then the atoms.
     fn names(&self) -> Vec<String> {
         let atoms = self.atoms.iter().map(f64::to_string);

@@ -160,9 +160,7 @@ fn an_encoded_density_integrates_to_one() {
             .collect::<Vec<f64>>()
     };
     let step = 0.005;
-    let grid = (-8_000..40_000)
-        .map(|i| (i as f64 + 0.5) * step)
-        .collect();
+    let grid = (-8_000..40_000).map(|i| (i as f64 + 0.5) * step).collect();
     let total = log(vec![0.0])[0] + step * log(grid).iter().sum::<f64>();
     assert!((total - 1.0).abs() < 2e-3, "{total}");
 }

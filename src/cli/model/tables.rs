@@ -220,6 +220,7 @@ fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
             "styles": model.styles(),
             "style_probabilities": model.style_probabilities(),
             "cardinalities": cardinalities,
+            "encoding": file.encoding,
             "lateral_edges": model.lateral_edges(),
         });
         return Ok(vec![summary.to_string()]);
@@ -229,6 +230,9 @@ fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
     let shares: Vec<String> = shares.collect();
     let mut lines = vec![format!("{} styles: {}", model.styles(), shares.join(" "))];
     lines.extend(groups.map(|(name, kinds)| format!("{name}: {kinds} kinds")));
+    for column in file.encoding.iter().flat_map(Encoding::columns) {
+        lines.extend(column.said());
+    }
     let edges = model.lateral_edges();
     lines.push(format!("{} lateral edges", edges.len()));
     lines.extend(edges.iter().map(|(from, to)| format!("  {from} -> {to}")));

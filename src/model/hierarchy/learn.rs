@@ -92,9 +92,13 @@ pub fn learn_observed(
     let work = Work::new(&schema, data, settings, seed)?;
     work.learn(observer, |search| {
         let mut found = search.run(seed)?;
-        if settings.category_edges {
+        if settings.category_edges && !search.large() {
             // Edges from categories compete with styles for the same dependencies: the search without them may end higher.
-            let (scored, trace) = search.without_category_edges().run(seed)?;
+            let without = Search {
+                categories: false,
+                ..*search
+            };
+            let (scored, trace) = without.run(seed)?;
             found.1.extend(trace);
             if scored.score > found.0.score {
                 found.0 = scored;

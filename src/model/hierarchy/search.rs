@@ -38,12 +38,9 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// The same search without edges from categories.
-    pub fn without_category_edges(&self) -> Self {
-        Self {
-            categories: false,
-            ..*self
-        }
+    /// Whether work is saved if the settings do not say.
+    pub fn large(&self) -> bool {
+        self.rows.rows * self.rows.d > SMALL
     }
 
     /// Runs the search for every cardinality of S and keeps the first of highest score.
@@ -112,7 +109,7 @@ impl<'a> Search<'a> {
     /// Whether work is saved, as on large tables.
     fn few(&self) -> bool {
         match self.settings.sweep {
-            Sweep::Auto => self.rows.rows * self.rows.d > SMALL,
+            Sweep::Auto => self.large(),
             Sweep::All => false,
             Sweep::Few => true,
         }
