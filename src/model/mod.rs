@@ -18,7 +18,7 @@
 //! | a network with its tables; posteriors, explanations, draws | [`network`]: exact by [`elimination`], approximate on request | pyAgrum, pgmpy |
 //! | a network without numbers, rows with missing cells, hidden variables | [`network::Network::fit`] | pyAgrum, pgmpy (complete rows) |
 //! | a table of categories; the graph of a network | [`network::structure::search`] | pyAgrum, pgmpy |
-//! | a table of mixed columns, and no idea of its structure | [`hierarchy::learn`] | StepMix (latent classes), scikit-learn's `GaussianMixture` |
+//! | a table of mixed columns, and no idea of its structure | [`hierarchy::learn`]; with repeated values, bounds or heavy tails, of a table encoded first (`tables::encoding`) | StepMix (latent classes), scikit-learn's `GaussianMixture` |
 //! | points of one kind of number; clusters, a density | [`gmm`] | scikit-learn, linfa |
 //! | one number, bounded, multimodal or given another | [`density`] | rv, SciPy |
 //! | states of any kind with features that you can compute, but no sum over states | [`factor_graph`], [`log_linear`] | – |

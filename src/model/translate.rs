@@ -46,9 +46,13 @@ impl Hierarchy {
                 Selector::Style => vec![&style],
                 Selector::Codes(list) => list.iter().map(|&c| &schema.codes[c].name[..]).collect(),
             };
+            let shifts = &structure.shifts[g];
+            parents.extend(shifts.iter().map(|&c| &schema.codes[c].name[..]));
             parents.extend(structure.parents[g].iter().map(|&p| &groups[p][..]));
+            let configurations = self.shape.configurations(shifts);
             let states: Vec<(Vec<f64>, Vec<f64>)> = (0..self.params.linear[g].len())
-                .map(|state| self.in_own_units(g, state))
+                .flat_map(|state| configurations.iter().map(move |codes| (state, codes)))
+                .map(|(state, codes)| self.in_own_units(g, state, codes))
                 .collect();
             let states: Vec<(&[f64], &[f64])> =
                 states.iter().map(|(b, s)| (&b[..], &s[..])).collect();
@@ -70,17 +74,34 @@ impl Hierarchy {
         Network::new(variables)
     }
 
-    /// B and the covariance of a state of a group, both row-major, with `y = m_y + s_y y'` for standardised columns.
-    fn in_own_units(&self, g: usize, state: usize) -> (Vec<f64>, Vec<f64>) {
+    /// B and the covariance of a state of a group, both row-major, with `y = m_y + s_y y'` for standardised columns, where
+    /// the columns that shift the group have the categories `codes`: the intercept then holds their shifts.
+    fn in_own_units(&self, g: usize, state: usize, codes: &[usize]) -> (Vec<f64>, Vec<f64>) {
         let linear = &self.params.linear[g][state];
         let (p, d) = (linear.p, linear.d);
         let scaled = |column: usize| {
             let real = &self.schema.reals[column];
             (real.mean, real.scale)
         };
-        let columns: Vec<(f64, f64)> = self.shape.columns[g].iter().map(|&c| scaled(c)).collect();
-        let (inputs, own) = columns.split_at(p - 1);
-        let mut b = linear.coefficients().to_vec();
+        let (inputs, own) = self.shape.columns[g].split_at(p - 1);
+        let shifts = self.shape.structure.shifts[g].iter().zip(codes);
+        let shifts: Vec<usize> = shifts.map(|(&c, v)| self.shape.indicators[c] + v).collect();
+        let mut b = linear.coefficients()[..d].to_vec();
+        for (row, column) in linear.coefficients()[d..].chunks(d).zip(inputs) {
+            match column {
+                real if *real < self.schema.reals.len() => b.extend(row),
+                indicator if shifts.contains(indicator) => {
+                    b[..d]
+                        .iter_mut()
+                        .zip(row)
+                        .for_each(|(b, shift)| *b += shift);
+                }
+                _ => {}
+            }
+        }
+        let reals = inputs.iter().filter(|c| **c < self.schema.reals.len());
+        let inputs: Vec<(f64, f64)> = reals.map(|&c| scaled(c)).collect();
+        let own: Vec<(f64, f64)> = own.iter().map(|&c| scaled(c)).collect();
         let mut covariance = linear.covariance.clone();
         for (j, (mean, scale)) in own.iter().enumerate() {
             b[j] = mean + scale * b[j];

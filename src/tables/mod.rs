@@ -3,6 +3,8 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`schema`] | which columns are which attributes, written by hand or guessed |
+//! | [`encoding`] | values that many rows share as categories, the others transformed |
+//! | [`transform`] | monotone transforms of a real column |
 //! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
 //! | [`compare`] | held-out likelihoods of models on the same splits |
@@ -10,10 +12,13 @@
 //! Texts become numbers and categories here; the models themselves are in [`crate::model`].
 
 pub mod compare;
+pub mod encoding;
 mod guess;
+mod marginal;
 pub mod mixture;
 pub mod schema;
 pub mod table_model;
+pub mod transform;
 
 use crate::model::hierarchy::Group;
 use crate::model::{ModelError, Table};

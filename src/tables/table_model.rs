@@ -1,22 +1,28 @@
 //! A learned hierarchical model of any table, with the schema by which it reads tables: `*.table-model.json`.
 
+use rand::Rng;
 use serde::{Deserialize, Serialize};
 
+use super::encoding::Encoding;
 use super::schema::Schema;
-use crate::model::ModelError;
 use crate::model::hierarchy::Hierarchy;
+use crate::model::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/table_model";
-/// The only version.
+/// Version of files without an encoding.
 pub const VERSION: u64 = 1;
+/// Version of files with one.
+pub const ENCODED_VERSION: u64 = 2;
 
 /// A model and how to read tables for it.
 #[derive(Debug, Clone)]
 pub struct TableModel {
     /// How tables are read.
     pub schema: Schema,
-    /// The model.
+    /// How their real columns enter the model; `None`: as they are.
+    pub encoding: Option<Encoding>,
+    /// The model, of encoded tables.
     pub model: Hierarchy,
 }
 
@@ -25,10 +31,72 @@ struct Stored {
     format: String,
     version: u64,
     schema: Schema,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    encoding: Option<Encoding>,
     model: serde_json::Value,
 }
 
 impl TableModel {
+    /// The table as the model reads it.
+    ///
+    /// # Errors
+    /// As [`Encoding::encode`].
+    pub fn encode(&self, table: &Table) -> Result<Table, ModelError> {
+        match &self.encoding {
+            None => Ok(table.clone()),
+            Some(encoding) => encoding.encode(table),
+        }
+    }
+
+    /// `log p(row)` of every row, nats, in the columns' own units, at an atom a probability; missing values and columns that
+    /// `table` lacks are integrated out.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::log_likelihood`] and [`Encoding::encode`].
+    pub fn log_likelihood(&self, table: &Table) -> Result<Vec<f64>, ModelError> {
+        let mut logs = self.model.log_likelihood(&self.encode(table)?)?;
+        if let Some(encoding) = &self.encoding {
+            for (log, slope) in logs.iter_mut().zip(encoding.log_slopes(table)) {
+                *log += slope;
+            }
+        }
+        Ok(logs)
+    }
+
+    /// Draws `count` rows.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::sample`].
+    pub fn sample<R: Rng>(&self, count: usize, rng: &mut R) -> Result<Table, ModelError> {
+        self.decode(&self.model.sample(count, rng)?.table)
+    }
+
+    /// Completes every row of `given` `count` times.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::complete`] and [`Encoding::encode`].
+    pub fn complete<R: Rng>(
+        &self,
+        given: &Table,
+        count: usize,
+        rng: &mut R,
+    ) -> Result<Table, ModelError> {
+        let draws = self.model.complete(&self.encode(given)?, count, rng)?;
+        self.decode(&draws.table)
+    }
+
+    /// The columns in the order of the schema.
+    fn decode(&self, encoded: &Table) -> Result<Table, ModelError> {
+        let groups = self.schema.groups.iter();
+        let columns: Vec<&str> = groups
+            .flat_map(|g| g.columns.iter().map(String::as_str))
+            .collect();
+        match &self.encoding {
+            None => encoded.in_order(&columns),
+            Some(encoding) => encoding.decode(encoded)?.in_order(&columns),
+        }
+    }
+
     /// The text of the file.
     ///
     /// # Errors
@@ -38,8 +106,12 @@ impl TableModel {
         let model = serde_json::from_str(&text).map_err(|e| corrupt("model", &e))?;
         let stored = Stored {
             format: FORMAT.into(),
-            version: VERSION,
+            version: match self.encoding {
+                None => VERSION,
+                Some(_) => ENCODED_VERSION,
+            },
             schema: self.schema.clone(),
+            encoding: self.encoding.clone(),
             model,
         };
         serde_json::to_string_pretty(&stored).map_err(|e| corrupt("the file", &e))
@@ -54,11 +126,19 @@ impl TableModel {
         if stored.format != FORMAT {
             return Err(corrupt("format", &format!("expected {FORMAT:?}")));
         }
-        if stored.version != VERSION {
-            return Err(corrupt("version", &format!("expected {VERSION}")));
+        let expected = match stored.encoding {
+            None => VERSION,
+            Some(_) => ENCODED_VERSION,
+        };
+        if stored.version != expected {
+            return Err(corrupt("version", &format!("expected {expected}")));
+        }
+        if let Some(encoding) = &stored.encoding {
+            encoding.check()?;
         }
         Ok(Self {
             schema: stored.schema,
+            encoding: stored.encoding,
             model: Hierarchy::from_json(&stored.model.to_string())?,
         })
     }

@@ -3,6 +3,7 @@
 mod commands;
 mod density;
 mod elimination;
+mod encoding;
 mod factor_graph;
 mod files;
 mod gmm;

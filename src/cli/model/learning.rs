@@ -61,12 +61,17 @@ pub struct Found {
 
 impl Learning {
     /// Learns from `data`, going on from `start` if there is one. `path` names the table in errors.
-    pub fn learn(&self, data: &Dataset, start: Option<&Hierarchy>, path: &Path) -> Result<Found> {
+    pub fn learn(
+        &self,
+        data: &Dataset,
+        settings: &Settings,
+        start: Option<&Hierarchy>,
+        path: &Path,
+    ) -> Result<Found> {
         if let Some(limit) = self.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
             let problem = format!("{limit} is not a positive number of seconds");
             return Err(Error::option("--time-limit", problem));
         }
-        let settings = self.search.settings()?;
         // Set once per process; a second command in the same process keeps the first handler, which does the same.
         let _ = ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {
@@ -75,7 +80,7 @@ impl Learning {
             print::message("stopping with the best model so far; Ctrl-C again stops at once");
         });
         let watch = Watch::new(self.time_limit.map(seconds));
-        let found = self.found(data, start, &settings, &watch);
+        let found = self.found(data, start, settings, &watch);
         let mut found = found.map_err(|e| Error::content(path, e))?;
         found.seconds = watch.start.elapsed().as_secs_f64();
         if found.interrupted {

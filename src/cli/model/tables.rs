@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use edifice::file::write_atomic;
-use edifice::model::Table;
+use edifice::model::ModelError;
 use edifice::rng::stream;
+use edifice::tables::Dataset;
+use edifice::tables::compare::extended;
+use edifice::tables::encoding::Encoding;
 use edifice::tables::table_model::{FORMAT, TableModel};
 use edifice::{Error, Result};
 
@@ -24,6 +27,10 @@ pub struct LearnArgs {
     output: PathBuf,
     #[command(flatten)]
     learning: Learning,
+    /// Learn the model as published: no values as categories of their own, no transforms of columns, no edges from
+    /// categories.
+    #[arg(long)]
+    as_published: bool,
     /// Print a line of JSON.
     #[arg(long)]
     json: bool,
@@ -78,8 +85,34 @@ pub fn schema(input: &TableInput) -> Result<()> {
 pub fn learn(args: &LearnArgs) -> Result<()> {
     let (data, schema) = args.input.read()?;
     let start = args.learning.from.as_deref().map(read_model).transpose()?;
+    let published = args.learning.search.settings()?;
+    let (encoding, settings) = match &start {
+        Some(file) if args.as_published && file.encoding.is_some() => {
+            let problem = "the model given with --from was learned otherwise";
+            return Err(Error::option("--as-published", problem));
+        }
+        Some(file) => (file.encoding.clone(), published),
+        None if args.as_published => (None, published),
+        None => {
+            let encoding =
+                Encoding::learn(&data, &published.priors.linear, args.learning.search.seed);
+            (Some(encoding.map_err(at(&args.input.table))?), published)
+        }
+    };
+    let (encoded, settings) = match &encoding {
+        None => (data.clone(), settings),
+        Some(encoding) => {
+            let table = encoding
+                .encode(&data.table)
+                .map_err(at(&args.input.table))?;
+            let groups = encoding.groups(&data.groups);
+            (Dataset { table, groups }, extended(&settings))
+        }
+    };
     let start = start.as_ref().map(|file| &file.model);
-    let found = args.learning.learn(&data, start, &args.input.table)?;
+    let found = args
+        .learning
+        .learn(&encoded, &settings, start, &args.input.table)?;
     if args.input.schema.is_none() {
         let kinds = schema
             .groups
@@ -95,6 +128,7 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
     let edges = found.model.lateral_edges().len();
     let file = TableModel {
         schema,
+        encoding,
         model: found.model,
     };
     let text = file.to_json().map_err(Error::method)?;
@@ -116,11 +150,15 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
     }
 }
 
+fn at(path: &Path) -> impl Fn(ModelError) -> Error + '_ {
+    move |error| Error::content(path, error)
+}
+
 /// Runs `score`: the log-likelihood of every row, missing cells integrated out.
 pub fn score(args: &ScoreArgs) -> Result<()> {
     let model = read_model(&args.model)?;
     let data = read_rows(&model, &args.table)?;
-    let logs = model.model.log_likelihood(&data.table);
+    let logs = model.log_likelihood(&data.table);
     let logs = logs.map_err(|e| Error::content(&args.table, e))?;
     print::line("row,log_likelihood")?;
     for (row, log) in logs.iter().enumerate() {
@@ -138,26 +176,15 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
         return Err(Error::option("--count", "must be at least 1"));
     }
     let mut rng = stream(args.seed, "model/sample", 0);
-    let kinds = model.model.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&model.schema.groups(), &kinds.table, &args.given)
+    let kinds = model.sample(1, &mut rng).map_err(Error::method)?;
+    let given = evidence(&model.schema.groups(), &kinds, &args.given)
         .map_err(|e| Error::option("--given", e.to_string()))?;
     let draws = match args.given.is_empty() {
-        true => model.model.sample(args.count, &mut rng),
-        false => model.model.complete(&given, args.count, &mut rng),
+        true => model.sample(args.count, &mut rng),
+        false => model.complete(&given, args.count, &mut rng),
     };
-    let table = draws
-        .map_err(|e| Error::option("--given", e.to_string()))?
-        .table;
-    print::line(&csv_lines(&in_order(&model, &table)?).join("\n"))
-}
-
-/// The columns in the order of the schema.
-fn in_order(model: &TableModel, table: &Table) -> Result<Table> {
-    let groups = model.schema.groups.iter();
-    let columns: Vec<&str> = groups
-        .flat_map(|g| g.columns.iter().map(String::as_str))
-        .collect();
-    table.in_order(&columns).map_err(Error::method)
+    let table = draws.map_err(|e| Error::option("--given", e.to_string()))?;
+    print::line(&csv_lines(&table).join("\n"))
 }
 
 /// Runs `complete`.
@@ -167,10 +194,10 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
     for row in 0..data.table.rows() {
         let mut rng = stream(args.seed, "model/complete", row as u64);
         let given = data.table.select(&[row]);
-        let draws = model.model.complete(&given, args.count, &mut rng);
+        let draws = model.complete(&given, args.count, &mut rng);
         let draws = draws.map_err(|e| Error::content(&args.table, e.in_row(row)))?;
         // The header stands once, before the first row.
-        let lines = csv_lines(&in_order(&model, &draws.table)?);
+        let lines = csv_lines(&draws);
         print::line(&lines[usize::from(row > 0)..].join("\n"))?;
     }
     Ok(())
@@ -193,6 +220,7 @@ fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
             "styles": model.styles(),
             "style_probabilities": model.style_probabilities(),
             "cardinalities": cardinalities,
+            "encoding": file.encoding,
             "lateral_edges": model.lateral_edges(),
         });
         return Ok(vec![summary.to_string()]);
@@ -202,6 +230,9 @@ fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
     let shares: Vec<String> = shares.collect();
     let mut lines = vec![format!("{} styles: {}", model.styles(), shares.join(" "))];
     lines.extend(groups.map(|(name, kinds)| format!("{name}: {kinds} kinds")));
+    for column in file.encoding.iter().flat_map(Encoding::columns) {
+        lines.extend(column.said());
+    }
     let edges = model.lateral_edges();
     lines.push(format!("{} lateral edges", edges.len()));
     lines.extend(edges.iter().map(|(from, to)| format!("  {from} -> {to}")));

@@ -22,6 +22,8 @@ pub(crate) struct Component {
     /// Real columns without a value, in order of appearance.
     pub missing: Vec<usize>,
     pub particles: Vec<Particle>,
+    /// P(states of a particle | s), particle by particle.
+    pub weights: Vec<f64>,
 }
 
 /// What a row's missing values mean for each group.
@@ -95,14 +97,17 @@ impl Component {
         real: &[f64],
         codes: &[u32],
     ) -> Self {
+        let styles = shape.structure.styles;
         let mut component = Self {
             groups: groups.to_vec(),
             missing: Vec::new(),
-            particles: vec![Particle::empty()],
+            particles: Vec::new(),
+            weights: Vec::new(),
         };
+        let mut alive = vec![(Particle::empty(), vec![1.0; styles])];
         for &g in groups {
-            let mut next = Vec::new();
-            for particle in &component.particles {
+            let mut next: Vec<(Particle, Vec<f64>)> = Vec::new();
+            for (particle, weights) in &alive {
                 let states = match &shape.structure.selectors[g] {
                     Selector::Hidden(k) => 0..*k,
                     Selector::Codes(c) => {
@@ -119,34 +124,49 @@ impl Component {
                     let columns = &shape.columns[g];
                     let mut p = extend(particle, &component.missing, columns, linear, real);
                     p.states.push(state);
-                    next.push(p);
+                    next.push((p, weighted(shape, params, g, state, weights)));
                 }
             }
             let own = &shape.columns[g][shape.p[g] - 1..];
             component
                 .missing
                 .extend(own.iter().filter(|&&c| real[c].is_nan()));
-            next.retain(|p| p.log_density > f64::NEG_INFINITY);
+            next.retain(|(p, _)| p.log_density > f64::NEG_INFINITY);
             if next.len() > MOST {
-                next.sort_by(|a, b| b.log_density.total_cmp(&a.log_density));
+                next.sort_by(|a, b| b.0.log_density.total_cmp(&a.0.log_density));
                 next.truncate(MOST);
             }
-            component.particles = next;
+            alive = next;
+        }
+        for (particle, weights) in alive {
+            component.particles.push(particle);
+            component.weights.extend(weights);
         }
         component
     }
 
-    /// P(states of `particle` | s).
-    pub fn weight(&self, shape: &Shape, params: &Params, particle: &Particle, s: usize) -> f64 {
-        let styles = shape.structure.styles;
-        let mut weight = 1.0;
-        for (&g, &state) in self.groups.iter().zip(&particle.states) {
-            weight *= match shape.structure.selectors[g] {
-                Selector::Hidden(_) => params.tables[g][state * styles + s],
-                Selector::Style => f64::from(u8::from(state == s)),
-                Selector::Codes(_) => 1.0,
-            };
-        }
-        weight
+    /// `exp(log p(observed values | particle) - most)` of every particle, and the greatest, most.
+    pub fn densities(&self) -> (Vec<f64>, f64) {
+        let logs = self.particles.iter().map(|p| p.log_density);
+        let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
+        (logs.map(|l| (l - most).exp()).collect(), most)
     }
+}
+
+/// `weights` (by style) times P(H_g = state | s).
+fn weighted(shape: &Shape, params: &Params, g: usize, state: usize, weights: &[f64]) -> Vec<f64> {
+    let styles = shape.structure.styles;
+    let mut out = weights.to_vec();
+    match shape.structure.selectors[g] {
+        Selector::Hidden(_) => {
+            let row = &params.tables[g][state * styles..(state + 1) * styles];
+            out.iter_mut().zip(row).for_each(|(w, p)| *w *= p);
+        }
+        Selector::Style => {
+            let others = out.iter_mut().enumerate().filter(|(s, _)| *s != state);
+            others.for_each(|(_, w)| *w = 0.0);
+        }
+        Selector::Codes(_) => {}
+    }
+    out
 }

@@ -12,7 +12,7 @@ use super::search::Search;
 use super::structure::{Selector, Structure, configuration};
 
 /// Most configurations of the categorical parents of one family.
-const MOST_CONFIGURATIONS: usize = 16;
+pub(super) const MOST_CONFIGURATIONS: usize = 16;
 
 /// An edge that may be added.
 #[derive(Clone, Copy)]

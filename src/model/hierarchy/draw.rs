@@ -140,25 +140,27 @@ impl Hierarchy {
         let priors = Priors::default();
         let problem = self.problem(&rows, &priors);
         let mut scratch = Scratch::new(&self.shape);
+        let mut row = Vec::new();
         for i in 0..rows.rows {
             let mut ways: Vec<(Vec<u32>, f64)> = Vec::new();
-            problem.visit(&self.params, i, &mut scratch, |_, codes, weight| {
+            problem.visit(&self.params, i, &mut scratch, |_, _, codes, weight| {
                 ways.push((codes.to_vec(), weight));
             })?;
             for _ in 0..count {
                 let weights: Vec<f64> = ways.iter().map(|w| w.1).collect();
                 let codes = &ways[categorical(&weights, rng)].0;
-                scratch.infer(&self.shape, &self.params, rows.real(i), codes);
-                let (real, codes, s) =
-                    self.complete_row(rows.real(i), codes, style, &mut scratch, rng);
-                drawn.reals.extend(real);
+                let real = self.shape.extended(rows.real(i), codes, &mut row);
+                scratch.infer(&self.shape, &self.params, real, codes);
+                let (real, codes, s) = self.complete_row(real, codes, style, &mut scratch, rng);
+                drawn.reals.extend(&real[..rows.d]);
                 drawn.codes.extend(codes);
                 styles.push(s);
             }
         }
         let mut log_density = Vec::with_capacity(drawn.rows);
         for i in 0..drawn.rows {
-            scratch.infer(&self.shape, &self.params, drawn.real(i), drawn.code(i));
+            let real = (self.shape).extended(drawn.real(i), drawn.code(i), &mut row);
+            scratch.infer(&self.shape, &self.params, real, drawn.code(i));
             log_density.push(scratch.log_likelihood - self.log_scale(drawn.real(i)));
         }
         Ok(Draws {
@@ -168,7 +170,7 @@ impl Hierarchy {
         })
     }
 
-    /// Draws S, then states and missing values of every group, parents before children.
+    /// Draws S, then states and missing values of every group, parents before children; `real` is extended.
     fn complete_row<R: Rng>(
         &self,
         real: &[f64],
@@ -196,8 +198,8 @@ impl Hierarchy {
         let mut only = vec![0.0; styles];
         only[s] = 1.0;
         for component in &scratch.components {
-            let joint = joint(component, shape, &self.params, &only);
-            let weights: Vec<f64> = joint.iter().map(|j| j[s]).collect();
+            let joint = joint(component, &only);
+            let weights: Vec<f64> = joint.chunks(styles).map(|j| j[s]).collect();
             let particle = &component.particles[categorical(&weights, rng)];
             let drawn = gaussian(&particle.mean, &particle.cov, rng);
             for (&c, v) in component.missing.iter().zip(drawn) {

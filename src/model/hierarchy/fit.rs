@@ -5,6 +5,7 @@ use rand::Rng;
 use super::super::chunks;
 use super::super::em::{Em, Fit, Outcome, Stopping, run_while};
 use super::super::error::ModelError;
+use super::super::graph;
 use super::super::kmeans::kmeans;
 use super::super::table::MISSING;
 use super::Priors;
@@ -50,35 +51,37 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Calls `visit` with every completion of row `i`, already inferred, and its probability
-    /// given the row; returns `log p(row)`.
+    /// Calls `visit` with every completion of row `i` (extended real values, codes), already inferred, and its
+    /// probability given the row; returns `log p(row)`.
     pub fn visit(
         &self,
         params: &Params,
         i: usize,
         scratch: &mut Scratch,
-        mut visit: impl FnMut(&mut Scratch, &[u32], f64),
+        mut visit: impl FnMut(&mut Scratch, &[f64], &[u32], f64),
     ) -> Result<f64, ModelError> {
         let (real, codes) = (self.rows.real(i), self.rows.code(i));
         let shape = &self.shape;
+        let mut row = Vec::new();
         let contradiction = || ModelError::Contradiction {
             row: i,
             variable: self.culprit(params, i),
         };
         if shape.regressors.iter().all(|&c| codes[c] != MISSING) {
+            let real = shape.extended(real, codes, &mut row);
             scratch.infer(shape, params, real, codes);
             if !scratch.log_likelihood.is_finite() {
                 return Err(contradiction());
             }
             let l = scratch.log_likelihood;
-            visit(scratch, codes, 1.0);
+            visit(scratch, real, codes, 1.0);
             return Ok(l);
         }
         let all = assignments(shape, |c| self.schema.codes[c].name.clone(), codes)?;
         let logs: Vec<f64> = all
             .iter()
             .map(|a| {
-                scratch.infer(shape, params, real, a);
+                scratch.infer(shape, params, shape.extended(real, a, &mut row), a);
                 scratch.log_likelihood
             })
             .collect();
@@ -89,8 +92,9 @@ impl<'a> Problem<'a> {
         for (a, l) in all.iter().zip(&logs) {
             let weight = (l - total).exp();
             if weight > 1e-15 {
+                let real = shape.extended(real, a, &mut row);
                 scratch.infer(shape, params, real, a);
-                visit(scratch, a, weight);
+                visit(scratch, real, a, weight);
             }
         }
         Ok(total)
@@ -98,24 +102,38 @@ impl<'a> Problem<'a> {
 
     /// The first variable at which the evidence of a row becomes impossible or overflows.
     fn culprit(&self, params: &Params, i: usize) -> String {
+        let whole = "the row as a whole".to_owned();
+        let known = self.rows.code(i);
+        let parents = &self.shape.structure.code_parents;
+        let columns = self.shape.regressors.iter();
+        if columns.copied().any(|c| known[c] == MISSING) {
+            return whole;
+        }
+        let names: Vec<String> = self.schema.codes.iter().map(|c| c.name.clone()).collect();
+        let Ok(order) = graph::order(parents, &names) else {
+            return whole;
+        };
+        let mut row = Vec::new();
         let mut real = vec![f64::NAN; self.rows.d];
         let mut codes = vec![MISSING; self.rows.c];
         let mut scratch = Scratch::new(&self.shape);
-        for (c, column) in self.schema.codes.iter().enumerate() {
-            codes[c] = self.rows.code(i)[c];
-            scratch.infer(&self.shape, params, &real, &codes);
+        for c in order {
+            codes[c] = known[c];
+            let real = self.shape.extended(&real, &codes, &mut row);
+            scratch.infer(&self.shape, params, real, &codes);
             if !scratch.log_likelihood.is_finite() {
-                return column.name.clone();
+                return names[c].clone();
             }
         }
         for (c, column) in self.schema.reals.iter().enumerate() {
             real[c] = self.rows.real(i)[c];
-            scratch.infer(&self.shape, params, &real, &codes);
+            let real = self.shape.extended(&real, &codes, &mut row);
+            scratch.infer(&self.shape, params, real, &codes);
             if !scratch.log_likelihood.is_finite() {
                 return column.name.clone();
             }
         }
-        "the row as a whole".to_owned()
+        whole
     }
 
     /// EM as long as `goes_on`, then the Cheeseman-Stutz score.
@@ -166,8 +184,10 @@ impl<'a> Problem<'a> {
         let shape = &self.shape;
         let s_count = shape.structure.styles;
         let mut stats = shape.stats();
+        let mut extended = Vec::new();
         for (i, (&row, &s)) in rows.iter().zip(styles).enumerate() {
-            let (real, codes) = (self.rows.real(row), self.rows.code(row));
+            let codes = self.rows.code(row);
+            let real = shape.extended(self.rows.real(row), codes, &mut extended);
             stats.style[s] += 1.0;
             for (c, &code) in codes.iter().enumerate().filter(|(_, v)| **v != MISSING) {
                 let parents = &shape.structure.code_parents[c];
@@ -260,10 +280,17 @@ impl Em for Problem<'_> {
                 let mut stats = self.shape.stats();
                 let mut scratch = Scratch::new(&self.shape);
                 for i in range {
-                    let l = self.visit(params, i, &mut scratch, |scratch, codes, weight| {
-                        let real = self.rows.real(i);
-                        scratch.accumulate(&self.shape, params, real, codes, weight, &mut stats);
-                    })?;
+                    let l =
+                        self.visit(params, i, &mut scratch, |scratch, real, codes, weight| {
+                            scratch.accumulate(
+                                &self.shape,
+                                params,
+                                real,
+                                codes,
+                                weight,
+                                &mut stats,
+                            );
+                        })?;
                     stats.log_likelihood += l;
                 }
                 Ok(stats)

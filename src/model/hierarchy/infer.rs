@@ -14,7 +14,7 @@ use super::params::{Params, Shape, Stats};
 use super::structure::{Selector, configuration};
 
 /// Assignments of missing parent categories tried for one row.
-const MOST_ASSIGNMENTS: usize = 4096;
+pub(super) const MOST_ASSIGNMENTS: usize = 4096;
 
 /// Posterior of a row, reused from row to row.
 #[derive(Debug)]
@@ -73,6 +73,7 @@ impl Scratch {
                 &params.codes[c][row * styles..(row + 1) * styles],
             );
         }
+        // Indicators are never missing.
         let complete = real.iter().all(|v| !v.is_nan());
         let was_complete = self.pattern.plain.len() == shape.groups();
         if !(complete && was_complete) {
@@ -86,13 +87,15 @@ impl Scratch {
         for i in 0..self.pattern.linked.len() {
             let groups = &self.pattern.linked[i];
             let component = Component::new(shape, params, groups, real, codes);
-            for (s, l) in self.style.iter_mut().enumerate() {
-                let terms: Vec<f64> = component
-                    .particles
-                    .iter()
-                    .map(|p| p.log_density + component.weight(shape, params, p, s).ln())
-                    .collect();
-                *l += log_sum_exp(&terms);
+            let (densities, most) = component.densities();
+            let mut totals = vec![0.0; styles];
+            for (weights, density) in component.weights.chunks(styles).zip(&densities) {
+                for (total, w) in totals.iter_mut().zip(weights) {
+                    *total += w * density;
+                }
+            }
+            for (l, total) in self.style.iter_mut().zip(&totals) {
+                *l += most + total.ln();
             }
             self.components.push(component);
         }
@@ -228,9 +231,12 @@ impl Scratch {
             }
         }
         for component in &self.components {
-            let joint = joint(component, shape, params, &self.style);
-            for (particle, joint) in component.particles.iter().zip(&joint) {
+            let joint = joint(component, &self.style);
+            for (particle, joint) in component.particles.iter().zip(joint.chunks(styles)) {
                 let w: f64 = joint.iter().sum();
+                if w < 1e-15 {
+                    continue;
+                }
                 for (&g, &h) in component.groups.iter().zip(&particle.states) {
                     let (columns, scatter) = (&shape.columns[g], &mut stats.scatter[g][h]);
                     add_scatter(particle, &component.missing, columns, real, w, scatter);
@@ -246,26 +252,23 @@ impl Scratch {
     }
 }
 
-/// `P(s, particle | x)` for every particle, given `P(s | x)`.
-pub(crate) fn joint(
-    component: &Component,
-    shape: &Shape,
-    params: &Params,
-    style: &[f64],
-) -> Vec<Vec<f64>> {
-    let mut joint = vec![vec![0.0; style.len()]; component.particles.len()];
-    for (s, r) in style.iter().enumerate() {
-        let terms: Vec<f64> = component
-            .particles
-            .iter()
-            .map(|p| p.log_density + component.weight(shape, params, p, s).ln())
-            .collect();
-        let total = log_sum_exp(&terms);
-        if total > f64::NEG_INFINITY {
-            for (j, t) in joint.iter_mut().zip(&terms) {
-                j[s] = r * (t - total).exp();
-            }
+/// `P(s, particle | x)` given `P(s | x)`, particle by particle.
+pub(crate) fn joint(component: &Component, style: &[f64]) -> Vec<f64> {
+    let (densities, _) = component.densities();
+    let mut joint = component.weights.clone();
+    let mut totals = vec![0.0; style.len()];
+    for (row, density) in joint.chunks_mut(style.len()).zip(&densities) {
+        for (j, total) in row.iter_mut().zip(&mut totals) {
+            *j *= density;
+            *total += *j;
         }
+    }
+    let factors = totals.iter().zip(style);
+    let factors: Vec<f64> = factors
+        .map(|(t, r)| if *t > 0.0 { r / t } else { 0.0 })
+        .collect();
+    for row in joint.chunks_mut(style.len()) {
+        row.iter_mut().zip(&factors).for_each(|(j, f)| *j *= f);
     }
     joint
 }

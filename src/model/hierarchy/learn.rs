@@ -90,7 +90,22 @@ pub fn learn_observed(
     check(settings)?;
     let schema = Schema::learn(data, groups, settings.constant)?;
     let work = Work::new(&schema, data, settings, seed)?;
-    work.learn(observer, |search| search.run(seed))
+    work.learn(observer, |search| {
+        let mut found = search.run(seed)?;
+        if settings.category_edges && !search.large() {
+            // Edges from categories compete with styles for the same dependencies: the search without them may end higher.
+            let without = Search {
+                categories: false,
+                ..*search
+            };
+            let (scored, trace) = without.run(seed)?;
+            found.1.extend(trace);
+            if scored.score > found.0.score {
+                found.0 = scored;
+            }
+        }
+        Ok(found)
+    })
 }
 
 /// Goes on from a model that was learned before, from the same kind of table: its attributes, cardinalities and edges are
@@ -178,6 +193,7 @@ impl<'a> Work<'a> {
             schema,
             rows: self.sample.as_ref().unwrap_or(&self.rows),
             settings,
+            categories: settings.category_edges,
             watch: &watch,
         })?;
         if self.sample.is_some() {

@@ -25,7 +25,8 @@
 //! # Deviations and readings
 //! - Sigmoid CPDs of bits given the one discrete parent S are saturated: a table says the same.
 //! - All variables of a binary vector are independent given S.
-//! - Lateral edges run between real groups, as in Eq. 1; all columns of the parent enter.
+//! - Lateral edges run between real groups, as in Eq. 1; all columns of the parent enter. On request
+//!   ([`Settings::category_edges`]) also from categorical columns, by the same score.
 //! - Model 3: real groups may depend on real groups (linearly) and on categorical columns (one
 //!   Gaussian for each configuration), categorical columns on categorical columns (tables); edges
 //!   greedily by closed-form evidence. A categorical column never depends on a real one.
@@ -71,6 +72,7 @@ mod split;
 mod store;
 pub(crate) mod structure;
 mod watch;
+pub(crate) mod wide;
 
 use std::ops::RangeInclusive;
 
@@ -121,6 +123,9 @@ pub struct Settings {
     pub most_states: usize,
     /// Most lateral parents of one group.
     pub most_parents: usize,
+    /// Whether lateral edges may also run from categorical columns: to real groups, whose means the category shifts
+    /// (`N(C_g; B_ghᵀ (1, π(C_g), 1[E_k = 1], 1[E_k = 2], ..), Σ_gh)`), and to categorical columns (paper: no).
+    pub category_edges: bool,
     /// Rounds of edge search around one configuration.
     pub edge_rounds: usize,
     /// Starts for the smallest model of each |S|, and new starts for S afterwards.
@@ -147,6 +152,7 @@ impl Default for Settings {
             styles: 2..=25,
             most_states: 25,
             most_parents: 3,
+            category_edges: false,
             edge_rounds: 2,
             restarts: 4,
             priors: Priors::default(),

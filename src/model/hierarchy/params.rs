@@ -5,6 +5,7 @@ use super::super::conjugate::{
 };
 use super::super::error::ModelError;
 use super::super::graph;
+use super::super::table::MISSING;
 use super::schema::Schema;
 use super::structure::{Selector, Structure};
 
@@ -40,13 +41,16 @@ pub(crate) struct Shape {
     pub order: Vec<usize>,
     /// Numbers of categories.
     pub sizes: Vec<usize>,
-    /// Per group, real columns in u after the leading 1: parents' columns, then own.
+    /// Per group, columns of an extended row in u after the leading 1: parents' columns, indicators of the categories
+    /// that shift it, own columns.
     pub columns: Vec<Vec<usize>>,
     /// Per group, length of x and of y.
     pub p: Vec<usize>,
     pub d: Vec<usize>,
     /// Categorical columns that are parents of something.
     pub regressors: Vec<usize>,
+    /// Where the indicators of each categorical column start in an extended row, and its length at the end.
+    pub indicators: Vec<usize>,
 }
 
 impl Shape {
@@ -61,28 +65,42 @@ impl Shape {
             for &parent in &structure.parents[g] {
                 list.extend(schema.columns(parent));
             }
+            let indicators = schema.indicators();
+            for &c in &structure.shifts[g] {
+                list.extend(indicators[c]..indicators[c + 1]);
+            }
             p.push(1 + list.len());
             d.push(schema.columns(g).len());
             list.extend(schema.columns(g));
             columns.push(list);
         }
-        let mut regressors: Vec<usize> = structure.code_parents.iter().flatten().copied().collect();
-        for selector in &structure.selectors {
-            if let Selector::Codes(list) = selector {
-                regressors.extend(list);
-            }
-        }
-        regressors.sort_unstable();
-        regressors.dedup();
         Ok(Self {
             order,
             sizes: schema.sizes(),
             columns,
             p,
             d,
-            regressors,
+            regressors: structure.regressors(),
+            indicators: schema.indicators(),
             structure,
         })
+    }
+
+    /// The row that linear Gaussians read: `real`, then an indicator of every category, where a category shifts a mean
+    /// (1 for the category that the row has; all 0 for a missing one).
+    pub fn extended<'r>(&self, real: &'r [f64], codes: &[u32], row: &'r mut Vec<f64>) -> &'r [f64] {
+        if self.structure.shifts.iter().all(Vec::is_empty) {
+            return real;
+        }
+        row.clear();
+        row.extend(&real[..self.indicators[0]]);
+        row.resize(self.indicators[self.sizes.len()], 0.0);
+        for (start, &code) in self.indicators.iter().zip(codes) {
+            if code != MISSING {
+                row[start + code as usize] = 1.0;
+            }
+        }
+        row
     }
 
     pub fn groups(&self) -> usize {
@@ -97,9 +115,18 @@ impl Shape {
         matches!(self.structure.selectors[g], Selector::Hidden(_))
     }
 
-    fn configurations(&self, c: usize) -> usize {
+    fn rows_of_table(&self, c: usize) -> usize {
         let parents = &self.structure.code_parents[c];
         parents.iter().map(|&p| self.sizes[p]).product()
+    }
+
+    /// All assignments of categories to `columns`, the first slowest.
+    pub fn configurations(&self, columns: &[usize]) -> Vec<Vec<usize>> {
+        columns.iter().fold(vec![Vec::new()], |all, &c| {
+            let longer =
+                |codes: Vec<usize>| (0..self.sizes[c]).map(move |v| [&codes[..], &[v]].concat());
+            all.into_iter().flat_map(longer).collect()
+        })
     }
 
     pub fn stats(&self) -> Stats {
@@ -124,7 +151,7 @@ impl Shape {
                 .map(|g| vec![vec![0.0; (self.p[g] + self.d[g]).pow(2)]; self.states(g)])
                 .collect(),
             codes: (0..self.sizes.len())
-                .map(|c| vec![0.0; self.configurations(c) * self.sizes[c] * s])
+                .map(|c| vec![0.0; self.rows_of_table(c) * self.sizes[c] * s])
                 .collect(),
             log_likelihood: 0.0,
         }
@@ -213,10 +240,12 @@ impl Shape {
             if self.hidden(g) {
                 count += s * (k - 1);
             }
-            count += k * (self.p[g] * self.d[g] + self.d[g] * (self.d[g] + 1) / 2);
+            // The indicators of a column sum to the leading 1.
+            let p = self.p[g] - self.structure.shifts[g].len();
+            count += k * (p * self.d[g] + self.d[g] * (self.d[g] + 1) / 2);
         }
         for c in 0..self.sizes.len() {
-            count += s * self.configurations(c) * (self.sizes[c] - 1);
+            count += s * self.rows_of_table(c) * (self.sizes[c] - 1);
         }
         count
     }

@@ -4,12 +4,12 @@ use super::super::error::ModelError;
 use super::super::table::Table;
 use super::Priors;
 use super::Variant;
-use super::edges::states;
 use super::fit::{Problem, Scored};
 use super::infer::Scratch;
 use super::params::{Params, Shape};
 use super::schema::{Rows, Schema};
 use super::structure::configuration;
+use super::wide::states;
 
 /// A learned hierarchical model.
 #[derive(Clone, Debug)]
@@ -63,8 +63,8 @@ impl Hierarchy {
         self.shape.free_parameters()
     }
 
-    /// Lateral edges as (parent, child): between real groups, then (model 3) from categorical
-    /// columns to real groups and to categorical columns.
+    /// Lateral edges as (parent, child): between real groups, then from categorical columns to real groups and to
+    /// categorical columns.
     pub fn lateral_edges(&self) -> Vec<(String, String)> {
         let structure = &self.shape.structure;
         let group = |g: usize| self.schema.groups[g].clone();
@@ -77,6 +77,9 @@ impl Hierarchy {
             if let super::structure::Selector::Codes(list) = selector {
                 edges.extend(list.iter().map(|&c| (code(c), group(g))));
             }
+        }
+        for (g, list) in structure.shifts.iter().enumerate() {
+            edges.extend(list.iter().map(|&c| (code(c), group(g))));
         }
         for (c, parents) in structure.code_parents.iter().enumerate() {
             edges.extend(parents.iter().map(|&p| (code(p), code(c))));
@@ -153,7 +156,7 @@ impl Hierarchy {
             let mut scratch = Scratch::new(&self.shape);
             (0..rows.rows)
                 .map(|i| {
-                    let l = problem.visit(&self.params, i, &mut scratch, |_, _, _| {})?;
+                    let l = problem.visit(&self.params, i, &mut scratch, |_, _, _, _| {})?;
                     Ok(l - self.log_scale(rows.real(i)))
                 })
                 .collect()
@@ -179,7 +182,7 @@ impl Hierarchy {
             let mut all = Vec::with_capacity(rows.rows);
             for i in 0..rows.rows {
                 let mut posterior = vec![0.0; self.styles()];
-                problem.visit(&self.params, i, &mut scratch, |scratch, _, weight| {
+                problem.visit(&self.params, i, &mut scratch, |scratch, _, _, weight| {
                     for (p, r) in posterior.iter_mut().zip(&scratch.style) {
                         *p += weight * r;
                     }
@@ -202,16 +205,21 @@ impl Hierarchy {
             let mut all = Vec::with_capacity(rows.rows);
             for i in 0..rows.rows {
                 let mut posterior = vec![0.0; self.shape.states(g)];
-                problem.visit(&self.params, i, &mut scratch, |scratch, codes, weight| {
-                    let found = states(scratch, &scored).into_iter().find(|(k, _)| *k == g);
-                    let own = match found {
-                        Some((_, own)) => own,
-                        None => self.forward(g, &scratch.style, codes),
-                    };
-                    for (p, r) in posterior.iter_mut().zip(&own) {
-                        *p += weight * r;
-                    }
-                })?;
+                problem.visit(
+                    &self.params,
+                    i,
+                    &mut scratch,
+                    |scratch, _, codes, weight| {
+                        let found = states(scratch, &scored).into_iter().find(|(k, _)| *k == g);
+                        let own = match found {
+                            Some((_, own)) => own,
+                            None => self.forward(g, &scratch.style, codes),
+                        };
+                        for (p, r) in posterior.iter_mut().zip(&own) {
+                            *p += weight * r;
+                        }
+                    },
+                )?;
                 all.push(posterior);
             }
             Ok(all)

@@ -7,7 +7,6 @@
 //! and a second start raises all cardinalities before it looks for edges.
 
 use super::super::error::ModelError;
-use super::edges::wide;
 use super::fit::{Problem, Scored};
 use super::params::Params;
 use super::search::{Search, better};
@@ -107,7 +106,7 @@ impl Search<'_> {
     /// The better of `best` and a fit without the edge from `p` to `g`, values of `g` grown anew.
     fn without(&self, best: Scored, p: usize, g: usize) -> Result<Scored, ModelError> {
         let problem = self.problem(best.shape.structure.clone())?;
-        let wide = wide(&problem, &best)?;
+        let wide = self.wide(&problem, &best)?;
         let mut structure = best.shape.structure.clone();
         structure.parents[g].retain(|&parent| parent != p);
         let problem = self.problem(structure)?;

@@ -134,6 +134,15 @@ impl Schema {
         self.codes.iter().map(|c| c.categories.len()).collect()
     }
 
+    /// Where the indicators of each categorical column start in a row of real columns and indicators, and its length.
+    pub fn indicators(&self) -> Vec<usize> {
+        let mut starts = vec![self.reals.len()];
+        for (i, size) in self.sizes().into_iter().enumerate() {
+            starts.push(starts[i] + size);
+        }
+        starts
+    }
+
     /// Standardised rows of `data`, columns found by name; a column that is absent is missing.
     pub fn encode(&self, data: &Table) -> Result<Rows, ModelError> {
         let (rows, d, c) = (data.rows(), self.reals.len(), self.codes.len());

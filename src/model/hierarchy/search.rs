@@ -8,13 +8,14 @@ use super::super::em::Stopping;
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
 use super::Priors;
-use super::edges::{propose, states, wide};
+use super::edges::propose;
 use super::fit::{Problem, Scored};
 use super::infer::Scratch;
 use super::params::Params;
 use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
+use super::wide::{Wide, states, wide};
 use super::{Settings, Step, Sweep, Variant};
 use crate::rng::stream;
 
@@ -31,10 +32,17 @@ pub(crate) struct Search<'a> {
     pub schema: &'a Schema,
     pub rows: &'a Rows,
     pub settings: &'a Settings,
+    /// Whether edges from categories are searched.
+    pub categories: bool,
     pub watch: &'a Watch<'a>,
 }
 
 impl<'a> Search<'a> {
+    /// Whether work is saved if the settings do not say.
+    pub fn large(&self) -> bool {
+        self.rows.rows * self.rows.d > SMALL
+    }
+
     /// Runs the search for every cardinality of S and keeps the first of highest score.
     pub fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
         let styles = self.styles();
@@ -101,7 +109,7 @@ impl<'a> Search<'a> {
     /// Whether work is saved, as on large tables.
     fn few(&self) -> bool {
         match self.settings.sweep {
-            Sweep::Auto => self.rows.rows * self.rows.d > SMALL,
+            Sweep::Auto => self.large(),
             Sweep::All => false,
             Sweep::Few => true,
         }
@@ -258,6 +266,12 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
+    /// Expected statistics over all columns, of categories as well where edges from these are searched or there.
+    pub(super) fn wide(&self, problem: &Problem, scored: &Scored) -> Result<Wide, ModelError> {
+        let there = scored.shape.structure.shifts.iter().any(|l| !l.is_empty());
+        wide(problem, scored, self.categories || there)
+    }
+
     /// Searches lateral edges around a fit; the better of the fits with the old and the new ones.
     pub(super) fn with_edges(&self, mut best: Scored) -> Result<Scored, ModelError> {
         if self.settings.variant == Variant::NoLateral {
@@ -268,7 +282,7 @@ impl<'a> Search<'a> {
                 break;
             }
             let problem = self.problem(best.shape.structure.clone())?;
-            let wide = wide(&problem, &best)?;
+            let wide = self.wide(&problem, &best)?;
             let structure = propose(&problem, &best, &wide, self.settings.most_parents);
             if structure == best.shape.structure {
                 break;
@@ -312,7 +326,7 @@ impl<'a> Search<'a> {
         for i in 0..self.rows.rows {
             let mut point = vec![0.0; width];
             let mut top = vec![0; shape.groups()];
-            problem.visit(&given.params, i, &mut scratch, |scratch, codes, _| {
+            problem.visit(&given.params, i, &mut scratch, |scratch, _, codes, _| {
                 for (g, r) in states(scratch, given) {
                     point[offsets[g]..offsets[g] + r.len()].copy_from_slice(&r);
                     top[g] = (0..r.len())
@@ -365,7 +379,7 @@ impl<'a> Search<'a> {
             cardinalities: (0..scored.shape.groups())
                 .map(|g| scored.shape.states(g))
                 .collect(),
-            lateral_edges: structure.parents.iter().map(Vec::len).sum(),
+            lateral_edges: structure.edges(),
             score: scored.score,
         }
     }

@@ -2,16 +2,17 @@
 
 use super::super::conjugate::Linear;
 use super::super::error::ModelError;
-use super::edges::states;
 use super::fit::{Problem, Scored};
 use super::infer::Scratch;
 use super::params::Params;
 use super::structure::Selector;
+use super::wide::states;
 
 /// A row's share in the group under study.
 struct Member {
-    row: usize,
-    /// P(h | row).
+    /// u = (1, parents, own columns).
+    u: Vec<f64>,
+    /// P(h | row), times the probability of the row's completion.
     states: Vec<f64>,
     /// P(s | row).
     style: Vec<f64>,
@@ -28,8 +29,8 @@ pub(crate) fn start(problem: &Problem, scored: &Scored, g: usize) -> Result<Para
     let mut best: Option<(f64, usize, Vec<bool>)> = None;
     for h in 0..k {
         let linear = &scored.params.linear[g][h];
-        let side = cut(problem, &shape.columns[g], linear, &members, h);
-        let half = |which: bool| halves(problem, &shape.columns[g], &members, &side, h, which);
+        let side = cut(linear, &members, h);
+        let half = |which: bool| halves(&members, shape.columns[g].len(), &side, h, which);
         let prior = &problem.priors.linear;
         let evidence = |m: &[f64]| prior.evidence(m, shape.p[g], shape.d[g]);
         let (Some(a), Some(b), Some(both)) = (
@@ -50,8 +51,7 @@ pub(crate) fn start(problem: &Problem, scored: &Scored, g: usize) -> Result<Para
         });
     };
     let mut stats = scored.stats.clone();
-    let columns = &shape.columns[g];
-    let moved = halves(problem, columns, &members, &side, h, true);
+    let moved = halves(&members, shape.columns[g].len(), &side, h, true);
     for (m, v) in stats.scatter[g][h].iter_mut().zip(&moved) {
         *m -= v;
     }
@@ -77,38 +77,34 @@ fn members(problem: &Problem, scored: &Scored, g: usize) -> Result<Vec<Member>, 
     let mut scratch = Scratch::new(&scored.shape);
     let mut members = Vec::with_capacity(problem.rows.rows);
     for row in 0..problem.rows.rows {
-        problem.visit(&scored.params, row, &mut scratch, |scratch, _, _| {
-            if scratch.pattern.plain.contains(&g) {
-                let found = states(scratch, scored).into_iter().find(|(i, _)| *i == g);
-                members.extend(found.map(|(_, states)| Member {
-                    row,
-                    states,
-                    style: scratch.style.clone(),
-                }));
-            }
-        })?;
+        problem.visit(
+            &scored.params,
+            row,
+            &mut scratch,
+            |scratch, real, _, weight| {
+                if scratch.pattern.plain.contains(&g) {
+                    let found = states(scratch, scored).into_iter().find(|(i, _)| *i == g);
+                    let own = scored.shape.columns[g].iter().map(|&c| real[c]);
+                    members.extend(found.map(|(_, states)| Member {
+                        u: std::iter::once(1.0).chain(own).collect(),
+                        states: states.iter().map(|r| r * weight).collect(),
+                        style: scratch.style.clone(),
+                    }));
+                }
+            },
+        )?;
     }
     Ok(members)
 }
 
 /// Weighted 2-means of the whitened residuals under state `h`, from a cut across the main axis.
-fn cut(
-    problem: &Problem,
-    columns: &[usize],
-    linear: &Linear,
-    members: &[Member],
-    h: usize,
-) -> Vec<bool> {
+fn cut(linear: &Linear, members: &[Member], h: usize) -> Vec<bool> {
     let (d, p) = (linear.d, linear.p);
-    let mut u = vec![1.0; p + d];
     let mut z = vec![0.0; members.len() * d];
     let mut residual = vec![0.0; d];
     for (member, z) in members.iter().zip(z.chunks_mut(d)) {
-        let real = problem.rows.real(member.row);
-        for (u, &c) in u[1..].iter_mut().zip(columns) {
-            *u = real[c];
-        }
-        linear.mean(&u, &mut residual);
+        let u = &member.u;
+        linear.mean(u, &mut residual);
         for (i, z) in z.iter_mut().enumerate() {
             let w = &linear.whitening[i * d..i * d + i + 1];
             *z = (0..=i).map(|j| w[j] * (u[p + j] - residual[j])).sum();
@@ -157,22 +153,11 @@ fn cut(
 }
 
 /// Scatter matrix of the members on one side, weighted by state `h`.
-fn halves(
-    problem: &Problem,
-    columns: &[usize],
-    members: &[Member],
-    side: &[bool],
-    h: usize,
-    which: bool,
-) -> Vec<f64> {
-    let q = columns.len() + 1;
+fn halves(members: &[Member], columns: usize, side: &[bool], h: usize, which: bool) -> Vec<f64> {
+    let q = columns + 1;
     let mut scatter = vec![0.0; q * q];
-    let mut u = vec![1.0; q];
     for (member, _) in members.iter().zip(side).filter(|(_, s)| **s == which) {
-        let real = problem.rows.real(member.row);
-        for (u, &c) in u[1..].iter_mut().zip(columns) {
-            *u = real[c];
-        }
+        let u = &member.u;
         for i in 0..q {
             for j in 0..=i {
                 scatter[i * q + j] += member.states[h] * u[i] * u[j];

@@ -62,7 +62,7 @@ impl Hierarchy {
     /// # Errors
     /// [`ModelError::Corrupt`] with the place, [`ModelError::Cycle`].
     pub fn from_json(text: &str) -> Result<Self, ModelError> {
-        let stored: Stored = serde_json::from_str(text)
+        let mut stored: Stored = serde_json::from_str(text)
             .map_err(|e| corrupt(&format!("line {}, column {}", e.line(), e.column()), e))?;
         if stored.format != FORMAT {
             return Err(corrupt(
@@ -71,6 +71,9 @@ impl Hierarchy {
             ));
         }
         check_schema(&stored.schema)?;
+        if stored.structure.shifts.is_empty() {
+            stored.structure.shifts = vec![Vec::new(); stored.schema.groups.len()];
+        }
         check_structure(&stored.schema, &stored.structure)?;
         stored.structure.order(&stored.schema.groups)?;
         check_sizes(&stored)?;
@@ -155,11 +158,13 @@ fn check_structure(schema: &Schema, structure: &Structure) -> Result<(), ModelEr
     let sized = structure.styles >= 1
         && structure.selectors.len() == groups
         && structure.parents.len() == groups
-        && structure.code_parents.len() == codes;
+        && structure.code_parents.len() == codes
+        && structure.shifts.len() == groups;
     if !(sized
         && selectors
         && below(&structure.parents, groups)
-        && below(&structure.code_parents, codes))
+        && below(&structure.code_parents, codes)
+        && below(&structure.shifts, codes))
     {
         return Err(corrupt("structure", "does not fit the schema"));
     }
@@ -211,7 +216,9 @@ fn check_sizes(stored: &Stored) -> Result<(), ModelError> {
         let parents = structure.parents[g]
             .iter()
             .map(|&p| schema.columns(p).len());
-        let coefficients = (1 + parents.sum::<usize>()).checked_mul(own);
+        let shifts = structure.shifts[g].iter().map(|&c| sizes[c]);
+        let inputs = 1 + parents.sum::<usize>() + shifts.sum::<usize>();
+        let coefficients = inputs.checked_mul(own);
         let fits = |l: &StoredLinear| Some(l.coefficients.len()) == coefficients;
         if !states.iter().all(fits) {
             return Err(corrupt(

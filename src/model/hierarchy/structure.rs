@@ -25,6 +25,14 @@ pub(crate) struct Structure {
     pub parents: Vec<Vec<usize>>,
     /// Per categorical column, its parents among the categorical columns, ascending.
     pub code_parents: Vec<Vec<usize>>,
+    /// Per real group, the categorical columns whose categories shift its means, ascending.
+    #[serde(default, skip_serializing_if = "none")]
+    pub shifts: Vec<Vec<usize>>,
+}
+
+/// Whether no list has an entry: files of models without such edges do not name them.
+fn none(lists: &[Vec<usize>]) -> bool {
+    lists.iter().all(Vec::is_empty)
 }
 
 impl Structure {
@@ -35,7 +43,28 @@ impl Structure {
             selectors: vec![selector.clone(); groups],
             parents: vec![Vec::new(); groups],
             code_parents: vec![Vec::new(); codes],
+            shifts: vec![Vec::new(); groups],
         }
+    }
+
+    /// Categorical columns that are parents of something, ascending.
+    pub fn regressors(&self) -> Vec<usize> {
+        let lists = self.code_parents.iter().chain(&self.shifts);
+        let mut all: Vec<usize> = lists.flatten().copied().collect();
+        for selector in &self.selectors {
+            if let Selector::Codes(list) = selector {
+                all.extend(list);
+            }
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Number of lateral edges between groups and columns.
+    pub fn edges(&self) -> usize {
+        let lists = self.parents.iter().chain(&self.code_parents);
+        lists.chain(&self.shifts).map(Vec::len).sum()
     }
 
     /// Number of linear Gaussians of group `g`; `sizes` are the numbers of categories.
