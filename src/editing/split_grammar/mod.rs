@@ -3,6 +3,7 @@
 
 mod derivation;
 mod edits;
+mod floors;
 
 pub use derivation::{DeriveError, Derived, Wish, derived};
 pub use edits::{GrammarEdit, GrammarEditError, edit};
