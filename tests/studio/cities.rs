@@ -4,7 +4,6 @@ use std::path::Path;
 use std::time::Instant;
 
 use edifice::editing::city_proceduralization::fill;
-use edifice::editing::script::Shell;
 use edifice::experiments::shipped_bytes;
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{grammar_json, obj};
@@ -186,7 +185,6 @@ fn a_city_of_triangles_is_made_a_grammar_of_at_a_level() {
     );
     let own = folder.path().join(saved["file"].as_str().expect("a name"));
     assert!(std::fs::read(own).expect("there") == std::fs::read(again).expect("there"));
-    assert_eq!(Shell::default().words, []);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use tower::ServiceExt;
 /// A studio whose router is called.
 pub struct Api {
     router: axum::Router,
-    pub runtime: tokio::runtime::Runtime,
+    runtime: Option<tokio::runtime::Runtime>,
 }
 
 impl Api {
@@ -21,8 +21,13 @@ impl Api {
         let runtime = tokio::runtime::Builder::new_current_thread();
         Self {
             router: router(studio),
-            runtime: { runtime }.enable_all().build().expect("runs"),
+            runtime: Some({ runtime }.enable_all().build().expect("runs")),
         }
+    }
+
+    /// What its requests run in.
+    pub fn runtime(&self) -> &tokio::runtime::Runtime {
+        self.runtime.as_ref().expect("until it is dropped")
     }
 
     /// Status and answer of a request.
@@ -37,7 +42,7 @@ impl Api {
             .uri(path)
             .body(body)
             .expect("a request");
-        self.runtime.block_on(async {
+        self.runtime().block_on(async {
             let answer = self.router.clone().oneshot(request).await.expect("answers");
             let status = answer.status();
             let bytes = to_bytes(answer.into_body(), 1 << 26).await.expect("whole");
@@ -84,5 +89,14 @@ impl Api {
         let revision = self.get(&format!("/api/documents/{id}"))["revision"].clone();
         let body = json!({"commands": commands, "revision": revision});
         self.post(&format!("/api/documents/{id}/edit"), body)
+    }
+}
+
+impl Drop for Api {
+    /// Work that was stopped and has not come to its next step is not waited for.
+    fn drop(&mut self) {
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
     }
 }

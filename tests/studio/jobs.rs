@@ -100,7 +100,7 @@ fn a_day_without_requests_changes_nothing() {
         json!([{"do": "edit", "edits": ["add window@1,2,1,1.5"]}]),
     );
     // The server's clock goes on by a day: all its timers would have run out.
-    api.runtime.block_on(async {
+    api.runtime().block_on(async {
         tokio::time::pause();
         tokio::time::advance(Duration::from_secs(24 * 3600)).await;
         tokio::time::resume();

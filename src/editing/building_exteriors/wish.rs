@@ -15,6 +15,7 @@ use crate::methods::building_exteriors::house::{
     Database, GenerateError, Generated, Options, generate,
 };
 use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
+use crate::methods::building_exteriors::mass::target::PARTS;
 use crate::model::ModelError;
 use crate::model::hierarchy::Hierarchy;
 use crate::rng::stream;
@@ -120,12 +121,14 @@ pub fn wished(
         }
         row
     };
-    check_given(&with_wishes([0.0; 49]), &is_given)?;
+    // A garage of which something is wished is there, whatever else is not said of it.
+    check_given(&with_wishes([0.5; 49]), &is_given)?;
     let mut rng = stream(seed, "building/wish", 0);
     let rows = match (wishes.keep, wishes.style) {
         (true, _) => {
             let measured = attributes(house)?;
-            vec![std::array::from_fn(|c| measured[c].unwrap_or(0.0))]
+            let own = std::array::from_fn(|c| measured[c].unwrap_or(0.0));
+            vec![with_parts(own, &wishes.given, database)]
         }
         (false, Some(style)) => {
             let count = model.styles();
@@ -174,6 +177,27 @@ pub fn wished(
         (None, Some(e)) => Err(e.into()),
         (None, None) => Err(ModelError::Empty { what: "answers" }.into()),
     }
+}
+
+/// The row with a garage and porches of which something is wished, where the house has none: of the mean size and at the mean
+/// place that they have in the database.
+fn with_parts(mut row: [f64; 49], given: &AttributeRow, database: &Database) -> [f64; 49] {
+    for (_, first, _) in PARTS {
+        let wished = given[first..first + 6].iter().flatten().any(|v| *v > 0.0);
+        if !wished || row[first + 2] > 0.0 {
+            continue;
+        }
+        let there = database
+            .rows
+            .iter()
+            .filter(|r| r[first + 2].is_some_and(|w| w > 0.0));
+        let there: Vec<&AttributeRow> = there.collect();
+        for c in first..first + 6 {
+            let known = there.iter().filter_map(|r| r[c]);
+            row[c] = known.sum::<f64>() / there.len().max(1) as f64;
+        }
+    }
+    row
 }
 
 /// Between these values lie 98 of 100 draws of the shipped model, for each column.
