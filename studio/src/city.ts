@@ -123,12 +123,15 @@ export function city(session: Session<View>): Editor<View> {
       view3.content.visible = true;
       view3.content.children.forEach((o) => (o.visible = o === mesh || mode !== "original"));
     } else view3.content.children.forEach((o) => (o.visible = true));
-    view3.frame([0.5, 0.7, 1]);
-    if (beside && mode === "beside") {
-      beside.frame([0.5, 0.7, 1]);
-      beside.follow(view3);
-    }
-    view3.draw();
+    // Once the views have their sizes.
+    requestAnimationFrame(() => {
+      view3.frame([0.5, 0.7, 1], true);
+      if (beside && mode === "beside") {
+        beside.frame([0.5, 0.7, 1], true);
+        beside.follow(view3);
+      }
+      view3.draw();
+    });
   }
   view3.onMove = () => beside && mode === "beside" && beside.follow(view3);
 

@@ -152,11 +152,17 @@ export function grammar(session: Session<View>): Editor<View> {
     for (const [k, v] of Object.entries(place({ x: 0, y: 0, width: size?.[0] ?? 0, height: size?.[1] ?? 0 }))) ghost.setAttribute(k, String(v));
   }
 
-  /** The regions of the facade; a selection lies over them. */
+  /** The regions of the facade, those of a label in one path; a selection lies over them. */
   function facade(view: View): SVGGElement {
-    const cells = view.terminals.map(([label, x, y, width, height]) => {
+    const paths = new Map<string, string[]>();
+    for (const [label, x, y, width, height] of view.terminals) {
+      const path = paths.get(label) ?? [];
+      if (path.length === 0) paths.set(label, path);
+      path.push(`M${x} ${y}h${width}v${height}h${-width}z`);
+    }
+    const cells = [...paths].map(([label, path]) => {
       const known = /^(wall|window|door|balcony|shop|roof|sky)/i.exec(label)?.[1].toLowerCase();
-      const cell = s("rect", { ...place({ x, y, width, height }), class: `terminal ${known ?? ""}` }, s("title", {}, label));
+      const cell = s("path", { d: path.join(""), class: `terminal ${known ?? ""}` }, s("title", {}, label));
       if (!known) cell.style.fill = `color-mix(in srgb, rgb(${view.colors[label].join(",")}) 45%, var(--paper))`;
       return cell;
     });
@@ -189,7 +195,11 @@ export function grammar(session: Session<View>): Editor<View> {
     if (!selection || !own) return null;
     const middle: [number, number] = [own.x + own.width / 2, own.y + own.height / 2];
     const point = clicked ?? middle;
-    const inner = view.nonTerminals.filter((n) => holds(rectOf(n), point) && view.rules[n[0]].axis === axis).sort((a, b) => b[1] - a[1]);
+    // Around a region that is selected whole: a copy of it, not of a part of it.
+    const same = (r: Rect) => r.x === own.x && r.y === own.y && r.width === own.width && r.height === own.height;
+    const depth = view.nonTerminals.find((n) => n[0] === selection!.rule && same(rectOf(n)))?.[1] ?? Infinity;
+    const below = selection.part === null ? depth : depth + 1;
+    const inner = view.nonTerminals.filter((n) => n[1] < below && holds(rectOf(n), point) && view.rules[n[0]].axis === axis).sort((a, b) => b[1] - a[1]);
     for (const n of inner) {
       const r = rectOf(n);
       const made = layout(view.rules[n[0]], axis === "x" ? r.width : r.height);

@@ -82,9 +82,9 @@ export async function rectified(file: File, proportion: number): Promise<string 
         knob.style.top = `${(100 * corner[1]) / bitmap.height}%`;
         draw();
       };
+      knob.addEventListener("pointerdown", (event) => knob.setPointerCapture(event.pointerId));
       knob.addEventListener("pointermove", (event) => {
-        if (event.buttons === 0) return;
-        knob.setPointerCapture(event.pointerId);
+        if (!knob.hasPointerCapture(event.pointerId)) return;
         const box = canvas.getBoundingClientRect();
         corner[0] = ((event.clientX - box.left) / box.width) * bitmap.width;
         corner[1] = ((event.clientY - box.top) / box.height) * bitmap.height;

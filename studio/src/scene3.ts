@@ -242,6 +242,7 @@ export class Scene3 {
   show(meshes: MeshData[]) {
     this.clear();
     const line = dark.matches ? 0x10151c : 0x3a3f47;
+    const faint = dark.matches ? 0x2c3138 : 0x77736c;
     for (const mesh of meshes) {
       const positions = new THREE.BufferAttribute(Float32Array.from(mesh.positions, (v) => v / 1000), 3);
       for (const part of mesh.parts) {
@@ -251,18 +252,21 @@ export class Scene3 {
         const geometry = indexed.toNonIndexed();
         geometry.computeVertexNormals();
         const [r, g, b] = part.color;
-        const material = new THREE.MeshStandardMaterial({
-          color: new THREE.Color().setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace),
-          roughness: part.finish === "pane" ? 0.2 : 0.9,
-        });
+        const colour = new THREE.Color().setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace);
+        const material = software
+          ? new THREE.MeshLambertMaterial({ color: colour })
+          : new THREE.MeshStandardMaterial({ color: colour, roughness: part.finish === "pane" ? 0.2 : 0.9 });
         const solid = new THREE.Mesh(geometry, material);
         solid.castShadow = solid.receiveShadow = true;
-        const edges = new THREE.LineSegments(
-          new THREE.EdgesGeometry(indexed, 20),
-          new THREE.LineBasicMaterial({ color: line, transparent: true, opacity: part.finish === "pane" ? 0.25 : 0.45 }),
-        );
-        this.content.add(solid, edges);
+        this.content.add(solid);
       }
+      // The edges of all parts at once; the processor draws them without mixing colours, and none around panes.
+      const outlined = mesh.parts.filter((part) => !software || part.finish !== "pane");
+      const whole = new THREE.BufferGeometry();
+      whole.setAttribute("position", positions);
+      whole.setIndex(outlined.flatMap((part) => part.indices));
+      const material = new THREE.LineBasicMaterial({ color: software ? faint : line, transparent: !software, opacity: 0.42 });
+      this.content.add(new THREE.LineSegments(new THREE.EdgesGeometry(whole, 20), material));
     }
     this.frame([0.55, 0.42, 1]);
     this.draw();

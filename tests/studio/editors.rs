@@ -169,6 +169,9 @@ fn floors_and_columns_come_and_go() {
                 assert!(grown.is_err(), "{operation}");
                 continue;
             }
+            if grown.as_ref().is_err_and(|e| e.contains("fixed length")) {
+                continue;
+            }
             grown.expect("grows");
             let after = view(&grammar);
             let (side, length) = match rules[rule]["axis"].as_str() {

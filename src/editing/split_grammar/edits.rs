@@ -70,6 +70,12 @@ pub enum GrammarEditError {
         /// What there is.
         room: f64,
     },
+    /// The regions of a rule are as long in every facade.
+    #[error("the regions of rules[{rule}] have a fixed length: no floor or column fits in")]
+    Fixed {
+        /// Index of the rule.
+        rule: usize,
+    },
     /// A split is no sequence of equal periods.
     #[error("rules[{rule}] does not repeat itself")]
     NoPeriod {

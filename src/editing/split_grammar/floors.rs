@@ -5,10 +5,15 @@ use crate::grammar::{Grammar, Operation, Size, Start, derive_at};
 use crate::rng;
 use crate::shape::Axis;
 
+/// Share of a facade by which it is made larger to see how regions grow with it.
+const STEP: f64 = 1e-4;
+/// A region that grows by less of what the facade grows by has a fixed length.
+const LEAST_GROWTH: f64 = 1e-6;
+
 /// Puts a copy of a part before it (`grows`), or takes the part out. In a repeat, a period comes or goes.
 ///
-/// All facades of the grammar that the rule has a part in change with it: where the rule's region spans the facade, by the
-/// length of the part, so that all others keep theirs; else by the same share of the region's extent.
+/// All facades of the grammar that the rule has a part in change with it, so that the rule's longest region in them changes by the
+/// length of the part and its other parts keep theirs. What stands beside that region is stretched with it.
 ///
 /// # Errors
 /// [`GrammarEditError`].
@@ -22,8 +27,8 @@ pub(super) fn change(
     let extents = before
         .iter()
         .enumerate()
-        .map(|(k, s)| extent(grammar, rule, k, s));
-    let extents: Vec<Option<(Axis, f64)>> = extents.collect::<Result<_, _>>()?;
+        .map(|(k, s)| reach(grammar, rule, k, s));
+    let extents: Vec<Option<Reach>> = extents.collect::<Result<_, _>>()?;
     let operation = grammar.rules.get(rule).map(|r| &r.operation);
     let is_repeat = matches!(operation, Some(Operation::Repeat { .. }));
     // The length of what comes or goes, as a share of a region of this extent.
@@ -32,7 +37,7 @@ pub(super) fn change(
         let period: f64 = list.sizes().iter().sum();
         Box::new(move |extent| 1.0 / (extent / period).round().max(1.0))
     } else {
-        let mut list = parts(grammar, rule, part)?;
+        let list = parts(grammar, rule, part)?;
         let own = list.successors[part].clone();
         if grows {
             list.successors.insert(part, own.clone());
@@ -68,17 +73,20 @@ pub(super) fn change(
         })
     };
     for (start, found) in grammar.starts.iter_mut().zip(extents) {
-        let Some((axis, extent)) = found else {
+        let Some(reach) = found else {
             continue;
         };
-        let side = match axis {
+        if reach.growth < LEAST_GROWTH {
+            return Err(GrammarEditError::Fixed { rule });
+        }
+        let side = match reach.axis {
             Axis::X => &mut start.width,
             Axis::Y => &mut start.height,
         };
-        let by = share(extent);
+        let by = share(reach.extent) * reach.extent / reach.growth;
         let by = if grows { by } else { -by };
-        if !(by.is_finite() && by > -1.0 + 1e-9) {
-            let (size, room) = (*side * by, *side);
+        if !(by.is_finite() && *side + by > 1e-9 * *side) {
+            let (size, room) = (by, *side);
             return Err(GrammarEditError::Size {
                 rule,
                 part,
@@ -86,7 +94,7 @@ pub(super) fn change(
                 room,
             });
         }
-        *side += *side * by;
+        *side += by;
     }
     Ok(())
 }
@@ -95,13 +103,21 @@ fn is_relative(size: Size) -> bool {
     matches!(size, Size::Relative(_))
 }
 
-/// Axis and greatest extent of a rule's regions in a facade; `None` where it has none.
-fn extent(
+/// The longest region of a rule in a facade.
+struct Reach {
+    axis: Axis,
+    extent: f64,
+    /// By how much it grows with the facade.
+    growth: f64,
+}
+
+/// The longest region of a rule in a facade; `None` where it has none.
+fn reach(
     grammar: &Grammar,
     rule: usize,
     index: usize,
     start: &Start,
-) -> Result<Option<(Axis, f64)>, GrammarEditError> {
+) -> Result<Option<Reach>, GrammarEditError> {
     let operation = grammar.rules.get(rule).map(|r| &r.operation);
     let Some(
         Operation::Split { axis, .. }
@@ -111,10 +127,35 @@ fn extent(
     else {
         return Ok(None);
     };
-    // The same rules as those that are shown.
-    let mut rng = rng::stream(0, "grammar derive", 0);
-    let made = derive_at(grammar, index, start.width, start.height, &mut rng)?;
-    let own = made.non_terminals.iter().filter(|n| n.rule == rule);
-    let longest = own.map(|n| n.rect.extent(*axis)).max_by(f64::total_cmp);
-    Ok(longest.map(|extent| (*axis, extent)))
+    let axis = *axis;
+    let extents = |width: f64, height: f64| -> Result<Vec<f64>, GrammarEditError> {
+        // The same rules as those that are shown.
+        let mut rng = rng::stream(0, "grammar derive", 0);
+        let made = derive_at(grammar, index, width, height, &mut rng)?;
+        let own = made.non_terminals.iter().filter(|n| n.rule == rule);
+        Ok(own.map(|n| n.rect.extent(axis)).collect())
+    };
+    let now = extents(start.width, start.height)?;
+    let Some(longest) = (0..now.len()).max_by(|a, b| now[*a].total_cmp(&now[*b])) else {
+        return Ok(None);
+    };
+    let (extent, whole) = match axis {
+        Axis::X => (now[longest], start.width),
+        Axis::Y => (now[longest], start.height),
+    };
+    // Extents depend on the facade's own linearly, as long as no repeat takes another number of periods.
+    let step = STEP * whole;
+    let later = match axis {
+        Axis::X => extents(start.width + step, start.height)?,
+        Axis::Y => extents(start.width, start.height + step)?,
+    };
+    let growth = match later.len() == now.len() {
+        true => (later[longest] - extent) / step,
+        false => extent / whole,
+    };
+    Ok(Some(Reach {
+        axis,
+        extent,
+        growth,
+    }))
 }

@@ -2,8 +2,10 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { mkdtempSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { changed, open, picture, shown, studio } from "./studio.mjs";
+import { changed, open, picture, press, shown, studio } from "./studio.mjs";
 
 const { EDIFICE } = process.env;
 
@@ -69,14 +71,14 @@ export const designs = (begin, saved) => ({
     let doc = await shown(page);
     const before = doc.view;
     const middle = before.terminals.findIndex((t) => t[2] > 0 && /window/i.test(t[0]));
-    await page.locator("svg.drawing rect.terminal").nth(Math.max(middle, 0)).click();
+    await press(page, Math.max(middle, 0));
     doc = await changed(page, () => page.getByRole("button", { name: "Insert floor" }).click());
     assert.ok(doc.view.height > before.height && doc.view.width === before.width);
-    await page.locator("svg.drawing rect.terminal").nth(Math.max(middle, 0)).click();
+    await press(page, Math.max(middle, 0));
     doc = await changed(page, () => page.getByRole("button", { name: "Insert column" }).click());
     assert.ok(doc.view.width > before.width);
     await picture(page, "floors");
-    await page.locator("svg.drawing rect.terminal").nth(Math.max(middle, 0)).click();
+    await press(page, Math.max(middle, 0));
     doc = await changed(page, () => page.getByRole("button", { name: "Remove floor" }).click());
     // Another facade in this studio, and one grammar of both.
     const second = await begin(server, context, /Fig\. 9/);
@@ -111,9 +113,11 @@ export const designs = (begin, saved) => ({
         context.fill();
       };
       quad([[60, 60], [540, 130], [540, 400], [60, 450]], "#c9a27e");
+      // Its right end is farther away: 390 pixels high at the left, 270 at the right.
       const at = (u, v) => {
-        const [top, bottom] = [60 + 70 * u, 450 - 50 * u];
-        return [60 + 480 * u, top + (bottom - top) * v];
+        const s = (390 * u) / (270 + 120 * u);
+        const [top, bottom] = [60 + 70 * s, 450 - 50 * s];
+        return [60 + 480 * s, top + (bottom - top) * v];
       };
       for (const u of [0.15, 0.6]) for (const v of [0.15, 0.55]) quad([at(u, v), at(u + 0.22, v), at(u + 0.22, v + 0.25), at(u, v + 0.25)], "#33485c");
       const blob = await new Promise((r) => canvas.toBlob(r, "image/png"));
@@ -148,8 +152,20 @@ export const designs = (begin, saved) => ({
     let doc = await shown(page);
     const given = doc.view.elements.filter((e) => e.observed);
     assert.equal(given.length, 3);
-    // Where the photograph shows it: within a step of the grid.
     assert.ok(Math.abs(given[0].x - 0.15 * doc.view.width) < 0.3);
+    // The straightened picture is dark where the windows are and nowhere beside them.
+    const dark = await page.evaluate(async () => {
+      const image = new Image();
+      image.src = document.querySelector("svg.drawing image").getAttribute("href");
+      await image.decode();
+      const canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [200, 200];
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0, 200, 200);
+      const at = (u, v) => context.getImageData(200 * u, 200 * v, 1, 1).data[0] < 120;
+      return [[0.17, 0.17], [0.35, 0.38], [0.62, 0.57], [0.8, 0.78], [0.13, 0.2], [0.39, 0.2], [0.58, 0.6], [0.84, 0.6], [0.7, 0.12], [0.7, 0.83]].map(([u, v]) => at(u, v));
+    });
+    assert.deepEqual(dark, [true, true, true, true, false, false, false, false, false, false]);
     await picture(page, "photograph");
     // A size is dragged, an unknown part is marked, a place is forbidden.
     await page.getByRole("button", { name: "Select", exact: true }).click();
@@ -180,13 +196,14 @@ export const designs = (begin, saved) => ({
     await grammar.page.keyboard.press("Control+s");
     await grammar.page.getByText(/^Saved /).waitFor();
     const name = (await shown(grammar.page)).name;
-    const obj = join(made.folder, "town.obj");
+    const obj = join(mkdtempSync(join(tmpdir(), "studio-")), "district.obj");
     execFileSync(EDIFICE, ["city", "derive", join(made.folder, `${name}.city-grammar.json`), "-o", obj]);
+    await grammar.page.close();
     await made.end();
 
     const server = await studio([obj]);
     const { page, faults } = await open(context, server.address);
-    await page.getByRole("button", { name: /town/ }).first().click();
+    await page.getByRole("button", { name: /district/ }).first().click();
     let doc = await shown(page);
     assert.ok(doc.view.original.buildings > 5 && doc.view.templates.length === 0);
     doc = await changed(page, () => slide(page.getByLabel(/^Level of de-instancing/), 0));
@@ -224,6 +241,7 @@ export const designs = (begin, saved) => ({
     await changed(page, () => page.keyboard.press("Control+z"));
     await page.keyboard.press("Control+s");
     await page.getByText(/^Saved /).waitFor();
+    await page.close();
     assert.equal(await server.end(), 0);
     return faults.concat(grammar.faults);
   },

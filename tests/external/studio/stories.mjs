@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { keyboard, narrow, unnamed } from "./access.mjs";
 import { designs } from "./designs.mjs";
-import { browser, changed, open, picture, shown, studio } from "./studio.mjs";
+import { browser, changed, open, picture, press, shown, studio } from "./studio.mjs";
 
 /** Saves, runs the script elsewhere, and compares the bytes. */
 async function saved(server, page, ending) {
@@ -104,7 +104,7 @@ const stories = {
     await page.getByLabel("The model suggests the rest").uncheck();
     await page.locator("g.box.main").first().focus();
     doc = await changed(page, async () => {
-      const height = page.getByLabel("Height");
+      const height = page.getByRole("spinbutton", { name: "Height" });
       await height.fill("3.1");
       await height.press("Enter");
     });
@@ -121,7 +121,7 @@ const stories = {
     const { page, faults } = await begin(server, context, /Fig\. 9/);
     let doc = await shown(page);
     // A region is clicked, then the region around it.
-    await page.locator("svg.drawing rect.terminal").nth(4).click();
+    await press(page, 4);
     await page.locator("svg.drawing rect.lit").first().waitFor();
     const lit = await page.locator("svg.drawing rect.lit:not(.weak)").count();
     assert.ok(lit >= 1);

@@ -76,4 +76,15 @@ export async function changed(page, act) {
 }
 changed.times = [];
 
+/** Clicks the middle of a terminal region of a facade. */
+export async function press(page, terminal) {
+  const [x, y] = await page.evaluate((k) => {
+    const [, left, bottom, width, height] = window.studio.doc.view.terminals[k];
+    const matrix = document.querySelector("svg.drawing > g").getScreenCTM();
+    const at = new DOMPoint(left + width / 2, bottom + height / 2).matrixTransform(matrix);
+    return [at.x, at.y];
+  }, terminal);
+  await page.mouse.click(x, y);
+}
+
 export const picture = (page, name) => page.screenshot({ path: join(PICTURES, `${name}.png`) });
