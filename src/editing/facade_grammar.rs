@@ -2,19 +2,17 @@
 //! each edit.
 
 mod merge;
-mod relief;
 
 use std::path::Path;
 use std::sync::Arc;
 
 pub use merge::merge;
-pub use relief::glb;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::examples::{Example, Source};
 use super::script::{Shell, Word};
-use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
+use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit, glb};
 use super::work::{Work, stoppable};
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
 use crate::grammar::{Costs, Grammar, Operation, Rule, Size, check, listing};
@@ -298,7 +296,7 @@ impl State for Editing {
             "cga" => Ok(grammar_cga::to_string(&self.grammar).into_bytes()),
             "svg" => Ok(draw::svg(&facade()?).into_bytes()),
             "png" => draw::png(&facade()?).map_err(Error::method),
-            "glb" => relief::glb(&facade()?),
+            "glb" => glb(&facade()?),
             other => Err(CommandError::Format(other.to_owned()).into()),
         }
     }

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::facade_grammar::glb;
-use edifice::editing::split_grammar::{Wish, derived};
+use edifice::editing::split_grammar::{Wish, derived, glb};
 use edifice::grammar::{Derivation, Grammar, check};
 use edifice::io::{read_grammar, write_atomic, write_facade};
 use edifice::shape::Facade;
