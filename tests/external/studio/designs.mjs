@@ -48,8 +48,10 @@ export const designs = (begin, saved) => ({
     assert.equal((await shown(page)).revision, now);
     assert.ok(now > revision);
     await picture(page, "wishes_clash");
-    await page.getByRole("button", { name: "Take back the wish Garage: h" }).click();
-    await shown(page);
+    for (const wish of ["Garage: h", "Size: Height (m)"]) {
+      await page.getByRole("button", { name: `Take back the wish ${wish}` }).click();
+      await shown(page);
+    }
     // A style of the model.
     doc = await changed(page, () => page.getByLabel("Style of the model").selectOption("2"));
     assert.equal(doc.view.style, 2);
