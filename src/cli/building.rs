@@ -69,6 +69,12 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
   edifice building edit house.building.json --resize 0=9,7,2.9 -o edited --format json,png
   edifice building edit house.building.json --add garage@2,3,3.5,6,2.5 --suggest -o edited")]
     Edit(design::EditArgs),
+    /// Make a house of wished attributes, the rest as it is or as the model that ships has it.
+    #[command(after_help = "Examples:
+  edifice building wish house.building.json --given bbox.w=14 --given roof.hip=yes --keep -o wished
+  edifice building wish house.building.json --style 2 --given garage.w=6 -o wished --format json,png
+Columns are those of `building attributes`. Wishes that no house can have together are named.")]
+    Wish(design::WishArgs),
     /// Check that houses are closed, in one shell, and that nothing overlaps or is hidden; exit code 1 names what is wrong.
     #[command(after_help = "Examples:
   edifice building check houses/*.building.json
@@ -94,6 +100,7 @@ pub fn run(command: Command) -> edifice::Result<()> {
         Command::Generate(args) => build::generate(&args),
         Command::Variations(args) => design::variations(&args),
         Command::Edit(args) => design::edit(&args),
+        Command::Wish(args) => design::wish(&args),
         Command::Check(args) => check::check(&args),
         Command::Draw(args) => check::draw(&args),
     }

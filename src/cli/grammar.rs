@@ -3,6 +3,7 @@
 mod derive;
 mod edit;
 mod infer;
+mod merge;
 mod show;
 
 use clap::Subcommand;
@@ -15,8 +16,10 @@ pub enum Command {
     Infer(infer::Args),
     /// Derive a facade from a grammar, at its own or another size.
     Derive(derive::Args),
-    /// Edit the rules of a grammar: sizes, symbols, parts, repeats.
+    /// Edit the rules of a grammar: sizes, symbols, parts, floors and columns, repeats.
     Edit(edit::Args),
+    /// Merge the facades of a grammar and further ones into one joint grammar.
+    Merge(merge::Args),
     /// Show the rules of a grammar, what it costs and what it derives.
     Show(show::Args),
 }
@@ -27,6 +30,7 @@ pub fn run(command: Command) -> edifice::Result<()> {
         Command::Infer(args) => infer::run(&args),
         Command::Derive(args) => derive::run(&args),
         Command::Edit(args) => edit::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Show(args) => show::run(&args),
     }
 }

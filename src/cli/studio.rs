@@ -18,7 +18,8 @@ use super::print;
 
 The first line on standard output is the address, with the token that opens it; Ctrl-C ends the studio. It listens on this
 machine only, and its page asks nothing of any other. Files open in the editor that suits them: whole facades and grammars
-(.facade.json, .grammar.json, .cga), partial facades (.facade.json), houses (.building.json), cities (.city-grammar.json).
+(.facade.json, .grammar.json, .cga), partial facades (.facade.json), houses (.building.json), cities (.city-grammar.json, or
+triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
 Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes.")]
 pub struct Args {
     /// Files to open; without any, the page begins with examples
@@ -40,6 +41,7 @@ pub fn run(args: Args) -> Result<()> {
         files: args.files,
         port: args.port,
         read_only: args.read_only,
+        ..Settings::default()
     })?;
     print::line(running.address())?;
     if !args.no_open && std::io::stdout().is_terminal() {

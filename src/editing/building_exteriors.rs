@@ -1,8 +1,10 @@
 //! Houses: boxes added, moved, resized and removed, a house suggested by the learned model around the touched boxes
 //! (Fan and Wonka 2016, Fig. 19), and other plans with the same attributes.
 
+mod steps;
 mod text;
 mod view;
+mod wish;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -12,10 +14,11 @@ use serde_json::Value;
 
 pub use text::{add, moved, ordered, resized, words};
 pub use view::scene_of;
+pub use wish::{WishError, Wishes, given, ranges, wished};
 
 use super::examples::{Example, Source};
-use super::script::Shell;
-use super::{CommandError, Editor, Opened, State, Step, answer, count_of_answers, ends, parse};
+use super::work::Work;
+use super::{CommandError, Editor, Opened, State, Step, ends, parse};
 use crate::experiments::shipped_bytes;
 use crate::io::{building_json, gltf, scene_svg, surface_obj};
 use crate::methods::building_exteriors::design::{Edit, EditError, edited, suggested, variants};
@@ -31,8 +34,6 @@ use crate::{Error, Result};
 /// What the shipped houses and the model learned from them are called in the program.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";
 const MODEL: &str = "building_exteriors/default.houses.json";
-/// Most answers at once.
-const MOST: usize = 12;
 const ENDING: &str = ".building.json";
 const FORMATS: &[&str] = &["glb", "obj", "svg"];
 
@@ -58,7 +59,7 @@ pub const EDITOR: Editor = Editor {
     ],
 };
 
-fn open(path: &Path, bytes: &[u8]) -> Opened {
+fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
     ends(path, ENDING).then(|| {
         let building = building_json::parse(bytes, path)?;
         if !is_file_name(&building.name) {
@@ -151,6 +152,10 @@ pub struct House {
     locked: Vec<bool>,
     answers: Vec<Generated>,
     chosen: Option<usize>,
+    /// What was wished last.
+    wishes: Vec<String>,
+    style: Option<usize>,
+    keep: bool,
 }
 
 #[derive(Deserialize)]
@@ -165,6 +170,15 @@ enum Command {
     },
     Variations {
         count: usize,
+        #[serde(default = "one")]
+        seed: u64,
+    },
+    Wish {
+        given: Vec<String>,
+        #[serde(default)]
+        style: Option<usize>,
+        #[serde(default)]
+        keep: bool,
         #[serde(default = "one")]
         seed: u64,
     },
@@ -191,10 +205,14 @@ impl House {
             report: None,
             answers: Vec::new(),
             chosen: None,
+            wishes: Vec::new(),
+            style: None,
+            keep: true,
         })
     }
 
-    fn made(house: Generated, locked: Vec<bool>) -> Self {
+    /// A house made from this one; what was wished is remembered.
+    fn made(&self, house: Generated, locked: Vec<bool>) -> Self {
         Self {
             locked,
             building: house.building,
@@ -202,98 +220,14 @@ impl House {
             report: Some(house.report),
             answers: Vec::new(),
             chosen: None,
+            wishes: self.wishes.clone(),
+            style: self.style,
+            keep: self.keep,
         }
     }
 
     fn file(&self) -> String {
         format!("{}{ENDING}", self.building.name)
-    }
-
-    fn edit(&self, texts: &[String], suggest: bool, seed: u64) -> Result<Step> {
-        let edits = text::parse_all(texts)?;
-        let database = shipped_database()?;
-        let learned = match suggest {
-            true => Some(&shipped_model()?.model),
-            false => None,
-        };
-        let made = edit(
-            &self.building,
-            &edits,
-            learned,
-            database,
-            &Options::default(),
-            seed,
-        );
-        let made = made.map_err(Error::method)?;
-        let locked = view::touched(&self.building, &edits, &made.building);
-        let mut shell = Shell::new(["building", "edit", "<"]);
-        for word in words(&edits) {
-            shell = shell.arg(word);
-        }
-        if suggest {
-            shell = shell.arg("--suggest");
-        }
-        let shell = in_folder(shell, seed).gives("", Some(self.file()));
-        let mut said = texts.join(", ");
-        if suggest {
-            said.push_str(", the rest suggested");
-        }
-        Ok(Step {
-            state: Arc::new(Self::made(made, locked)),
-            said,
-            shell,
-            warnings: Vec::new(),
-        })
-    }
-
-    fn variations(&self, count: usize, seed: u64) -> Result<Step> {
-        let count = count_of_answers(count, MOST)?;
-        let options = Options::default();
-        let answers = variations(&self.building, count, shipped_database()?, &options, seed);
-        let answers = answers.map_err(Error::method)?;
-        let found = answers.len();
-        let mut warnings = Vec::new();
-        if found < count {
-            warnings.push(format!(
-                "{found} of {count} houses: the search found no more"
-            ));
-        }
-        let shell = Shell::new(["building", "variations", "<"]).option("--count", count);
-        Ok(Step {
-            state: Arc::new(Self {
-                answers,
-                chosen: None,
-                ..self.clone()
-            }),
-            said: format!("{found} other plans with the same attributes"),
-            shell: in_folder(shell, seed),
-            warnings,
-        })
-    }
-
-    fn choose(&self, wanted: usize) -> Result<Step> {
-        let chosen = answer(&self.answers, wanted)?.clone();
-        let state = Self {
-            answers: self.answers.clone(),
-            chosen: Some(wanted),
-            ..Self::made(chosen.clone(), vec![false; chosen.building.boxes.len()])
-        };
-        Ok(Step {
-            shell: Shell::default().gives("", Some(state.file())),
-            state: Arc::new(state),
-            said: format!("take plan {wanted}"),
-            warnings: Vec::new(),
-        })
-    }
-}
-
-/// The options that all commands that make houses share.
-fn in_folder(shell: Shell, seed: u64) -> Shell {
-    let shell = shell.option("--seed", seed).option("--format", "json");
-    let output = Shell::new(["--output", ">"]).words;
-    Shell {
-        words: [shell.words, output].concat(),
-        ..shell
     }
 }
 
@@ -319,14 +253,23 @@ impl State for House {
         view::view(self)
     }
 
-    fn apply(&self, command: &Value) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
         match parse(command)? {
             Command::Edit {
                 edits,
                 suggest,
                 seed,
             } => self.edit(&edits, suggest, seed),
-            Command::Variations { count, seed } => self.variations(count, seed),
+            Command::Variations { count, seed } => {
+                work.tell("looking for other plans", None)?;
+                self.variations(count, seed)
+            }
+            Command::Wish {
+                given,
+                style,
+                keep,
+                seed,
+            } => self.wish(given, style, keep, seed, work),
             Command::Choose { answer } => self.choose(answer),
         }
     }

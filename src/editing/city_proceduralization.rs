@@ -1,29 +1,40 @@
 //! Cities as grammars of instances: sizes of templates and weights of rules are changed, and drawn shapes are filled
-//! with new cities of their buildings (Demir et al. 2014).
+//! with new cities of their buildings (Demir et al. 2014). A city of triangles is opened too, and made a grammar of at a level
+//! of de-instancing.
 
 mod edits;
+mod original;
+mod paths;
+mod questions;
 mod view;
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde::Deserialize;
 use serde_json::Value;
 
 pub use edits::{CityEdit, CityEditError, edit};
+use original::Original;
 
 use super::examples::{Example, Source};
-use super::script::Shell;
+use super::script::{Shell, Word};
+use super::work::Work;
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
 use crate::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use crate::io::city::{cityjson, glb, grammar_json, obj};
+use crate::io::city::{self, cityjson, glb, grammar_json, obj};
 use crate::methods::city_proceduralization::synthesis::{Shape, synthesize};
 use crate::{Error, Result};
 
 const ENDING: &str = ".city-grammar.json";
 const FORMATS: &[&str] = &["glb", "obj", "city.json"];
 
-/// Opens `*.city-grammar.json`, also as `.gz`.
+/// Cities of triangles.
+const CITIES: [&str; 6] = [".npz", ".obj", ".glb", ".gltf", ".city.json", ".city.jsonl"];
+/// Most halvings of the number of components.
+const DEEPEST: u32 = 12;
+
+/// Opens `*.city-grammar.json`, also as `.gz`, and cities of triangles, which are read again from their path.
 pub const EDITOR: Editor = Editor {
     kind: "city",
     open,
@@ -36,11 +47,16 @@ pub const EDITOR: Editor = Editor {
     }],
 };
 
-fn open(path: &Path, bytes: &[u8]) -> Opened {
-    ends(path, ENDING).then(|| {
-        let city = City::new(grammar_json::parse(bytes, path)?)?;
-        Ok(Arc::new(city) as Arc<dyn State>)
-    })
+fn open(path: &Path, bytes: &[u8], work: &Work) -> Opened {
+    let is_city = CITIES.iter().any(|ending| ends(path, ending));
+    let city = match ends(path, ENDING) {
+        true => grammar_json::parse(bytes, path).and_then(City::new),
+        false if is_city => (work.tell("reading the city", None).map_err(Error::from))
+            .and_then(|()| city::read(path))
+            .map(|city| City::of_triangles(Original::new(city, path))),
+        false => return None,
+    };
+    Some(city.map(|city| Arc::new(city) as Arc<dyn State>))
 }
 
 /// Why a shape is not filled.
@@ -83,8 +99,36 @@ pub fn fill(
 /// A city that is being edited.
 #[derive(Clone)]
 pub struct City {
+    name: String,
+    /// The triangles that it was made of, where they are known.
+    original: Option<Arc<Original>>,
+    /// The grammar; a city of triangles has none before a level is chosen.
+    made: Option<Made>,
+}
+
+/// A grammar with its derivation.
+#[derive(Clone)]
+struct Made {
     grammar: Arc<InstanceGrammar>,
     derivation: Arc<InstanceDerivation>,
+    /// Halvings of the number of components, of a grammar that was made here and not edited since.
+    level: Option<u32>,
+    /// By how much the volume of each building differs from that of the original, as a share, once it was asked for.
+    errors: Arc<OnceLock<Vec<Option<f64>>>>,
+}
+
+/// Why a city cannot do this.
+#[derive(Debug, thiserror::Error)]
+enum CityError {
+    /// It has no grammar yet.
+    #[error("this city has no grammar yet: choose a level of de-instancing first")]
+    NoGrammar,
+    /// Its triangles are not known.
+    #[error("the triangles of this city are not known: open the city itself to choose a level")]
+    NoOriginal,
+    /// No such level.
+    #[error("level {0}: expected 0 to {DEEPEST}")]
+    Level(u32),
 }
 
 #[derive(Deserialize)]
@@ -98,6 +142,9 @@ enum Command {
         #[serde(default = "one")]
         seed: u64,
     },
+    Proceduralize {
+        level: u32,
+    },
 }
 
 fn one() -> u64 {
@@ -110,13 +157,53 @@ impl City {
     /// # Errors
     /// When the grammar derives nothing.
     pub fn new(grammar: InstanceGrammar) -> Result<Self> {
-        // As it is in its file, which keeps so many digits, and from which the next command of a script would start.
-        let text = grammar_json::to_string(&grammar).map_err(Error::method)?;
-        let grammar = grammar_json::parse(text.as_bytes(), Path::new(&grammar.name))?;
-        let derivation = grammar.derive().map_err(Error::method)?;
+        let made = Made::new(grammar, None)?;
         Ok(Self {
-            grammar: Arc::new(grammar),
-            derivation: Arc::new(derivation),
+            name: made.grammar.name.clone(),
+            original: None,
+            made: Some(made),
+        })
+    }
+
+    fn of_triangles(original: Original) -> Self {
+        Self {
+            name: original.city.name.clone(),
+            original: Some(Arc::new(original)),
+            made: None,
+        }
+    }
+
+    fn made(&self) -> Result<&Made> {
+        self.made
+            .as_ref()
+            .ok_or_else(|| Error::method(CityError::NoGrammar))
+    }
+
+    fn with(&self, grammar: InstanceGrammar, level: Option<u32>) -> Result<Arc<Self>> {
+        Ok(Arc::new(Self {
+            made: Some(Made::new(grammar, level)?),
+            ..self.clone()
+        }))
+    }
+
+    fn proceduralize(&self, level: u32, work: &Work) -> Result<Step> {
+        let original = self.original.as_ref();
+        let original = original.ok_or_else(|| Error::method(CityError::NoOriginal))?;
+        if level > DEEPEST {
+            return Err(Error::method(CityError::Level(level)));
+        }
+        let grammar = original.proceduralized(level, work)?;
+        work.tell("deriving the city", Some(0.9))?;
+        let templates = grammar.templates.len();
+        let mut shell = Shell::new(["city", "proceduralize"]);
+        shell.words.push(Word::Beside(original.file.clone()));
+        let mut shell = shell.option("--level", level);
+        shell.words.extend(Shell::new(["--output", ">"]).words);
+        Ok(Step {
+            state: self.with(grammar, Some(level))?,
+            said: format!("level {level}: {templates} templates"),
+            shell: shell.gives(ENDING, Some(String::new())),
+            warnings: Vec::new(),
         })
     }
 
@@ -127,13 +214,13 @@ impl City {
         if edits.is_empty() {
             return Err(CommandError::Nothing.into());
         }
-        let state = Self::new(edit(&self.grammar, &edits).map_err(Error::method)?)?;
+        let edited = edit(&self.made()?.grammar, &edits).map_err(Error::method)?;
         let mut shell = Shell::new(["city", "edit", "--output", ">", "--", "<"]);
         for text in texts {
             shell = shell.arg(text);
         }
         Ok(Step {
-            state: Arc::new(state),
+            state: self.with(edited, None)?,
             said: texts.join(", "),
             shell: shell.gives(ENDING, Some(String::new())),
             warnings: Vec::new(),
@@ -148,7 +235,8 @@ impl City {
         let shape = Shape {
             rings: vec![polygon],
         };
-        let (grammar, derivation) = fill(&self.grammar, shape, seed).map_err(Error::method)?;
+        let (grammar, derivation) =
+            fill(&self.made()?.grammar, shape, seed).map_err(Error::method)?;
         let count = derivation.buildings.len();
         let shell = Shell::new(["city", "synthesize", "<"])
             .option("--polygon", corners)
@@ -167,13 +255,28 @@ impl City {
     }
 }
 
+impl Made {
+    fn new(grammar: InstanceGrammar, level: Option<u32>) -> Result<Self> {
+        // As it is in its file, which keeps so many digits, and from which the next command of a script would start.
+        let text = grammar_json::to_string(&grammar).map_err(Error::method)?;
+        let grammar = grammar_json::parse(text.as_bytes(), Path::new(&grammar.name))?;
+        let derivation = grammar.derive().map_err(Error::method)?;
+        Ok(Self {
+            grammar: Arc::new(grammar),
+            derivation: Arc::new(derivation),
+            level,
+            errors: Arc::default(),
+        })
+    }
+}
+
 impl State for City {
     fn kind(&self) -> &'static str {
         EDITOR.kind
     }
 
     fn name(&self) -> &str {
-        &self.grammar.name
+        &self.name
     }
 
     fn ending(&self) -> &'static str {
@@ -181,19 +284,27 @@ impl State for City {
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {
-        let text = grammar_json::to_string(&self.grammar);
+        let text = grammar_json::to_string(&self.made()?.grammar);
         Ok(text.map_err(Error::method)?.into_bytes())
     }
 
     fn view(&self) -> Result<Value> {
-        Ok(view::view(&self.grammar, &self.derivation))
+        view::view(self)
     }
 
-    fn apply(&self, command: &Value) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
-            Command::Synthesize { polygon, seed } => self.synthesize(polygon, seed),
+            Command::Synthesize { polygon, seed } => {
+                work.tell("filling the shape", None)?;
+                self.synthesize(polygon, seed)
+            }
+            Command::Proceduralize { level } => self.proceduralize(level, work),
         }
+    }
+
+    fn ask(&self, question: &Value) -> Result<Value> {
+        questions::answer(self, question)
     }
 
     fn formats(&self) -> &'static [&'static str] {
@@ -201,9 +312,19 @@ impl State for City {
     }
 
     fn export(&self, format: &str) -> Result<Vec<u8>> {
-        let city = || self.derivation.city(&self.grammar);
+        if format == original::FORMAT {
+            let original = self.original.as_ref();
+            let original = original.ok_or_else(|| Error::method(CityError::NoOriginal))?;
+            return Ok(original.packed());
+        }
+        let Made {
+            grammar,
+            derivation,
+            ..
+        } = self.made()?;
+        let city = || derivation.city(grammar);
         match format {
-            "glb" => glb::to_bytes(&self.grammar, &self.derivation, true).map_err(Error::method),
+            "glb" => glb::to_bytes(grammar, derivation, true).map_err(Error::method),
             "obj" => Ok(obj::to_string(&city()).into_bytes()),
             "city.json" => Ok(cityjson::to_string(&city()).into_bytes()),
             other => Err(CommandError::Format(other.to_owned()).into()),

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::work::Work;
 use super::{EDITORS, State, open};
 use crate::experiments::shipped_bytes;
 use crate::{Error, Result};
@@ -48,17 +49,17 @@ pub struct NoExample(pub String);
 ///
 /// # Errors
 /// [`NoExample`]; a test keeps all of them readable.
-pub fn example(id: &str) -> Result<Arc<dyn State>> {
+pub fn example(id: &str, work: &Work) -> Result<Arc<dyn State>> {
     let found = examples().find(|e| e.id == id);
     let example = found.ok_or_else(|| Error::method(NoExample(id.to_owned())))?;
     match example.source {
-        Source::File(path) => open(Path::new(path), shipped_bytes(path)?),
+        Source::File(path) => open(Path::new(path), shipped_bytes(path)?, work),
         Source::Line(path, line, name) => {
             let mut lines = shipped_bytes(path)?.split(|b| *b == b'\n');
             let name = format!("{name}.building.json");
-            open(Path::new(&name), lines.nth(line).unwrap_or_default())
+            open(Path::new(&name), lines.nth(line).unwrap_or_default(), work)
         }
-        Source::Text(name, text) => open(Path::new(name), text.as_bytes()),
+        Source::Text(name, text) => open(Path::new(name), text.as_bytes(), work),
     }
 }
 
@@ -69,11 +70,11 @@ mod tests {
     #[test]
     fn every_example_opens_in_its_editor_and_shows() {
         for e in examples() {
-            let state = example(e.id).unwrap();
+            let state = example(e.id, &Work::default()).unwrap();
             assert_eq!(state.kind(), e.kind, "{}", e.id);
             assert!(state.view().unwrap().is_object(), "{}", e.id);
             assert!(!state.bytes().unwrap().is_empty());
         }
-        assert!(example("none").is_err());
+        assert!(example("none", &Work::default()).is_err());
     }
 }

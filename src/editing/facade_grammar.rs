@@ -1,27 +1,30 @@
 //! Facades by their grammar (Wu et al. 2014, Sec. 5): rules are edited on an example facade, which is derived again after
 //! each edit.
 
+mod merge;
+
 use std::path::Path;
 use std::sync::Arc;
 
+pub use merge::merge;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::examples::{Example, Source};
-use super::script::Shell;
-use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
+use super::script::{Shell, Word};
+use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit, glb};
+use super::work::{Work, stoppable};
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
 use crate::grammar::{Costs, Grammar, Operation, Rule, Size, check, listing};
 use crate::io::palette::Palette;
 use crate::io::{draw, facade_json, grammar_cga, grammar_json};
-use crate::methods::facade_grammar::{Settings, infer};
 use crate::shape::Facade;
 use crate::{Error, Result};
 
 /// Most regions of a facade that is shown.
 const SHOWN: usize = 50_000;
 const ENDING: &str = ".grammar.json";
-const FORMATS: &[&str] = &["facade.json", "cga", "svg", "png"];
+const FORMATS: &[&str] = &["facade.json", "cga", "svg", "png", "glb"];
 
 /// Opens grammars (`*.grammar.json`, `*.cga`), and whole facades, whose grammar is inferred.
 pub const EDITOR: Editor = Editor {
@@ -45,12 +48,12 @@ pub const EDITOR: Editor = Editor {
     ],
 };
 
-fn open(path: &Path, bytes: &[u8]) -> Opened {
+fn open(path: &Path, bytes: &[u8], work: &Work) -> Opened {
     let read = match path {
         p if ends(p, ENDING) => grammar_json::parse(bytes, path).map(|g| (g, None)),
         p if ends(p, ".cga") => grammar_cga::parse(bytes, path).map(|g| (g, None)),
         p if ends(p, ".facade.json") => {
-            facade_json::parse(bytes, path).and_then(|f| inferred(path, &f))
+            facade_json::parse(bytes, path).and_then(|f| inferred(path, &f, work))
         }
         _ => return None,
     };
@@ -69,10 +72,12 @@ fn open(path: &Path, bytes: &[u8]) -> Opened {
 }
 
 /// The grammar of a whole facade, and the least cost that any grammar of it can have.
-fn inferred(path: &Path, facade: &Facade) -> Result<(Grammar, Option<f64>)> {
+fn inferred(path: &Path, facade: &Facade, work: &Work) -> Result<(Grammar, Option<f64>)> {
     facade.check_tiling().map_err(|e| Error::content(path, e))?;
     crate::shape::splittable(facade).map_err(|e| Error::content(path, e))?;
-    let found = infer(std::slice::from_ref(facade), &Settings::default()).map_err(Error::method)?;
+    work.tell("inferring the grammar", None)?;
+    let found = stoppable(|| merge::observed(std::slice::from_ref(facade), work))?;
+    let found = found.map_err(Error::method)?;
     Ok((found.grammar, found.lower_bound))
 }
 
@@ -110,6 +115,9 @@ enum Command {
         seed: u64,
         #[serde(default)]
         start: usize,
+    },
+    Merge {
+        facades: Vec<String>,
     },
 }
 
@@ -155,6 +163,34 @@ impl Editing {
             said: texts.join(", "),
             shell: shell.gives(ENDING, Some(String::new())),
             warnings: warnings.iter().map(ToString::to_string).collect(),
+        })
+    }
+
+    /// One grammar of the facades of this one and of others.
+    fn merge(&self, texts: &[String], work: &Work) -> Result<Step> {
+        let further = merge::facades(texts)?;
+        if further.is_empty() {
+            return Err(CommandError::Nothing.into());
+        }
+        let found = merge::merge(&self.grammar, &further, work)?;
+        let starts = found.grammar.starts.len();
+        let state = Self {
+            name: self.name.clone(),
+            grammar: found.grammar,
+            bound: found.lower_bound,
+            size: None,
+            seed: 0,
+            start: 0,
+        };
+        state.derived(false)?;
+        let mut shell = Shell::new(["grammar", "merge", "--output", ">", "--", "<"]);
+        let held = |text: &String| Word::File(".facade.json", text.clone());
+        shell.words.extend(texts.iter().map(held));
+        Ok(Step {
+            state: Arc::new(state),
+            said: format!("one grammar of {starts} facades"),
+            shell: shell.gives(ENDING, Some(String::new())),
+            warnings: Vec::new(),
         })
     }
 
@@ -241,10 +277,11 @@ impl State for Editing {
         }))
     }
 
-    fn apply(&self, command: &Value) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
             Command::Derive { size, seed, start } => self.shown_at(size, seed, start),
+            Command::Merge { facades } => self.merge(&facades, work),
         }
     }
 
@@ -259,6 +296,7 @@ impl State for Editing {
             "cga" => Ok(grammar_cga::to_string(&self.grammar).into_bytes()),
             "svg" => Ok(draw::svg(&facade()?).into_bytes()),
             "png" => draw::png(&facade()?).map_err(Error::method),
+            "glb" => glb(&facade()?),
             other => Err(CommandError::Format(other.to_owned()).into()),
         }
     }

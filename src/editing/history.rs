@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::script::{Shell, script};
+use super::work::Work;
 use super::{CommandError, State, Step};
 use crate::Result;
 
@@ -20,6 +21,25 @@ pub struct Document {
     entries: Vec<Entry>,
     at: usize,
     revision: u64,
+}
+
+/// What commands in turn come to, from a state.
+///
+/// # Errors
+/// As [`State::apply`]; [`CommandError::Nothing`] without commands.
+pub fn steps(state: &Arc<dyn State>, commands: &[Value], work: &Work) -> Result<Vec<Step>> {
+    if commands.is_empty() {
+        return Err(CommandError::Nothing.into());
+    }
+    let mut steps: Vec<Step> = Vec::with_capacity(commands.len());
+    for command in commands {
+        let step = steps
+            .last()
+            .map_or(state, |s| &s.state)
+            .apply(command, work)?;
+        steps.push(step);
+    }
+    Ok(steps)
 }
 
 /// An entry of the log.
@@ -60,16 +80,13 @@ impl Document {
     /// # Errors
     /// As [`State::apply`]; [`CommandError::Nothing`] without commands.
     pub fn edit(&mut self, commands: &[Value]) -> Result<()> {
-        if commands.is_empty() {
-            return Err(CommandError::Nothing.into());
-        }
-        let mut steps = Vec::with_capacity(commands.len());
-        let mut state = self.state().clone();
-        for command in commands {
-            let step = state.apply(command)?;
-            state = step.state.clone();
-            steps.push(step);
-        }
+        let steps = steps(self.state(), commands, &Work::default())?;
+        self.take(commands, steps);
+        Ok(())
+    }
+
+    /// Takes the steps that commands came to, from the state that it is in.
+    pub fn take(&mut self, commands: &[Value], steps: Vec<Step>) {
         self.entries.truncate(self.at);
         self.entries.push(Entry {
             commands: commands.to_vec(),
@@ -77,7 +94,6 @@ impl Document {
         });
         self.at += 1;
         self.revision += 1;
-        Ok(())
     }
 
     /// Takes back the last edit; whether there was one.
@@ -132,11 +148,7 @@ impl Document {
         let steps = self.entries[..self.at].iter().flat_map(|e| &e.steps);
         let shells: Vec<Shell> = steps.map(|s| s.shell.clone()).collect();
         let target = format!("{}{}", self.state().name(), self.state().ending());
-        Ok(script(
-            &target,
-            self.start.ending(),
-            &self.start.bytes()?,
-            &shells,
-        ))
+        let start = || self.start.bytes();
+        script(&target, self.start.ending(), start, &shells)
     }
 }

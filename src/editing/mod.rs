@@ -12,13 +12,16 @@
 //! | --- | --- | --- | --- |
 //! | `house` | `edit` | `edits` (`add garage@X,Y,W,D,H`, `move 0=X,Y`, `resize 0=W,D,H`, `remove 0`), `suggest`, `seed` | `building edit` |
 //! | | `variations` | `count`, `seed` | `building variations` |
+//! | | `wish` | `given` (`bbox.w=14`, `roof.hip=yes`), `style`, `keep`, `seed` | `building wish` |
 //! | | `choose` | `answer`, from 1 | the file of that answer |
 //! | `completion` | `edit` | `edits` (`add door@X,Y,W,H`, `move ID=X,Y`, `resize ID=W,H`, `relabel ID=window`, `remove ID`, `unknown X,Y,W,H`, `known INDEX`, `outline W,H`) | `facade edit` |
 //! | | `complete` | `count`, `seed`, `method`, `pins`, `forbid` | `facade complete` |
 //! | | `choose` | `answer`, from 1 | the file of that answer |
-//! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `remove RULE.PART`, `repeat RULE`, `outline W,H`) | `grammar edit` |
+//! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `remove RULE.PART`, `grow RULE.PART`, `shrink RULE.PART`, `repeat RULE`, `outline W,H`) | `grammar edit` |
+//! | | `merge` | `facades`, the texts of `.facade.json` files | `grammar merge` |
 //! | `city` | `edit` | `edits` (`scale TEMPLATE=FX,FY,FZ`, `weight RULE=W`) | `city edit` |
 //! | | `synthesize` | `polygon`, `seed` | `city synthesize` |
+//! | | `proceduralize` | `level` | `city proceduralize` |
 
 pub mod building_exteriors;
 pub mod city_proceduralization;
@@ -28,6 +31,7 @@ pub mod history;
 pub mod script;
 pub mod split_grammar;
 pub mod structure_completion;
+pub mod work;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -37,6 +41,7 @@ use serde_json::Value;
 use crate::{Error, Result};
 use examples::Example;
 use script::Shell;
+use work::{Stopped, Work};
 
 /// What can be opened, tried in this order.
 pub const EDITORS: &[Editor] = &[
@@ -54,7 +59,7 @@ pub struct Editor {
     /// Its kind, as states name it.
     pub kind: &'static str,
     /// Reads a file that it suits; `None` for one that is of another kind. The path only names the file.
-    pub open: fn(&Path, &[u8]) -> Opened,
+    pub open: fn(&Path, &[u8], &Work) -> Opened,
     /// Documents to begin with.
     pub examples: &'static [Example],
 }
@@ -86,7 +91,15 @@ pub trait State: Send + Sync {
     ///
     /// # Errors
     /// [`CommandError`] for a command that is none, or what its method says of a command that cannot be done.
-    fn apply(&self, command: &Value) -> Result<Step>;
+    fn apply(&self, command: &Value, work: &Work) -> Result<Step>;
+
+    /// Answers a question about the state, which stays as it is.
+    ///
+    /// # Errors
+    /// [`CommandError::Form`] for what is no question of this kind of document.
+    fn ask(&self, question: &Value) -> Result<Value> {
+        parse::<NoQuestion>(question).map(|none| match none {})
+    }
 
     /// Formats of [`State::export`], as endings of file names.
     fn formats(&self) -> &'static [&'static str];
@@ -97,6 +110,10 @@ pub trait State: Send + Sync {
     /// [`CommandError::Format`] for an unknown format.
     fn export(&self, format: &str) -> Result<Vec<u8>>;
 }
+
+/// The questions of a document that has none.
+#[derive(serde::Deserialize)]
+enum NoQuestion {}
 
 /// What a command came to.
 pub struct Step {
@@ -154,6 +171,9 @@ pub enum CommandError {
     /// Nothing was asked for.
     #[error("nothing to edit")]
     Nothing,
+    /// The work was stopped.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 impl From<CommandError> for Error {
@@ -162,16 +182,23 @@ impl From<CommandError> for Error {
     }
 }
 
+impl From<Stopped> for Error {
+    fn from(error: Stopped) -> Self {
+        CommandError::from(error).into()
+    }
+}
+
 /// Opens a file in the editor that suits it; the path only names the file.
 ///
 /// # Errors
 /// [`Error::Content`] for a file that no editor knows, or what its reader says.
-pub fn open(path: &Path, bytes: &[u8]) -> Result<Arc<dyn State>> {
-    let opened = EDITORS.iter().find_map(|e| (e.open)(path, bytes));
+pub fn open(path: &Path, bytes: &[u8], work: &Work) -> Result<Arc<dyn State>> {
+    let opened = EDITORS.iter().find_map(|e| (e.open)(path, bytes, work));
     opened.unwrap_or_else(|| {
         Err(Error::content(
             path,
-            "no editor knows this kind of file: expected .facade.json, .grammar.json, .cga, .building.json or .city-grammar.json",
+            "no editor knows this kind of file: expected .facade.json, .grammar.json, .cga, .building.json, .city-grammar.json, or a \
+             city (.npz, .obj, .glb, .gltf, .city.json, .city.jsonl)",
         ))
     })
 }

@@ -11,6 +11,10 @@ pub enum Word {
     Input,
     /// Where the command writes.
     Output,
+    /// A file that the script holds: how its name ends, and its text.
+    File(&'static str, String),
+    /// A file beside the script.
+    Beside(String),
 }
 
 /// A command as shell.
@@ -58,35 +62,49 @@ impl Shell {
     }
 }
 
-/// The script that takes `start` through the commands to a file of the name `target`.
-pub fn script(target: &str, ending: &str, start: &[u8], steps: &[Shell]) -> String {
+/// The script that takes the start through the commands to a file of the name `target`. A start that no command needs, since
+/// one begins anew with another file, is not asked for.
+///
+/// # Errors
+/// Those of `start`.
+pub fn script<E>(
+    target: &str,
+    ending: &str,
+    start: impl Fn() -> Result<Vec<u8>, E>,
+    steps: &[Shell],
+) -> Result<String, E> {
     let mut text = format!(
         "#!/bin/sh\n# Written by `edifice studio`: the same edits as commands. Writes the file named by its argument.\nset -eu\n\
-         edifice=${{EDIFICE:-edifice}}\ntarget=${{1:-{}}}\nwork=$(mktemp -d)\ntrap 'rm -rf \"$work\"' EXIT\n",
+         edifice=${{EDIFICE:-edifice}}\ntarget=${{1:-{}}}\nhere=$(dirname \"$0\")\nwork=$(mktemp -d)\ntrap 'rm -rf \"$work\"' EXIT\n",
         quoted(target)
     );
     let mut input = format!("\"$work\"/0{ending}");
     let mut output = String::new();
-    // The start is part of the script: a file that is saved over itself would not be there to start from.
-    let start = String::from_utf8_lossy(start);
-    let end = terminator(&start);
-    let _ = writeln!(
-        text,
-        "cat > {input} <<'{end}'\n{}\n{end}",
-        start.trim_end_matches('\n')
-    );
-    for (k, step) in steps.iter().enumerate() {
+    let anew = |s: &Shell| !s.words.is_empty() && !s.words.contains(&Word::Input);
+    let first = steps.iter().rposition(anew);
+    if first.is_none() {
+        // The start is part of the script: a file that is saved over itself would not be there to start from.
+        text.push_str(&held(&input, &String::from_utf8_lossy(&start()?)));
+    }
+    for (k, step) in steps.iter().enumerate().skip(first.unwrap_or(0)) {
         if !step.words.is_empty() {
             output = format!("\"$work\"/{}{}", k + 1, step.ending);
-            text.push_str("\"$edifice\"");
-            for word in &step.words {
-                match word {
-                    Word::Text(t) => text.push_str(&format!(" {}", quoted(t))),
-                    Word::Input => text.push_str(&format!(" {input}")),
-                    Word::Output => text.push_str(&format!(" {output}")),
-                }
+            let mut line = String::from("\"$edifice\"");
+            for (n, word) in step.words.iter().enumerate() {
+                let word = match word {
+                    Word::Text(t) => quoted(t),
+                    Word::Input => input.clone(),
+                    Word::Output => output.clone(),
+                    Word::Beside(name) => format!("\"$here\"/{}", quoted(name)),
+                    Word::File(ending, content) => {
+                        let place = format!("\"$work\"/{}_{n}{ending}", k + 1);
+                        text.push_str(&held(&place, content));
+                        place
+                    }
+                };
+                line.push_str(&format!(" {word}"));
             }
-            text.push_str(" > /dev/null\n");
+            text.push_str(&format!("{line} > /dev/null\n"));
         }
         match step.result.as_deref() {
             None => {}
@@ -95,7 +113,14 @@ pub fn script(target: &str, ending: &str, start: &[u8], steps: &[Shell]) -> Stri
         }
     }
     let _ = writeln!(text, "cp {input} \"$target\"");
-    text
+    Ok(text)
+}
+
+/// The lines that write a text to a place.
+fn held(place: &str, content: &str) -> String {
+    let end = terminator(content);
+    let content = content.trim_end_matches('\n');
+    format!("cat > {place} <<'{end}'\n{content}\n{end}\n")
 }
 
 /// A line that the text does not have.
@@ -146,7 +171,8 @@ mod tests {
     #[test]
     fn a_start_may_hold_any_line() {
         let start = "END_OF_FILE\n$(x)\n";
-        let text = script("out", ".txt", start.as_bytes(), &[]);
+        let none = || Ok::<_, ()>(start.as_bytes().to_vec());
+        let text = script("out", ".txt", none, &[]).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.sh");
         std::fs::write(&path, text).unwrap();

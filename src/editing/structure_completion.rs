@@ -16,6 +16,7 @@ pub use given::{Given, Wanted};
 
 use super::examples::{Example, Source as From};
 use super::script::Shell;
+use super::work::Work;
 use super::{
     CommandError, Editor, Opened, State, Step, answer, count_of_answers, ends, parse, written,
 };
@@ -64,7 +65,7 @@ const FOUR: &str = r#"{ "format": "edifice/facade", "version": 1, "name": "four_
     { "label": "window", "x": 1.5, "y": 7.4, "width": 1.2, "height": 1.7, "id": "w3", "observed": true },
     { "label": "door", "x": 6.8, "y": 0.0, "width": 1.4, "height": 2.5, "id": "d1", "observed": true } ] }"#;
 
-fn open(path: &Path, bytes: &[u8]) -> Opened {
+fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
     if !ends(path, ENDING) {
         return None;
     }
@@ -354,7 +355,7 @@ impl State for Sketch {
         Ok(view::view(self))
     }
 
-    fn apply(&self, command: &Value) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
             Command::Complete {
@@ -369,6 +370,7 @@ impl State for Sketch {
                 for r in &rects {
                     edits::checked(*r).map_err(Error::method)?;
                 }
+                work.tell("completing the facade", None)?;
                 self.complete(&method, count, seed, &pins, &rects)
             }
             Command::Choose { answer } => self.choose(answer),

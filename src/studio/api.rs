@@ -1,6 +1,8 @@
 //! The routes.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use axum::Router;
 use axum::body::Bytes;
@@ -11,10 +13,17 @@ use axum::routing::{get, post};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use tokio::time::timeout;
 
 use super::document::SaveError;
+use super::jobs::{End, Job};
 use super::{Open, Studio, assets};
-use crate::editing::examples::examples;
+use crate::editing::examples::{example, examples};
+use crate::editing::history::steps;
+use crate::editing::work::Stopped;
+
+/// Work that takes longer than this is a job.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// What answers a request: its status, and what is wrong.
 struct Refusal(StatusCode, String);
@@ -31,10 +40,16 @@ impl From<crate::Error> for Refusal {
     }
 }
 
+impl From<Stopped> for Refusal {
+    fn from(stopped: Stopped) -> Self {
+        Self(StatusCode::CONFLICT, stopped.to_string())
+    }
+}
+
 impl From<SaveError> for Refusal {
     fn from(error: SaveError) -> Self {
         let status = match &error {
-            SaveError::ReadOnly => StatusCode::FORBIDDEN,
+            SaveError::ReadOnly | SaveError::Link(_) => StatusCode::FORBIDDEN,
             SaveError::Changed(_) => StatusCode::CONFLICT,
             SaveError::File(_) => StatusCode::UNPROCESSABLE_ENTITY,
         };
@@ -49,6 +64,7 @@ pub fn router(studio: Arc<Studio>) -> Router {
     let one = Router::new()
         .route("/", get(document))
         .route("/edit", post(edit))
+        .route("/ask", post(ask))
         .route("/undo", post(undo))
         .route("/redo", post(redo))
         .route("/save", post(save))
@@ -57,6 +73,8 @@ pub fn router(studio: Arc<Studio>) -> Router {
     Router::new()
         .route("/api/documents", get(documents).post(open))
         .nest("/api/documents/{id}", one)
+        .route("/api/jobs/{id}", get(job))
+        .route("/api/jobs/{id}/stop", post(stop))
         .fallback(assets::asset)
         .with_state(studio)
 }
@@ -83,15 +101,58 @@ async fn work<T: Send + 'static>(
     tokio::task::spawn_blocking(task).await.map_err(failed)?
 }
 
+fn known(studio: &Studio, id: &str) -> Result<Arc<Mutex<Open>>, Refusal> {
+    let missing = || Refusal(StatusCode::NOT_FOUND, format!("no document {id:?}"));
+    studio.get(id).ok_or_else(missing)
+}
+
 /// Runs work on a document. One that another thread failed on is as it was before that edit.
 async fn on<T: Send + 'static>(
     studio: &Studio,
     id: String,
     task: impl FnOnce(&mut Open, &str) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
-    let missing = || Refusal(StatusCode::NOT_FOUND, format!("no document {id:?}"));
-    let (_, document) = studio.get(&id).ok_or_else(missing)?;
+    let document = known(studio, &id)?;
     work(move || task(&mut lock(&document), &id)).await
+}
+
+/// Refuses while other work is done on the document.
+fn free(open: &Open) -> Result<(), Refusal> {
+    let text = "work is done on this document: wait for it, or stop it";
+    match open.job.as_ref().is_some_and(|j| !j.is_over()) {
+        true => Err(Refusal(StatusCode::CONFLICT, text.into())),
+        false => Ok(()),
+    }
+}
+
+/// Waits a little for a job that was begun; then whoever asked is told of the job instead.
+async fn waited(
+    job: Arc<Job>,
+    task: impl FnOnce(&Job) -> Result<Value, Refusal> + Send + 'static,
+) -> Answer {
+    let own = job.clone();
+    let run = tokio::task::spawn_blocking(move || {
+        let done = catch_unwind(AssertUnwindSafe(|| task(&own)));
+        let done = done.unwrap_or_else(|_| {
+            let text = "the method failed; the document is as it was before";
+            Err(Refusal(StatusCode::INTERNAL_SERVER_ERROR, text.into()))
+        });
+        own.end(match &done {
+            Ok(_) => End::Done,
+            Err(_) if own.work.is_stopped() => End::Stopped,
+            Err(refusal) => End::Failed(refusal.1.clone()),
+        });
+        done
+    });
+    match timeout(PATIENCE, run).await {
+        Ok(Ok(done)) => done.map(|value| answer(&value)),
+        // The runtime ends.
+        Ok(Err(e)) => Err(Refusal(StatusCode::SERVICE_UNAVAILABLE, e.to_string())),
+        Err(_) => {
+            let told = answer(&json!({"job": job.shown()}));
+            Ok((StatusCode::ACCEPTED, told).into_response())
+        }
+    }
 }
 
 fn lock(document: &Mutex<Open>) -> std::sync::MutexGuard<'_, Open> {
@@ -121,13 +182,17 @@ struct OpenExample {
 
 async fn open(State(studio): State<Arc<Studio>>, bytes: Bytes) -> Answer {
     let wanted: OpenExample = body(&bytes)?;
-    work(move || {
-        let id = format!("d{}", studio.open_example(&wanted.example)? + 1);
-        let (_, document) = studio
-            .get(&id)
-            .ok_or(Refusal(StatusCode::NOT_FOUND, id.clone()))?;
+    let job = studio.jobs.begin(None);
+    waited(job, move |job| {
+        let start = example(&wanted.example, &job.work)?;
+        if job.is_over() {
+            return Err(Stopped.into());
+        }
+        let id = studio.add(Open::new(start, None))?;
+        job.made(&id);
+        let document = known(&studio, &id)?;
         let whole = lock(&document).whole(&id)?;
-        Ok(answer(&whole))
+        Ok(whole)
     })
     .await
 }
@@ -146,19 +211,61 @@ struct Edit {
 
 async fn edit(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
     let wanted: Edit = body(&bytes)?;
-    on(&studio, id, move |open, id| {
-        if open.document.revision() != wanted.revision {
-            let text = "the document was changed in another tab; this one now shows it as it is";
-            return Err(Refusal(StatusCode::CONFLICT, text.into()));
+    let document = known(&studio, &id)?;
+    let (state, job) = on(&studio, id.clone(), {
+        let studio = studio.clone();
+        move |open, id| {
+            if open.document.revision() != wanted.revision {
+                let text =
+                    "the document was changed in another tab; this one now shows it as it is";
+                return Err(Refusal(StatusCode::CONFLICT, text.into()));
+            }
+            free(open)?;
+            let job = studio.jobs.begin(Some(id));
+            open.job = Some(job.clone());
+            Ok((open.document.state().clone(), job))
         }
-        open.edit(&wanted.commands)?;
-        Ok(answer(&open.whole(id)?))
+    })
+    .await?;
+    waited(job, move |job| {
+        // Others may read the document while this goes on: it changes at once, at the end.
+        let start = Instant::now();
+        let steps = steps(&state, &wanted.commands, &job.work)?;
+        let mut open = lock(&document);
+        if !job.end(End::Done) {
+            return Err(Stopped.into());
+        }
+        open.take(&wanted.commands, steps, start.elapsed().as_secs_f64() * 1e3);
+        Ok(open.whole(&id)?)
     })
     .await
 }
 
+async fn ask(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
+    let question: Value = body(&bytes)?;
+    let state = on(&studio, id, |open, _| Ok(open.document.state().clone())).await?;
+    let said = work(move || Ok(state.ask(&question)?)).await?;
+    Ok(answer(&said))
+}
+
+fn known_job(studio: &Studio, id: &str) -> Result<Arc<Job>, Refusal> {
+    let missing = || Refusal(StatusCode::NOT_FOUND, format!("no job {id:?}"));
+    studio.jobs.get(id).ok_or_else(missing)
+}
+
+async fn job(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
+    Ok(answer(&json!({"job": known_job(&studio, &id)?.shown()})))
+}
+
+async fn stop(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
+    let job = known_job(&studio, &id)?;
+    job.stop();
+    Ok(answer(&json!({"job": job.shown()})))
+}
+
 async fn undo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
     on(&studio, id, |open, id| {
+        free(open)?;
         open.document.undo();
         Ok(answer(&open.whole(id)?))
     })
@@ -167,6 +274,7 @@ async fn undo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answ
 
 async fn redo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
     on(&studio, id, |open, id| {
+        free(open)?;
         open.document.redo();
         Ok(answer(&open.whole(id)?))
     })
@@ -201,10 +309,8 @@ async fn export(
     State(studio): State<Arc<Studio>>,
     Path((id, format)): Path<(String, String)>,
 ) -> Answer {
-    let bytes = on(&studio, id, move |open, _| {
-        Ok(open.document.state().export(&format)?)
-    })
-    .await?;
+    let state = on(&studio, id, |open, _| Ok(open.document.state().clone())).await?;
+    let bytes = work(move || Ok(state.export(&format)?)).await?;
     // A drawing is data to be kept, never a page of this server.
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
     Ok((kind, bytes).into_response())

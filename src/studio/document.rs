@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::editing::history::Document;
-use crate::editing::{self, State};
+use super::jobs::Job;
+use crate::editing::history::{Document, steps};
+use crate::editing::work::Work;
+use crate::editing::{self, State, Step};
 use crate::file::write_atomic;
 use crate::{Error, Result, io};
 
@@ -22,6 +24,8 @@ pub struct Open {
     known: Option<Vec<u8>>,
     saved_at: u64,
     milliseconds: f64,
+    /// The work that is done on it.
+    pub job: Option<Arc<Job>>,
 }
 
 /// Why a document is not saved.
@@ -35,19 +39,26 @@ pub enum SaveError {
         "{0} exists and was changed by another program, or is another file; save again to replace it"
     )]
     Changed(String),
+    /// A link is there.
+    #[error(
+        "{0} is a link to another place: nothing is written through it; remove the link, or open the file that it leads to"
+    )]
+    Link(String),
     /// The file cannot be written.
     #[error(transparent)]
     File(#[from] Error),
 }
 
 impl Open {
-    /// Opens a file.
+    /// Opens a file. One that is named by a link is the file that it leads to.
     ///
     /// # Errors
     /// When it cannot be read, or no editor knows it.
     pub fn file(path: &Path) -> Result<Self> {
         let bytes = io::read_bytes(path)?;
-        Ok(Self::new(editing::open(path, &bytes)?, Some(path)))
+        let start = editing::open(path, &bytes, &Work::default())?;
+        let real = std::fs::canonicalize(path).map_err(|e| Error::io(path, "read", e))?;
+        Ok(Self::new(start, Some(&real)))
     }
 
     /// A document; it is saved beside its file, or in the present folder.
@@ -58,25 +69,34 @@ impl Open {
         let own = own.filter(|name| name.ends_with(start.ending()));
         let file = own.map_or_else(|| file_name(start.as_ref()), str::to_owned);
         let known = own.and(path).and_then(|p| std::fs::read(p).ok());
+        // The present folder, as it is now: a link put in its place later leads nowhere.
+        let present = || std::env::current_dir().and_then(std::fs::canonicalize);
         Self {
             document: Document::new(start),
-            folder: folder.unwrap_or_default(),
+            folder: folder.unwrap_or_else(|| present().unwrap_or_default()),
             file,
             known,
             saved_at: 0,
             milliseconds: 0.0,
+            job: None,
         }
     }
 
     /// Does commands.
     ///
     /// # Errors
-    /// As [`Document::edit`].
+    /// As [`steps`].
     pub fn edit(&mut self, commands: &[Value]) -> Result<()> {
         let start = std::time::Instant::now();
-        self.document.edit(commands)?;
-        self.milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        let steps = steps(self.document.state(), commands, &Work::default())?;
+        self.take(commands, steps, start.elapsed().as_secs_f64() * 1e3);
         Ok(())
+    }
+
+    /// Takes what commands came to, in so many milliseconds.
+    pub fn take(&mut self, commands: &[Value], steps: Vec<Step>, milliseconds: f64) {
+        self.document.take(commands, steps);
+        self.milliseconds = milliseconds;
     }
 
     /// Writes the file and the script beside it; their names.
@@ -86,6 +106,9 @@ impl Open {
     pub fn save(&mut self, overwrite: bool) -> Result<[String; 2], SaveError> {
         let script = format!("{}.sh", self.stem());
         let (path, beside) = (self.folder.join(&self.file), self.folder.join(&script));
+        for place in [&path, &beside] {
+            own_place(&self.folder, place)?;
+        }
         let there = match std::fs::read(&path) {
             Ok(bytes) => Some(bytes),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
@@ -116,6 +139,7 @@ impl Open {
         json!({
             "id": id, "kind": state.kind(), "name": self.stem(), "revision": self.document.revision(),
             "unsaved": self.document.revision() != self.saved_at,
+            "job": self.job.as_ref().filter(|j| !j.is_over()).map(|j| j.shown()),
         })
     }
 
@@ -136,6 +160,25 @@ impl Open {
         whole["milliseconds"] = self.milliseconds.into();
         whole["view"] = state.view()?;
         Ok(whole)
+    }
+}
+
+/// Refuses to write through a link: in the file's place, or where its folder was.
+fn own_place(folder: &Path, place: &Path) -> Result<(), SaveError> {
+    let name = |p: &Path| {
+        p.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let is_link = std::fs::symlink_metadata(place).is_ok_and(|m| m.file_type().is_symlink());
+    if is_link {
+        return Err(SaveError::Link(name(place)));
+    }
+    match std::fs::canonicalize(folder) {
+        Ok(real) if real != folder => Err(SaveError::Link(name(folder))),
+        // A folder that is gone is told of by the write.
+        _ => Ok(()),
     }
 }
 

@@ -16,28 +16,46 @@ use tokio::time::timeout;
 
 /// Header of the token.
 pub const TOKEN: &str = "x-edifice-token";
-/// Most bytes of a body.
-pub const BODY: usize = 2 << 20;
-/// Longest time that a body may take to come, and an answer to be made.
-const SENDING: Duration = Duration::from_secs(10);
-const ANSWERING: Duration = Duration::from_secs(120);
 /// What a page may load and do: nothing but what this server serves, no script in the page itself.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// How much and how long.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Most bytes of a body.
+    pub body: usize,
+    /// Longest time that a body may take to come.
+    pub sending: Duration,
+    /// Longest time that an answer may take to be made; work that takes longer is a job.
+    pub answering: Duration,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            body: 2 << 20,
+            sending: Duration::from_secs(10),
+            answering: Duration::from_secs(120),
+        }
+    }
+}
 
 /// What is let in.
 #[derive(Debug, Clone)]
 pub struct Guard {
     hosts: [String; 2],
     token: String,
+    limits: Limits,
 }
 
 impl Guard {
     /// For a server on a port of this machine.
-    pub fn new(port: u16, token: String) -> Self {
+    pub fn new(port: u16, token: String, limits: Limits) -> Self {
         Self {
             hosts: ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}")),
             token,
+            limits,
         }
     }
 
@@ -107,7 +125,7 @@ fn same(a: &[u8], b: &[u8]) -> bool {
 /// Lets a request in, or not.
 pub async fn guard(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let mut response = match guard.check(&request) {
-        Ok(()) => pass(request, next).await,
+        Ok(()) => pass(request, next, guard.limits).await,
         Err(refused) => refused.into_response(),
     };
     let headers = response.headers_mut();
@@ -125,15 +143,15 @@ pub async fn guard(State(guard): State<Guard>, request: Request, next: Next) -> 
 }
 
 /// Reads the body whole, within its limits, and has the request answered in time.
-async fn pass(request: Request, next: Next) -> Response {
+async fn pass(request: Request, next: Next, limits: Limits) -> Response {
     let (parts, body) = request.into_parts();
-    let bytes = match timeout(SENDING, to_bytes(body, BODY)).await {
+    let bytes = match timeout(limits.sending, to_bytes(body, limits.body)).await {
         Ok(Ok(bytes)) => bytes,
         Ok(Err(_)) => return StatusCode::PAYLOAD_TOO_LARGE.into_response(),
         Err(_) => return StatusCode::REQUEST_TIMEOUT.into_response(),
     };
     let request = Request::from_parts(parts, Body::from(bytes));
-    match timeout(ANSWERING, next.run(request)).await {
+    match timeout(limits.answering, next.run(request)).await {
         Ok(response) => response,
         Err(_) => StatusCode::GATEWAY_TIMEOUT.into_response(),
     }

@@ -6,14 +6,23 @@
 //!
 //! | request | body | answer |
 //! | --- | --- | --- |
-//! | `GET /api/documents` | | `version`, `readOnly`, `documents` (each `id`, `kind`, `name`, `revision`, `unsaved`), `examples` |
-//! | `POST /api/documents` | `{"example": ID}` | a document |
+//! | `GET /api/documents` | | `version`, `readOnly`, `documents` (each `id`, `kind`, `name`, `revision`, `unsaved`, `job`), `examples` |
+//! | `POST /api/documents` | `{"example": ID}` | a document, or a job |
 //! | `GET /api/documents/ID` | | a document |
-//! | `POST /api/documents/ID/edit` | `{"commands": [...], "revision": N}` | the document after the [commands](crate::editing) |
+//! | `POST /api/documents/ID/edit` | `{"commands": [...], "revision": N}` | the document after the [commands](crate::editing), or a job |
+//! | `POST /api/documents/ID/ask` | `{"ask": ...}` | what the editor says; the document stays as it is |
 //! | `POST /api/documents/ID/undo`, `redo` | `{}` | the document |
 //! | `POST /api/documents/ID/save` | `{"overwrite": true}` or `{}` | `file`, `script`: names of the files written |
 //! | `GET /api/documents/ID/script` | | the commands as a shell script |
 //! | `GET /api/documents/ID/export/FORMAT` | | the document in that format |
+//!
+//! | `GET /api/jobs/J` | | a job |
+//! | `POST /api/jobs/J/stop` | `{}` | the job, stopped |
+//!
+//! Work that takes longer than 0.3 s is a job: the answer is `{"job": {...}}` with the status 202, and the page asks for the
+//! job until it is over. A job: `id`, `document` (of one that is opened, once it is there), `state` (`running`, `done`,
+//! `stopped`, `failed`), `error`, `step` in words, `part` from 0 to 1 or null, `seconds`. One job at a time works on a document;
+//! `job` in its summary shows it to every tab. A job that is stopped changes nothing; its method ends at its next step.
 //!
 //! A document: `id`, `kind`, `name`, `revision`, `undo`, `redo`, `unsaved`, `file`, `formats`, `warnings`, `log` (each `said`,
 //! `commands`, `done`), `milliseconds` of the last edit, and `view`, what its editor shows.
@@ -26,6 +35,7 @@ mod api;
 mod assets;
 mod document;
 pub mod guard;
+mod jobs;
 mod server;
 
 use std::path::PathBuf;
@@ -36,7 +46,6 @@ pub use document::{Open, SaveError};
 pub use server::{Running, start};
 
 use crate::Result;
-use crate::editing;
 
 /// What the studio is started with.
 #[derive(Debug, Clone, Default)]
@@ -47,11 +56,14 @@ pub struct Settings {
     pub port: u16,
     /// Never write a file.
     pub read_only: bool,
+    /// Limits of requests.
+    pub limits: guard::Limits,
 }
 
 /// The open documents.
 pub struct Studio {
     documents: Mutex<Vec<Arc<Mutex<Open>>>>,
+    jobs: jobs::Jobs,
     read_only: bool,
 }
 
@@ -75,13 +87,16 @@ impl Studio {
         });
         Ok(Self {
             documents: Mutex::new(open.collect::<Result<_>>()?),
+            jobs: jobs::Jobs::default(),
             read_only: settings.read_only,
         })
     }
 
-    /// Opens an example; its index.
-    fn open_example(&self, id: &str) -> Result<usize> {
-        let document = Open::new(editing::examples::example(id)?, None);
+    /// Adds a document; its id.
+    ///
+    /// # Errors
+    /// When there are too many.
+    fn add(&self, document: Open) -> Result<String> {
         let mut all = self
             .documents
             .lock()
@@ -90,7 +105,7 @@ impl Studio {
             return Err(crate::Error::method(TooMany));
         }
         all.push(Arc::new(Mutex::new(document)));
-        Ok(all.len() - 1)
+        Ok(format!("d{}", all.len()))
     }
 
     fn all(&self) -> Vec<Arc<Mutex<Open>>> {
@@ -99,12 +114,8 @@ impl Studio {
     }
 
     /// The document of an id, `d1` for the first.
-    fn get(&self, id: &str) -> Option<(usize, Arc<Mutex<Open>>)> {
-        let index = id
-            .strip_prefix('d')?
-            .parse::<usize>()
-            .ok()?
-            .checked_sub(1)?;
-        Some((index, self.all().get(index)?.clone()))
+    fn get(&self, id: &str) -> Option<Arc<Mutex<Open>>> {
+        let number = id.strip_prefix('d')?.parse::<usize>().ok()?;
+        self.all().get(number.checked_sub(1)?).cloned()
     }
 }

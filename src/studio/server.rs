@@ -31,7 +31,10 @@ pub fn start(settings: &Settings) -> Result<Running> {
     let port = listener.local_addr().map_err(Error::method)?.port();
     let token = token()?;
     Ok(Running {
-        app: guarded(router(studio), Guard::new(port, token.clone())),
+        app: guarded(
+            router(studio),
+            Guard::new(port, token.clone(), settings.limits),
+        ),
         address: format!("http://127.0.0.1:{port}/#token={token}"),
         listener,
     })

@@ -12,6 +12,18 @@ export interface Summary {
   name: string;
   revision: number;
   unsaved: boolean;
+  job: Job | null;
+}
+
+/** Work that takes longer than an answer may. */
+export interface Job {
+  id: string;
+  document: string | null;
+  state: "running" | "done" | "stopped" | "failed";
+  error: string | null;
+  step: string;
+  part: number | null;
+  seconds: number;
 }
 
 export interface Doc<View = unknown> extends Summary {
@@ -80,11 +92,34 @@ async function json<T>(path: string, body?: unknown): Promise<T> {
   return (await ask(path, body)).json();
 }
 
+const POLL = 150;
+
+/** Waits for a job, telling how far it is; what it came to. */
+async function followed(job: Job, tell: (job: Job) => void): Promise<Doc> {
+  let now = job;
+  while (now.state === "running") {
+    tell(now);
+    await new Promise((r) => setTimeout(r, POLL));
+    now = (await json<{ job: Job }>(`/jobs/${job.id}`)).job;
+  }
+  if (now.state === "stopped") throw new Refused(499, "Stopped: the document is as it was before.");
+  if (now.state === "failed" || now.document === null) throw new Refused(422, now.error ?? "the work failed");
+  return get(now.document);
+}
+
+/** A document, at once or when the job is over that makes it. */
+async function document(path: string, body: unknown, tell: (job: Job) => void): Promise<Doc> {
+  const said = await json<Doc | { job: Job; id?: undefined }>(path, body);
+  return said.id === undefined && said.job ? followed(said.job, tell) : (said as Doc);
+}
+
 export const listing = () => json<Listing>("/documents");
-export const openExample = (example: string) => json<Doc>("/documents", { example });
+export const openExample = (example: string, tell: (job: Job) => void) => document("/documents", { example }, tell);
 export const get = (id: string) => json<Doc>(`/documents/${id}`);
-export const edit = (id: string, commands: unknown[], revision: number) =>
-  json<Doc>(`/documents/${id}/edit`, { commands, revision });
+export const edit = (id: string, commands: unknown[], revision: number, tell: (job: Job) => void) =>
+  document(`/documents/${id}/edit`, { commands, revision }, tell);
+export const stop = (job: string) => json<{ job: Job }>(`/jobs/${job}/stop`, {});
+export const question = <T>(id: string, asked: unknown) => json<T>(`/documents/${id}/ask`, asked);
 export const undo = (id: string) => json<Doc>(`/documents/${id}/undo`, {});
 export const redo = (id: string) => json<Doc>(`/documents/${id}/redo`, {});
 export const save = (id: string, overwrite: boolean) =>

@@ -39,7 +39,7 @@ export function bar(session: Session<unknown>, readOnly: boolean, leave: () => v
     undo.disabled = session.busy || !session.doc.undo;
     redo.disabled = session.busy || !session.doc.redo;
   };
-  session.onChange(show);
+  session.onWork(show);
   show();
   return h(
     "header",
@@ -50,6 +50,25 @@ export function bar(session: Session<unknown>, readOnly: boolean, leave: () => v
     h("div", { class: "group seed" }, h("label", {}, h("span", {}, "Seed"), seed), anew),
     save,
   );
+}
+
+/** What is worked on, how far it is, and a button that stops it. */
+export function progress(session: Session<unknown>): HTMLElement {
+  const text = h("span", { role: "status", "aria-live": "polite" });
+  const meter = h("progress", { max: 1, "aria-label": "How much of the work is done" });
+  const strip = h("div", { class: "work", hidden: true }, text, meter, button("Stop", () => session.stop()));
+  const show = () => {
+    const { job } = session;
+    strip.hidden = job === null;
+    if (!job) return;
+    const said = `${job.step || "working"} · ${tidy(job.seconds, 0)} s`;
+    if (text.textContent !== said) text.textContent = said;
+    if (job.part === null) meter.removeAttribute("value");
+    else meter.value = job.part;
+  };
+  session.onWork(show);
+  show();
+  return strip;
 }
 
 /** The list of commands, and what the document can be written as. */

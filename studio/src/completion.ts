@@ -3,6 +3,7 @@
 import type { Doc } from "./api";
 import { button, field, h, s, section, swap, tidy } from "./dom";
 import { arrow, Drawing, place, type Rect, snap } from "./drawing";
+import { rectified } from "./photograph";
 import type { Editor, Session } from "./session";
 
 interface Element_ extends Rect {
@@ -182,13 +183,19 @@ export function completion(session: Session<View>): Editor<View> {
       ["forbid", "Forbid"],
     ];
     const file = h("input", { type: "file", accept: "image/*", class: "hidden", "aria-label": "Photograph to draw over" });
-    file.addEventListener("change", () => {
+    file.addEventListener("change", async () => {
       const chosen = file.files?.[0];
-      if (photograph) URL.revokeObjectURL(photograph);
-      photograph = chosen ? URL.createObjectURL(chosen) : null;
-      show(session.doc);
+      if (!chosen) return;
+      await session.calmly(async () => {
+        const made = await rectified(chosen, view.width / view.height);
+        if (made === null) return;
+        if (photograph) URL.revokeObjectURL(photograph);
+        photograph = made;
+        show(session.doc);
+      });
     });
-    tools.replaceChildren(
+    swap(
+      tools,
       ...all.map(([id, name]) =>
         button(name, () => {
           tool = id;
@@ -196,6 +203,13 @@ export function completion(session: Session<View>): Editor<View> {
         }, { "aria-pressed": String(tool === id), class: `tool ${id}` }),
       ),
       h("label", { class: "tool file" }, "Photograph", file),
+      photograph
+        ? button("No photograph", () => {
+            if (photograph) URL.revokeObjectURL(photograph);
+            photograph = null;
+            show(session.doc);
+          }, { class: "tool" })
+        : null,
     );
   }
 
@@ -245,6 +259,7 @@ export function completion(session: Session<View>): Editor<View> {
       ...(view.unknown ?? []).map(([x, y, width, height]) => s("rect", { class: "unknown", ...place({ x, y, width, height }) })),
       ...view.forbid.map(([x, y, width, height]) => s("rect", { class: "forbid", ...place({ x, y, width, height }) })),
       ...view.elements.map(drawElement),
+      ...[handle(view)].filter((n) => n !== null),
     );
     if (focused) (drawing.layer.querySelector(`[data-id="${CSS.escape(focused)}"]`) as SVGGElement | null)?.focus();
     toolbar(view);
@@ -281,6 +296,26 @@ export function completion(session: Session<View>): Editor<View> {
         h("div", { class: "fields" }, field(`Width (${view.unit})`, view.width, (v) => edit(`outline ${four(v)},${four(view.height)}`)), field(`Height (${view.unit})`, view.height, (v) => edit(`outline ${four(view.width)},${four(v)}`))),
       ),
     );
+  }
+
+  /** The upper right corner of the one selected element, to change its size. */
+  function handle(view: View): SVGElement | null {
+    const own = view.elements.filter((e) => selected.has(e.id));
+    if (own.length !== 1 || tool !== "select") return null;
+    const [e] = own;
+    const size = 9 * drawing.pixel();
+    const corner = s("rect", { class: "handle", x: e.x + e.width - size / 2, y: e.y + e.height - size / 2, width: size, height: size }, s("title", {}, "Drag to change the size"));
+    drawing.draggable(corner, () => {
+      const node = drawing.layer.querySelector(`[data-id="${CSS.escape(e.id)}"] rect`);
+      return (dx, dy, done) => {
+        const width = Math.max(grid(), snap(e.width + dx, grid()));
+        const height = Math.max(grid(), snap(e.height + dy, grid()));
+        node?.setAttribute("width", String(width));
+        node?.setAttribute("height", String(height));
+        if (done && (width !== e.width || height !== e.height)) void edit(`resize ${e.id}=${four(width)},${four(height)}`);
+      };
+    });
+    return corner;
   }
 
   drawing.draggable(drawing.svg, begin);

@@ -68,7 +68,22 @@ export function tidy(value: number, digits = 2): string {
   return Number(value.toFixed(digits)).toString();
 }
 
-/** Puts other children into an element. */
+/** What a control is called, for finding it again in a panel that was drawn anew. */
+function called(node: Element): string {
+  const label = node instanceof HTMLInputElement || node instanceof HTMLSelectElement ? node.labels?.[0]?.textContent : null;
+  const name = node.getAttribute("aria-label") ?? label ?? (node instanceof HTMLTextAreaElement ? "" : node.textContent);
+  return `${node.tagName} ${node.getAttribute("type") ?? ""} ${name ?? ""}`;
+}
+
+/** Puts other children into an element. Whoever works by keyboard stays at the control where he was. */
 export function swap(node: Element, ...children: Child[]): void {
+  const now = document.activeElement;
+  const focused = now && node.contains(now) ? called(now) : null;
+  const scroll = node.closest("aside")?.scrollTop;
   node.replaceChildren(...children.filter((c): c is Node | string => !!c));
+  if (focused === null) return;
+  const again = [...node.querySelectorAll<HTMLElement>("button, input, select, textarea, summary, [tabindex]")].find((n) => called(n) === focused);
+  again?.focus({ preventScroll: true });
+  const aside = node.closest("aside");
+  if (aside && scroll !== undefined) aside.scrollTop = scroll;
 }

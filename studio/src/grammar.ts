@@ -1,6 +1,6 @@
 // The editor of facades by their grammar: a change to one region changes every region of its rule (Wu et al. 2014, Sec. 5).
 
-import type { Doc } from "./api";
+import { type Doc, exported, listing } from "./api";
 import { button, field, h, s, section, swap, tidy } from "./dom";
 import { Drawing, place, type Rect, snap } from "./drawing";
 import type { Editor, Session } from "./session";
@@ -75,6 +75,7 @@ export function grammar(session: Session<View>): Editor<View> {
   let selection: Selection | null = null;
   let trail: Selection[] = [];
   let size: [number, number] | null = null;
+  let clicked: [number, number] | null = null;
 
   const edit = (...edits: string[]) => session.run(() => [{ do: "edit", edits }]);
   const derive = (to: [number, number] | null, seed = session.doc.view.seed, start = session.doc.view.start) =>
@@ -83,6 +84,7 @@ export function grammar(session: Session<View>): Editor<View> {
   /** Selects what is at a point, or what is around it when it is selected already. */
   function pick(at: [number, number]) {
     const { view } = session.doc;
+    clicked = at;
     const inner = view.nonTerminals.filter((n) => holds(rectOf(n), at)).sort((a, b) => b[1] - a[1]);
     const terminal = view.terminals.find(([, x, y, width, height]) => holds({ x, y, width, height }, at));
     const next: Selection[] = [];
@@ -150,14 +152,32 @@ export function grammar(session: Session<View>): Editor<View> {
     for (const [k, v] of Object.entries(place({ x: 0, y: 0, width: size?.[0] ?? 0, height: size?.[1] ?? 0 }))) ghost.setAttribute(k, String(v));
   }
 
-  function draw(view: View) {
-    drawing.frame({ x: 0, y: 0, width: view.width, height: view.height });
-    const cells = view.terminals.map(([label, x, y, width, height]) => {
+  /** The regions of the facade, those of a label in one path; a selection lies over them. */
+  function facade(view: View): SVGGElement {
+    const paths = new Map<string, string[]>();
+    for (const [label, x, y, width, height] of view.terminals) {
+      const path = paths.get(label) ?? [];
+      if (path.length === 0) paths.set(label, path);
+      path.push(`M${x} ${y}h${width}v${height}h${-width}z`);
+    }
+    const cells = [...paths].map(([label, path]) => {
       const known = /^(wall|window|door|balcony|shop|roof|sky)/i.exec(label)?.[1].toLowerCase();
-      const cell = s("rect", { ...place({ x, y, width, height }), class: `terminal ${known ?? ""}` }, s("title", {}, label));
+      const cell = s("path", { d: path.join(""), class: `terminal ${known ?? ""}` }, s("title", {}, label));
       if (!known) cell.style.fill = `color-mix(in srgb, rgb(${view.colors[label].join(",")}) 45%, var(--paper))`;
       return cell;
     });
+    return s("g", {}, ...cells);
+  }
+
+  let drawn: View | null = null;
+  let cells = s("g", {});
+  function draw(view: View) {
+    if (drawn !== view) {
+      drawn = view;
+      drawing.frame({ x: 0, y: 0, width: view.width, height: view.height });
+      cells = facade(view);
+    }
+    cells.setAttribute("class", selection ? "cells dim" : "cells");
     const lit: SVGElement[] = [];
     if (selection) {
       for (const n of view.nonTerminals) if (n[0] === selection.rule) lit.push(s("rect", { ...place(rectOf(n)), class: selection.part === null ? "lit" : "lit weak" }));
@@ -166,13 +186,78 @@ export function grammar(session: Session<View>): Editor<View> {
           if (origin?.[0] === selection.rule && origin[1] === selection.part) lit.push(s("rect", { ...place({ x, y, width, height }), class: "lit" }));
     }
     outline();
-    drawing.layer.replaceChildren(s("g", { class: selection ? "cells dim" : "cells" }, ...cells), ...lit, ghost, ...edges(view), ...handles(view));
+    drawing.layer.replaceChildren(cells, ...lit, ghost, ...edges(view), ...handles(view));
+  }
+
+  /** The rule along an axis that is nearest around the selected region, and which of its parts the region lies in. */
+  function around(view: View, axis: "x" | "y"): { rule: number; part: number } | null {
+    const own = selection?.region;
+    if (!selection || !own) return null;
+    const middle: [number, number] = [own.x + own.width / 2, own.y + own.height / 2];
+    const point = clicked ?? middle;
+    // Around a region that is selected whole: a copy of it, not of a part of it.
+    const same = (r: Rect) => r.x === own.x && r.y === own.y && r.width === own.width && r.height === own.height;
+    const depth = view.nonTerminals.find((n) => n[0] === selection!.rule && same(rectOf(n)))?.[1] ?? Infinity;
+    const below = selection.part === null ? depth : depth + 1;
+    const inner = view.nonTerminals.filter((n) => n[1] < below && holds(rectOf(n), point) && view.rules[n[0]].axis === axis).sort((a, b) => b[1] - a[1]);
+    for (const n of inner) {
+      const r = rectOf(n);
+      const made = layout(view.rules[n[0]], axis === "x" ? r.width : r.height);
+      if (!made) continue;
+      let at = axis === "x" ? r.x : r.y;
+      for (const part of made.order) {
+        const p = view.rules[n[0]].parts[part];
+        at += (p.size ?? 0) * (p.relative ? made.scale : 1);
+        if (point[axis === "x" ? 0 : 1] < at + 1e-9) return { rule: n[0], part };
+      }
+    }
+    return null;
+  }
+
+  /** Floors and columns at the selected place: the facade grows and shrinks by their length. */
+  function floors(view: View): HTMLElement | null {
+    const rows = (["y", "x"] as const).map((axis) => {
+      const place = around(view, axis);
+      if (!place) return null;
+      const name = axis === "y" ? "floor" : "column";
+      const at = `${place.rule}.${place.part}`;
+      const rule = view.rules[place.rule];
+      return h(
+        "div",
+        { class: "row" },
+        button(`Insert ${name}`, () => edit(`grow ${at}`), { title: `A copy of ${rule.parts[place.part].symbol} in the rule of ${rule.symbol}; the facade grows` }),
+        button(`Remove ${name}`, () => edit(`shrink ${at}`), { disabled: rule.operation !== "repeat" && rule.parts.length < 2 }),
+      );
+    });
+    return rows.some((r) => r) ? h("div", { class: "floors" }, ...rows) : null;
+  }
+
+  /** Another facade of this page, or one from a file, explained by the same grammar. */
+  async function merge(texts: string[]) {
+    if (texts.length > 0) await session.run(() => [{ do: "merge", facades: texts }]);
+  }
+
+  function merging(): HTMLElement {
+    const file = h("input", { type: "file", accept: ".json", multiple: true, class: "hidden", "aria-label": "Facade files to merge" });
+    file.addEventListener("change", async () => merge(await Promise.all([...(file.files ?? [])].map((f) => f.text()))));
+    const list = h("div", { class: "row" });
+    void session.calmly(async () => {
+      const all = await listing();
+      const others = all.documents.filter((d) => d.kind === "grammar" && d.id !== session.doc.id);
+      list.replaceChildren(
+        ...others.map((d) =>
+          button(`With ${d.name}`, () => session.calmly(async () => merge([await (await exported(d.id, "facade.json")).text()])), { title: "One grammar of both facades, each as it is shown" }),
+        ),
+      );
+    });
+    return section("Joint grammar", h("p", { class: "hint" }, "One grammar of several facades, in which the rules that they share are written once."), list, h("label", { class: "tool file" }, "With files", file));
   }
 
   function select(rule: number, part: number | null = null) {
     const region = session.doc.view.nonTerminals.find((n) => n[0] === rule);
     selection = { rule, part, region: region ? rectOf(region) : null };
     trail = [];
+    clicked = null;
     show(session.doc);
   }
 
@@ -215,9 +300,18 @@ export function grammar(session: Session<View>): Editor<View> {
       h("datalist", { id: "symbols" }, ...symbols.map((v) => h("option", { value: v }))),
       h("table", { class: "parts" }, h("tbody", {}, ...parts)),
       h("div", { class: "row" }, rule.operation === "split" ? button("Turn into a repeat", () => edit(`repeat ${r}`)) : null, rule.weight !== null ? field("Weight", rule.weight, (v) => edit(`weight ${r}=${v}`)) : null),
+      floors(view),
     );
   }
 
+  /** Which facade of a joint grammar is shown. */
+  function starts(view: View): HTMLElement {
+    const choose = h("select", { "aria-label": "Facade of the joint grammar" }, ...view.starts.map((o, k) => h("option", { value: k, selected: k === view.start }, o.name)));
+    choose.addEventListener("change", () => derive(null, view.seed, Number(choose.value)));
+    return choose;
+  }
+
+  const joint = merging();
   function show(doc: Doc<View>) {
     const { view } = doc;
     if (selection && !view.rules[selection.rule]) selection = null;
@@ -253,7 +347,9 @@ export function grammar(session: Session<View>): Editor<View> {
           view.stochastic ? button("Draw another", () => derive(view.size, ++session.seed)) : null,
         ),
         h("p", { class: "hint" }, `Its own size is ${tidy(own.width)} × ${tidy(own.height)}. Drag the right or upper edge.`),
+        view.starts.length > 1 ? h("label", { class: "field" }, h("span", {}, "Facade"), starts(view)) : null,
       ),
+      joint,
     );
   }
 

@@ -5,6 +5,7 @@ import { button, field, h, s, section, swap, tidy } from "./dom";
 import { arrow, Drawing, place, snap } from "./drawing";
 import type { Editor, Session } from "./session";
 import { type MeshData, Scene3 } from "./scene3";
+import { type Wishing, Wishes } from "./wishes";
 
 interface Box {
   style: "main" | "garage" | "porch";
@@ -22,10 +23,9 @@ interface Answer {
   volume: number;
 }
 
-interface View {
+interface View extends Wishing {
   boxes: Box[];
   locked: boolean[];
-  columns: { name: string; group: string; value: number | null; wanted: number | null }[];
   report: { distance: number; donor: string | null; volume: number; unplaced: number } | null;
   scene: MeshData[];
   answers: Answer[];
@@ -66,11 +66,16 @@ function thumbnail(boxes: Box[]): SVGSVGElement {
 export function house(session: Session<View>): Editor<View> {
   const plan = new Drawing("Plan of the house. Tab to a box, arrow keys move it.");
   const view = new Scene3("View of the house; arrow keys turn it");
+  const wishes = new Wishes(session as unknown as Session<Wishing>);
+  const walking = button("Walk around", () => {
+    const on = view.walk(walking.getAttribute("aria-pressed") !== "true");
+    walking.setAttribute("aria-pressed", String(on));
+  }, { class: "quiet", "aria-pressed": "false", title: "Arrow keys walk and turn, a drag looks around" });
   const stage = h(
     "div",
     { class: "stage two" },
     h("figure", {}, h("figcaption", {}, "Plan"), plan.svg as unknown as HTMLElement),
-    h("figure", {}, h("figcaption", {}, "View"), view.element),
+    h("figure", {}, h("figcaption", { class: "row" }, "View", walking), view.element),
   );
   const panel = h("div", {});
   let selected = 0;
@@ -256,6 +261,7 @@ export function house(session: Session<View>): Editor<View> {
         h("p", { class: "hint" }, suggest ? "Boxes that you touch stay; all others are the model's most probable answer." : "All boxes stay; facades and roofs are laid out anew."),
       ),
       inspector(doc),
+      wishes.panel(doc),
       answers(doc),
       r ? h("p", { class: "hint" }, `Facades ${tidy(r.distance)} sd from what was wanted, ${tidy(r.volume, 0)} m³${r.donor ? `, boxes like ${r.donor}` : ""}`) : null,
       attributes(doc),

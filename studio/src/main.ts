@@ -1,7 +1,7 @@
 // The page: a list to begin with, or one document in its editor.
 
 import * as api from "./api";
-import { bar, footer, keys, kindName } from "./chrome";
+import { bar, footer, keys, kindName, progress } from "./chrome";
 import { city } from "./city";
 import { completion } from "./completion";
 import { button, h } from "./dom";
@@ -51,11 +51,17 @@ async function start() {
   const opened = all.documents.map((d) =>
     card(d.name, d.unsaved ? "open, not saved" : "open", d.kind, () => go(d.id)),
   );
+  const working = h("div", { class: "work", hidden: true });
   const examples = all.examples.map((e) =>
     card(e.title, e.about, e.kind, async () => {
       try {
-        go((await api.openExample(e.id)).id);
+        const doc = await api.openExample(e.id, (job) => {
+          working.hidden = false;
+          working.replaceChildren(h("span", { role: "status" }, `${e.title}: ${job.step || "opening"}`), h("progress", { max: 1, value: job.part, "aria-label": "How much is done" }), button("Stop", () => void api.stop(job.id).catch(fail)));
+        });
+        go(doc.id);
       } catch (error) {
+        working.hidden = true;
         fail(error);
       }
     }),
@@ -66,6 +72,7 @@ async function start() {
       "main",
       { class: "start" },
       h("h1", {}, "Edifice studio"),
+      working,
       h("p", { class: "lead" }, "Draw a part, and see what a method makes of the rest. What you fix stays; every edit is a command that can be run again without this page."),
       ...(opened.length > 0 ? [h("h2", {}, "Open"), h("ul", { class: "cards" }, ...opened)] : []),
       h("h2", {}, "Begin with"),
@@ -82,16 +89,17 @@ async function edit(id: string) {
   const editor = EDITORS[doc.kind](session);
   const pressed = keys(session, all.readOnly);
   const show = () => {
-    app.classList.toggle("busy", session.busy);
     document.title = `${session.doc.name} · Edifice studio`;
     editor.show(session.doc);
   };
   app.replaceChildren(
     bar(session, all.readOnly, () => go(null)),
+    progress(session),
     h("main", { class: `editor ${doc.kind}` }, editor.stage, h("aside", { "aria-label": "Properties" }, editor.panel, footer(session))),
     notice,
   );
   session.onChange(show);
+  session.onWork(() => app.classList.toggle("busy", session.busy));
   show();
   addEventListener("keydown", pressed);
   const poll = setInterval(() => {

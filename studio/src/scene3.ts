@@ -11,6 +11,19 @@ export interface MeshData {
 }
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
+/** Height of the eyes of somebody who walks, length of a step, and room kept before walls (m). */
+const EYES = 1.65;
+const STEP = 0.4;
+const ROOM = 0.35;
+
+/** Whether pictures are computed by the processor: then without shadows and smooth edges, which take most of the time. */
+const software = (() => {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+})();
 
 /** A view that is drawn when something changed. */
 export class Scene3 {
@@ -22,7 +35,10 @@ export class Scene3 {
   private controls: OrbitControls | null = null;
   private sun = new THREE.DirectionalLight(0xfff4e2, 2.4);
   private ground: THREE.Mesh;
+  /** Told when the view was turned, or somebody walked. */
+  onMove: () => void = () => {};
   private size = 0;
+  private walks = false;
   private asked = 0;
   private watch: ResizeObserver;
 
@@ -39,14 +55,23 @@ export class Scene3 {
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.03;
     try {
-      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-      this.renderer.shadowMap.enabled = true;
-      this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, alpha: true });
+      this.renderer.shadowMap.enabled = !software;
+      this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
       this.controls = new OrbitControls(this.camera, canvas);
       this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
       this.controls.keyPanSpeed = 20;
-      this.controls.addEventListener("change", () => this.draw());
-      canvas.addEventListener("keydown", (event) => this.turn(event));
+      this.controls.addEventListener("change", () => {
+        this.draw();
+        this.onMove();
+      });
+      canvas.addEventListener("keydown", (event) => (this.walks ? this.step(event) : this.turn(event)));
+      canvas.addEventListener("pointermove", (event) => {
+        if (!this.walks || event.buttons === 0) return;
+        this.camera.rotation.y += event.movementX * 0.004;
+        this.camera.rotation.x = Math.min(Math.max(this.camera.rotation.x + event.movementY * 0.004, -1.2), 1.2);
+        this.draw();
+      });
     } catch {
       this.element.replaceChildren(h("p", { class: "hint" }, "This browser draws nothing in three dimensions; the plan works without."));
     }
@@ -64,6 +89,94 @@ export class Scene3 {
     offset.phi = Math.min(Math.max(offset.phi + turn[1], 0.1), Math.PI / 2 - 0.02);
     this.camera.position.setFromSpherical(offset).add(this.controls.target);
     this.controls.update();
+  }
+
+  /** Begins or ends a walk on the ground; whether one is on. */
+  walk(on: boolean): boolean {
+    if (!this.controls) return false;
+    this.walks = on;
+    this.controls.enabled = !on;
+    if (!on) {
+      this.size = 0;
+      this.camera.rotation.order = "XYZ";
+      this.frame([0.55, 0.42, 1]);
+      this.draw();
+      return false;
+    }
+    const box = new THREE.Box3().setFromObject(this.content);
+    const ball = box.getBoundingSphere(new THREE.Sphere());
+    // Before the house, as one comes from the street.
+    this.camera.position.set(ball.center.x - 0.3 * ball.radius, this.ground.position.y + EYES, box.max.z + 1.1 * ball.radius);
+    this.camera.rotation.order = "YXZ";
+    this.camera.rotation.set(0.08, -0.2, 0);
+    this.camera.near = 0.1;
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+    this.element.querySelector("canvas")?.focus();
+    this.draw();
+    return true;
+  }
+
+  /** Where somebody who walks stands. */
+  place(): [number, number, number] {
+    return this.camera.position.toArray();
+  }
+
+  private step(event: KeyboardEvent) {
+    const key = event.key.toLowerCase();
+    const turn = { arrowleft: 0.12, arrowright: -0.12 }[key];
+    const ahead = { arrowup: 1, w: 1, arrowdown: -1, s: -1 }[key];
+    const aside = { a: -1, d: 1 }[key];
+    if (turn === undefined && ahead === undefined && aside === undefined) return;
+    event.preventDefault();
+    if (turn) this.camera.rotation.y += turn;
+    const angle = this.camera.rotation.y;
+    const way = new THREE.Vector3(-Math.sin(angle), 0, -Math.cos(angle)).multiplyScalar(ahead ?? 0);
+    way.add(new THREE.Vector3(Math.cos(angle), 0, -Math.sin(angle)).multiplyScalar(aside ?? 0));
+    if (way.lengthSq() > 0) {
+      const ray = new THREE.Raycaster(this.camera.position, way.normalize(), 0, STEP + ROOM);
+      const walls = this.content.children.filter((o) => o instanceof THREE.Mesh);
+      if (ray.intersectObjects(walls).length === 0) this.camera.position.addScaledVector(way, STEP);
+    }
+    this.draw();
+    this.onMove();
+  }
+
+  /** Looks as another view does. */
+  follow(other: Scene3) {
+    if (!this.controls || !other.controls) return;
+    this.camera.position.copy(other.camera.position);
+    this.camera.near = other.camera.near;
+    this.camera.far = other.camera.far;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(other.controls.target);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Looks at a place from where it is now, so near that what has this size fills the view. */
+  lookAt(x: number, y: number, z: number, size: number) {
+    if (!this.controls) return;
+    const away = this.camera.position.clone().sub(this.controls.target).setLength(size * 2.2);
+    this.controls.target.set(x, y, z);
+    this.camera.position.copy(this.controls.target).add(away);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Where a ray through a point of the view meets the ground. */
+  groundAt(event: MouseEvent): THREE.Vector3 | null {
+    const plane = new THREE.Plane(new THREE.Vector3(0, 1, 0), -this.ground.position.y);
+    return this.ray(event).ray.intersectPlane(plane, new THREE.Vector3());
+  }
+
+  /** The ray through a point of the view. */
+  ray(event: MouseEvent): THREE.Raycaster {
+    const box = this.element.getBoundingClientRect();
+    const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(at, this.camera);
+    return ray;
   }
 
   private resize() {
@@ -91,6 +204,7 @@ export class Scene3 {
     const ball = box.getBoundingSphere(new THREE.Sphere());
     this.ground.scale.setScalar(ball.radius * 3);
     this.ground.position.set(ball.center.x, box.min.y - 0.01, ball.center.z);
+    if (this.walks) return;
     this.sun.position.copy(ball.center).add(new THREE.Vector3(-0.9, 1.5, 1.1).multiplyScalar(ball.radius * 2));
     this.sun.target.position.copy(ball.center);
     const reach = ball.radius * 1.5;
@@ -128,6 +242,7 @@ export class Scene3 {
   show(meshes: MeshData[]) {
     this.clear();
     const line = dark.matches ? 0x10151c : 0x3a3f47;
+    const faint = dark.matches ? 0x2c3138 : 0x77736c;
     for (const mesh of meshes) {
       const positions = new THREE.BufferAttribute(Float32Array.from(mesh.positions, (v) => v / 1000), 3);
       for (const part of mesh.parts) {
@@ -137,18 +252,21 @@ export class Scene3 {
         const geometry = indexed.toNonIndexed();
         geometry.computeVertexNormals();
         const [r, g, b] = part.color;
-        const material = new THREE.MeshStandardMaterial({
-          color: new THREE.Color().setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace),
-          roughness: part.finish === "pane" ? 0.2 : 0.9,
-        });
+        const colour = new THREE.Color().setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace);
+        const material = software
+          ? new THREE.MeshLambertMaterial({ color: colour })
+          : new THREE.MeshStandardMaterial({ color: colour, roughness: part.finish === "pane" ? 0.2 : 0.9 });
         const solid = new THREE.Mesh(geometry, material);
         solid.castShadow = solid.receiveShadow = true;
-        const edges = new THREE.LineSegments(
-          new THREE.EdgesGeometry(indexed, 20),
-          new THREE.LineBasicMaterial({ color: line, transparent: true, opacity: part.finish === "pane" ? 0.25 : 0.45 }),
-        );
-        this.content.add(solid, edges);
+        this.content.add(solid);
       }
+      // The edges of all parts at once; the processor draws them without mixing colours, and none around panes.
+      const outlined = mesh.parts.filter((part) => !software || part.finish !== "pane");
+      const whole = new THREE.BufferGeometry();
+      whole.setAttribute("position", positions);
+      whole.setIndex(outlined.flatMap((part) => part.indices));
+      const material = new THREE.LineBasicMaterial({ color: software ? faint : line, transparent: !software, opacity: 0.42 });
+      this.content.add(new THREE.LineSegments(new THREE.EdgesGeometry(whole, 20), material));
     }
     this.frame([0.55, 0.42, 1]);
     this.draw();

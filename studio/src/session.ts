@@ -18,26 +18,69 @@ export class Session<View = never> {
   doc: api.Doc<View>;
   seed = 1;
   busy = false;
+  /** What is worked on, here or from another tab. */
+  job: api.Job | null;
+  /** Why the last command was refused. */
+  failure = "";
   private listeners: (() => void)[] = [];
+  private watchers: (() => void)[] = [];
   private say: (text: string, kind: "note" | "error") => void;
   private pending: (() => unknown[])[] = [];
 
   constructor(doc: api.Doc<View>, say: (text: string, kind: "note" | "error") => void) {
     this.doc = doc;
     this.say = say;
+    this.job = doc.job;
   }
 
   onChange(listener: () => void) {
     this.listeners.push(listener);
   }
 
+  /** Told when work begins, goes on and ends, and after every change. */
+  onWork(watcher: () => void) {
+    this.watchers.push(watcher);
+  }
+
   private tell() {
     for (const listener of this.listeners) listener();
+    this.watch();
+  }
+
+  /** Draws again what only the page knows. */
+  redraw() {
+    this.tell();
+  }
+
+  private watch() {
+    for (const watcher of this.watchers) watcher();
   }
 
   private take(doc: api.Doc<unknown>) {
     this.doc = doc as api.Doc<View>;
+    this.job = doc.job;
     this.tell();
+  }
+
+  /** Stops what is worked on, whoever began it. */
+  async stop() {
+    const job = this.job;
+    if (job) await this.calmly(async () => void (await api.stop(job.id)));
+  }
+
+  /** Asks the server about the document. */
+  async ask<T>(question: unknown): Promise<T | null> {
+    try {
+      return await api.question<T>(this.doc.id, question);
+    } catch (error) {
+      this.say(error instanceof Error ? error.message : String(error), "error");
+      return null;
+    }
+  }
+
+  /** Tells the user something. */
+  note(text: string) {
+    this.say(text, "note");
   }
 
   /** Does commands, made when their turn comes: an edit that waits sees what the one before came to. */
@@ -45,13 +88,18 @@ export class Session<View = never> {
     this.pending.push(commands);
     if (this.busy) return;
     this.busy = true;
-    this.tell();
+    this.failure = "";
+    this.watch();
+    const working = (job: api.Job) => {
+      this.job = job;
+      this.watch();
+    };
     try {
       while (this.pending.length > 0) {
         // Of several that wait, each is done: none is lost while the server works.
         const next = this.pending.shift()!();
         if (next.length > 0) {
-          this.take(await api.edit(this.doc.id, next, this.doc.revision));
+          this.take(await api.edit(this.doc.id, next, this.doc.revision, working));
           this.say(this.doc.warnings.join("; "), "note");
         }
       }
@@ -60,7 +108,8 @@ export class Session<View = never> {
       await this.refused(error);
     } finally {
       this.busy = false;
-      this.tell();
+      this.job = null;
+      this.watch();
     }
   }
 
@@ -94,6 +143,11 @@ export class Session<View = never> {
       // The list is short; a city is not.
       const all = await api.listing();
       const own = all.documents.find((d) => d.id === this.doc.id);
+      if (this.busy) return;
+      if (own && JSON.stringify(own.job) !== JSON.stringify(this.job)) {
+        this.job = own.job;
+        this.watch();
+      }
       if (own?.revision === this.doc.revision && own.unsaved === this.doc.unsaved) return;
     }
     const doc = await api.get(this.doc.id);
@@ -109,11 +163,13 @@ export class Session<View = never> {
   }
 
   private async refused(error: unknown) {
-    this.say(error instanceof Error ? error.message : String(error), "error");
+    this.failure = error instanceof Error ? error.message : String(error);
+    this.say(this.failure, "error");
     if (error instanceof api.Refused && error.status === 409) {
       this.busy = false;
       await this.refresh(true);
     } else {
+      // What was typed and refused goes back to what is.
       this.tell();
     }
   }

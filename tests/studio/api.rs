@@ -1,67 +1,9 @@
 //! The API by calling its router, without a socket.
 
-use std::sync::Arc;
-
-use axum::body::{Body, to_bytes};
-use axum::http::{Request, StatusCode};
-use edifice::studio::{Settings, Studio, router};
+use edifice::studio::Settings;
 use serde_json::{Value, json};
-use tower::ServiceExt;
 
-struct Api {
-    router: axum::Router,
-    runtime: tokio::runtime::Runtime,
-}
-
-impl Api {
-    fn new(settings: &Settings) -> Self {
-        let studio = Arc::new(Studio::new(settings).expect("opens"));
-        let runtime = tokio::runtime::Builder::new_current_thread();
-        Self {
-            router: router(studio),
-            runtime: { runtime }.enable_all().build().expect("runs"),
-        }
-    }
-
-    fn send(&self, verb: &str, path: &str, body: &Value) -> (StatusCode, Value) {
-        let body = if body.is_null() {
-            Body::empty()
-        } else {
-            Body::from(body.to_string())
-        };
-        let request = Request::builder()
-            .method(verb)
-            .uri(path)
-            .body(body)
-            .expect("a request");
-        self.runtime.block_on(async {
-            let answer = self.router.clone().oneshot(request).await.expect("answers");
-            let status = answer.status();
-            let bytes = to_bytes(answer.into_body(), 1 << 26).await.expect("whole");
-            let value = serde_json::from_slice(&bytes);
-            let text = || Value::String(String::from_utf8_lossy(&bytes).into_owned());
-            (status, value.unwrap_or_else(|_| text()))
-        })
-    }
-
-    fn get(&self, path: &str) -> Value {
-        let (status, value) = self.send("GET", path, &Value::Null);
-        assert_eq!(status, 200, "{path}: {value}");
-        value
-    }
-
-    fn post(&self, path: &str, body: Value) -> Value {
-        let (status, value) = self.send("POST", path, &body);
-        assert_eq!(status, 200, "{path}: {value}");
-        value
-    }
-
-    fn edit(&self, id: &str, commands: Value) -> Value {
-        let revision = self.get(&format!("/api/documents/{id}"))["revision"].clone();
-        let body = json!({"commands": commands, "revision": revision});
-        self.post(&format!("/api/documents/{id}/edit"), body)
-    }
-}
+use crate::client::Api;
 
 fn api() -> Api {
     Api::new(&Settings::default())

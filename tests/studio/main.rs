@@ -3,7 +3,13 @@
 #![cfg(feature = "studio")]
 
 mod api;
+mod cities;
+mod client;
+mod crash;
+mod editors;
 mod guard;
+mod jobs;
+mod limits;
 mod saving;
 mod scripts;
 mod socket;

@@ -55,6 +55,104 @@ fn what_another_program_wrote_is_not_replaced_unasked() {
 }
 
 #[test]
+fn two_studios_on_one_file_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = file(folder.path());
+    let settings = Settings {
+        files: vec![path.clone()],
+        ..Settings::default()
+    };
+    let servers = [Server::start(&settings), Server::start(&settings)];
+    let edit = |server: &Server, x: usize| {
+        let edits = format!(
+            "{{\"commands\": [{{\"do\": \"edit\", \"edits\": [\"move #0={x},2\"]}}], \"revision\": 0}}"
+        );
+        assert_eq!(
+            server.page("POST /api/documents/d1/edit", &edits).status,
+            200
+        );
+    };
+    edit(&servers[0], 3);
+    edit(&servers[1], 5);
+    let save = "POST /api/documents/d1/save";
+    assert_eq!(servers[0].page(save, "{}").status, 200);
+    let first = std::fs::read(&path).expect("there");
+    let refused = servers[1].page(save, "{}");
+    assert_eq!(refused.status, 409, "{}", refused.text);
+    assert!(
+        refused.text.contains("changed by another program"),
+        "{}",
+        refused.text
+    );
+    assert_eq!(std::fs::read(&path).expect("there"), first);
+    // Neither lost its edit: the second may replace the file, and then the first is told.
+    assert_eq!(servers[1].page(save, "{\"overwrite\": true}").status, 200);
+    assert_ne!(std::fs::read(&path).expect("there"), first);
+    assert_eq!(servers[0].page(save, "{}").status, 409);
+    assert!(
+        servers[0]
+            .page("GET /api/documents/d1", "")
+            .text
+            .contains("\"x\":3")
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn nothing_is_written_through_a_link() {
+    use std::os::unix::fs::symlink;
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let outside = tempfile::tempdir().expect("a folder");
+    let secret = outside.path().join("profile");
+    std::fs::write(&secret, "mine").expect("written");
+    // A link in the place of the script, then of the file.
+    for name in ["f.sh", "f.facade.json"] {
+        let mut open = edited(&file(folder.path()));
+        let place = folder.path().join(name);
+        let _ = std::fs::remove_file(&place);
+        symlink(&secret, &place).expect("a link");
+        for overwrite in [false, true] {
+            let message = open.save(overwrite).expect_err("refused").to_string();
+            assert!(
+                message.contains(name) && message.contains("link"),
+                "{message}"
+            );
+        }
+        assert_eq!(std::fs::read_to_string(&secret).expect("there"), "mine");
+        std::fs::remove_file(&place).expect("removed");
+    }
+    // A link in the place of the folder.
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).expect("a folder");
+    let mut open = edited(&file(&inner));
+    std::fs::rename(&inner, folder.path().join("moved")).expect("moved");
+    symlink(outside.path(), &inner).expect("a link");
+    let message = open.save(true).expect_err("refused").to_string();
+    assert!(message.contains("link"), "{message}");
+    assert_eq!(
+        std::fs::read_dir(outside.path()).expect("listed").count(),
+        1
+    );
+    // A file that was opened by a link is saved where it is.
+    let real = file(outside.path());
+    let link = folder.path().join("by.facade.json");
+    symlink(&real, &link).expect("a link");
+    let mut open = edited(&link);
+    assert_eq!(open.save(false).expect("saved"), ["f.facade.json", "f.sh"]);
+    assert!(
+        std::fs::symlink_metadata(&link)
+            .expect("there")
+            .is_symlink()
+    );
+    assert!(
+        std::fs::read_to_string(&real)
+            .expect("there")
+            .contains("\"x\": 2")
+    );
+}
+
+#[test]
 fn a_folder_that_is_gone_loses_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut open = edited(&file(folder.path()));

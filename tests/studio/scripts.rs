@@ -5,10 +5,11 @@ use std::process::Command;
 
 use edifice::editing::examples::example;
 use edifice::editing::history::Document;
+use edifice::editing::work::Work;
 use serde_json::{Value, json};
 
 fn document(id: &str) -> Document {
-    Document::new(example(id).expect("ships"))
+    Document::new(example(id, &Work::default()).expect("ships"))
 }
 
 fn edit(document: &mut Document, commands: Value) {
@@ -33,7 +34,7 @@ fn run(document: &Document, folder: &Path) -> Vec<u8> {
     std::fs::read(folder.join("made.file")).expect("made")
 }
 
-fn same_bytes(document: &Document) {
+pub fn same_bytes(document: &Document) {
     let folder = tempfile::tempdir().expect("a folder");
     let own = document.state().bytes().expect("a file");
     assert!(

@@ -37,6 +37,11 @@ impl Server {
         self.send(bytes, true)
     }
 
+    /// Sends bytes as they are, and stays.
+    pub fn raw_open(&self, bytes: &[u8]) -> Answer {
+        self.send(bytes, false)
+    }
+
     fn send(&self, bytes: &[u8], ends: bool) -> Answer {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("connects");
         let limit = Some(Duration::from_secs(30));

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use edifice::editing::examples::example;
 use edifice::editing::history::Document;
+use edifice::editing::work::Work;
 use edifice::rng::stream;
 use rand::RngExt;
 use serde_json::{Value, json};
@@ -12,7 +13,7 @@ const EDITS: usize = 200;
 
 /// Does the edits, with the view of each; the 95th percentile and the median in milliseconds.
 fn measured(id: &str, mut command: impl FnMut(&Document, usize) -> Value) -> [f64; 2] {
-    let mut document = Document::new(example(id).expect("ships"));
+    let mut document = Document::new(example(id, &Work::default()).expect("ships"));
     let mut times = Vec::new();
     let mut refused = 0;
     // The first reads models and data, once for a server.

@@ -8,6 +8,7 @@ use crate::source::{Source, has_word, sources};
 /// Files of a method that do not have its name: its commands, and programs that serve it alone.
 const OWN: &[(&str, &str)] = &[
     ("facade_grammar", "src/cli/grammar/infer.rs"),
+    ("facade_grammar", "src/cli/grammar/merge.rs"),
     ("facade_grammar", "examples/exact_search.rs"),
     ("facade_grammar", "examples/make_layouts.rs"),
     ("procedural_logic", "src/cli/logic"),

@@ -1,8 +1,9 @@
-//! `edifice building variations` and `edit`.
+//! `edifice building variations`, `edit` and `wish`.
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::{self as editing, is_file_name};
+use edifice::editing::building_exteriors::{self as editing, Wishes, is_file_name};
+use edifice::editing::work::Work;
 use edifice::io::building_json;
 use edifice::methods::building_exteriors::design::Edit;
 use edifice::shape::Building;
@@ -69,6 +70,33 @@ pub struct EditArgs {
     json: bool,
 }
 
+/// Options of `wish`.
+#[derive(clap::Args)]
+pub struct WishArgs {
+    /// The house (`*.building.json`).
+    house: PathBuf,
+    /// A wish: COLUMN=VALUE, for example bbox.w=14 or roof.hip=yes; repeatable.
+    #[arg(long, value_name = "COLUMN=VALUE")]
+    given: Vec<String>,
+    /// A style of the model that ships, the first is 1.
+    #[arg(long, conflicts_with = "keep")]
+    style: Option<usize>,
+    /// All other attributes stay as they are; without it they are the model's.
+    #[arg(long)]
+    keep: bool,
+    /// Folder of the output; it is made when it does not exist.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    making: Making,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print a line of JSON for the house.
+    #[arg(long)]
+    json: bool,
+}
+
 /// The one house of a file.
 fn house(path: &Path) -> Result<Building> {
     let mut houses = building_json::read(path)?;
@@ -122,6 +150,32 @@ pub fn edit(args: &EditArgs) -> Result<()> {
         (None, false) => None,
     };
     let made = editing::edit(&house, &edits, model, &database, &options, args.seed);
+    let made = made.map_err(|e| Error::content(&args.house, e))?;
+    args.making.write(&[made], &args.output, args.json)
+}
+
+/// Runs `wish`.
+pub fn wish(args: &WishArgs) -> Result<()> {
+    let given = editing::given(&args.given);
+    let wishes = Wishes {
+        given: given.map_err(|e| Error::option("--given", e.to_string()))?,
+        style: args.style,
+        keep: args.keep,
+    };
+    if args.given.is_empty() && args.style.is_none() {
+        return Err(Error::option("--given", "nothing is wished"));
+    }
+    let house = house(&args.house)?;
+    let (database, options) = (args.making.database()?, args.making.options());
+    let known = (&editing::shipped_model()?.model, &database);
+    let made = editing::wished(
+        &house,
+        &wishes,
+        known,
+        &options,
+        args.seed,
+        &Work::default(),
+    );
     let made = made.map_err(|e| Error::content(&args.house, e))?;
     args.making.write(&[made], &args.output, args.json)
 }

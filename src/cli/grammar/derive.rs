@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::split_grammar::{Wish, derived};
+use edifice::editing::split_grammar::{Wish, derived, glb};
 use edifice::grammar::{Derivation, Grammar, check};
-use edifice::io::{read_grammar, write_facade};
+use edifice::io::{read_grammar, write_atomic, write_facade};
 use edifice::shape::Facade;
 use edifice::{Error, Result};
 
@@ -41,7 +41,7 @@ pub struct Args {
     /// At another size, leave edges where the rules put them
     #[arg(long)]
     no_align: bool,
-    /// File to write: .facade.json, .svg or .png
+    /// File to write: .facade.json, .svg, .png or .glb (in relief, metres)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 }
@@ -49,7 +49,11 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let facade = derive(args)?;
-    write_facade(&facade, &args.output)?;
+    let extension = args.output.extension().unwrap_or_default();
+    match extension.eq_ignore_ascii_case("glb") {
+        true => write_atomic(&args.output, &glb(&facade)?)?,
+        false => write_facade(&facade, &args.output)?,
+    }
     print::line(&format!(
         "{}: {} regions, {} x {} {}",
         args.output.display(),

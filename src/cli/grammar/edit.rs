@@ -17,8 +17,9 @@ use crate::cli::print;
   edifice grammar edit fig9.grammar.json 'symbol 3.1=Door' 'insert 0.2=Cornice:4' -o edited.grammar.json
 
 Edits, made in turn: resize RULE.PART=SIZE; border RULE.PART=SHIFT (between this part and the next); symbol RULE.PART=NAME;
-insert RULE.PART=NAME:SIZE (before this part); remove RULE.PART; repeat RULE (a split of equal periods); weight RULE=W;
-outline W,H. Rules and parts are counted from 0, as in the file. Sizes are made relative first, so that what is inside an
+insert RULE.PART=NAME:SIZE (before this part); remove RULE.PART; grow RULE.PART (a copy of the part before it, as a floor or a
+column: the facade grows by its length); shrink RULE.PART (the part goes, the facade shrinks); repeat RULE (a split of equal
+periods); weight RULE=W; outline W,H. Rules and parts are counted from 0, as in the file. Sizes are made relative first, so that what is inside an
 edited region follows it.")]
 pub struct Args {
     /// Grammar to read: .grammar.json or .cga, also as .gz

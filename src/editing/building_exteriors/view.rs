@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::House;
+use super::wish::{FIRST_FLAG, given, ranges};
+use super::{House, shipped_model};
 use crate::methods::building_exteriors::attributes::{GROUPS, attributes};
 use crate::methods::building_exteriors::design::Edit;
 use crate::methods::building_exteriors::house::scene::{Placed, scene};
@@ -59,12 +60,16 @@ fn place(b: &MassBox) -> [f64; 5] {
 pub fn view(house: &House) -> Result<Value> {
     let b = &house.building;
     let row = attributes(b).map_err(Error::method)?;
+    let (ranges, wished) = (ranges()?, given(&house.wishes)?);
     let columns: Vec<Value> = GROUPS
         .iter()
         .flat_map(|g| (g.columns().iter().enumerate()).map(move |(k, c)| (g, g.first + k, c)))
         .map(|(group, c, name)| {
             let wanted = house.report.as_ref().map(|r| r.wanted[c]);
-            json!({"name": name, "group": group.name, "value": row[c], "wanted": wanted})
+            json!({
+                "name": name, "group": group.name, "value": row[c], "wanted": wanted, "flag": c >= FIRST_FLAG,
+                "low": ranges[c][0], "high": ranges[c][1], "wish": wished[c],
+            })
         })
         .collect();
     let report = house.report.as_ref().map(|r| {
@@ -76,6 +81,7 @@ pub fn view(house: &House) -> Result<Value> {
     Ok(json!({
         "unit": b.unit, "floorHeight": b.floor_height, "boxes": boxes(b), "locked": house.locked,
         "columns": columns, "report": report, "scene": shown(&scene_of(b, &house.model)),
+        "styles": shipped_model()?.model.style_probabilities(), "style": house.style, "keep": house.keep,
         "answers": house.answers.iter().map(answered).collect::<Vec<_>>(), "chosen": house.chosen,
     }))
 }

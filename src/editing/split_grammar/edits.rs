@@ -1,6 +1,7 @@
 //! Edits of the rules of a split grammar, as text and as values.
 
 use super::super::{CommandError, numbers};
+use super::floors;
 use crate::grammar::{Grammar, GrammarError, Operation, Size, Successor, check, size_independent};
 
 /// One edit. Rules are counted from 0 in the order of the file, parts from 0 in the order written.
@@ -16,6 +17,10 @@ pub enum GrammarEdit {
     Insert(usize, usize, String, f64),
     /// `remove RULE.PART`: in a split the others take its place in proportion.
     Remove(usize, usize),
+    /// `grow RULE.PART`: a copy of this part before it, a floor or a column; the facade grows by its length.
+    Grow(usize, usize),
+    /// `shrink RULE.PART`: this part goes, and the facade shrinks by its length.
+    Shrink(usize, usize),
     /// `repeat RULE`: a split of equal periods becomes a repeat.
     Repeat(usize),
     /// `weight RULE=W`: weight among the rules of its symbol.
@@ -64,6 +69,12 @@ pub enum GrammarEditError {
         size: f64,
         /// What there is.
         room: f64,
+    },
+    /// The regions of a rule are as long in every facade.
+    #[error("the regions of rules[{rule}] have a fixed length: no floor or column fits in")]
+    Fixed {
+        /// Index of the rule.
+        rule: usize,
     },
     /// A split is no sequence of equal periods.
     #[error("rules[{rule}] does not repeat itself")]
@@ -120,6 +131,8 @@ fn read(text: &str) -> Result<GrammarEdit, String> {
             GrammarEdit::Insert(rule, part, name.to_owned(), number(size)?)
         }
         "remove" => place(rest).map(|(rule, part)| GrammarEdit::Remove(rule, part))?,
+        "grow" => place(rest).map(|(rule, part)| GrammarEdit::Grow(rule, part))?,
+        "shrink" => place(rest).map(|(rule, part)| GrammarEdit::Shrink(rule, part))?,
         "repeat" => GrammarEdit::Repeat(index(rest)?),
         "weight" => {
             let (rule, weight) = value()?;
@@ -128,7 +141,7 @@ fn read(text: &str) -> Result<GrammarEdit, String> {
         "outline" => GrammarEdit::Outline(numbers(rest)?),
         _ => {
             return Err(
-                "expected resize, border, symbol, insert, remove, repeat, weight or outline".into(),
+                "expected resize, border, symbol, insert, remove, grow, shrink, repeat, weight or outline".into(),
             );
         }
     })
@@ -159,6 +172,8 @@ fn apply(grammar: &mut Grammar, edit: &GrammarEdit) -> Result<(), GrammarEditErr
             known(grammar, *rule)?;
             grammar.rules[*rule].weight = Some(*weight);
         }
+        GrammarEdit::Grow(rule, part) => floors::change(grammar, *rule, *part, true)?,
+        GrammarEdit::Shrink(rule, part) => floors::change(grammar, *rule, *part, false)?,
         GrammarEdit::Repeat(rule) => {
             known(grammar, *rule)?;
             let operation = &mut grammar.rules[*rule].operation;
@@ -239,16 +254,20 @@ fn symbol(
 }
 
 /// The parts of a rule whose sizes are edited.
-struct Parts<'g> {
+pub(super) struct Parts<'g> {
     rule: usize,
-    successors: &'g mut Vec<Successor>,
+    pub(super) successors: &'g mut Vec<Successor>,
     /// Whether the parts fill the region once, so that others give way.
     fills: bool,
     /// Of a mirrored split: whether its last part stands once in the middle.
     center: Option<bool>,
 }
 
-fn parts(grammar: &mut Grammar, rule: usize, last: usize) -> Result<Parts<'_>, GrammarEditError> {
+pub(super) fn parts(
+    grammar: &mut Grammar,
+    rule: usize,
+    last: usize,
+) -> Result<Parts<'_>, GrammarEditError> {
     known(grammar, rule)?;
     let operation = &mut grammar.rules[rule].operation;
     let name = operation.name();
@@ -282,12 +301,12 @@ fn parts(grammar: &mut Grammar, rule: usize, last: usize) -> Result<Parts<'_>, G
 }
 
 impl Parts<'_> {
-    fn sizes(&self) -> Vec<f64> {
+    pub(super) fn sizes(&self) -> Vec<f64> {
         self.successors.iter().map(|s| s.size.value()).collect()
     }
 
     /// How often a part stands in the region.
-    fn times(&self, part: usize) -> f64 {
+    pub(super) fn times(&self, part: usize) -> f64 {
         match self.center {
             None => 1.0,
             Some(true) if part + 1 == self.successors.len() => 1.0,
@@ -295,7 +314,7 @@ impl Parts<'_> {
         }
     }
 
-    fn error(&self, part: usize, size: f64, room: f64) -> GrammarEditError {
+    pub(super) fn error(&self, part: usize, size: f64, room: f64) -> GrammarEditError {
         let rule = self.rule;
         GrammarEditError::Size {
             rule,

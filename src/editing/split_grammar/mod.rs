@@ -3,6 +3,9 @@
 
 mod derivation;
 mod edits;
+mod floors;
+mod relief;
 
 pub use derivation::{DeriveError, Derived, Wish, derived};
 pub use edits::{GrammarEdit, GrammarEditError, edit};
+pub use relief::glb;

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # The studio in a real browser: each editor's story from opening to the saved file. Installs what it needs itself:
 # playwright-core from npm into a folder of its own, and chromium from Debian where there is none.
-#   tests/external/studio/run.sh [EDIFICE] [SCREENSHOTS]
-# EDIFICE is the program (built by cargo where it is not given); pictures go to SCREENSHOTS, a new folder by default.
+#   tests/external/studio/run.sh [EDIFICE] [SCREENSHOTS] [SCRIPT [ARGUMENT]]
+# EDIFICE is the program (built by cargo where it is not given); pictures go to SCREENSHOTS, a new folder by default;
+# SCRIPT is stories.mjs (ARGUMENT: one story) or speed.mjs (page times of 200 edits of each editor).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../../.."
 
@@ -25,4 +26,4 @@ cp tests/external/studio/*.mjs "$work"
 (cd "$work" && npm init -y >/dev/null && npm install --no-audit --no-fund --silent playwright-core@1)
 pictures=${2:-$work/pictures}
 mkdir -p "$pictures"
-EDIFICE=$(realpath "$program") BROWSER=$browser PICTURES=$(realpath "$pictures") node "$work/stories.mjs"
+EDIFICE=$(realpath "$program") BROWSER=$browser PICTURES=$(realpath "$pictures") node "$work/${3:-stories.mjs}" ${4:+"$4"}

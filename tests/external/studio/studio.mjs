@@ -1,7 +1,7 @@
 // A studio and a page of it.
 
 import { spawn } from "node:child_process";
-import { mkdtempSync, readFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -24,6 +24,12 @@ export async function studio(args = []) {
     address,
     folder,
     read: (name) => readFileSync(join(folder, name)),
+    /** Processor time that it has used, in milliseconds, in steps of a clock tick of 10 ms; not a number where there is no /proc. */
+    used: () => {
+      if (!existsSync(`/proc/${child.pid}/stat`)) return NaN;
+      const fields = readFileSync(`/proc/${child.pid}/stat`, "utf8").split(") ")[1].split(" ");
+      return 10 * (Number(fields[11]) + Number(fields[12]));
+    },
     /** Ends it as Ctrl-C does; its exit code. */
     end: () =>
       new Promise((ended) => {
@@ -75,5 +81,16 @@ export async function changed(page, act) {
   return page.evaluate(() => window.studio.doc);
 }
 changed.times = [];
+
+/** Clicks the middle of a terminal region of a facade. */
+export async function press(page, terminal) {
+  const [x, y] = await page.evaluate((k) => {
+    const [, left, bottom, width, height] = window.studio.doc.view.terminals[k];
+    const matrix = document.querySelector("svg.drawing > g").getScreenCTM();
+    const at = new DOMPoint(left + width / 2, bottom + height / 2).matrixTransform(matrix);
+    return [at.x, at.y];
+  }, terminal);
+  await page.mouse.click(x, y);
+}
 
 export const picture = (page, name) => page.screenshot({ path: join(PICTURES, `${name}.png`) });

@@ -90,7 +90,9 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N], deviations: &[f64; N]) -> V
             }
             set(row, c + axis, at);
         }
-        let height = row[c + 4].clamp(LEAST_PART, (1.4 * storey).min(row[2]));
+        // In a house of lower storeys a part is no higher than they allow.
+        let most = (1.4 * storey).min(row[2]);
+        let height = row[c + 4].clamp(LEAST_PART.min(most), most);
         set(row, c + 4, height);
         let visible = row[c + 5].clamp(0.03, 0.97);
         set(row, c + 5, visible);

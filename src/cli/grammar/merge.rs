@@ -1,0 +1,50 @@
+//! `edifice grammar merge`.
+
+use std::path::PathBuf;
+
+use edifice::editing::facade_grammar::merge;
+use edifice::editing::work::Work;
+use edifice::grammar::Costs;
+use edifice::io::{read_facade, read_grammar, write_grammar};
+use edifice::shape::Facade;
+use edifice::{Error, Result};
+
+use crate::cli::print;
+
+/// Options of `edifice grammar merge`.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  edifice grammar merge one.grammar.json two.facade.json three.facade.json -o joint.grammar.json
+
+The facades of the grammar are derived at their own sizes; of them and the further ones one grammar is inferred, in which
+the rules that they share are written once. `grammar derive --facade NAME` derives one of them.")]
+pub struct Args {
+    /// Grammar to begin with: .grammar.json or .cga, also as .gz
+    grammar: PathBuf,
+    /// Further facades, whole ones
+    #[arg(required = true, value_name = "FACADE")]
+    facades: Vec<PathBuf>,
+    /// Grammar to write: .grammar.json or .cga
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let grammar = read_grammar(&args.grammar)?;
+    let checked = |path: &PathBuf| {
+        let facade = read_facade(path, &Default::default())?;
+        facade.check_tiling().map_err(|e| Error::content(path, e))?;
+        Ok(facade)
+    };
+    let further: Vec<Facade> = args.facades.iter().map(checked).collect::<Result<_>>()?;
+    let found = merge(&grammar, &further, &Work::default())?;
+    write_grammar(&found.grammar, &args.output)?;
+    let cost = (Costs::default().grammar(&found.grammar) * 1e9).round() / 1e9;
+    print::line(&format!(
+        "{}: {} facades, {} rules, cost {cost}",
+        args.output.display(),
+        found.grammar.starts.len(),
+        found.grammar.rules.len()
+    ))
+}

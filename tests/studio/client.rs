@@ -1,0 +1,102 @@
+//! The API by calling its router, without a socket.
+
+use std::sync::Arc;
+
+use axum::body::{Body, to_bytes};
+use axum::http::{Request, StatusCode};
+use edifice::studio::{Settings, Studio, router};
+use serde_json::{Value, json};
+use tower::ServiceExt;
+
+/// A studio whose router is called.
+pub struct Api {
+    router: axum::Router,
+    runtime: Option<tokio::runtime::Runtime>,
+}
+
+impl Api {
+    /// Opens the files.
+    pub fn new(settings: &Settings) -> Self {
+        let studio = Arc::new(Studio::new(settings).expect("opens"));
+        let runtime = tokio::runtime::Builder::new_current_thread();
+        Self {
+            router: router(studio),
+            runtime: Some({ runtime }.enable_all().build().expect("runs")),
+        }
+    }
+
+    /// What its requests run in.
+    pub fn runtime(&self) -> &tokio::runtime::Runtime {
+        self.runtime.as_ref().expect("until it is dropped")
+    }
+
+    /// Status and answer of a request.
+    pub fn send(&self, verb: &str, path: &str, body: &Value) -> (StatusCode, Value) {
+        let body = if body.is_null() {
+            Body::empty()
+        } else {
+            Body::from(body.to_string())
+        };
+        let request = Request::builder()
+            .method(verb)
+            .uri(path)
+            .body(body)
+            .expect("a request");
+        self.runtime().block_on(async {
+            let answer = self.router.clone().oneshot(request).await.expect("answers");
+            let status = answer.status();
+            let bytes = to_bytes(answer.into_body(), 1 << 26).await.expect("whole");
+            let value = serde_json::from_slice(&bytes);
+            let text = || Value::String(String::from_utf8_lossy(&bytes).into_owned());
+            (status, value.unwrap_or_else(|_| text()))
+        })
+    }
+
+    /// The answer to a request that must succeed.
+    pub fn get(&self, path: &str) -> Value {
+        let (status, value) = self.send("GET", path, &Value::Null);
+        assert_eq!(status, 200, "{path}: {value}");
+        value
+    }
+
+    /// The same with a body; of a job, the document that it came to.
+    pub fn post(&self, path: &str, body: Value) -> Value {
+        let (status, value) = self.send("POST", path, &body);
+        if status == 202 {
+            let job = self.ended(&value["job"]);
+            assert_eq!(job["state"], "done", "{path}: {job}");
+            let id = job["document"].as_str().expect("a document");
+            return self.get(&format!("/api/documents/{id}"));
+        }
+        assert_eq!(status, 200, "{path}: {value}");
+        value
+    }
+
+    /// Waits for a job.
+    pub fn ended(&self, job: &Value) -> Value {
+        let path = format!("/api/jobs/{}", job["id"].as_str().expect("an id"));
+        loop {
+            let job = self.get(&path)["job"].clone();
+            if job["state"] != "running" {
+                return job;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+    }
+
+    /// Edits a document as it is now.
+    pub fn edit(&self, id: &str, commands: Value) -> Value {
+        let revision = self.get(&format!("/api/documents/{id}"))["revision"].clone();
+        let body = json!({"commands": commands, "revision": revision});
+        self.post(&format!("/api/documents/{id}/edit"), body)
+    }
+}
+
+impl Drop for Api {
+    /// Work that was stopped and has not come to its next step is not waited for.
+    fn drop(&mut self) {
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
+}

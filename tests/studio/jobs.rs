@@ -1,0 +1,115 @@
+//! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed.
+
+use std::time::{Duration, Instant};
+
+use edifice::studio::Settings;
+use serde_json::{Value, json};
+
+use crate::client::Api;
+
+/// A studio with the facade of Fig. 9, and the text of a facade whose joint grammar with it takes long.
+fn long() -> (Api, Value) {
+    let api = Api::new(&Settings::default());
+    api.post("/api/documents", json!({"example": "fig9"}));
+    let mut regions = Vec::new();
+    for row in 0..14 {
+        for column in 0..17 {
+            let label = ["wall", "window", "door", "balcony"]
+                [(row * row + 3 * column * column + row * column) % 4];
+            regions.push(json!({"label": label, "x": column, "y": row, "width": 1, "height": 1}));
+        }
+    }
+    let facade = json!({
+        "format": "edifice/facade", "version": 1, "name": "chequered", "unit": "px", "width": 17, "height": 14, "regions": regions,
+    });
+    let unit = api.get("/api/documents/d1")["view"]["unit"].clone();
+    let mut facade = facade;
+    facade["unit"] = unit;
+    (
+        api,
+        json!([{"do": "merge", "facades": [facade.to_string()]}]),
+    )
+}
+
+#[test]
+fn long_work_is_told_of_and_stopped() {
+    let (api, commands) = long();
+    let before = api.get("/api/documents/d1");
+    let start = Instant::now();
+    let body = json!({"commands": commands, "revision": before["revision"]});
+    let (status, answer) = api.send("POST", "/api/documents/d1/edit", &body);
+    assert_eq!(status, 202, "{answer}");
+    assert!(start.elapsed() < Duration::from_secs(5));
+    let job = &answer["job"];
+    assert_eq!(
+        (&job["state"], &job["document"]),
+        (&json!("running"), &json!("d1"))
+    );
+    // Another tab sees it, in the list and in the document.
+    let listed = api.get("/api/documents")["documents"][0]["job"].clone();
+    assert_eq!(listed["id"], job["id"]);
+    assert!(
+        listed["step"].as_str().is_some_and(|s| !s.is_empty()),
+        "{listed}"
+    );
+    // Meanwhile nothing else is done on the document; it can be read and saved.
+    assert_eq!(api.send("POST", "/api/documents/d1/edit", &body).0, 409);
+    assert_eq!(
+        api.send("POST", "/api/documents/d1/undo", &json!({})).0,
+        409
+    );
+    assert_eq!(api.get("/api/documents/d1")["view"], before["view"]);
+    let path = format!("/api/jobs/{}/stop", job["id"].as_str().expect("an id"));
+    let stopped = api.post(&path, json!({}))["job"].clone();
+    assert_eq!(stopped["state"], "stopped", "{stopped}");
+    // At once there is room for other work, and nothing was changed, then or later.
+    let after = api.edit("d1", json!([{"do": "derive", "size": [100.0, 60.0]}]));
+    assert_eq!(after["revision"], 1);
+    std::thread::sleep(Duration::from_millis(1500));
+    assert_eq!(api.get("/api/documents/d1"), after);
+    assert_eq!(
+        api.get(path.trim_end_matches("/stop"))["job"]["state"],
+        "stopped"
+    );
+    assert_eq!(api.send("GET", "/api/jobs/j99", &Value::Null).0, 404);
+}
+
+#[test]
+fn work_that_fails_says_why() {
+    let api = Api::new(&Settings::default());
+    api.post("/api/documents", json!({"example": "fig9"}));
+    let body = json!({"commands": [{"do": "merge", "facades": ["{}"]}], "revision": 0});
+    let (status, answer) = api.send("POST", "/api/documents/d1/edit", &body);
+    assert_eq!(status, 422);
+    assert!(
+        answer["error"]
+            .as_str()
+            .is_some_and(|e| e.contains("facade 1")),
+        "{answer}"
+    );
+    // There is room for other work at once.
+    api.edit("d1", json!([{"do": "derive", "size": [100.0, 60.0]}]));
+}
+
+#[test]
+fn a_day_without_requests_changes_nothing() {
+    let api = Api::new(&Settings::default());
+    api.post("/api/documents", json!({"example": "sketch"}));
+    let made = api.edit(
+        "d1",
+        json!([{"do": "edit", "edits": ["add window@1,2,1,1.5"]}]),
+    );
+    // The server's clock goes on by a day: all its timers would have run out.
+    api.runtime().block_on(async {
+        tokio::time::pause();
+        tokio::time::advance(Duration::from_secs(24 * 3600)).await;
+        tokio::time::resume();
+    });
+    assert_eq!(api.get("/api/documents/d1"), made);
+    let again = api.edit("d1", json!([{"do": "edit", "edits": ["add door@5,0,1,2"]}]));
+    assert_eq!(again["log"].as_array().map(Vec::len), Some(2));
+    assert_eq!(
+        api.post("/api/documents/d1/undo", json!({}))["view"],
+        made["view"]
+    );
+}
