@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::synthetic;
 use crate::experiments::Context;
+use crate::grammar::instance::Kept;
 use crate::io::city;
 use crate::methods::city_proceduralization::{
     Budget, Mode, Proceduralized, Settings, proceduralize,
@@ -87,24 +88,10 @@ pub fn measure(city: &City, settings: &Settings) -> Result<Measures> {
         terminals: grammar.templates.len() as f64,
         non_terminals: grammar.non_terminals() as f64,
         iou: iou(city, &made)?,
-        bytes: city::grammar_json::packed_bytes(&without_attributes(&made))
+        bytes: city::grammar_json::packed_bytes(&grammar.keeping(Kept::Identifiers))
             .map_err(Error::method)? as f64,
         seconds,
     })
-}
-
-fn without_attributes(made: &Proceduralized) -> crate::grammar::instance::InstanceGrammar {
-    fn clear(p: &mut crate::grammar::instance::Placement) {
-        p.attributes.clear();
-        p.parts.iter_mut().flatten().for_each(clear);
-    }
-    let mut grammar = made.grammar.clone();
-    grammar
-        .rules
-        .iter_mut()
-        .flat_map(|r| &mut r.successors)
-        .for_each(clear);
-    grammar
 }
 
 /// Volumetric intersection over union of the derived triangles with the input's.

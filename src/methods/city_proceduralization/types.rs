@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use super::components::{CELLS, Component};
 use super::features::{Points, paper_features};
 use super::proceduralize::{ProceduralizeError, Representative};
-use crate::cluster::{kmeans, lloyd, means, ward};
+use crate::cluster::{WardTree, kmeans, lloyd, means, ward};
 use crate::rng;
 
 /// A type's use for a component.
@@ -150,16 +150,22 @@ const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
 
-/// Ward's hierarchy of the geometric features `points`, weighted by volume, equal components joined first, cut at `k`
-/// types; then rounds of Lloyd, and of medoids under the mismatched volume over the four quarter turns.
-///
-/// # Errors
-/// [`ProceduralizeError::Ward`].
-pub fn best_types(
-    components: &[Component],
-    points: &Points,
-    k: usize,
-) -> Result<Types, ProceduralizeError> {
+/// Ward's hierarchy of the geometric features of components, weighted by volume, equal components joined first.
+pub struct TypeTree<'a> {
+    /// Distinct components: indices.
+    distinct: Vec<usize>,
+    /// The distinct component that each is equal to.
+    group: Vec<usize>,
+    table: Table<'a>,
+    tree: WardTree,
+}
+
+impl<'a> TypeTree<'a> {
+    /// The hierarchy over the geometric features `points` of `components`.
+    ///
+    /// # Errors
+    /// [`ProceduralizeError::Ward`].
+    pub fn new(components: &'a [Component], points: &Points) -> Result<Self, ProceduralizeError> {
     let d = points.dimension;
     // Equal components first: the hierarchy is over distinct ones.
     let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
@@ -184,32 +190,54 @@ pub fn best_types(
         .iter()
         .flat_map(|&i| points.row(i).to_vec())
         .collect();
-    let k = k.clamp(1, distinct.len());
-    let mut labels = ward(&rows, d, &weights)?.cut(k);
-    if k < distinct.len() {
-        let zero = vec![0.0; k * d];
-        let centres = means(&rows, d, &weights, &labels, zero);
-        labels = lloyd(&rows, d, &weights, centres, LLOYD_STEPS).labels;
-    }
-    let (labels, count) = renumbered(&labels);
+    let tree = ward(&rows, d, &weights)?;
+    let heights = distinct.iter().map(|&i| components[i].heights.as_slice());
     let table = Table {
         rows,
         d,
         weights,
-        heights: distinct
-            .iter()
-            .map(|&i| components[i].heights.as_slice())
-            .collect(),
+        heights: heights.collect(),
     };
-    let uses: Vec<Use> = labels
-        .into_iter()
-        .map(|kind| Use { kind, quarter: 0 })
-        .collect();
-    let (medoids, uses) = table.medoids(uses, count);
-    Ok(Types {
-        representatives: medoids.iter().map(|&m| distinct[m]).collect(),
-        uses: group.into_iter().map(|g| uses[g]).collect(),
-    })
+    Ok(Self { distinct, group, table, tree })
+    }
+
+    /// The hierarchy cut at `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
+    /// quarter turns. Types that stand for more components come first.
+    pub fn cut(&self, k: usize) -> Types {
+        let Table { rows, d, weights, .. } = &self.table;
+        let k = k.clamp(1, self.distinct.len());
+        let mut labels = self.tree.cut(k);
+        if k < self.distinct.len() {
+            let zero = vec![0.0; k * d];
+            let centres = means(rows, *d, weights, &labels, zero);
+            labels = lloyd(rows, *d, weights, centres, LLOYD_STEPS).labels;
+        }
+        let (labels, count) = renumbered(&labels);
+        let uses = labels.into_iter().map(|kind| Use { kind, quarter: 0 });
+        let (medoids, uses) = self.table.medoids(uses.collect(), count);
+        let types = Types {
+            representatives: medoids.iter().map(|&m| self.distinct[m]).collect(),
+            uses: self.group.iter().map(|&g| uses[g]).collect(),
+        };
+        types.by_use()
+    }
+}
+
+impl Types {
+    /// The same types, those of most uses first; those of no use are left out.
+    fn by_use(self) -> Self {
+        let mut counts = vec![0_usize; self.representatives.len()];
+        self.uses.iter().for_each(|u| counts[u.kind] += 1);
+        let mut order: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
+        order.sort_by_key(|&k| std::cmp::Reverse(counts[k]));
+        let mut number = vec![0; counts.len()];
+        order.iter().enumerate().for_each(|(new, &old)| number[old] = new);
+        let renamed = |u: Use| Use { kind: number[u.kind], ..u };
+        Self {
+            representatives: order.iter().map(|&k| self.representatives[k]).collect(),
+            uses: self.uses.into_iter().map(renamed).collect(),
+        }
+    }
 }
 
 /// Distinct components.
