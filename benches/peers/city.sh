@@ -14,11 +14,11 @@ shift 3
 
 [ -d node_modules/gltfpack ] || {
     npm init -y
-    npm install --no-audit --no-fund gltfpack@0.25.0 draco3dgltf@1.5.7
+    npm install --no-audit --no-fund gltfpack@1.3.0 draco3dgltf@1.5.7
 } >npm.log 2>&1
 [ -x venv/bin/python ] || {
     python3 -m venv venv
-    venv/bin/pip install --quiet numpy==2.3.4
+    venv/bin/pip install --quiet numpy==2.4.6
 } >pip.log 2>&1
 
 iou() { "$edifice" city compare "$1" "$2" --resolution 1 --json | tail -n 1 | sed -E 's/.*"iou":([0-9.]+).*/\1/'; }

@@ -16,11 +16,24 @@ use crate::{Error, Result};
 /// Cells of the raster that judges, in metres.
 pub const RESOLUTION: f64 = 1.0;
 
-/// Real cities below the data folder.
-const REAL: [(&str, &str); 1] = [("midtown", "city/nyc_midtown4500.npz")];
+/// Real cities below the data folder, the first of which most artefacts take.
+const REAL: [(&str, &str); 3] = [
+    ("midtown", "city/nyc_midtown4500.npz"),
+    ("delft", "city/delft_bag3d.npz"),
+    ("manhattan", "city/nyc_manhattan_lod2.npz"),
+];
 
-/// The cities of a run: the made one, and with `--data` the real ones, each cut down to `most` buildings.
+/// The made city, and with `--data` the smallest real one.
 pub fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+    some_cities(ctx, 1)
+}
+
+/// The made city, and with `--data` all real ones.
+pub fn all_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+    some_cities(ctx, REAL.len())
+}
+
+fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     let motifs = ctx.budget().choose(16, 500, 500);
     ctx.setting("motifs", motifs);
     let mut found = vec![(
@@ -28,9 +41,9 @@ pub fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
         synthetic::city(motifs, 0.0, ctx.seed()).0,
     )];
     if ctx.budget() > crate::experiments::Budget::Smoke {
-        for (name, file) in REAL {
+        for (name, file) in &REAL[..real] {
             if let Some(path) = ctx.real(file)? {
-                found.push((name.to_owned(), city::read(&path)?));
+                found.push(((*name).to_owned(), city::read(&path)?));
             }
         }
     }

@@ -7,7 +7,8 @@ use clap::ValueEnum;
 use edifice::grammar::instance::{InstanceGrammar, Kept};
 use edifice::io::city::{self, glb, grammar_file};
 use edifice::methods::city_proceduralization::{
-    self as method, Budget, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
+    self as method, Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative,
+    Settings,
 };
 use edifice::shape::triangles::MeshFaults;
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
@@ -34,6 +35,14 @@ enum Steps {
     Cm,
     /// Decimetres, half degrees, templates on 7 bits.
     Dm,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Communities {
+    /// As the paper does; slow on graphs of many thousand edges.
+    GirvanNewman,
+    /// Blondel et al. 2008.
+    Louvain,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -70,6 +79,9 @@ pub struct Args {
     /// Weights of the paper's features, `F=W,...`; others are 1.
     #[arg(long, value_name = "F=W,...")]
     weights: Option<String>,
+    /// How communities are found, with `--mode paper`.
+    #[arg(long, value_enum, default_value = "girvan-newman")]
+    communities: Communities,
     /// With `--mode paper`, represent a type by its member of fewest polygons.
     #[arg(long)]
     poly: bool,
@@ -196,6 +208,10 @@ fn settings(args: &Args) -> Result<Settings> {
             false => Representative::Nearest,
         },
         seed: args.seed,
+        detection: match args.communities {
+            Communities::GirvanNewman => Detection::GirvanNewman,
+            Communities::Louvain => Detection::Louvain,
+        },
         precision: args.precision(),
         ..Settings::default()
     };

@@ -34,7 +34,10 @@ impl InstanceGrammar {
     fn reached(&self) -> FxHashSet<&str> {
         let mut rules: FxHashMap<&str, Vec<&Placement>> = FxHashMap::default();
         for rule in &self.rules {
-            rules.entry(&rule.symbol).or_default().extend(&rule.successors);
+            rules
+                .entry(&rule.symbol)
+                .or_default()
+                .extend(&rule.successors);
         }
         let mut seen = FxHashSet::from_iter([self.axiom.as_str()]);
         let mut open = vec![self.axiom.as_str()];
@@ -54,5 +57,9 @@ fn strip(placed: &mut Placement, kept: Kept) {
     if kept == Kept::Shape {
         placed.id = None;
     }
-    placed.parts.iter_mut().flatten().for_each(|p| strip(p, kept));
+    placed
+        .parts
+        .iter_mut()
+        .flatten()
+        .for_each(|p| strip(p, kept));
 }

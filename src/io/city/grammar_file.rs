@@ -12,7 +12,9 @@ use crate::{Error, Result};
 pub fn is_grammar(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let endings = [".json", ".json.gz", ".bin"];
-    endings.iter().any(|e| name.ends_with(&format!(".city-grammar{e}")))
+    endings
+        .iter()
+        .any(|e| name.ends_with(&format!(".city-grammar{e}")))
 }
 
 /// Whether a file's name says that its grammar is compact.

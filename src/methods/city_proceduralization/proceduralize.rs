@@ -4,6 +4,7 @@ use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, emit, emit_tree, placed_components};
 use super::features::geometric_features;
+use super::medoids::Cost;
 use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
@@ -39,7 +40,8 @@ pub enum Precision {
     Millimetre,
     /// Centimetres, hundredths of degrees, templates on 12 bits.
     Centimetre,
-    /// Decimetres, half degrees, templates on 7 bits.
+    /// Decimetres, half degrees, templates on 7 bits, and of templates those that save the most for their corners: for few
+    /// bytes.
     Decimetre,
 }
 
@@ -65,6 +67,8 @@ pub struct Settings {
     pub representative: Representative,
     /// Weights of Eq. 11.
     pub distance: DistanceWeights,
+    /// How communities are found, in `paper`.
+    pub detection: Detection,
     /// Seed of k-means, in `paper`.
     pub seed: u64,
     /// How finely numbers are written, in `best`. Without it: millimetres where each component has its own template,
@@ -80,6 +84,7 @@ impl Default for Settings {
             weights: [1.0; 11],
             representative: Representative::Nearest,
             distance: DistanceWeights::default(),
+            detection: Detection::GirvanNewman,
             seed: 1,
             precision: None,
         }
@@ -227,16 +232,20 @@ impl<'a> Prepared<'a> {
             let types = paper_types(components, k, weights, representative, settings.seed);
             let placed = placed_components(city, components, &types);
             let leaves = types.representatives.len();
-            let tree = grow(leaves, placed, Detection::GirvanNewman, settings.distance);
+            let tree = grow(leaves, placed, settings.detection, settings.distance);
             return Made {
                 grammar: emit_tree(city, components, &types, &tree),
                 types,
                 structure: Structure::Tree(tree),
             };
         };
+        let cost = match settings.precision {
+            Some(Precision::Decimetre) => Cost::Corners,
+            _ => Cost::Each,
+        };
         let (types, detail) = match budget {
             Budget::All => (distinct_types(components), Detail::MILLIMETRE),
-            _ => (best.types.cut(k), Detail::CENTIMETRE),
+            _ => (best.types.cut(k, cost), Detail::CENTIMETRE),
         };
         let detail = match settings.precision {
             None => detail,

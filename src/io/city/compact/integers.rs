@@ -95,6 +95,8 @@ impl Whole {
 /// The 64 bits of a number.
 pub(super) fn plain(coder: &mut impl Coder, value: f64) -> f64 {
     let bits = value.to_bits();
-    let found = (0..64).fold(0, |f, k| (f << 1) | u64::from(coder.even(bits >> (63 - k) & 1 == 1)));
+    let found = (0..64).fold(0, |f, k| {
+        (f << 1) | u64::from(coder.even(bits >> (63 - k) & 1 == 1))
+    });
     f64::from_bits(found)
 }

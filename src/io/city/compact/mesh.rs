@@ -199,7 +199,12 @@ impl MeshModels {
         }
     }
 
-    fn corner<C: Coder>(&mut self, coder: &mut C, near: [[i64; 3]; 3], given: [i64; 3]) -> [i64; 3] {
+    fn corner<C: Coder>(
+        &mut self,
+        coder: &mut C,
+        near: [[i64; 3]; 3],
+        given: [i64; 3],
+    ) -> [i64; 3] {
         let mut before = 4;
         let mut place = [0; 3];
         for axis in 0..3 {
@@ -221,10 +226,15 @@ impl MeshModels {
             return self.outside.code(coder, given);
         }
         let low = self.bits - self.learnt;
-        let high = self.within[upright].code(coder, (given.max(0) >> low) as usize & ((1 << self.learnt) - 1));
+        let high = self.within[upright].code(
+            coder,
+            (given.max(0) >> low) as usize & ((1 << self.learnt) - 1),
+        );
         let rest = match low {
             0 => 0,
-            _ => self.rest.code(coder, given.max(0) as u64 & ((1 << low) - 1)) as i64,
+            _ => self
+                .rest
+                .code(coder, given.max(0) as u64 & ((1 << low) - 1)) as i64,
         };
         ((high as i64) << low) + rest
     }

@@ -14,6 +14,7 @@
 //! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (along Hilbert's curve, so that neighbours
 //! follow each other), that of a template's corners and triangles, and corners without a triangle.
 
+mod identity;
 mod integers;
 mod mesh;
 mod order;
@@ -25,9 +26,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use self::identity::{Attributes, Identities};
 use self::mesh::{MeshModels, StepMesh};
 use self::range_coder::{Coder, Decoder, Encoder};
-use self::rules::{Listed, Rules};
+use self::rules::Rules;
 pub use self::steps::Steps;
 use crate::file::read_bytes;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
@@ -92,7 +94,10 @@ pub fn read(path: &Path) -> Result<InstanceGrammar> {
 /// # Errors
 /// [`Error::Io`] when the file cannot be written; [`CompactError`] on a grammar that is not sound.
 pub fn write(grammar: &InstanceGrammar, path: &Path) -> Result<()> {
-    write_atomic(path, &to_bytes(grammar).map_err(|e| Error::content(path, e))?)
+    write_atomic(
+        path,
+        &to_bytes(grammar).map_err(|e| Error::content(path, e))?,
+    )
 }
 
 /// What is not numbers.
@@ -107,7 +112,7 @@ struct Texts {
     templates: Vec<Names>,
     non_terminals: Vec<Names>,
     ids: Vec<String>,
-    attributes: Vec<serde_json::Map<String, serde_json::Value>>,
+    attributes: Vec<Attributes>,
 }
 
 /// Names that are one text with consecutive numbers; without numbers one name.
@@ -137,9 +142,9 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     for rule in sorted.iter_mut().filter(|r| r.symbol == grammar.axiom) {
         order::along_curve(&mut rule.successors, &steps);
     }
-    let mut rules = Rules::new(coder, steps, &symbols, templates);
+    let mut rules = Rules::new(coder, steps, &symbols, templates, Identities::default());
     rules.code(&sorted, axiom)?;
-    let (coder, ids, attributes) = rules.finish();
+    let (coder, identities) = rules.finish();
     let texts = Texts {
         name: grammar.name.clone(),
         reference_system: grammar.reference_system.clone(),
@@ -148,8 +153,8 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
         steps,
         templates: runs(&symbols[..templates]),
         non_terminals: runs(&symbols[templates..]),
-        ids,
-        attributes,
+        ids: identities.texts,
+        attributes: identities.attributes,
     };
     let texts = serde_json::to_vec(&texts).map_err(|e| CompactError::Text(e.to_string()))?;
     let texts = deflated(&texts);
@@ -182,11 +187,13 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
     if u32::from_le_bytes([start[6], start[7], start[8], start[9]]) != checksum(body) {
         return Err(CompactError::Checksum);
     }
-    let (size, rest) = body.split_first_chunk::<4>().ok_or(CompactError::Truncated)?;
+    let (size, rest) = body
+        .split_first_chunk::<4>()
+        .ok_or(CompactError::Truncated)?;
     let size = u32::from_le_bytes(*size) as usize;
     let (texts, coded) = rest.split_at_checked(size).ok_or(CompactError::Truncated)?;
-    let texts: Texts = serde_json::from_slice(&inflated(texts)?)
-        .map_err(|e| CompactError::Text(e.to_string()))?;
+    let texts: Texts =
+        serde_json::from_slice(&inflated(texts)?).map_err(|e| CompactError::Text(e.to_string()))?;
     let steps = texts.steps.checked()?;
     let mut symbols = names(&texts.templates)?;
     let count = symbols.len();
@@ -205,9 +212,8 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
         });
     }
     let axiom = symbols.get(texts.axiom).cloned();
-    let mut rules = Rules::new(coder, steps, &symbols, count);
-    rules.ids = Listed::new(texts.ids);
-    rules.attributes = Listed::new(texts.attributes);
+    let identities = Identities::new(texts.ids, texts.attributes);
+    let mut rules = Rules::new(coder, steps, &symbols, count, identities);
     let grammar = InstanceGrammar {
         name: texts.name,
         reference_system: texts.reference_system,

@@ -16,7 +16,12 @@ pub(super) fn along_curve(placed: &mut [Placement], steps: &Steps) {
         hilbert(u, v)
     };
     placed.sort_by_cached_key(|p| {
-        let numbers: Vec<i64> = p.at.iter().chain(&p.size).chain([&p.turn]).map(|&v| ordered(v)).collect();
+        let numbers: Vec<i64> =
+            p.at.iter()
+                .chain(&p.size)
+                .chain([&p.turn])
+                .map(|&v| ordered(v))
+                .collect();
         (cell(p), numbers, p.symbol.clone(), p.id.clone())
     });
 }

@@ -5,6 +5,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::identity::Identities;
 use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
 use super::{CompactError, Steps};
@@ -48,21 +49,6 @@ struct PoseModels {
     factor: Bit,
 }
 
-/// Identifiers or attributes, in the order in which they are met.
-pub(super) struct Listed<T> {
-    pub(super) items: Vec<T>,
-    next: usize,
-}
-
-impl<T> Listed<T> {
-    pub(super) fn new(items: Vec<T>) -> Self {
-        Self { items, next: 0 }
-    }
-}
-
-/// Properties of a building.
-type Attributes = serde_json::Map<String, serde_json::Value>;
-
 /// Writes or reads the rules of a grammar.
 pub(super) struct Rules<'a, C> {
     coder: C,
@@ -70,9 +56,7 @@ pub(super) struct Rules<'a, C> {
     symbols: &'a [String],
     numbers: FxHashMap<&'a str, usize>,
     templates: usize,
-    pub(super) ids: Listed<String>,
-    pub(super) attributes: Listed<Attributes>,
-    known: FxHashMap<String, usize>,
+    identities: Identities,
     placements: u64,
     models: Vec<PoseModels>,
     quarter: Vec<BitTree>,
@@ -81,16 +65,12 @@ pub(super) struct Rules<'a, C> {
     as_usual: Bit,
     counts: Natural,
     weight: Natural,
-    flags: [Bit; 6],
-    back: Natural,
+    flags: [Bit; 3],
 }
 
 /// What [`Rules::flags`] tell.
 #[derive(Clone, Copy)]
 enum Flag {
-    HasId,
-    NewId,
-    HasAttributes,
     WholeWeight,
     HasParts,
     Present,
@@ -98,7 +78,13 @@ enum Flag {
 
 impl<'a, C: Coder> Rules<'a, C> {
     /// `symbols`: the first `templates` of them are terminals.
-    pub(super) fn new(coder: C, steps: Steps, symbols: &'a [String], templates: usize) -> Self {
+    pub(super) fn new(
+        coder: C,
+        steps: Steps,
+        symbols: &'a [String],
+        templates: usize,
+        identities: Identities,
+    ) -> Self {
         let numbers = symbols.iter().enumerate().map(|(i, s)| (s.as_str(), i));
         let rules = symbols.len() - templates;
         Self {
@@ -107,9 +93,7 @@ impl<'a, C: Coder> Rules<'a, C> {
             symbols,
             numbers: numbers.collect(),
             templates,
-            ids: Listed::new(Vec::new()),
-            attributes: Listed::new(Vec::new()),
-            known: FxHashMap::default(),
+            identities,
             placements: 0,
             models: (0..8).map(|_| PoseModels::default()).collect(),
             quarter: vec![BitTree::new(2); 8],
@@ -118,18 +102,21 @@ impl<'a, C: Coder> Rules<'a, C> {
             as_usual: Bit::default(),
             counts: Natural::default(),
             weight: Natural::default(),
-            flags: [Bit::default(); 6],
-            back: Natural::default(),
+            flags: [Bit::default(); 3],
         }
     }
 
-    /// The coder and the lists, when all is done.
-    pub(super) fn finish(self) -> (C, Vec<String>, Vec<Attributes>) {
-        (self.coder, self.ids.items, self.attributes.items)
+    /// The coder and the identities, when all is done.
+    pub(super) fn finish(self) -> (C, Identities) {
+        (self.coder, self.identities)
     }
 
     /// All rules: first what they make, then the parts of instances.
-    pub(super) fn code(&mut self, given: &[InstanceRule], axiom: usize) -> Result<Vec<InstanceRule>, CompactError> {
+    pub(super) fn code(
+        &mut self,
+        given: &[InstanceRule],
+        axiom: usize,
+    ) -> Result<Vec<InstanceRule>, CompactError> {
         let count = self.count(given.len())?;
         let mut rules = Vec::new();
         for i in 0..count {
@@ -150,7 +137,11 @@ impl<'a, C: Coder> Rules<'a, C> {
         Ok(rules)
     }
 
-    fn rule(&mut self, given: Option<&InstanceRule>, axiom: usize) -> Result<InstanceRule, CompactError> {
+    fn rule(
+        &mut self,
+        given: Option<&InstanceRule>,
+        axiom: usize,
+    ) -> Result<InstanceRule, CompactError> {
         let number = given.map_or(0, |r| self.numbers[r.symbol.as_str()]);
         let symbol = self.name(true, number)?;
         let weight = self.weight(given.map_or(0.0, |r| r.weight));
@@ -228,7 +219,10 @@ impl<'a, C: Coder> Rules<'a, C> {
             Some(given) => self.pose(given)?,
             None => Pose::default(),
         };
-        let usual = near == Near::Like && self.coder.bit(&mut self.as_usual, own.symbol == other.symbol);
+        let usual = near == Near::Like
+            && self
+                .coder
+                .bit(&mut self.as_usual, own.symbol == other.symbol);
         let symbol = match usual {
             true => other.symbol,
             false => {
@@ -246,8 +240,14 @@ impl<'a, C: Coder> Rules<'a, C> {
         // Quarter turns, then what is left, from -1/8 to 1/8 of a turn.
         let away = (own.turn - other.turn + quarter / 2).rem_euclid(full);
         let quarters = self.quarter[context].code(coder, (away / quarter) as usize) as i64;
-        let rest = models.turn.code(coder, away - quarters * quarter - quarter / 2);
-        let turn = (other.turn.wrapping_add(quarters * quarter).wrapping_add(rest)).rem_euclid(full);
+        let rest = models
+            .turn
+            .code(coder, away - quarters * quarter - quarter / 2);
+        let turn = (other
+            .turn
+            .wrapping_add(quarters * quarter)
+            .wrapping_add(rest))
+        .rem_euclid(full);
         let mut like = other.size;
         if quarters % 2 == 1 {
             like.swap(0, 1);
@@ -270,7 +270,11 @@ impl<'a, C: Coder> Rules<'a, C> {
         } else if stands {
             for axis in 0..3 {
                 // The height of what stands on a part says nothing of its own.
-                let like = if near == Near::Below && axis == 2 { 0 } else { like[axis] };
+                let like = if near == Near::Below && axis == 2 {
+                    0
+                } else {
+                    like[axis]
+                };
                 let change = models.change[axis].code(coder, own.size[axis].wrapping_sub(like));
                 size[axis] = like.wrapping_add(change);
             }
@@ -286,14 +290,20 @@ impl<'a, C: Coder> Rules<'a, C> {
             turn,
             size,
         };
-        let id = self.id(given.and_then(|g| g.id.as_ref()))?;
-        let attributes = self.attributes(given.map(|g| &g.attributes))?;
+        let id = given.and_then(|g| g.id.as_ref());
+        let id = self.identities.id(coder, id)?;
+        let attributes = given.map(|g| &g.attributes);
+        let attributes = self.identities.attributes(coder, attributes)?;
         let length = |v: i64| v as f64 / self.steps.length as f64;
         let placed = Placement {
             symbol: self.symbols[symbol].clone(),
             at: at.map(length),
             turn: turn as f64 / self.steps.turn as f64,
-            size: if is_rule { [factor; 3] } else { size.map(length) },
+            size: if is_rule {
+                [factor; 3]
+            } else {
+                size.map(length)
+            },
             id,
             attributes,
             parts: Vec::new(),
@@ -366,41 +376,5 @@ impl<'a, C: Coder> Rules<'a, C> {
             true => self.weight.code(&mut self.coder, given as u64) as f64,
             false => plain(&mut self.coder, given),
         }
-    }
-
-    fn id(&mut self, given: Option<&String>) -> Result<Option<String>, CompactError> {
-        if !self.flag(Flag::HasId, given.is_some()) {
-            return Ok(None);
-        }
-        let known = given.and_then(|id| self.known.get(id)).copied();
-        let next = self.ids.next;
-        if !self.flag(Flag::NewId, known.is_none()) {
-            let back = known.map_or(0, |k| next - 1 - k) as u64;
-            let back = self.back.code(&mut self.coder, back) as usize;
-            let missing = CompactError::Index("identifier");
-            let index = next.checked_sub(1).and_then(|l| l.checked_sub(back));
-            return Ok(Some(self.ids.items[index.ok_or(missing)?].clone()));
-        }
-        if let Some(id) = given {
-            self.ids.items.push(id.clone());
-        }
-        let id = self.ids.items.get(next).cloned();
-        let id = id.ok_or(CompactError::Index("identifier"))?;
-        self.known.insert(id.clone(), next);
-        self.ids.next += 1;
-        Ok(Some(id))
-    }
-
-    fn attributes(&mut self, given: Option<&Attributes>) -> Result<Attributes, CompactError> {
-        let own = given.filter(|a| !a.is_empty());
-        if !self.flag(Flag::HasAttributes, own.is_some()) {
-            return Ok(Attributes::new());
-        }
-        if let Some(attributes) = own {
-            self.attributes.items.push(attributes.clone());
-        }
-        let found = self.attributes.items.get(self.attributes.next).cloned();
-        self.attributes.next += 1;
-        found.ok_or(CompactError::Index("attributes"))
     }
 }

@@ -31,9 +31,14 @@ impl Steps {
             open.extend(p.parts.iter().flatten());
         }
         let templates = || grammar.templates.iter();
-        let terminals: rustc_hash::FxHashSet<&str> = templates().map(|t| t.symbol.as_str()).collect();
+        let terminals: rustc_hash::FxHashSet<&str> =
+            templates().map(|t| t.symbol.as_str()).collect();
         let lengths = |p: &Placement| {
-            let size = if terminals.contains(p.symbol.as_str()) { p.size } else { [0.0; 3] };
+            let size = if terminals.contains(p.symbol.as_str()) {
+                p.size
+            } else {
+                [0.0; 3]
+            };
             [p.at, size]
         };
         let corners = || templates().flat_map(|t| &t.mesh.positions);
@@ -44,7 +49,8 @@ impl Steps {
             }),
             turn: first(&TURNS, |s| placements.iter().all(|p| whole(p.turn, s))),
             shape: first(&SHAPES, |s| {
-                let on = |p: &[f64; 3]| whole(p[0] + 0.5, s) && whole(p[1] + 0.5, s) && whole(p[2], s);
+                let on =
+                    |p: &[f64; 3]| whole(p[0] + 0.5, s) && whole(p[1] + 0.5, s) && whole(p[2], s);
                 corners().all(on)
             }),
         }
