@@ -8,14 +8,15 @@ use edifice::rng::{Stream, stream};
 use edifice::shape::triangles::TriangleMesh;
 use rand::RngExt;
 
-/// Every triangle that a grammar derives to, in world coordinates, from its least corner on, with its building.
+/// Every triangle that a grammar derives to, in world coordinates, with its building.
 fn derived(grammar: &InstanceGrammar) -> Vec<(String, [[u64; 3]; 3])> {
     let mut all = Vec::new();
     for building in grammar.derive().unwrap().city(grammar).buildings {
         for t in building.mesh.corners() {
-            let mut t = t.map(|p| p.map(|v| (v + 0.0).to_bits()));
-            let first = (0..3).min_by_key(|&k| t[k]).unwrap();
-            t.rotate_left(first);
+            let t = t.map(|p| p.map(|v| (v + 0.0).to_bits()));
+            // The least of its rotations: the same for a triangle with one corner twice.
+            let turned = [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]);
+            let t = turned.into_iter().min().unwrap();
             // Parts without a building are named by their order.
             let id = building.id.split("instance-").next().unwrap();
             all.push((id.to_owned(), t));
@@ -34,7 +35,7 @@ fn round(grammar: &InstanceGrammar) -> InstanceGrammar {
 }
 
 fn made(mode: Mode, budget: Budget, precision: Option<Precision>) -> InstanceGrammar {
-    let (mut city, _) = synthetic::city(12, 0.03, 2);
+    let (mut city, _) = synthetic::city(8, 0.03, 2);
     city.origin = [233_000.25, 581_000.5, -0.125];
     city.reference_system = Some("EPSG:2263".to_owned());
     for (i, b) in city.buildings.iter_mut().enumerate().step_by(3) {
@@ -257,7 +258,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 #[test]
 fn damaged_files_are_refused() {
     let bytes = compact::to_bytes(&made(Mode::Best, Budget::Level(4), None)).unwrap();
-    for cut in (0..bytes.len()).step_by(31) {
+    for cut in (0..bytes.len()).step_by(97) {
         assert!(compact::from_bytes(&bytes[..cut]).is_err(), "{cut}");
         if cut > 10 {
             let error = compact::from_bytes(&sealed(bytes[..cut].to_vec()));
@@ -274,7 +275,7 @@ fn damaged_files_are_refused() {
     assert!(message(&|b| b[40] ^= 1).contains("checksum"));
     assert!(message(&|b| b.push(0)).contains("checksum"));
     // Whatever the numbers say: an answer or an error, no panic and no flood of memory.
-    for case in 0..3000 {
+    for case in 0..1000 {
         let mut rng = stream(5, "damaged", case);
         let mut changed = bytes.clone();
         for _ in 0..rng.random_range(1..5) {

@@ -43,8 +43,8 @@ fn nameless(grammar: &InstanceGrammar) -> Vec<u8> {
 
 #[test]
 fn the_order_of_buildings_is_no_matter() {
-    for (case, noise) in [0.0, 0.01, 0.03, 0.1].into_iter().enumerate() {
-        let (mut city, _) = synthetic::city(8 + 3 * case, noise, case as u64);
+    for (case, noise) in [0.0, 0.03].into_iter().enumerate() {
+        let (mut city, _) = synthetic::city(4 + 3 * case, noise, case as u64);
         let mut empty = city.buildings[4].clone();
         (empty.id, empty.mesh) = ("empty".to_owned(), Default::default());
         city.buildings.push(empty);
@@ -62,7 +62,7 @@ fn the_order_of_buildings_is_no_matter() {
             }
             let asked = settings(mode, Budget::Level(2));
             let whole = grammar(&city, &asked);
-            for shuffle in 0..4 {
+            for shuffle in 0..2 {
                 let mut other = city.clone();
                 other.buildings.shuffle(&mut stream(7, "order", shuffle));
                 let found = grammar(&other, &asked);
@@ -77,7 +77,7 @@ fn the_order_of_buildings_is_no_matter() {
 
 #[test]
 fn threads_do_not_change_few_bytes() {
-    let (city, _) = synthetic::city(14, 0.03, 8);
+    let (city, _) = synthetic::city(8, 0.03, 8);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

@@ -44,7 +44,7 @@ impl Detail {
         length: 10.0,
         angle: 2.0,
         box_steps: 127.0,
-        coplanar: 6e-3,
+        coplanar: 4e-3,
     };
 }
 

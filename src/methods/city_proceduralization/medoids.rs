@@ -11,11 +11,6 @@ const ROUNDS: usize = 3;
 const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
-/// Where templates are thinned out, so many times as many are begun with, and so many are left of each round.
-const BEGUN: f64 = 2.0;
-const LEFT: f64 = 0.75;
-/// Where corners count, those of all templates together are worth this share of all volume.
-const WORTH: f64 = 0.03;
 
 /// Distinct components.
 pub(super) struct Table<'a> {
@@ -25,25 +20,6 @@ pub(super) struct Table<'a> {
     /// Volumes.
     pub(super) weights: Vec<f64>,
     pub(super) heights: Vec<&'a [f32]>,
-    /// Corners of the meshes.
-    pub(super) corners: Vec<f64>,
-}
-
-/// What a template costs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cost {
-    /// The same as any other.
-    Each,
-    /// So much as it has corners.
-    Corners,
-}
-
-/// The use of a type for a component, and what it and the next best type mismatch.
-#[derive(Clone, Copy)]
-struct Fit {
-    used: Use,
-    mismatch: f64,
-    next: f64,
 }
 
 impl Table<'_> {
@@ -51,86 +27,23 @@ impl Table<'_> {
         &self.rows[i * self.d..(i + 1) * self.d]
     }
 
-    /// How many types to begin with for `k` in the end.
-    pub(super) fn begun(&self, k: usize, cost: Cost) -> usize {
-        match cost {
-            Cost::Each => k,
-            Cost::Corners => ((k as f64 * BEGUN) as usize).min(self.weights.len()),
+    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component. Medoids and uses.
+    pub(super) fn medoids(&self, mut uses: Vec<Use>, count: usize) -> (Vec<usize>, Vec<Use>) {
+        let mut medoids = self.choose(&uses, count, &[]);
+        for _ in 0..ROUNDS {
+            uses = self.assign(&medoids, &uses);
+            medoids = self.choose(&uses, count, &medoids);
         }
+        let uses = self.assign(&medoids, &uses);
+        (medoids, uses)
     }
 
-    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component; and the types that gain
-    /// the least volume for their cost left out, until `k` are left. Medoids and uses.
-    pub(super) fn medoids(
-        &self,
-        uses: Vec<Use>,
-        count: usize,
-        k: usize,
-        cost: Cost,
-    ) -> (Vec<usize>, Vec<Use>) {
-        let mut uses = uses;
-        let mut medoids = self.choose(&uses, count, &[], cost);
-        let mut round = 0;
-        while medoids.len() > k || round < ROUNDS {
-            let fits = self.assign(&medoids, &uses);
-            uses = fits.iter().map(|f| f.used).collect();
-            if medoids.len() > k {
-                let left = ((medoids.len() as f64 * LEFT) as usize).max(k);
-                self.thin(&mut medoids, &mut uses, &fits, left, cost);
-                continue;
-            }
-            medoids = self.choose(&uses, medoids.len(), &medoids, cost);
-            round += 1;
-        }
-        let fits = self.assign(&medoids, &uses);
-        (medoids, fits.iter().map(|f| f.used).collect())
-    }
-
-    /// Leaves out types until `left` are left: those whose components lose the least volume, going over to the next best
-    /// type, for what the template costs. Uses of types that are left out are of the first one, until they are assigned.
-    fn thin(
-        &self,
-        medoids: &mut Vec<usize>,
-        uses: &mut [Use],
-        fits: &[Fit],
-        left: usize,
-        cost: Cost,
-    ) {
-        let mut loss = vec![0.0; medoids.len()];
-        for (f, w) in fits.iter().zip(&self.weights) {
-            loss[f.used.kind] += w * (f.next - f.mismatch);
-        }
-        let price = |kind: usize| match cost {
-            Cost::Each => 1.0,
-            Cost::Corners => self.corners[medoids[kind]] + 1.0,
-        };
-        let gain = |kind: &usize| loss[*kind] / price(*kind);
-        let mut order: Vec<usize> = (0..medoids.len()).collect();
-        order.sort_by(|a, b| gain(b).total_cmp(&gain(a)).then(a.cmp(b)));
-        order.truncate(left);
-        order.sort_unstable();
-        let mut number = vec![0; medoids.len()];
-        order
-            .iter()
-            .enumerate()
-            .for_each(|(new, &old)| number[old] = new);
-        uses.iter_mut().for_each(|u| u.kind = number[u.kind]);
-        *medoids = order.iter().map(|&kind| medoids[kind]).collect();
-    }
-
-    /// The member of each type with the least mismatched volume to the others, of those nearest to the mean; where corners
-    /// count, the volume that they are worth is added.
-    fn choose(&self, uses: &[Use], count: usize, before: &[usize], cost: Cost) -> Vec<usize> {
+    /// The member of each type with the least mismatched volume to the others, of those nearest to the mean.
+    fn choose(&self, uses: &[Use], count: usize, before: &[usize]) -> Vec<usize> {
         let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (i, u) in uses.iter().enumerate() {
             members[u.kind].push(i);
         }
-        let volume: f64 = self.weights.iter().sum();
-        let corners = self.corners.iter().sum::<f64>() / self.corners.len().max(1) as f64;
-        let worth = match cost {
-            Cost::Each => 0.0,
-            Cost::Corners => WORTH * volume / (count as f64 * corners.max(1.0)),
-        };
         let medoid = |(kind, list): (usize, &Vec<usize>)| {
             let total: f64 = list.iter().map(|&i| self.weights[i]).sum();
             let mean = |k: usize| {
@@ -150,7 +63,7 @@ impl Table<'_> {
                     let turned = uses[i].quarter;
                     self.weights[i] * mismatch(self.heights[m], self.heights[i], turned)
                 };
-                list.iter().map(mismatch).sum::<f64>() + worth * self.corners[m]
+                list.iter().map(mismatch).sum::<f64>()
             };
             let costs = near.iter().map(|&m| (cost(m), m));
             let best = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -160,35 +73,20 @@ impl Table<'_> {
     }
 
     /// The best of the present type and the types whose medoids are nearest in features.
-    fn assign(&self, medoids: &[usize], uses: &[Use]) -> Vec<Fit> {
+    fn assign(&self, medoids: &[usize], uses: &[Use]) -> Vec<Use> {
         let nearest = Nearest::new(self, medoids);
         let best = |i: usize| {
-            let mut best = Fit {
-                used: uses[i],
-                mismatch: f64::INFINITY,
-                next: f64::INFINITY,
-            };
-            let near = nearest.of(self.row(i));
-            let present = uses[i].kind;
-            let also = (!near.contains(&present)).then_some(present);
-            for kind in near.iter().copied().chain(also) {
-                let own = (0..4).map(|quarter| {
+            let mut best = (f64::INFINITY, uses[i]);
+            let near = nearest.of(self.row(i)).into_iter();
+            for kind in near.chain([uses[i].kind]) {
+                for quarter in 0..4 {
                     let cost = mismatch(self.heights[medoids[kind]], self.heights[i], quarter);
-                    (cost, quarter)
-                });
-                let own = own.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                let (cost, quarter) = own.unwrap_or((f64::INFINITY, 0));
-                if cost < best.mismatch {
-                    best.next = best.mismatch;
-                    best.mismatch = cost;
-                    best.used = Use { kind, quarter };
-                } else {
-                    best.next = best.next.min(cost);
+                    if cost < best.0 {
+                        best = (cost, Use { kind, quarter });
+                    }
                 }
             }
-            // A single type has no other: all would be lost.
-            best.next = best.next.min(1.0);
-            best
+            best.1
         };
         (0..uses.len()).into_par_iter().map(best).collect()
     }

@@ -4,7 +4,6 @@ use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, emit, emit_tree, placed_components};
 use super::features::geometric_features;
-use super::medoids::Cost;
 use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
@@ -40,8 +39,7 @@ pub enum Precision {
     Millimetre,
     /// Centimetres, hundredths of degrees, templates on 12 bits.
     Centimetre,
-    /// Decimetres, half degrees, templates on 7 bits, and of templates those that save the most for their corners: for few
-    /// bytes.
+    /// Decimetres, half degrees, templates on 7 bits: for few bytes.
     Decimetre,
 }
 
@@ -239,13 +237,9 @@ impl<'a> Prepared<'a> {
                 structure: Structure::Tree(tree),
             };
         };
-        let cost = match settings.precision {
-            Some(Precision::Decimetre) => Cost::Corners,
-            _ => Cost::Each,
-        };
         let (types, detail) = match budget {
             Budget::All => (distinct_types(components), Detail::MILLIMETRE),
-            _ => (best.types.cut(k, cost), Detail::CENTIMETRE),
+            _ => (best.types.cut(k), Detail::CENTIMETRE),
         };
         let detail = match settings.precision {
             None => detail,

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::components::Component;
 use super::features::{Points, paper_features};
-use super::medoids::{Cost, Table, square};
+use super::medoids::{Table, square};
 use super::proceduralize::{ProceduralizeError, Representative};
 use crate::cluster::{WardTree, kmeans, lloyd, means, ward};
 use crate::rng;
@@ -184,16 +184,12 @@ impl<'a> TypeTree<'a> {
             .flat_map(|&i| points.row(i).to_vec())
             .collect();
         let tree = ward(&rows, d, &weights)?;
-        let corners = distinct
-            .iter()
-            .map(|&i| components[i].mesh.positions.len() as f64);
         let heights = distinct.iter().map(|&i| components[i].heights.as_slice());
         let table = Table {
             rows,
             d,
             weights,
             heights: heights.collect(),
-            corners: corners.collect(),
         };
         Ok(Self {
             distinct,
@@ -204,23 +200,22 @@ impl<'a> TypeTree<'a> {
     }
 
     /// The hierarchy cut at `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
-    /// quarter turns. Where corners cost, the cut is finer, and types that gain little for their corners are left out.
+    /// quarter turns.
     /// Types that stand for more components come first.
-    pub fn cut(&self, k: usize, cost: Cost) -> Types {
+    pub fn cut(&self, k: usize) -> Types {
         let Table {
             rows, d, weights, ..
         } = &self.table;
         let k = k.clamp(1, self.distinct.len());
-        let begun = self.table.begun(k, cost);
-        let mut labels = self.tree.cut(begun);
-        if begun < self.distinct.len() {
-            let zero = vec![0.0; begun * d];
+        let mut labels = self.tree.cut(k);
+        if k < self.distinct.len() {
+            let zero = vec![0.0; k * d];
             let centres = means(rows, *d, weights, &labels, zero);
             labels = lloyd(rows, *d, weights, centres, LLOYD_STEPS).labels;
         }
         let (labels, count) = renumbered(&labels);
         let uses = labels.into_iter().map(|kind| Use { kind, quarter: 0 });
-        let (medoids, uses) = self.table.medoids(uses.collect(), count, k, cost);
+        let (medoids, uses) = self.table.medoids(uses.collect(), count);
         let types = Types {
             representatives: medoids.iter().map(|&m| self.distinct[m]).collect(),
             uses: self.group.iter().map(|&g| uses[g]).collect(),

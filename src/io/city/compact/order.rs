@@ -6,30 +6,21 @@ use crate::grammar::instance::Placement;
 /// Halvings of the square.
 const LEVELS: u32 = 20;
 
-/// Sorts placements along Hilbert's curve over their plan; those of one cell by all their numbers, then by identifiers.
+/// Sorts placements along Hilbert's curve over their plan; those of one cell by all their numbers, then by symbols and
+/// identifiers. Numbers are compared as they are written, in steps.
 pub(super) fn along_curve(placed: &mut [Placement], steps: &Steps) {
-    let low = |k: usize| placed.iter().map(|p| p.at[k]).fold(f64::INFINITY, f64::min);
+    let whole = |v: f64, steps: i64| (v * steps as f64).round() as i64;
+    let plan = |p: &Placement| [0, 1].map(|k| whole(p.at[k], steps.length));
+    let low = |k: usize| placed.iter().map(|p| plan(p)[k]).min().unwrap_or(0);
     let (x, y) = (low(0), low(1));
-    let cell = |p: &Placement| {
-        let scale = steps.length as f64;
-        let [u, v] = [p.at[0] - x, p.at[1] - y].map(|v| (v * scale).round() as u64);
-        hilbert(u, v)
-    };
     placed.sort_by_cached_key(|p| {
-        let numbers: Vec<i64> =
-            p.at.iter()
-                .chain(&p.size)
-                .chain([&p.turn])
-                .map(|&v| ordered(v))
-                .collect();
-        (cell(p), numbers, p.symbol.clone(), p.id.clone())
+        let [u, v] = plan(p);
+        let lengths = p.at.iter().chain(&p.size);
+        let mut numbers: Vec<i64> = lengths.map(|&v| whole(v, steps.length)).collect();
+        numbers.push(whole(p.turn, steps.turn));
+        let cell = hilbert(u.abs_diff(x), v.abs_diff(y));
+        (cell, numbers, p.symbol.clone(), p.id.clone())
     });
-}
-
-/// Whole numbers in the order of numbers.
-fn ordered(v: f64) -> i64 {
-    let bits = v.to_bits() as i64;
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 /// The distance along the curve of a cell of a square of 2^20 cells a side, in which larger coordinates wrap.

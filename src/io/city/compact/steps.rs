@@ -74,5 +74,5 @@ fn first(tried: &[i64], fits: impl Fn(i64) -> bool) -> i64 {
 /// Whether a number is a whole number of steps, but for rounding.
 fn whole(v: f64, steps: i64) -> bool {
     let scaled = v * steps as f64;
-    (scaled - scaled.round()).abs() < 1e-6 * scaled.abs().max(1.0)
+    (scaled - scaled.round()).abs() < 1e-6
 }
