@@ -4,7 +4,12 @@
 mod clustering;
 mod communities;
 mod data;
+mod exhibits;
 mod figure_10;
+mod figure_3;
+mod figure_4;
+mod figure_5;
+mod figure_6;
 mod figure_7;
 mod figure_8;
 mod figure_9;
@@ -29,6 +34,26 @@ const ARTEFACTS: &[Artefact] = &[
         name: "table_1",
         title: "sizes of four levels, both modes",
         run: table_1::run,
+    },
+    Artefact {
+        name: "figure_3",
+        title: "buildings taken apart",
+        run: figure_3::run,
+    },
+    Artefact {
+        name: "figure_4",
+        title: "types of buildings, weights of features",
+        run: figure_4::run,
+    },
+    Artefact {
+        name: "figure_5",
+        title: "a rule and what it derives to",
+        run: figure_5::run,
+    },
+    Artefact {
+        name: "figure_6",
+        title: "communities, level by level",
+        run: figure_6::run,
     },
     Artefact {
         name: "figure_7",

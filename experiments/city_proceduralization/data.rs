@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::synthetic;
 use crate::experiments::Context;
+use crate::grammar::instance::Kept;
 use crate::io::city;
 use crate::methods::city_proceduralization::{
     Budget, Mode, Proceduralized, Settings, proceduralize,
@@ -15,11 +16,24 @@ use crate::{Error, Result};
 /// Cells of the raster that judges, in metres.
 pub const RESOLUTION: f64 = 1.0;
 
-/// Real cities below the data folder.
-const REAL: [(&str, &str); 1] = [("midtown", "city/nyc_midtown4500.npz")];
+/// Real cities below the data folder, the first of which most artefacts take.
+const REAL: [(&str, &str); 3] = [
+    ("midtown", "city/nyc_midtown4500.npz"),
+    ("delft", "city/delft_bag3d.npz"),
+    ("manhattan", "city/nyc_manhattan_lod2.npz"),
+];
 
-/// The cities of a run: the made one, and with `--data` the real ones, each cut down to `most` buildings.
+/// The made city, and with `--data` the smallest real one.
 pub fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+    some_cities(ctx, 1)
+}
+
+/// The made city, and with `--data` all real ones.
+pub fn all_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+    some_cities(ctx, REAL.len())
+}
+
+fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     let motifs = ctx.budget().choose(16, 500, 500);
     ctx.setting("motifs", motifs);
     let mut found = vec![(
@@ -27,9 +41,9 @@ pub fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
         synthetic::city(motifs, 0.0, ctx.seed()).0,
     )];
     if ctx.budget() > crate::experiments::Budget::Smoke {
-        for (name, file) in REAL {
+        for (name, file) in &REAL[..real] {
             if let Some(path) = ctx.real(file)? {
-                found.push((name.to_owned(), city::read(&path)?));
+                found.push(((*name).to_owned(), city::read(&path)?));
             }
         }
     }
@@ -87,24 +101,10 @@ pub fn measure(city: &City, settings: &Settings) -> Result<Measures> {
         terminals: grammar.templates.len() as f64,
         non_terminals: grammar.non_terminals() as f64,
         iou: iou(city, &made)?,
-        bytes: city::grammar_json::packed_bytes(&without_attributes(&made))
+        bytes: city::grammar_json::packed_bytes(&grammar.keeping(Kept::Identifiers))
             .map_err(Error::method)? as f64,
         seconds,
     })
-}
-
-fn without_attributes(made: &Proceduralized) -> crate::grammar::instance::InstanceGrammar {
-    fn clear(p: &mut crate::grammar::instance::Placement) {
-        p.attributes.clear();
-        p.parts.iter_mut().flatten().for_each(clear);
-    }
-    let mut grammar = made.grammar.clone();
-    grammar
-        .rules
-        .iter_mut()
-        .flat_map(|r| &mut r.successors)
-        .for_each(clear);
-    grammar
 }
 
 /// Volumetric intersection over union of the derived triangles with the input's.

@@ -1,5 +1,7 @@
 //! Cities: grammars, files and commands.
 
 mod commands;
+mod compact;
 mod gltf;
 mod grammar;
+mod invariance;

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod cities;
 mod completion;
 mod facades;
 mod grammar;

@@ -4,18 +4,13 @@ use std::path::Path;
 
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city;
+pub use edifice::io::city::grammar_file::is_grammar;
 use edifice::shape::triangles::City;
 use edifice::{Error, Result};
 
 /// Reads a grammar.
 pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
-    city::grammar_json::read(path)
-}
-
-/// Whether a file's name says that it holds a grammar.
-pub fn is_grammar(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    name.ends_with(".city-grammar.json") || name.ends_with(".city-grammar.json.gz")
+    city::grammar_file::read(path)
 }
 
 /// Reads a city, or derives it from a grammar.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice::io::city::{cityjson, glb, obj};
+use edifice::io::city::{cityjson, glb, grammar_file, obj};
 use edifice::{Error, Result};
 
 use super::data;
@@ -13,7 +13,7 @@ use super::data;
 pub struct Args {
     /// The grammar.
     grammar: PathBuf,
-    /// The city to write: `.glb`, `.obj` or `.city.json`.
+    /// The city to write: `.glb`, `.obj` or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
     #[arg(short, long)]
     output: PathBuf,
     /// Write a glTF node for each instance, for viewers without EXT_mesh_gpu_instancing.
@@ -23,6 +23,9 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
+    if data::is_grammar(&args.output) {
+        return grammar_file::write(&data::grammar(&args.grammar)?, &args.output);
+    }
     check_output(&args.output)?;
     let grammar = data::grammar(&args.grammar)?;
     let derivation = grammar

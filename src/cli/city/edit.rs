@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use edifice::editing::CommandError;
 use edifice::editing::city_proceduralization::{CityEdit, edit};
-use edifice::io::city::grammar_json;
+use edifice::io::city::grammar_file;
 use edifice::{Error, Result};
 
 use super::data;
@@ -18,7 +18,7 @@ pub struct Args {
     /// Edits.
     #[arg(required = true, value_name = "EDIT", value_parser = parse)]
     edits: Vec<CityEdit>,
-    /// The grammar to write (`*.city-grammar.json`, or with `.gz`).
+    /// The grammar to write (`*.city-grammar.json`, also with `.gz`, or `*.city-grammar.bin`).
     #[arg(short, long)]
     output: PathBuf,
 }
@@ -31,7 +31,7 @@ fn parse(text: &str) -> std::result::Result<CityEdit, String> {
 pub fn run(args: &Args) -> Result<()> {
     let grammar = data::grammar(&args.grammar)?;
     let edited = edit(&grammar, &args.edits).map_err(|e| Error::content(&args.grammar, e))?;
-    grammar_json::write(&edited, &args.output)?;
+    grammar_file::write(&edited, &args.output)?;
     print::line(&format!(
         "{}: {} rules",
         args.output.display(),

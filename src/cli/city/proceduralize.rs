@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use edifice::io::city::{self, glb, grammar_json};
+use edifice::grammar::instance::{InstanceGrammar, Kept};
+use edifice::io::city::{self, glb, grammar_file};
 use edifice::methods::city_proceduralization::{
-    self as method, Budget, PAPER_FEATURES, Proceduralized, Representative, Settings,
+    self as method, Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative,
+    Settings,
 };
 use edifice::shape::triangles::MeshFaults;
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
@@ -25,6 +27,34 @@ enum Mode {
     Paper,
 }
 
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Steps {
+    /// Millimetres, ten-thousandths of degrees, templates on 16 bits.
+    Mm,
+    /// Centimetres, hundredths of degrees, templates on 12 bits.
+    Cm,
+    /// Decimetres, half degrees, templates on 7 bits.
+    Dm,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Communities {
+    /// As the paper does; slow on graphs of many thousand edges.
+    GirvanNewman,
+    /// Blondel et al. 2008.
+    Louvain,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Keep {
+    /// Everything.
+    All,
+    /// Identifiers, no attributes.
+    Ids,
+    /// Neither, and no patterns for synthesis.
+    Shape,
+}
+
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
@@ -37,7 +67,7 @@ pub struct Args {
     /// Number of templates, or `all`.
     #[arg(long, value_name = "K", group = "budget")]
     templates: Option<String>,
-    /// Most bytes of the gzipped grammar.
+    /// Most bytes of the grammar's file.
     #[arg(long, value_name = "N", group = "budget")]
     bytes: Option<usize>,
     /// Least volumetric intersection over union with the input.
@@ -49,13 +79,22 @@ pub struct Args {
     /// Weights of the paper's features, `F=W,...`; others are 1.
     #[arg(long, value_name = "F=W,...")]
     weights: Option<String>,
+    /// How communities are found, with `--mode paper`.
+    #[arg(long, value_enum, default_value = "girvan-newman")]
+    communities: Communities,
     /// With `--mode paper`, represent a type by its member of fewest polygons.
     #[arg(long)]
     poly: bool,
     /// Seed of k-means.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The grammar to write (`*.city-grammar.json`, or with `.gz`).
+    /// How finely numbers are written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`, cm otherwise].
+    #[arg(long, value_enum)]
+    precision: Option<Steps>,
+    /// What of the buildings is kept.
+    #[arg(long, value_enum, default_value = "all")]
+    keep: Keep,
+    /// The grammar to write: text (`*.city-grammar.json`, also with `.gz`), or few bytes (`*.city-grammar.bin`).
     #[arg(short, long)]
     output: PathBuf,
     /// Also write the derived city as binary glTF.
@@ -79,11 +118,19 @@ pub fn run(args: &Args) -> Result<()> {
     ));
     let made = match (args.bytes, args.iou) {
         (Some(bytes), _) => {
-            let small = |p: &Proceduralized| Ok(packed(p)? <= bytes);
+            let small = |g: &InstanceGrammar| {
+                let found = args.bytes_of(g)?.len();
+                print::message(&format!("{} templates: {found} bytes", g.templates.len()));
+                Ok(found <= bytes)
+            };
             method::largest(&input, &settings, small).map_err(|e| failure(e, args))?
         }
         (_, Some(least)) => {
-            let good = |p: &Proceduralized| Ok(iou(&input, p)? >= least);
+            let good = |g: &InstanceGrammar| {
+                let found = iou(&input, g)?;
+                print::message(&format!("{} templates: IoU {found:.4}", g.templates.len()));
+                Ok(found >= least)
+            };
             method::smallest(&input, &settings, good).map_err(|e| failure(e, args))?
         }
         _ => Some(method::proceduralize(&input, &settings).map_err(|e| failure(e.into(), args))?),
@@ -102,11 +149,13 @@ pub fn run(args: &Args) -> Result<()> {
         let bytes = bytes.map_err(|e| Error::content(path, e))?;
         edifice::io::write_atomic(path, &bytes)?;
     }
-    grammar_json::write(&made.grammar, &args.output)?;
-    let iou = iou(&input, &made).map_err(|e| failure(e, args))?;
+    let bytes = args.bytes_of(&made.grammar)?;
+    edifice::io::write_atomic(&args.output, &bytes)?;
+    let bytes = bytes.len();
+    print::message("measuring");
+    let iou = iou(&input, &made.grammar).map_err(|e| failure(e, args))?;
     let rules = made.grammar.rules.len();
     let non_terminals = made.grammar.non_terminals();
-    let bytes = packed(&made).map_err(|e| failure(e, args))?;
     let (components, templates) = (
         made.decomposition.components.len(),
         made.grammar.templates.len(),
@@ -121,9 +170,31 @@ pub fn run(args: &Args) -> Result<()> {
     }
     print::line(&format!(
         "{} buildings, {components} components -> {templates} templates, {rules} rules\n\
-         {bytes} bytes gzipped, volumetric IoU {iou:.4}, {seconds:.1} s",
+         {bytes} bytes, volumetric IoU {iou:.4}, {seconds:.1} s",
         input.buildings.len()
     ))
+}
+
+impl Args {
+    /// The bytes of the file that a grammar is written to.
+    fn bytes_of(&self, grammar: &InstanceGrammar) -> Result<Vec<u8>> {
+        let kept = match self.keep {
+            Keep::All => return grammar_file::to_bytes(grammar, &self.output),
+            Keep::Ids => Kept::Identifiers,
+            Keep::Shape => Kept::Shape,
+        };
+        grammar_file::to_bytes(&grammar.keeping(kept), &self.output)
+    }
+
+    fn precision(&self) -> Option<Precision> {
+        match self.precision {
+            Some(Steps::Mm) => Some(Precision::Millimetre),
+            Some(Steps::Cm) => Some(Precision::Centimetre),
+            Some(Steps::Dm) => Some(Precision::Decimetre),
+            None if self.templates.as_deref() == Some("all") => None,
+            None => grammar_file::is_compact(&self.output).then_some(Precision::Decimetre),
+        }
+    }
 }
 
 fn settings(args: &Args) -> Result<Settings> {
@@ -137,6 +208,11 @@ fn settings(args: &Args) -> Result<Settings> {
             false => Representative::Nearest,
         },
         seed: args.seed,
+        detection: match args.communities {
+            Communities::GirvanNewman => Detection::GirvanNewman,
+            Communities::Louvain => Detection::Louvain,
+        },
+        precision: args.precision(),
         ..Settings::default()
     };
     if let Some(level) = args.level {
@@ -196,13 +272,9 @@ fn read(paths: &[PathBuf]) -> Result<City> {
     Ok(all)
 }
 
-fn packed(made: &Proceduralized) -> Result<usize, edifice::error::Cause> {
-    Ok(grammar_json::packed_bytes(&made.grammar)?)
-}
-
 /// Volumetric intersection over union of the derived triangles with the input's.
-fn iou(input: &City, made: &Proceduralized) -> Result<f64, edifice::error::Cause> {
-    let derived = made.grammar.derive()?.city(&made.grammar);
+fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice::error::Cause> {
+    let derived = grammar.derive()?.city(grammar);
     let repaired: Vec<TriangleMesh> = input.buildings.iter().map(|b| repair(&b.mesh).0).collect();
     let first: Vec<&TriangleMesh> = repaired.iter().collect();
     let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice::editing::city_proceduralization::fill;
-use edifice::io::city::{geojson, grammar_json};
+use edifice::io::city::{geojson, grammar_file};
 use edifice::methods::city_proceduralization::synthesis::Shape;
 use edifice::{Error, Result};
 
@@ -30,7 +30,7 @@ pub struct Args {
     /// Seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The new city: a grammar (`*.city-grammar.json`), `.glb`, `.obj` or `.city.json`.
+    /// The new city: a grammar (`*.city-grammar.json` or `.bin`), `.glb`, `.obj` or `.city.json`.
     #[arg(short, long)]
     output: PathBuf,
     /// End with a line of JSON.
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
         fill(&grammar, shape, args.seed).map_err(|e| Error::content(&args.grammar, e))?;
     let count = derivation.buildings.len();
     match is_grammar {
-        true => grammar_json::write(&made, &args.output)?,
+        true => grammar_file::write(&made, &args.output)?,
         false => derive::write(&made, &derivation, &args.output, true)?,
     }
     if args.json {

@@ -11,10 +11,12 @@
 mod check;
 mod derive;
 mod error;
+mod kept;
 mod repeated;
 
 pub use derive::{INSTANCE_LIMIT, InstanceDerivation, TemplateInstance};
 pub use error::InstanceGrammarError;
+pub use kept::Kept;
 pub use repeated::{Posed, Repeated, repeated};
 
 use crate::shape::triangles::TriangleMesh;

@@ -222,8 +222,25 @@ pub fn to_string(city: &City) -> String {
     let mut document = json!({ "type": "CityJSON", "version": "2.0",
         "transform": { "scale": [SCALE, SCALE, SCALE], "translate": city.origin },
         "CityObjects": objects, "vertices": vertices });
-    if let Some(system) = &city.reference_system {
+    if let Some(system) = city.reference_system.as_deref().and_then(standard_name) {
         document["metadata"] = json!({ "referenceSystem": system });
     }
     document.to_string()
+}
+
+/// Where the standard's names of reference systems begin.
+const OPEN_GIS: &str = "https://www.opengis.net/def/crs/";
+
+/// A reference system as CityJSON 2.0 names it: `EPSG:7415` is `https://www.opengis.net/def/crs/EPSG/0/7415`. The standard
+/// allows no other names: such are left out.
+fn standard_name(system: &str) -> Option<String> {
+    if let Some(rest) = system.strip_prefix("http://www.opengis.net/def/crs/") {
+        return Some(format!("{OPEN_GIS}{rest}"));
+    }
+    if system.starts_with(OPEN_GIS) {
+        return Some(system.to_owned());
+    }
+    let code = system.rsplit(':').next().filter(|c| !c.is_empty())?;
+    let digits = code.chars().all(|c| c.is_ascii_digit());
+    (digits && system.to_uppercase().contains("EPSG")).then(|| format!("{OPEN_GIS}EPSG/0/{code}"))
 }

@@ -103,12 +103,21 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<InstanceGrammar> {
 /// # Errors
 /// [`Error::Io`] when the file cannot be written.
 pub fn write(grammar: &InstanceGrammar, path: &Path) -> Result<()> {
-    let text = to_string(grammar).map_err(|e| Error::content(path, e))?;
-    let bytes = match path.extension().is_some_and(|e| e == "gz") {
+    let packed = path.extension().is_some_and(|e| e == "gz");
+    let bytes = to_bytes(grammar, packed).map_err(|e| Error::content(path, e))?;
+    write_atomic(path, &bytes)
+}
+
+/// The bytes of a grammar, gzipped or not.
+///
+/// # Errors
+/// As [`packed_bytes`].
+pub fn to_bytes(grammar: &InstanceGrammar, gzipped: bool) -> serde_json::Result<Vec<u8>> {
+    let text = to_string(grammar)?;
+    Ok(match gzipped {
         true => packed(text.as_bytes()),
         false => text.into_bytes(),
-    };
-    write_atomic(path, &bytes)
+    })
 }
 
 /// Bytes of the gzipped text: what storing and sending a grammar takes.

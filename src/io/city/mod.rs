@@ -7,16 +7,19 @@
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
 //! | `.glb`, `.gltf` | [`gltf`]: a node is a building | `.glb`, [`glb`]: a node with instances for each template |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
+//! | `.city-grammar.bin` | [`compact`]: the same in few bytes | yes |
 //! | `tileset.json` | no | [`tiles`]: 3D Tiles 1.1 |
 //! | `.geojson` | [`geojson`]: a shape on the ground | no |
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
 pub mod cityjson;
+pub mod compact;
 pub mod geojson;
 pub mod glb;
 pub mod gltf;
 mod gltf_data;
 mod gltf_transform;
+pub mod grammar_file;
 pub mod grammar_json;
 pub mod npz;
 pub mod obj;

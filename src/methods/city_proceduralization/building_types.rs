@@ -33,6 +33,8 @@ pub struct BuildingTypes {
     pub labels: Vec<Option<usize>>,
     /// Components of each building, from the ground up: indices.
     pub parts: Vec<Vec<usize>>,
+    /// The buildings that have components, in the order of those.
+    pub order: Vec<usize>,
     /// Number of types.
     pub count: usize,
     /// Whether half a turn does not change a building of a type, for each type: what most of its buildings say.
@@ -50,12 +52,19 @@ pub fn building_types(
     buildings: usize,
 ) -> Result<BuildingTypes, ProceduralizeError> {
     let mut parts: Vec<Vec<usize>> = vec![Vec::new(); buildings];
+    let mut order = Vec::new();
     for (i, c) in components.iter().enumerate() {
+        if parts[c.building].is_empty() {
+            order.push(c.building);
+        }
         parts[c.building].push(i);
     }
     let most = parts.iter().map(Vec::len).max().unwrap_or(0);
     let classes: Vec<Vec<usize>> = (1..=most)
-        .map(|s| (0..buildings).filter(|&b| parts[b].len() == s).collect())
+        .map(|s| {
+            let own = order.iter().copied();
+            own.filter(|&b| parts[b].len() == s).collect()
+        })
         .collect();
     let found: Vec<Vec<usize>> = classes
         .par_iter()
@@ -67,6 +76,7 @@ pub fn building_types(
     let mut out = BuildingTypes {
         labels: vec![None; buildings],
         parts,
+        order,
         count: 0,
         symmetric: Vec::new(),
     };

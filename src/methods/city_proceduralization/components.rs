@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
 use crate::shape::triangles::{
     City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
@@ -49,7 +50,8 @@ pub struct Component {
 /// All components of a city.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Decomposition {
-    /// Components, building after building, from the ground up.
+    /// Components, building after building, from the ground up; the buildings by where and what they are, so that the order
+    /// in which they are listed changes nothing.
     pub components: Vec<Component>,
     /// What was wrong with each building's mesh.
     pub faults: Vec<MeshFaults>,
@@ -60,23 +62,26 @@ pub struct Decomposition {
 /// Cuts every building of a city into components, on all threads. With `bottoms`, components are closed
 /// below, too: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
 pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
-    let parts: Vec<(Vec<Component>, MeshFaults)> = city
-        .buildings
+    let order = canonical_order(city);
+    let parts: Vec<(Vec<Component>, MeshFaults)> = order
         .par_iter()
-        .enumerate()
-        .map(|(b, building)| {
-            let (mesh, faults) = repair(&building.mesh);
+        .map(|&b| {
+            let (mesh, faults) = repair(&city.buildings[b].mesh);
             (components_of(&mesh, b, bottoms), faults)
         })
         .collect();
-    let mut out = Decomposition::default();
-    for (b, (components, faults)) in parts.into_iter().enumerate() {
+    let mut out = Decomposition {
+        faults: vec![MeshFaults::default(); order.len()],
+        ..Decomposition::default()
+    };
+    for (b, (components, faults)) in order.into_iter().zip(parts) {
         if components.is_empty() {
             out.empty.push(b);
         }
         out.components.extend(components);
-        out.faults.push(faults);
+        out.faults[b] = faults;
     }
+    out.empty.sort_unstable();
     out
 }
 

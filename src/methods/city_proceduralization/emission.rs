@@ -13,7 +13,7 @@ use crate::shape::triangles::{City, TriangleMesh, merge_coplanar};
 
 /// How finely numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Detail {
+pub(super) struct Detail {
     /// Steps of lengths in a metre.
     length: f64,
     /// Steps of turns in a degree.
@@ -26,18 +26,25 @@ pub struct Detail {
 
 impl Detail {
     /// Centimetres, hundredths of degrees, 12 bits: where templates stand for others, nothing finer is seen.
-    pub const COARSE: Self = Self {
+    pub(super) const CENTIMETRE: Self = Self {
         length: 100.0,
         angle: 100.0,
         box_steps: 4095.0,
         coplanar: 1e-3,
     };
     /// Millimetres, ten-thousandths of degrees, 16 bits: where each component has its own template.
-    pub const FINE: Self = Self {
+    pub(super) const MILLIMETRE: Self = Self {
         length: 1000.0,
         angle: 10_000.0,
         box_steps: 65_535.0,
         coplanar: 2e-5,
+    };
+    /// Decimetres, half degrees, 7 bits: where few bytes count.
+    pub(super) const DECIMETRE: Self = Self {
+        length: 10.0,
+        angle: 2.0,
+        box_steps: 127.0,
+        coplanar: 4e-3,
     };
 }
 
@@ -45,13 +52,13 @@ impl Detail {
 pub const AXIOM: &str = "City";
 
 /// The grammar of `paper`: the rules of the parse tree, its top under the axiom.
-pub fn emit_tree(
+pub(super) fn emit_tree(
     city: &City,
     components: &[Component],
     types: &Types,
     tree: &ParseTree,
 ) -> InstanceGrammar {
-    let mut grammar = terminals(city, components, types, &Detail::COARSE, false);
+    let mut grammar = terminals(city, components, types, &Detail::CENTIMETRE, false);
     grammar.rules.push(InstanceRule {
         symbol: AXIOM.to_owned(),
         weight: 1.0,
@@ -68,7 +75,7 @@ pub fn placed_components(
     types: &Types,
 ) -> Vec<(usize, [f64; 3], Placement)> {
     let one = |(i, c): (usize, &Component)| {
-        let mut placed = part(i, c, types, &Frame::WORLD, &Detail::COARSE);
+        let mut placed = part(i, c, types, &Frame::WORLD, &Detail::CENTIMETRE);
         let building = &city.buildings[c.building];
         placed.id = Some(building.id.clone());
         if i == 0 || components[i - 1].building != c.building {
@@ -107,7 +114,7 @@ fn terminals(
 ///
 /// A building's rule has the mean transforms of its type; a building that differs from it by a centimetre
 /// keeps its parts. A single component whose building has no like is a terminal at once.
-pub fn emit(
+pub(super) fn emit(
     city: &City,
     components: &[Component],
     types: &Types,
@@ -117,9 +124,9 @@ pub fn emit(
 ) -> InstanceGrammar {
     let mut grammar = terminals(city, components, types, detail, true);
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
-    for (b, label) in buildings.labels.iter().enumerate() {
-        if let Some(l) = label {
-            members[*l].push(b);
+    for &b in &buildings.order {
+        if let Some(l) = buildings.labels[b] {
+            members[l].push(b);
         }
     }
     let mut start: Vec<(usize, Placement)> = Vec::new();
@@ -185,7 +192,7 @@ fn pattern(index: usize, pattern: &Repeated, types: usize) -> InstanceRule {
         };
         rounded(
             Placement::new(symbol, m.at, m.turn, [1.0; 3]),
-            &Detail::COARSE,
+            &Detail::CENTIMETRE,
         )
     };
     InstanceRule {

@@ -38,6 +38,8 @@ pub mod components;
 pub mod emission;
 pub mod features;
 pub mod localization;
+mod medoids;
+mod order;
 mod orientation;
 pub mod parse_tree;
 pub mod patterns;
@@ -48,7 +50,8 @@ pub mod types;
 
 pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
+pub use parse_tree::Detection;
 pub use proceduralize::{
-    Budget, Mode, ProceduralizeError, Proceduralized, Representative, Settings, Structure,
-    from_components, largest, proceduralize, smallest,
+    Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
+    Structure, from_components, largest, proceduralize, smallest,
 };

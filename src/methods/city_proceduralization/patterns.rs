@@ -7,11 +7,11 @@ use crate::grammar::instance::{Posed, Repeated, repeated};
 
 /// The patterns of a city over its types of buildings, smaller ones first.
 pub fn patterns(components: &[Component], buildings: &BuildingTypes) -> Vec<Repeated> {
-    let posed: Vec<Posed> = (buildings.labels.iter().zip(&buildings.parts))
-        .filter_map(|(label, parts)| {
-            let frame = &components[*parts.first()?].frame;
+    let posed: Vec<Posed> = (buildings.order.iter())
+        .filter_map(|&b| {
+            let frame = &components[*buildings.parts[b].first()?].frame;
             Some(Posed {
-                kind: (*label)?,
+                kind: buildings.labels[b]?,
                 at: frame.base,
                 turn: frame.angle.to_degrees(),
             })

@@ -1,13 +1,13 @@
 //! The whole pipeline.
 
 use super::building_types::{BuildingTypes, building_types};
-use super::components::{Decomposition, decompose};
+use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, emit, emit_tree, placed_components};
 use super::features::geometric_features;
 use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
-use super::types::{Types, best_types, distinct_types, paper_types};
+use super::types::{TypeTree, Types, distinct_types, paper_types};
 use crate::cluster::WardError;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
 use crate::shape::triangles::City;
@@ -32,6 +32,17 @@ pub enum Budget {
     Level(u32),
 }
 
+/// How finely a grammar is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Millimetres, ten-thousandths of degrees, templates on 16 bits.
+    Millimetre,
+    /// Centimetres, hundredths of degrees, templates on 12 bits.
+    Centimetre,
+    /// Decimetres, half degrees, templates on 7 bits: for few bytes.
+    Decimetre,
+}
+
 /// What represents a type in `paper`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Representative {
@@ -54,8 +65,13 @@ pub struct Settings {
     pub representative: Representative,
     /// Weights of Eq. 11.
     pub distance: DistanceWeights,
+    /// How communities are found, in `paper`.
+    pub detection: Detection,
     /// Seed of k-means, in `paper`.
     pub seed: u64,
+    /// How finely numbers are written, in `best`. Without it: millimetres where each component has its own template,
+    /// centimetres otherwise.
+    pub precision: Option<Precision>,
 }
 
 impl Default for Settings {
@@ -66,7 +82,9 @@ impl Default for Settings {
             weights: [1.0; 11],
             representative: Representative::Nearest,
             distance: DistanceWeights::default(),
+            detection: Detection::GirvanNewman,
             seed: 1,
+            precision: None,
         }
     }
 }
@@ -133,48 +151,112 @@ pub fn from_components(
     decomposition: Decomposition,
     settings: &Settings,
 ) -> Result<Proceduralized, ProceduralizeError> {
-    let components = &decomposition.components;
-    if components.is_empty() {
-        return Err(ProceduralizeError::Empty);
+    let made = Prepared::new(city, &decomposition.components, settings)?.grammar(settings.budget);
+    Ok(made.of(decomposition))
+}
+
+/// A city of which grammars of several budgets are made.
+struct Prepared<'a> {
+    city: &'a City,
+    components: &'a [Component],
+    settings: &'a Settings,
+    best: Option<Best<'a>>,
+}
+
+/// What in `best` is the same for all budgets.
+struct Best<'a> {
+    types: TypeTree<'a>,
+    buildings: BuildingTypes,
+    patterns: Vec<Repeated>,
+}
+
+/// A grammar without what it was made from.
+struct Made {
+    grammar: InstanceGrammar,
+    types: Types,
+    structure: Structure,
+}
+
+impl Made {
+    fn of(self, decomposition: Decomposition) -> Proceduralized {
+        Proceduralized {
+            grammar: self.grammar,
+            decomposition,
+            types: self.types,
+            structure: self.structure,
+        }
     }
-    let n = components.len();
-    let k = match settings.budget {
-        Budget::All => n,
-        Budget::Templates(k) => k.clamp(1, n),
-        Budget::Level(level) => n.checked_shr(level).unwrap_or(0).max(1),
-    };
-    let (grammar, types, structure) = match settings.mode {
-        Mode::Paper => {
+}
+
+impl<'a> Prepared<'a> {
+    fn new(
+        city: &'a City,
+        components: &'a [Component],
+        settings: &'a Settings,
+    ) -> Result<Self, ProceduralizeError> {
+        if components.is_empty() {
+            return Err(ProceduralizeError::Empty);
+        }
+        let best = match settings.mode {
+            Mode::Paper => None,
+            Mode::Best => {
+                let shape = geometric_features(components);
+                let buildings = building_types(components, &shape, city.buildings.len())?;
+                Some(Best {
+                    types: TypeTree::new(components, &shape)?,
+                    patterns: patterns(components, &buildings),
+                    buildings,
+                })
+            }
+        };
+        Ok(Self {
+            city,
+            components,
+            settings,
+            best,
+        })
+    }
+
+    fn grammar(&self, budget: Budget) -> Made {
+        let (city, components, settings) = (self.city, self.components, self.settings);
+        let n = components.len();
+        let k = match budget {
+            Budget::All => n,
+            Budget::Templates(k) => k.clamp(1, n),
+            Budget::Level(level) => n.checked_shr(level).unwrap_or(0).max(1),
+        };
+        let Some(best) = &self.best else {
             let (weights, representative) = (&settings.weights, settings.representative);
             let types = paper_types(components, k, weights, representative, settings.seed);
             let placed = placed_components(city, components, &types);
             let leaves = types.representatives.len();
-            let tree = grow(leaves, placed, Detection::GirvanNewman, settings.distance);
-            let grammar = emit_tree(city, components, &types, &tree);
-            (grammar, types, Structure::Tree(tree))
-        }
-        Mode::Best => {
-            let shape = geometric_features(components);
-            let (types, detail) = match settings.budget {
-                Budget::All => (distinct_types(components), Detail::FINE),
-                _ => (best_types(components, &shape, k)?, Detail::COARSE),
+            let tree = grow(leaves, placed, settings.detection, settings.distance);
+            return Made {
+                grammar: emit_tree(city, components, &types, &tree),
+                types,
+                structure: Structure::Tree(tree),
             };
-            let buildings = building_types(components, &shape, city.buildings.len())?;
-            let patterns = patterns(components, &buildings);
-            let grammar = emit(city, components, &types, &buildings, &patterns, &detail);
-            let structure = Structure::Patterns {
-                buildings,
-                patterns,
-            };
-            (grammar, types, structure)
+        };
+        let (types, detail) = match budget {
+            Budget::All => (distinct_types(components), Detail::MILLIMETRE),
+            _ => (best.types.cut(k), Detail::CENTIMETRE),
+        };
+        let detail = match settings.precision {
+            None => detail,
+            Some(Precision::Millimetre) => Detail::MILLIMETRE,
+            Some(Precision::Centimetre) => Detail::CENTIMETRE,
+            Some(Precision::Decimetre) => Detail::DECIMETRE,
+        };
+        let (buildings, patterns) = (&best.buildings, &best.patterns);
+        Made {
+            grammar: emit(city, components, &types, buildings, patterns, &detail),
+            types,
+            structure: Structure::Patterns {
+                buildings: buildings.clone(),
+                patterns: patterns.clone(),
+            },
         }
-    };
-    Ok(Proceduralized {
-        grammar,
-        decomposition,
-        types,
-        structure,
-    })
+    }
 }
 
 /// Steps of the search for a number of templates.
@@ -188,7 +270,7 @@ const SEARCH_STEPS: usize = 7;
 pub fn largest<E: From<ProceduralizeError>>(
     city: &City,
     settings: &Settings,
-    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
 ) -> Result<Option<Proceduralized>, E> {
     search(city, settings, fits, true)
 }
@@ -201,7 +283,7 @@ pub fn largest<E: From<ProceduralizeError>>(
 pub fn smallest<E: From<ProceduralizeError>>(
     city: &City,
     settings: &Settings,
-    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
 ) -> Result<Option<Proceduralized>, E> {
     search(city, settings, fits, false)
 }
@@ -210,27 +292,32 @@ pub fn smallest<E: From<ProceduralizeError>>(
 fn search<E: From<ProceduralizeError>>(
     city: &City,
     settings: &Settings,
-    fits: impl Fn(&Proceduralized) -> Result<bool, E>,
+    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
     many: bool,
 ) -> Result<Option<Proceduralized>, E> {
     let decomposition = decompose(city, true);
-    let at = |k: usize| {
-        let settings = Settings {
-            budget: Budget::Templates(k),
-            ..settings.clone()
-        };
-        from_components(city, decomposition.clone(), &settings)
-    };
-    let (mut low, mut high) = (1, decomposition.components.len().max(1));
-    let sure = at(if many { low } else { high })?;
-    let mut best = fits(&sure)?.then_some(sure);
+    let best = bisected(city, &decomposition.components, settings, fits, many)?;
+    Ok(best.map(|made| made.of(decomposition)))
+}
+
+fn bisected<E: From<ProceduralizeError>>(
+    city: &City,
+    components: &[Component],
+    settings: &Settings,
+    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
+    many: bool,
+) -> Result<Option<Made>, E> {
+    let prepared = Prepared::new(city, components, settings)?;
+    let (mut low, mut high) = (1, components.len());
+    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }));
+    let mut best = fits(&sure.grammar)?.then_some(sure);
     for _ in 0..SEARCH_STEPS {
         let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
         if best.is_none() || middle == low || middle == high {
             break;
         }
-        let made = at(middle)?;
-        let fit = fits(&made)?;
+        let made = prepared.grammar(Budget::Templates(middle));
+        let fit = fits(&made.grammar)?;
         if fit {
             best = Some(made);
         }

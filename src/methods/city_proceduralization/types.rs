@@ -1,12 +1,12 @@
 //! Component types and their representatives (Sec. IV.D).
 
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::components::{CELLS, Component};
+use super::components::Component;
 use super::features::{Points, paper_features};
+use super::medoids::{Table, square};
 use super::proceduralize::{ProceduralizeError, Representative};
-use crate::cluster::{kmeans, lloyd, means, ward};
+use crate::cluster::{WardTree, kmeans, lloyd, means, ward};
 use crate::rng;
 
 /// A type's use for a component.
@@ -143,175 +143,106 @@ pub fn distinct_types(components: &[Component]) -> Types {
     types
 }
 
-/// Rounds of medoids.
-const ROUNDS: usize = 3;
-/// Representatives that a component is compared with, nearest in features first.
-const CANDIDATES: usize = 12;
-/// Members that are tried as medoid, nearest to the mean first.
-const TRIED: usize = 12;
+/// Ward's hierarchy of the geometric features of components, weighted by volume, equal components joined first.
+pub struct TypeTree<'a> {
+    /// Distinct components: indices.
+    distinct: Vec<usize>,
+    /// The distinct component that each is equal to.
+    group: Vec<usize>,
+    table: Table<'a>,
+    tree: WardTree,
+}
 
-/// Ward's hierarchy of the geometric features `points`, weighted by volume, equal components joined first, cut at `k`
-/// types; then rounds of Lloyd, and of medoids under the mismatched volume over the four quarter turns.
-///
-/// # Errors
-/// [`ProceduralizeError::Ward`].
-pub fn best_types(
-    components: &[Component],
-    points: &Points,
-    k: usize,
-) -> Result<Types, ProceduralizeError> {
-    let d = points.dimension;
-    // Equal components first: the hierarchy is over distinct ones.
-    let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
-    let mut distinct: Vec<usize> = Vec::new();
-    let mut weights: Vec<f64> = Vec::new();
-    let mut group = Vec::with_capacity(components.len());
-    for (i, c) in components.iter().enumerate() {
-        let key: Vec<u8> = c
-            .heights
+impl<'a> TypeTree<'a> {
+    /// The hierarchy over the geometric features `points` of `components`.
+    ///
+    /// # Errors
+    /// [`ProceduralizeError::Ward`].
+    pub fn new(components: &'a [Component], points: &Points) -> Result<Self, ProceduralizeError> {
+        let d = points.dimension;
+        // Equal components first: the hierarchy is over distinct ones.
+        let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
+        let mut distinct: Vec<usize> = Vec::new();
+        let mut weights: Vec<f64> = Vec::new();
+        let mut group = Vec::with_capacity(components.len());
+        for (i, c) in components.iter().enumerate() {
+            let key: Vec<u8> = c
+                .heights
+                .iter()
+                .map(|h| (h * 255.0).round() as u8)
+                .collect();
+            let g = *known.entry(key).or_insert_with(|| {
+                distinct.push(i);
+                weights.push(0.0);
+                distinct.len() - 1
+            });
+            weights[g] += c.volume.max(1e-3);
+            group.push(g);
+        }
+        let rows: Vec<f64> = distinct
             .iter()
-            .map(|h| (h * 255.0).round() as u8)
+            .flat_map(|&i| points.row(i).to_vec())
             .collect();
-        let g = *known.entry(key).or_insert_with(|| {
-            distinct.push(i);
-            weights.push(0.0);
-            distinct.len() - 1
-        });
-        weights[g] += c.volume.max(1e-3);
-        group.push(g);
+        let tree = ward(&rows, d, &weights)?;
+        let heights = distinct.iter().map(|&i| components[i].heights.as_slice());
+        let table = Table {
+            rows,
+            d,
+            weights,
+            heights: heights.collect(),
+        };
+        Ok(Self {
+            distinct,
+            group,
+            table,
+            tree,
+        })
     }
-    let rows: Vec<f64> = distinct
-        .iter()
-        .flat_map(|&i| points.row(i).to_vec())
-        .collect();
-    let k = k.clamp(1, distinct.len());
-    let mut labels = ward(&rows, d, &weights)?.cut(k);
-    if k < distinct.len() {
-        let zero = vec![0.0; k * d];
-        let centres = means(&rows, d, &weights, &labels, zero);
-        labels = lloyd(&rows, d, &weights, centres, LLOYD_STEPS).labels;
+
+    /// The hierarchy cut at `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
+    /// quarter turns.
+    /// Types that stand for more components come first.
+    pub fn cut(&self, k: usize) -> Types {
+        let Table {
+            rows, d, weights, ..
+        } = &self.table;
+        let k = k.clamp(1, self.distinct.len());
+        let mut labels = self.tree.cut(k);
+        if k < self.distinct.len() {
+            let zero = vec![0.0; k * d];
+            let centres = means(rows, *d, weights, &labels, zero);
+            labels = lloyd(rows, *d, weights, centres, LLOYD_STEPS).labels;
+        }
+        let (labels, count) = renumbered(&labels);
+        let uses = labels.into_iter().map(|kind| Use { kind, quarter: 0 });
+        let (medoids, uses) = self.table.medoids(uses.collect(), count);
+        let types = Types {
+            representatives: medoids.iter().map(|&m| self.distinct[m]).collect(),
+            uses: self.group.iter().map(|&g| uses[g]).collect(),
+        };
+        types.by_use()
     }
-    let (labels, count) = renumbered(&labels);
-    let table = Table {
-        rows,
-        d,
-        weights,
-        heights: distinct
+}
+
+impl Types {
+    /// The same types, those of most uses first; those of no use are left out.
+    fn by_use(self) -> Self {
+        let mut counts = vec![0_usize; self.representatives.len()];
+        self.uses.iter().for_each(|u| counts[u.kind] += 1);
+        let mut order: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
+        order.sort_by_key(|&k| std::cmp::Reverse(counts[k]));
+        let mut number = vec![0; counts.len()];
+        order
             .iter()
-            .map(|&i| components[i].heights.as_slice())
-            .collect(),
-    };
-    let uses: Vec<Use> = labels
-        .into_iter()
-        .map(|kind| Use { kind, quarter: 0 })
-        .collect();
-    let (medoids, uses) = table.medoids(uses, count);
-    Ok(Types {
-        representatives: medoids.iter().map(|&m| distinct[m]).collect(),
-        uses: group.into_iter().map(|g| uses[g]).collect(),
-    })
-}
-
-/// Distinct components.
-struct Table<'a> {
-    rows: Vec<f64>,
-    d: usize,
-    weights: Vec<f64>,
-    heights: Vec<&'a [f32]>,
-}
-
-impl Table<'_> {
-    fn row(&self, i: usize) -> &[f64] {
-        &self.rows[i * self.d..(i + 1) * self.d]
-    }
-
-    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component.
-    fn medoids(&self, mut uses: Vec<Use>, count: usize) -> (Vec<usize>, Vec<Use>) {
-        let mut medoids = self.choose(&uses, count, &[]);
-        for _ in 0..ROUNDS {
-            uses = self.assign(&medoids, &uses);
-            medoids = self.choose(&uses, count, &medoids);
-        }
-        (medoids.clone(), self.assign(&medoids, &uses))
-    }
-
-    /// The member of each type with the least mismatched volume to the others, of those nearest to the mean.
-    fn choose(&self, uses: &[Use], count: usize, before: &[usize]) -> Vec<usize> {
-        let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
-        for (i, u) in uses.iter().enumerate() {
-            members[u.kind].push(i);
-        }
-        let medoid = |(kind, list): (usize, &Vec<usize>)| {
-            let total: f64 = list.iter().map(|&i| self.weights[i]).sum();
-            let mean = |k: usize| {
-                list.iter()
-                    .map(|&i| self.weights[i] * self.row(i)[k])
-                    .sum::<f64>()
-                    / total
-            };
-            let mean: Vec<f64> = (0..self.d).map(mean).collect();
-            let mut near = list.clone();
-            let far = |i: usize| square(self.row(i), &mean);
-            near.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-            near.truncate(TRIED);
-            near.extend(before.get(kind));
-            let cost = |m: usize| -> f64 {
-                let mismatch = |&i: &usize| {
-                    let turned = uses[i].quarter;
-                    self.weights[i] * mismatch(self.heights[m], self.heights[i], turned)
-                };
-                list.iter().map(mismatch).sum::<f64>()
-            };
-            let costs = near.iter().map(|&m| (cost(m), m));
-            let best = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            best.map_or(0, |b| b.1)
+            .enumerate()
+            .for_each(|(new, &old)| number[old] = new);
+        let renamed = |u: Use| Use {
+            kind: number[u.kind],
+            ..u
         };
-        members.par_iter().enumerate().map(medoid).collect()
-    }
-
-    /// The best of the present type and the types whose medoids are nearest in features.
-    fn assign(&self, medoids: &[usize], uses: &[Use]) -> Vec<Use> {
-        let best = |i: usize| {
-            let far = |kind: usize| square(self.row(i), self.row(medoids[kind]));
-            let mut near: Vec<(f64, usize)> = (0..medoids.len()).map(|m| (far(m), m)).collect();
-            let kept = CANDIDATES.min(near.len());
-            near.select_nth_unstable_by(kept - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            near.truncate(kept);
-            let mut best = (f64::INFINITY, uses[i]);
-            for kind in near.iter().map(|n| n.1).chain([uses[i].kind]) {
-                for quarter in 0..4 {
-                    let cost = mismatch(self.heights[medoids[kind]], self.heights[i], quarter);
-                    if cost < best.0 {
-                        best = (cost, Use { kind, quarter });
-                    }
-                }
-            }
-            best.1
-        };
-        (0..uses.len()).into_par_iter().map(best).collect()
-    }
-}
-
-/// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched
-/// share of the box.
-pub fn mismatch(template: &[f32], component: &[f32], quarter: u8) -> f64 {
-    let last = CELLS - 1;
-    let mut sum = 0.0f32;
-    for y in 0..CELLS {
-        for x in 0..CELLS {
-            // Where the cell comes from.
-            let (u, v) = match quarter {
-                0 => (x, y),
-                1 => (y, last - x),
-                2 => (last - x, last - y),
-                _ => (last - y, x),
-            };
-            sum += (template[v * CELLS + u] - component[y * CELLS + x]).abs();
+        Self {
+            representatives: order.iter().map(|&k| self.representatives[k]).collect(),
+            uses: self.uses.into_iter().map(renamed).collect(),
         }
     }
-    f64::from(sum) / (CELLS * CELLS) as f64
-}
-
-fn square(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }

@@ -1,0 +1,65 @@
+//! Grammars without what is not needed.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::{InstanceGrammar, Placement};
+
+/// What of a grammar is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kept {
+    /// Everything.
+    All,
+    /// Everything but the attributes of buildings.
+    Identifiers,
+    /// What the axiom derives to, without identifiers and attributes: each part is a building of its own.
+    Shape,
+}
+
+impl InstanceGrammar {
+    /// The grammar with what is kept.
+    pub fn keeping(&self, kept: Kept) -> Self {
+        let mut out = self.clone();
+        if kept == Kept::Shape {
+            let used = self.reached();
+            out.rules.retain(|r| used.contains(r.symbol.as_str()));
+        }
+        if kept != Kept::All {
+            let successors = out.rules.iter_mut().flat_map(|r| &mut r.successors);
+            successors.for_each(|p| strip(p, kept));
+        }
+        out
+    }
+
+    /// The symbols that the axiom leads to.
+    fn reached(&self) -> FxHashSet<&str> {
+        let mut rules: FxHashMap<&str, Vec<&Placement>> = FxHashMap::default();
+        for rule in &self.rules {
+            rules
+                .entry(&rule.symbol)
+                .or_default()
+                .extend(&rule.successors);
+        }
+        let mut seen = FxHashSet::from_iter([self.axiom.as_str()]);
+        let mut open = vec![self.axiom.as_str()];
+        while let Some(symbol) = open.pop() {
+            for placed in rules.get(symbol).into_iter().flatten() {
+                if seen.insert(&placed.symbol) {
+                    open.push(&placed.symbol);
+                }
+            }
+        }
+        seen
+    }
+}
+
+fn strip(placed: &mut Placement, kept: Kept) {
+    placed.attributes.clear();
+    if kept == Kept::Shape {
+        placed.id = None;
+    }
+    placed
+        .parts
+        .iter_mut()
+        .flatten()
+        .for_each(|p| strip(p, kept));
+}

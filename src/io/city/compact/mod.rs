@@ -1,0 +1,321 @@
+//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, version 1.
+//!
+//! | bytes | what |
+//! | --- | --- |
+//! | 4 | `EdCG` |
+//! | 2 | version, like all whole numbers little-endian |
+//! | 4 | CRC-32 of all that follows |
+//! | 4 | bytes of the next part |
+//! | | names, identifiers, attributes and steps: JSON, deflated (RFC 1951) |
+//! | to the end | templates, then rules, by a range coder with learnt probabilities |
+//!
+//! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
+//! any of the steps that are tried; otherwise it is rounded to the finest. A file holds what the text
+//! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (along Hilbert's curve, so that neighbours
+//! follow each other), that of a template's corners and triangles, and corners without a triangle.
+
+mod identity;
+mod integers;
+mod mesh;
+mod order;
+mod range_coder;
+mod rules;
+mod steps;
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use self::identity::{Attributes, Identities};
+use self::mesh::{MeshModels, StepMesh};
+use self::range_coder::{Coder, Decoder, Encoder};
+use self::rules::Rules;
+pub use self::steps::Steps;
+use crate::file::read_bytes;
+use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
+use crate::io::write_atomic;
+use crate::shape::triangles::TriangleMesh;
+use crate::{Error, Result};
+
+/// The first bytes of a file.
+const MAGIC: [u8; 4] = *b"EdCG";
+/// The version written, and the only one read.
+pub const VERSION: u16 = 1;
+/// Bytes before the checked part.
+const START: usize = 10;
+/// Most bytes of names, identifiers and attributes, unpacked.
+const MOST_TEXT: u64 = 1 << 28;
+
+/// Why bytes are no grammar, or a grammar cannot be written.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CompactError {
+    /// Another kind of file.
+    #[error("not a compact grammar: it does not begin with \"EdCG\"")]
+    Magic,
+    /// A version that is not known.
+    #[error("version {0}, expected {VERSION}")]
+    Version(u16),
+    /// The bytes are not those that were written.
+    #[error("damaged: the checksum does not fit")]
+    Checksum,
+    /// The file ends too early.
+    #[error("truncated")]
+    Truncated,
+    /// More than is read or written.
+    #[error("too many {0}")]
+    TooLarge(&'static str),
+    /// A number leads nowhere.
+    #[error("a number of a {0} leads nowhere")]
+    Index(&'static str),
+    /// A number has too many digits for whole steps.
+    #[error("{0} is too large to be written in steps")]
+    Number(f64),
+    /// Steps that are none.
+    #[error("steps {0:?} are not whole numbers from 1 to 65,535")]
+    Steps(Steps),
+    /// The text part.
+    #[error("text part: {0}")]
+    Text(String),
+    /// The grammar is not sound.
+    #[error(transparent)]
+    Grammar(#[from] InstanceGrammarError),
+}
+
+/// Reads a grammar and checks that it derives.
+///
+/// # Errors
+/// Names the file.
+pub fn read(path: &Path) -> Result<InstanceGrammar> {
+    from_bytes(&read_bytes(path)?).map_err(|e| Error::content(path, e))
+}
+
+/// Writes a grammar, whole or not at all.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be written; [`CompactError`] on a grammar that is not sound.
+pub fn write(grammar: &InstanceGrammar, path: &Path) -> Result<()> {
+    write_atomic(
+        path,
+        &to_bytes(grammar).map_err(|e| Error::content(path, e))?,
+    )
+}
+
+/// What is not numbers.
+#[derive(Serialize, Deserialize)]
+struct Texts {
+    name: String,
+    reference_system: Option<String>,
+    origin: [f64; 3],
+    axiom: usize,
+    steps: Steps,
+    /// Names of the templates, then of the non-terminals.
+    templates: Vec<Names>,
+    non_terminals: Vec<Names>,
+    ids: Vec<String>,
+    attributes: Vec<Attributes>,
+}
+
+/// Names that are one text with consecutive numbers; without numbers one name.
+#[derive(Serialize, Deserialize)]
+struct Names(String, u64, u64);
+
+/// The bytes of a grammar.
+///
+/// # Errors
+/// [`CompactError`] on a grammar that is not sound, and on numbers too large to be lengths.
+pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
+    grammar.check()?;
+    let steps = Steps::of(grammar);
+    let mut symbols: Vec<String> = grammar.templates.iter().map(|t| t.symbol.clone()).collect();
+    let templates = symbols.len();
+    let mut seen = rustc_hash::FxHashSet::default();
+    let new = grammar.rules.iter().filter(|r| seen.insert(&r.symbol));
+    symbols.extend(new.map(|r| r.symbol.clone()));
+    let axiom = symbols.iter().position(|s| *s == grammar.axiom);
+    let axiom = axiom.ok_or(CompactError::Index("symbol"))?;
+    let mut coder = Encoder::new();
+    let mut models = MeshModels::new(steps.shape);
+    for template in &grammar.templates {
+        models.code(&mut coder, &in_steps(&template.mesh, steps.shape)?)?;
+    }
+    let mut sorted = grammar.rules.clone();
+    for rule in sorted.iter_mut().filter(|r| r.symbol == grammar.axiom) {
+        order::along_curve(&mut rule.successors, &steps);
+    }
+    let mut rules = Rules::new(coder, steps, &symbols, templates, Identities::default());
+    rules.code(&sorted, axiom)?;
+    let (coder, identities) = rules.finish();
+    let texts = Texts {
+        name: grammar.name.clone(),
+        reference_system: grammar.reference_system.clone(),
+        origin: grammar.origin,
+        axiom,
+        steps,
+        templates: runs(&symbols[..templates]),
+        non_terminals: runs(&symbols[templates..]),
+        ids: identities.texts,
+        attributes: identities.attributes,
+    };
+    let texts = serde_json::to_vec(&texts).map_err(|e| CompactError::Text(e.to_string()))?;
+    let texts = deflated(&texts);
+    let size = u32::try_from(texts.len()).map_err(|_| CompactError::TooLarge("bytes of text"))?;
+    let mut body = size.to_le_bytes().to_vec();
+    body.extend(texts);
+    body.extend(coder.finish());
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend(checksum(&body).to_le_bytes());
+    bytes.extend(body);
+    Ok(bytes)
+}
+
+/// The grammar of a file's bytes.
+///
+/// # Errors
+/// [`CompactError`].
+pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
+    if !bytes.starts_with(&MAGIC) {
+        return Err(CompactError::Magic);
+    }
+    let Some((start, body)) = bytes.split_at_checked(START) else {
+        return Err(CompactError::Truncated);
+    };
+    let version = u16::from_le_bytes([start[4], start[5]]);
+    if version != VERSION {
+        return Err(CompactError::Version(version));
+    }
+    if u32::from_le_bytes([start[6], start[7], start[8], start[9]]) != checksum(body) {
+        return Err(CompactError::Checksum);
+    }
+    let (size, rest) = body
+        .split_first_chunk::<4>()
+        .ok_or(CompactError::Truncated)?;
+    let size = u32::from_le_bytes(*size) as usize;
+    let (texts, coded) = rest.split_at_checked(size).ok_or(CompactError::Truncated)?;
+    let texts: Texts =
+        serde_json::from_slice(&inflated(texts)?).map_err(|e| CompactError::Text(e.to_string()))?;
+    let steps = texts.steps.checked()?;
+    let mut symbols = names(&texts.templates)?;
+    let count = symbols.len();
+    symbols.extend(names(&texts.non_terminals)?);
+    let mut coder = Decoder::new(coded);
+    let mut models = MeshModels::new(steps.shape);
+    let mut templates = Vec::new();
+    for symbol in &symbols[..count] {
+        if coder.exhausted() {
+            return Err(CompactError::Truncated);
+        }
+        let mesh = models.code(&mut coder, &StepMesh::default())?;
+        templates.push(Template {
+            symbol: symbol.clone(),
+            mesh: in_box(&mesh, steps.shape),
+        });
+    }
+    let axiom = symbols.get(texts.axiom).cloned();
+    let identities = Identities::new(texts.ids, texts.attributes);
+    let mut rules = Rules::new(coder, steps, &symbols, count, identities);
+    let grammar = InstanceGrammar {
+        name: texts.name,
+        reference_system: texts.reference_system,
+        origin: texts.origin,
+        axiom: axiom.ok_or(CompactError::Index("symbol"))?,
+        templates,
+        rules: rules.code(&[], texts.axiom)?,
+    };
+    match rules.finish().0.exhausted() {
+        true => Err(CompactError::Truncated),
+        false => {
+            grammar.check()?;
+            Ok(grammar)
+        }
+    }
+}
+
+fn in_steps(mesh: &TriangleMesh, steps: i64) -> Result<StepMesh, CompactError> {
+    let step = |v: f64| {
+        let whole = (v * steps as f64).round();
+        match whole.abs() < (1_u64 << 40) as f64 {
+            true => Ok(whole as i64),
+            false => Err(CompactError::Number(v)),
+        }
+    };
+    let mut out = StepMesh::default();
+    for p in &mesh.positions {
+        let corner = [step(p[0] + 0.5)?, step(p[1] + 0.5)?, step(p[2])?];
+        out.corners.push(corner);
+    }
+    out.triangles.clone_from(&mesh.triangles);
+    Ok(out)
+}
+
+fn in_box(mesh: &StepMesh, steps: i64) -> TriangleMesh {
+    let unit = |v: i64| v as f64 / steps as f64;
+    let corners = mesh.corners.iter();
+    TriangleMesh {
+        positions: corners
+            .map(|c| [unit(c[0]) - 0.5, unit(c[1]) - 0.5, unit(c[2])])
+            .collect(),
+        triangles: mesh.triangles.clone(),
+    }
+}
+
+/// Names as few runs: `T1`, `T2`, `T3` are one.
+fn runs(names: &[String]) -> Vec<Names> {
+    let mut out: Vec<Names> = Vec::new();
+    for name in names {
+        let text = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        // A number with zeros in front is text.
+        let number = name[text.len()..].parse::<u64>().ok();
+        let number = number.filter(|n| *n < 1 << 40 && name[text.len()..] == n.to_string());
+        match (out.last_mut(), number) {
+            (Some(run), Some(n)) if run.2 > 0 && run.0 == text && run.1 + run.2 == n => run.2 += 1,
+            (_, Some(n)) => out.push(Names(text.to_owned(), n, 1)),
+            (_, None) => out.push(Names(name.clone(), 0, 0)),
+        }
+    }
+    out
+}
+
+/// Most names of a file.
+const MOST_NAMES: u64 = 4_000_000;
+
+fn names(runs: &[Names]) -> Result<Vec<String>, CompactError> {
+    let total: u64 = runs.iter().fold(0, |sum, r| sum.saturating_add(r.2.max(1)));
+    if total > MOST_NAMES {
+        return Err(CompactError::TooLarge("names"));
+    }
+    let mut out = Vec::new();
+    for Names(text, first, count) in runs {
+        match count {
+            0 => out.push(text.clone()),
+            _ => out.extend((0..*count).map(|k| format!("{text}{}", first.saturating_add(k)))),
+        }
+    }
+    Ok(out)
+}
+
+fn checksum(bytes: &[u8]) -> u32 {
+    let mut crc = flate2::Crc::new();
+    crc.update(bytes);
+    crc.sum()
+}
+
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut encoder = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+    // Writing to memory does not fail.
+    let _ = encoder.write_all(bytes);
+    encoder.finish().unwrap_or_default()
+}
+
+fn inflated(bytes: &[u8]) -> Result<Vec<u8>, CompactError> {
+    use std::io::Read;
+    let mut out = Vec::new();
+    let decoder = flate2::read::DeflateDecoder::new(bytes);
+    let read = decoder.take(MOST_TEXT + 1).read_to_end(&mut out);
+    read.map_err(|e| CompactError::Text(e.to_string()))?;
+    match out.len() as u64 > MOST_TEXT {
+        true => Err(CompactError::TooLarge("bytes of text")),
+        false => Ok(out),
+    }
+}

@@ -1,0 +1,380 @@
+//! Rules and placements.
+//!
+//! A placement is told by its difference from what is likely: a building stands near the one before it and is turned like it, a
+//! part stands on the part below it, a part of an instance is like that of its rule.
+
+use rustc_hash::FxHashMap;
+
+use super::identity::Identities;
+use super::integers::{BitTree, Natural, Whole, bits_of, plain};
+use super::range_coder::{Bit, Coder};
+use super::{CompactError, Steps};
+use crate::grammar::instance::{InstanceRule, Placement};
+
+/// Most placements of a file.
+const MOST_PLACEMENTS: u64 = 8_000_000;
+
+/// A placement in steps.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pose {
+    symbol: usize,
+    at: [i64; 3],
+    turn: i64,
+    size: [i64; 3],
+}
+
+/// What a placement is near to.
+#[derive(Clone, Copy, PartialEq)]
+enum Near {
+    /// The axiom's successor before it.
+    Before = 0,
+    /// Nothing: the first of a rule.
+    First = 1,
+    /// The rule's successor before it, on which it may stand.
+    Below = 2,
+    /// The rule's own part.
+    Like = 3,
+}
+
+/// Learnt probabilities of placements near to one kind of thing; of templates, or of non-terminals.
+#[derive(Default)]
+struct PoseModels {
+    at: [Whole; 3],
+    turn: Whole,
+    /// Width, height; depth, by the bits of the width.
+    size: [Natural; 2],
+    depth: FxHashMap<usize, Natural>,
+    /// Differences of sizes.
+    change: [Whole; 3],
+    factor: Bit,
+}
+
+/// Writes or reads the rules of a grammar.
+pub(super) struct Rules<'a, C> {
+    coder: C,
+    steps: Steps,
+    symbols: &'a [String],
+    numbers: FxHashMap<&'a str, usize>,
+    templates: usize,
+    identities: Identities,
+    placements: u64,
+    models: Vec<PoseModels>,
+    quarter: Vec<BitTree>,
+    is_rule: Vec<Bit>,
+    symbol: [BitTree; 2],
+    as_usual: Bit,
+    counts: Natural,
+    weight: Natural,
+    flags: [Bit; 3],
+}
+
+/// What [`Rules::flags`] tell.
+#[derive(Clone, Copy)]
+enum Flag {
+    WholeWeight,
+    HasParts,
+    Present,
+}
+
+impl<'a, C: Coder> Rules<'a, C> {
+    /// `symbols`: the first `templates` of them are terminals.
+    pub(super) fn new(
+        coder: C,
+        steps: Steps,
+        symbols: &'a [String],
+        templates: usize,
+        identities: Identities,
+    ) -> Self {
+        let numbers = symbols.iter().enumerate().map(|(i, s)| (s.as_str(), i));
+        let rules = symbols.len() - templates;
+        Self {
+            coder,
+            steps,
+            symbols,
+            numbers: numbers.collect(),
+            templates,
+            identities,
+            placements: 0,
+            models: (0..8).map(|_| PoseModels::default()).collect(),
+            quarter: vec![BitTree::new(2); 8],
+            is_rule: vec![Bit::default(); 4],
+            symbol: [BitTree::below(templates), BitTree::below(rules)],
+            as_usual: Bit::default(),
+            counts: Natural::default(),
+            weight: Natural::default(),
+            flags: [Bit::default(); 3],
+        }
+    }
+
+    /// The coder and the identities, when all is done.
+    pub(super) fn finish(self) -> (C, Identities) {
+        (self.coder, self.identities)
+    }
+
+    /// All rules: first what they make, then the parts of instances.
+    pub(super) fn code(
+        &mut self,
+        given: &[InstanceRule],
+        axiom: usize,
+    ) -> Result<Vec<InstanceRule>, CompactError> {
+        let count = self.count(given.len())?;
+        let mut rules = Vec::new();
+        for i in 0..count {
+            rules.push(self.rule(given.get(i), axiom)?);
+        }
+        let mut first: FxHashMap<String, usize> = FxHashMap::default();
+        for (i, rule) in rules.iter().enumerate() {
+            first.entry(rule.symbol.clone()).or_insert(i);
+        }
+        for i in 0..rules.len() {
+            let mut successors = std::mem::take(&mut rules[i].successors);
+            for (k, placed) in successors.iter_mut().enumerate() {
+                let given = given.get(i).map(|r| &r.successors[k]);
+                placed.parts = self.parts(&placed.symbol, given, &rules, &first, 0)?;
+            }
+            rules[i].successors = successors;
+        }
+        Ok(rules)
+    }
+
+    fn rule(
+        &mut self,
+        given: Option<&InstanceRule>,
+        axiom: usize,
+    ) -> Result<InstanceRule, CompactError> {
+        let number = given.map_or(0, |r| self.numbers[r.symbol.as_str()]);
+        let symbol = self.name(true, number)?;
+        let weight = self.weight(given.map_or(0.0, |r| r.weight));
+        let count = self.count(given.map_or(0, |r| r.successors.len()))?;
+        let top = self.numbers.get(symbol.as_str()) == Some(&axiom);
+        let mut successors = Vec::new();
+        let mut before = Pose::default();
+        for k in 0..count {
+            let near = match (top, k) {
+                (true, _) => Near::Before,
+                (false, 0) => Near::First,
+                _ => Near::Below,
+            };
+            let given = given.map(|r| &r.successors[k]);
+            let (placed, pose) = self.placement(near, &before, given)?;
+            before = pose;
+            successors.push(placed);
+        }
+        Ok(InstanceRule {
+            symbol,
+            weight,
+            successors,
+        })
+    }
+
+    /// Where the successors of an instance stand.
+    fn parts(
+        &mut self,
+        symbol: &str,
+        given: Option<&Placement>,
+        rules: &[InstanceRule],
+        first: &FxHashMap<String, usize>,
+        depth: usize,
+    ) -> Result<Vec<Option<Placement>>, CompactError> {
+        let Some(rule) = first.get(symbol).map(|&r| &rules[r].successors) else {
+            return Ok(Vec::new());
+        };
+        if depth > 64 {
+            return Err(CompactError::TooLarge("depth"));
+        }
+        let given = given.map(|g| &g.parts).filter(|p| !p.is_empty());
+        if !self.flag(Flag::HasParts, given.is_some()) {
+            return Ok(Vec::new());
+        }
+        let mut parts = Vec::new();
+        for (k, successor) in rule.iter().enumerate() {
+            let own = given.and_then(|g| g[k].as_ref());
+            if !self.flag(Flag::Present, own.is_some()) {
+                parts.push(None);
+                continue;
+            }
+            let usual = self.pose(successor)?;
+            let (mut placed, _) = self.placement(Near::Like, &usual, own)?;
+            placed.parts = self.parts(&placed.symbol, own, rules, first, depth + 1)?;
+            parts.push(Some(placed));
+        }
+        Ok(parts)
+    }
+
+    /// A placement without its parts.
+    fn placement(
+        &mut self,
+        near: Near,
+        other: &Pose,
+        given: Option<&Placement>,
+    ) -> Result<(Placement, Pose), CompactError> {
+        self.placements += 1;
+        if self.placements > MOST_PLACEMENTS {
+            return Err(CompactError::TooLarge("placements"));
+        }
+        if self.coder.exhausted() {
+            return Err(CompactError::Truncated);
+        }
+        let own = match given {
+            Some(given) => self.pose(given)?,
+            None => Pose::default(),
+        };
+        let usual = near == Near::Like
+            && self
+                .coder
+                .bit(&mut self.as_usual, own.symbol == other.symbol);
+        let symbol = match usual {
+            true => other.symbol,
+            false => {
+                let is_rule = own.symbol >= self.templates;
+                let is_rule = self.coder.bit(&mut self.is_rule[near as usize], is_rule);
+                self.number(is_rule, own.symbol)?
+            }
+        };
+        let is_rule = symbol >= self.templates;
+        let context = near as usize * 2 + usize::from(is_rule);
+        let coder = &mut self.coder;
+        let models = &mut self.models[context];
+        let full = self.steps.turn * 360;
+        let quarter = full / 4;
+        // Quarter turns, then what is left, from -1/8 to 1/8 of a turn.
+        let away = (own.turn - other.turn + quarter / 2).rem_euclid(full);
+        let quarters = self.quarter[context].code(coder, (away / quarter) as usize) as i64;
+        let rest = models
+            .turn
+            .code(coder, away - quarters * quarter - quarter / 2);
+        let turn = (other
+            .turn
+            .wrapping_add(quarters * quarter)
+            .wrapping_add(rest))
+        .rem_euclid(full);
+        let mut like = other.size;
+        if quarters % 2 == 1 {
+            like.swap(0, 1);
+        }
+        let mut at = [0; 3];
+        for axis in 0..3 {
+            let standing = near == Near::Below && axis == 2;
+            let likely = other.at[axis].wrapping_add(if standing { other.size[2] } else { 0 });
+            let away = own.at[axis].wrapping_sub(likely);
+            at[axis] = likely.wrapping_add(models.at[axis].code(coder, away));
+        }
+        let mut size = [0; 3];
+        let mut factor = 1.0;
+        let stands = matches!(near, Near::Below | Near::Like) && other.symbol < self.templates;
+        if is_rule {
+            let given = given.map_or(1.0, |g| g.size[0]);
+            if !coder.bit(&mut models.factor, given == 1.0) {
+                factor = plain(coder, given);
+            }
+        } else if stands {
+            for axis in 0..3 {
+                // The height of what stands on a part says nothing of its own.
+                let like = if near == Near::Below && axis == 2 {
+                    0
+                } else {
+                    like[axis]
+                };
+                let change = models.change[axis].code(coder, own.size[axis].wrapping_sub(like));
+                size[axis] = like.wrapping_add(change);
+            }
+        } else {
+            size[0] = models.size[0].code(coder, own.size[0] as u64) as i64;
+            let depth = models.depth.entry(bits_of(size[0] as u64)).or_default();
+            size[1] = depth.code(coder, own.size[1] as u64) as i64;
+            size[2] = models.size[1].code(coder, own.size[2] as u64) as i64;
+        }
+        let pose = Pose {
+            symbol,
+            at,
+            turn,
+            size,
+        };
+        let id = given.and_then(|g| g.id.as_ref());
+        let id = self.identities.id(coder, id)?;
+        let attributes = given.map(|g| &g.attributes);
+        let attributes = self.identities.attributes(coder, attributes)?;
+        let length = |v: i64| v as f64 / self.steps.length as f64;
+        let placed = Placement {
+            symbol: self.symbols[symbol].clone(),
+            at: at.map(length),
+            turn: turn as f64 / self.steps.turn as f64,
+            size: if is_rule {
+                [factor; 3]
+            } else {
+                size.map(length)
+            },
+            id,
+            attributes,
+            parts: Vec::new(),
+        };
+        Ok((placed, pose))
+    }
+
+    /// A placement in steps.
+    fn pose(&self, placed: &Placement) -> Result<Pose, CompactError> {
+        let symbol = self.numbers.get(placed.symbol.as_str()).copied();
+        let symbol = symbol.ok_or(CompactError::Index("symbol"))?;
+        let in_steps = |v: f64, steps: i64| {
+            let whole = (v * steps as f64).round();
+            match whole.abs() < (1_u64 << 40) as f64 {
+                true => Ok(whole as i64),
+                false => Err(CompactError::Number(v)),
+            }
+        };
+        let length = |v: f64| in_steps(v, self.steps.length);
+        let [x, y, z] = placed.at;
+        let [w, d, h] = match symbol < self.templates {
+            true => placed.size,
+            false => [0.0; 3],
+        };
+        let turn = in_steps(placed.turn, self.steps.turn)?;
+        let mut size = [length(w)?, length(d)?, length(h)?];
+        if symbol < self.templates {
+            size = size.map(|v| v.max(1));
+        }
+        Ok(Pose {
+            symbol,
+            at: [length(x)?, length(y)?, length(z)?],
+            turn: turn.rem_euclid(360 * self.steps.turn),
+            size,
+        })
+    }
+
+    fn name(&mut self, is_rule: bool, number: usize) -> Result<String, CompactError> {
+        Ok(self.symbols[self.number(is_rule, number)?].clone())
+    }
+
+    fn number(&mut self, is_rule: bool, number: usize) -> Result<usize, CompactError> {
+        let (first, end) = match is_rule {
+            true => (self.templates, self.symbols.len()),
+            false => (0, self.templates),
+        };
+        let own = number.clamp(first, end.max(first + 1) - 1) - first;
+        let found = first + self.symbol[usize::from(is_rule)].code(&mut self.coder, own);
+        match found < end {
+            true => Ok(found),
+            false => Err(CompactError::Index("symbol")),
+        }
+    }
+
+    fn count(&mut self, given: usize) -> Result<usize, CompactError> {
+        let count = self.counts.code(&mut self.coder, given as u64);
+        match count <= MOST_PLACEMENTS {
+            true => Ok(count as usize),
+            false => Err(CompactError::TooLarge("placements")),
+        }
+    }
+
+    fn flag(&mut self, flag: Flag, given: bool) -> bool {
+        self.coder.bit(&mut self.flags[flag as usize], given)
+    }
+
+    fn weight(&mut self, given: f64) -> f64 {
+        let whole = given.fract() == 0.0 && (0.0..1e15).contains(&given);
+        match self.flag(Flag::WholeWeight, whole) {
+            true => self.weight.code(&mut self.coder, given as u64) as f64,
+            false => plain(&mut self.coder, given),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Steps in which numbers are whole.
+
+use serde::{Deserialize, Serialize};
+
+use super::CompactError;
+use crate::grammar::instance::{InstanceGrammar, Placement};
+
+/// How many steps a unit has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Steps {
+    /// Steps of a metre.
+    pub length: i64,
+    /// Steps of a degree.
+    pub turn: i64,
+    /// Steps of a side of a template's box.
+    pub shape: i64,
+}
+
+/// Steps that are tried, the coarsest first.
+const LENGTHS: [i64; 10] = [1, 2, 4, 5, 8, 10, 20, 50, 100, 1000];
+const TURNS: [i64; 8] = [1, 2, 4, 5, 10, 100, 1000, 10_000];
+const SHAPES: [i64; 8] = [31, 63, 127, 255, 511, 1023, 4095, 65_535];
+
+impl Steps {
+    /// The coarsest steps on which a grammar lies; the finest, where it lies on none.
+    pub(super) fn of(grammar: &InstanceGrammar) -> Self {
+        let mut placements = Vec::new();
+        let mut open: Vec<&Placement> = grammar.rules.iter().flat_map(|r| &r.successors).collect();
+        while let Some(p) = open.pop() {
+            placements.push(p);
+            open.extend(p.parts.iter().flatten());
+        }
+        let templates = || grammar.templates.iter();
+        let terminals: rustc_hash::FxHashSet<&str> =
+            templates().map(|t| t.symbol.as_str()).collect();
+        let lengths = |p: &Placement| {
+            let size = if terminals.contains(p.symbol.as_str()) {
+                p.size
+            } else {
+                [0.0; 3]
+            };
+            [p.at, size]
+        };
+        let corners = || templates().flat_map(|t| &t.mesh.positions);
+        Self {
+            length: first(&LENGTHS, |s| {
+                let mut all = placements.iter().flat_map(|p| lengths(p));
+                all.all(|v| v.iter().all(|v| whole(*v, s)))
+            }),
+            turn: first(&TURNS, |s| placements.iter().all(|p| whole(p.turn, s))),
+            shape: first(&SHAPES, |s| {
+                let on =
+                    |p: &[f64; 3]| whole(p[0] + 0.5, s) && whole(p[1] + 0.5, s) && whole(p[2], s);
+                corners().all(on)
+            }),
+        }
+    }
+
+    /// Steps as a file gives them.
+    pub(super) fn checked(self) -> Result<Self, CompactError> {
+        let usable = |v: i64| (1..=65_535).contains(&v);
+        match usable(self.length) && usable(self.turn) && usable(self.shape) {
+            true => Ok(self),
+            false => Err(CompactError::Steps(self)),
+        }
+    }
+}
+
+fn first(tried: &[i64], fits: impl Fn(i64) -> bool) -> i64 {
+    let found = tried.iter().copied().find(|&s| fits(s));
+    found.or(tried.last().copied()).unwrap_or(1)
+}
+
+/// Whether a number is a whole number of steps, but for rounding.
+fn whole(v: f64, steps: i64) -> bool {
+    let scaled = v * steps as f64;
+    (scaled - scaled.round()).abs() < 1e-6
+}

@@ -1,0 +1,169 @@
+//! Representatives of types: medoids under the mismatched volume.
+
+use rayon::prelude::*;
+
+use super::components::CELLS;
+use super::types::Use;
+
+/// Rounds of medoids.
+const ROUNDS: usize = 3;
+/// Representatives that a component is compared with, nearest in features first.
+const CANDIDATES: usize = 12;
+/// Members that are tried as medoid, nearest to the mean first.
+const TRIED: usize = 12;
+
+/// Distinct components.
+pub(super) struct Table<'a> {
+    /// Features, row after row, and how many a row has.
+    pub(super) rows: Vec<f64>,
+    pub(super) d: usize,
+    /// Volumes.
+    pub(super) weights: Vec<f64>,
+    pub(super) heights: Vec<&'a [f32]>,
+}
+
+impl Table<'_> {
+    pub(super) fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.d..(i + 1) * self.d]
+    }
+
+    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component. Medoids and uses.
+    pub(super) fn medoids(&self, mut uses: Vec<Use>, count: usize) -> (Vec<usize>, Vec<Use>) {
+        let mut medoids = self.choose(&uses, count, &[]);
+        for _ in 0..ROUNDS {
+            uses = self.assign(&medoids, &uses);
+            medoids = self.choose(&uses, count, &medoids);
+        }
+        let uses = self.assign(&medoids, &uses);
+        (medoids, uses)
+    }
+
+    /// The member of each type with the least mismatched volume to the others, of those nearest to the mean.
+    fn choose(&self, uses: &[Use], count: usize, before: &[usize]) -> Vec<usize> {
+        let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for (i, u) in uses.iter().enumerate() {
+            members[u.kind].push(i);
+        }
+        let medoid = |(kind, list): (usize, &Vec<usize>)| {
+            let total: f64 = list.iter().map(|&i| self.weights[i]).sum();
+            let mean = |k: usize| {
+                list.iter()
+                    .map(|&i| self.weights[i] * self.row(i)[k])
+                    .sum::<f64>()
+                    / total
+            };
+            let mean: Vec<f64> = (0..self.d).map(mean).collect();
+            let mut near = list.clone();
+            let far = |i: usize| square(self.row(i), &mean);
+            near.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+            near.truncate(TRIED);
+            near.extend(before.get(kind));
+            let cost = |m: usize| -> f64 {
+                let mismatch = |&i: &usize| {
+                    let turned = uses[i].quarter;
+                    self.weights[i] * mismatch(self.heights[m], self.heights[i], turned)
+                };
+                list.iter().map(mismatch).sum::<f64>()
+            };
+            let costs = near.iter().map(|&m| (cost(m), m));
+            let best = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            best.map_or(0, |b| b.1)
+        };
+        members.par_iter().enumerate().map(medoid).collect()
+    }
+
+    /// The best of the present type and the types whose medoids are nearest in features.
+    fn assign(&self, medoids: &[usize], uses: &[Use]) -> Vec<Use> {
+        let nearest = Nearest::new(self, medoids);
+        let best = |i: usize| {
+            let mut best = (f64::INFINITY, uses[i]);
+            let near = nearest.of(self.row(i)).into_iter();
+            for kind in near.chain([uses[i].kind]) {
+                for quarter in 0..4 {
+                    let cost = mismatch(self.heights[medoids[kind]], self.heights[i], quarter);
+                    if cost < best.0 {
+                        best = (cost, Use { kind, quarter });
+                    }
+                }
+            }
+            best.1
+        };
+        (0..uses.len()).into_par_iter().map(best).collect()
+    }
+}
+
+/// Medoids by their first feature, so that those nearest to a point are found without all distances.
+struct Nearest<'a> {
+    table: &'a Table<'a>,
+    /// First feature, type, component; increasing.
+    sorted: Vec<(f64, usize, usize)>,
+}
+
+impl<'a> Nearest<'a> {
+    fn new(table: &'a Table<'a>, medoids: &[usize]) -> Self {
+        let first = |&m: &usize| table.row(m).first().copied().unwrap_or(0.0);
+        let medoids = medoids.iter().enumerate();
+        let mut sorted: Vec<_> = medoids.map(|(kind, m)| (first(m), kind, *m)).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Self { table, sorted }
+    }
+
+    /// The types nearest to a point, [`CANDIDATES`] at most, the nearest first, of equals the lower.
+    fn of(&self, point: &[f64]) -> Vec<usize> {
+        let first = point.first().copied().unwrap_or(0.0);
+        let mut high = self.sorted.partition_point(|s| s.0 < first);
+        let mut low = high;
+        let mut found: Vec<(f64, usize)> = Vec::with_capacity(CANDIDATES + 1);
+        let away =
+            |at: Option<&(f64, usize, usize)>| at.map_or(f64::INFINITY, |s| (s.0 - first).powi(2));
+        loop {
+            let below = away(low.checked_sub(1).and_then(|l| self.sorted.get(l)));
+            let above = away(self.sorted.get(high));
+            let farthest = match found.len() < CANDIDATES {
+                true => f64::INFINITY,
+                false => found[CANDIDATES - 1].0,
+            };
+            let least = below.min(above);
+            // What is farther along one axis is farther.
+            if least.is_infinite() || least > farthest {
+                return found.into_iter().map(|f| f.1).collect();
+            }
+            let (_, kind, medoid) = if below <= above {
+                low -= 1;
+                self.sorted[low]
+            } else {
+                high += 1;
+                self.sorted[high - 1]
+            };
+            let entry = (square(point, self.table.row(medoid)), kind);
+            let before = |f: &(f64, usize)| f.0.total_cmp(&entry.0).then(f.1.cmp(&entry.1)).is_lt();
+            let at = found.partition_point(before);
+            found.insert(at, entry);
+            found.truncate(CANDIDATES);
+        }
+    }
+}
+
+/// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched
+/// share of the box.
+pub fn mismatch(template: &[f32], component: &[f32], quarter: u8) -> f64 {
+    let last = CELLS - 1;
+    let mut sum = 0.0f32;
+    for y in 0..CELLS {
+        for x in 0..CELLS {
+            // Where the cell comes from.
+            let (u, v) = match quarter {
+                0 => (x, y),
+                1 => (y, last - x),
+                2 => (last - x, last - y),
+                _ => (last - y, x),
+            };
+            sum += (template[v * CELLS + u] - component[y * CELLS + x]).abs();
+        }
+    }
+    f64::from(sum) / (CELLS * CELLS) as f64
+}
+
+pub(super) fn square(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
+}

@@ -1,0 +1,71 @@
+//! Cities of the data folder as grammars (needs `EDIFICE_DATA` or `../shared/data`).
+
+use edifice::grammar::instance::Kept;
+use edifice::io::city::{compact, read};
+use edifice::methods::city_proceduralization::{Budget, Precision, Settings, proceduralize};
+use edifice::rng::stream;
+use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
+use rand::seq::SliceRandom;
+
+const MIDTOWN: &str = "city/nyc_midtown4500.npz";
+
+fn midtown() -> Option<City> {
+    let folder = crate::common::real_data(MIDTOWN)?;
+    Some(read(&folder.join(MIDTOWN)).unwrap())
+}
+
+/// The repaired city's volume against that of the grammar of another's level 4.
+fn iou(city: &City, other: &City) -> f64 {
+    let grammar = proceduralize(other, &Settings::default()).unwrap().grammar;
+    let derived = grammar.derive().unwrap().city(&grammar);
+    let repaired: Vec<TriangleMesh> = city.buildings.iter().map(|b| repair(&b.mesh).0).collect();
+    let first: Vec<&TriangleMesh> = repaired.iter().collect();
+    let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();
+    VolumeRaster { size: 1.0 }.compare(&first, &second).iou()
+}
+
+#[test]
+fn inverted_opened_and_doubled_copies_of_midtown_cost_little() {
+    let Some(city) = midtown() else { return };
+    let clean = iou(&city, &city);
+    let dirty = |change: &dyn Fn(&mut TriangleMesh)| {
+        let mut copy = city.clone();
+        copy.buildings.iter_mut().for_each(|b| change(&mut b.mesh));
+        iou(&city, &copy)
+    };
+    // Without what lies on the ground.
+    let open = |m: &mut TriangleMesh| {
+        let low = m.bounds().unwrap_or_default().0[2];
+        let positions = m.positions.clone();
+        let above = |t: &[u32; 3]| t.iter().any(|&i| positions[i as usize][2] > low + 0.1);
+        m.triangles.retain(above);
+    };
+    let double = |m: &mut TriangleMesh| m.append(&m.clone());
+    for (name, found) in [
+        ("inverted", dirty(&TriangleMesh::flip)),
+        ("opened", dirty(&open)),
+        ("doubled", dirty(&double)),
+    ] {
+        println!("{name}: {found:.4}, clean {clean:.4}");
+        assert!((found - clean).abs() < 0.005, "{name}: {found} {clean}");
+    }
+}
+
+#[test]
+fn midtown_is_stored_in_few_bytes_whatever_the_order_of_its_buildings() {
+    let Some(city) = midtown() else { return };
+    let asked = Settings {
+        budget: Budget::Level(5),
+        precision: Some(Precision::Decimetre),
+        ..Settings::default()
+    };
+    let bytes = |city: &City| {
+        let grammar = proceduralize(city, &asked).unwrap().grammar;
+        compact::to_bytes(&grammar.keeping(Kept::Shape)).unwrap()
+    };
+    let whole = bytes(&city);
+    println!("{} bytes", whole.len());
+    let mut other = city.clone();
+    other.buildings.shuffle(&mut stream(3, "midtown", 0));
+    assert!(bytes(&other) == whole);
+}
