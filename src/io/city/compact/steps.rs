@@ -41,7 +41,13 @@ impl Steps {
             };
             [p.at, size]
         };
-        let corners = || templates().flat_map(|t| &t.mesh.positions);
+        // Corners that no triangle has are not written.
+        let corners = || {
+            templates().flat_map(|t| {
+                let used = t.mesh.triangles.iter().flatten();
+                used.map(|&i| &t.mesh.positions[i as usize])
+            })
+        };
         Self {
             length: first(&LENGTHS, |s| {
                 let mut all = placements.iter().flat_map(|p| lengths(p));
