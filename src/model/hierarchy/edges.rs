@@ -12,6 +12,7 @@ use rustc_hash::FxHashMap;
 
 use super::super::conjugate::dirichlet_evidence;
 use super::super::graph::reaches;
+use super::Settings;
 use super::directed::MOST_CONFIGURATIONS;
 use super::fit::{Problem, Scored};
 use super::infer::MOST_ASSIGNMENTS;
@@ -25,12 +26,13 @@ pub(crate) fn propose(
     problem: &Problem,
     scored: &Scored,
     wide: &Wide,
-    max_parents: usize,
+    settings: &Settings,
 ) -> Structure {
+    let max_parents = settings.most_parents;
     let mut families = Families {
         problem,
         wide,
-        parents: parents(problem, wide.categories),
+        parents: parents(problem, settings.category_edges),
         evidence: FxHashMap::default(),
     };
     let given = &scored.shape.structure;

@@ -283,7 +283,7 @@ impl<'a> Search<'a> {
             }
             let problem = self.problem(best.shape.structure.clone())?;
             let wide = self.wide(&problem, &best)?;
-            let structure = propose(&problem, &best, &wide, self.settings.most_parents);
+            let structure = propose(&problem, &best, &wide, self.settings);
             if structure == best.shape.structure {
                 break;
             }
