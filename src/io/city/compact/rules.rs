@@ -252,12 +252,13 @@ impl<'a, C: Coder> Rules<'a, C> {
         if quarters % 2 == 1 {
             like.swap(0, 1);
         }
-        let mut at = [0; 3];
-        for axis in 0..3 {
-            let standing = near == Near::Below && axis == 2;
-            let likely = other.at[axis].wrapping_add(if standing { other.size[2] } else { 0 });
-            let away = own.at[axis].wrapping_sub(likely);
-            at[axis] = likely.wrapping_add(models.at[axis].code(coder, away));
+        let mut at = other.at;
+        if near == Near::Below {
+            at[2] = at[2].wrapping_add(other.size[2]);
+        }
+        for (axis, at) in at.iter_mut().enumerate() {
+            let away = own.at[axis].wrapping_sub(*at);
+            *at = at.wrapping_add(models.at[axis].code(coder, away));
         }
         let mut size = [0; 3];
         let mut factor = 1.0;

@@ -185,3 +185,28 @@ fn separate(
         set(row, b + axis, value);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::rng::stream;
+
+    /// Any finite row is repaired to a finite one, and what was given stays: also heights that no storey has.
+    #[test]
+    fn any_finite_row_is_repaired() {
+        let mut rng = stream(1, "repair", 0);
+        for case in 0..20_000 {
+            let scale = [0.0, 1e-9, 0.3, 1.0, 3.0, 20.0, 1e6][case % 7];
+            let mut row: [f64; N] = std::array::from_fn(|_| scale * rng.random_range(-0.2..1.0));
+            let given: [bool; N] = std::array::from_fn(|_| rng.random_bool(0.2));
+            let before = row;
+            repair(&mut row, &given, &[0.1; N]);
+            for c in 0..N {
+                let kept = !given[c] || row[c] == before[c];
+                assert!(kept && row[c].is_finite(), "{} in {before:?}", COLUMNS[c]);
+            }
+        }
+    }
+}
