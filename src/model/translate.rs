@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 
 use super::ModelError;
+use super::conjugate::Linear;
 use super::hierarchy::Hierarchy;
 use super::hierarchy::structure::Selector;
 use super::network::{Network, Variable};
@@ -11,7 +12,8 @@ use super::network::{Network, Variable};
 impl Hierarchy {
     /// The network of this model, in the columns' own units: the style `style` with the categories `1`, `2`, ...; for each
     /// real group with a hidden variable `GROUP kind`, likewise; for each real group a vector under the group's name (its
-    /// column's name, where it has only one); the categorical columns. A prime tells a name from one that is taken.
+    /// column's name, where it has only one), and before it, where there is a background, `GROUP outlier` (1: no, 2: yes);
+    /// the categorical columns. A prime tells a name from one that is taken.
     ///
     /// # Errors
     /// Those of [`Network::new`]: covariances that are singular in the columns' own units.
@@ -33,6 +35,7 @@ impl Hierarchy {
             .collect();
         let style = free("style".to_owned());
         let kinds: Vec<String> = groups.iter().map(|g| free(format!("{g} kind"))).collect();
+        let outliers: Vec<String> = groups.iter().map(|g| free(format!("{g} outlier"))).collect();
 
         let mut variables = vec![discrete(&style, structure.styles, &[], &self.params.style)];
         let styles = structure.styles;
@@ -48,11 +51,22 @@ impl Hierarchy {
             };
             let shifts = &structure.shifts[g];
             parents.extend(shifts.iter().map(|&c| &schema.codes[c].name[..]));
+            let background = self.shape.background.as_ref();
+            if let Some(background) = background {
+                let shares = [1.0 - background.share, background.share];
+                variables.push(discrete(&outliers[g], 2, &[], &shares));
+                parents.push(&outliers[g]);
+            }
             parents.extend(structure.parents[g].iter().map(|&p| &groups[p][..]));
             let configurations = self.shape.configurations(shifts);
             let states: Vec<(Vec<f64>, Vec<f64>)> = (0..self.params.linear[g].len())
                 .flat_map(|state| configurations.iter().map(move |codes| (state, codes)))
-                .map(|(state, codes)| self.in_own_units(g, state, codes))
+                .flat_map(|(state, codes)| {
+                    let own = &self.params.linear[g][state];
+                    let both = [Some(own), background.map(|b| &b.linear[g])];
+                    let both = both.into_iter().flatten();
+                    both.map(move |linear| self.in_own_units(g, linear, codes))
+                })
                 .collect();
             let states: Vec<(&[f64], &[f64])> =
                 states.iter().map(|(b, s)| (&b[..], &s[..])).collect();
@@ -74,10 +88,9 @@ impl Hierarchy {
         Network::new(variables)
     }
 
-    /// B and the covariance of a state of a group, both row-major, with `y = m_y + s_y y'` for standardised columns, where
+    /// B and the covariance of a linear Gaussian of a group, both row-major, with `y = m_y + s_y y'` for standardised columns, where
     /// the columns that shift the group have the categories `codes`: the intercept then holds their shifts.
-    fn in_own_units(&self, g: usize, state: usize, codes: &[usize]) -> (Vec<f64>, Vec<f64>) {
-        let linear = &self.params.linear[g][state];
+    fn in_own_units(&self, g: usize, linear: &Linear, codes: &[usize]) -> (Vec<f64>, Vec<f64>) {
         let (p, d) = (linear.p, linear.d);
         let scaled = |column: usize| {
             let real = &self.schema.reals[column];

@@ -11,8 +11,12 @@ use rand::{Rng, RngExt};
 
 use crate::model::conjugate::LinearPrior;
 use crate::model::gmm::{Criterion, Mixture, Points, Prior, Settings, select};
+use crate::model::linalg::LN_2PI;
 use crate::model::{Cell, ModelError, Table};
 use crate::rng::stream;
+
+/// Deviation of the background, in deviations of the columns.
+const WIDTH: f64 = 3.0;
 
 /// Draws of u per row.
 pub const DRAWS: usize = 200;
@@ -94,11 +98,17 @@ impl Baseline {
         self.decode(self.mixture.mean(k))
     }
 
-    /// `log p(row)` of what every row has, nats, in the columns' own units.
+    /// `log p(row)` of what every row has, nats, in the columns' own units, of which the share `background` is a wide one:
+    /// `(1 - ε) p(row) + ε Π N(x; 0, 9) Π 1 / categories`, on standardised columns.
     ///
     /// # Errors
     /// [`ModelError::Unknown`] for a column that `data` lacks.
-    pub fn log_likelihood(&self, data: &Table, seed: u64) -> Result<Vec<f64>, ModelError> {
+    pub fn log_likelihood(
+        &self,
+        data: &Table,
+        background: f64,
+        seed: u64,
+    ) -> Result<Vec<f64>, ModelError> {
         let d = self.columns.len();
         let values = encode(&self.columns, data)?;
         let mut rng = stream(seed, "building_exteriors/dequantize", 1);
@@ -117,7 +127,10 @@ impl Baseline {
                 .log_density(&Points::with_missing(d, &draws)?)?;
             let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let mean = logs.iter().map(|l| (l - top).exp()).sum::<f64>() / DRAWS as f64;
-            out.push(top + mean.ln() - units);
+            let own = (-background).ln_1p() + top + mean.ln();
+            let wide = background.ln() + wide(&self.columns, row);
+            let most = own.max(wide);
+            out.push(most + ((own - most).exp() + (wide - most).exp()).ln() - units);
         }
         Ok(out)
     }
@@ -168,6 +181,16 @@ fn encode(columns: &[Column], data: &Table) -> Result<Vec<f64>, ModelError> {
         }
     }
     Ok(out)
+}
+
+/// Log density of the background at a standardised row.
+fn wide(columns: &[Column], row: &[f64]) -> f64 {
+    let seen = columns.iter().zip(row).filter(|(_, v)| !v.is_nan());
+    let logs = seen.map(|(column, v)| match column.categories {
+        Some(k) => -(k as f64).ln(),
+        None => -0.5 * (LN_2PI + (v / WIDTH).powi(2)) - WIDTH.ln(),
+    });
+    logs.sum()
 }
 
 /// Spreads category codes over their unit intervals.

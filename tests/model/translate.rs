@@ -53,10 +53,11 @@ fn houses(rows: usize, seed: u64) -> (Table, Vec<Group>) {
     (table, groups)
 }
 
-fn model(variant: Variant, seed: u64) -> (Hierarchy, Table) {
+fn model(variant: Variant, background: f64, seed: u64) -> (Hierarchy, Table) {
     let (table, groups) = houses(90, seed);
     let settings = Settings {
         variant,
+        background,
         styles: 2..=3,
         restarts: 1,
         ..Settings::default()
@@ -86,8 +87,8 @@ fn evidence(table: &Table, row: usize) -> Evidence {
 #[test]
 fn densities_and_posteriors_are_equal() {
     for variant in VARIANTS {
-        for seed in 1..=2 {
-            let (model, table) = model(variant, seed);
+        for (background, seed) in [(0.0, 1), (0.0, 2), (0.05, 3)] {
+            let (model, table) = model(variant, background, seed);
             let network = model.to_network().unwrap();
             let logs = model.log_likelihood(&table).unwrap();
             let styles = model.style_posterior(&table).unwrap();
@@ -107,7 +108,7 @@ fn densities_and_posteriors_are_equal() {
 
 #[test]
 fn a_network_scores_a_table_as_its_evidence() {
-    let (model, table) = model(Variant::Full, 3);
+    let (model, table) = model(Variant::Full, 0.0, 3);
     let network = model.to_network().unwrap();
     // Without the vector-valued group, whose columns the network names by coordinate.
     let table = table.only(&["area", "garage", "roof"]).unwrap();
@@ -119,7 +120,7 @@ fn a_network_scores_a_table_as_its_evidence() {
 
 #[test]
 fn draws_of_both_have_the_same_moments() {
-    let (model, _) = model(Variant::Full, 4);
+    let (model, _) = model(Variant::Full, 0.05, 4);
     let network = model.to_network().unwrap();
     const DRAWS: usize = 20_000;
     let mut rng = stream(1, "draws", 0);

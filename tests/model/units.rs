@@ -94,16 +94,18 @@ fn hierarchies() {
         Group::new("size", &["a", "b"]),
         Group::new("parts", &["garage"]),
     ];
-    let settings = hierarchy::Settings {
-        styles: 2..=3,
-        restarts: 1,
-        ..hierarchy::Settings::default()
-    };
-    assert_invariant(|unit| {
-        let data = table(unit);
-        let model = hierarchy::learn(&data, &groups, &settings, 1)
-            .unwrap()
-            .model;
-        model.log_likelihood(&data).unwrap().iter().sum()
-    });
+    for background in [0.0, 0.01] {
+        let settings = hierarchy::Settings {
+            styles: 2..=3,
+            restarts: 1,
+            background,
+            ..hierarchy::Settings::default()
+        };
+        assert_invariant(|unit| {
+            let data = table(unit);
+            let learned = hierarchy::learn(&data, &groups, &settings, 1);
+            let model = learned.unwrap().model;
+            model.log_likelihood(&data).unwrap().iter().sum()
+        });
+    }
 }

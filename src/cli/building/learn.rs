@@ -34,7 +34,7 @@ pub fn run(args: &Args) -> edifice::Result<()> {
         .map(super::data::model)
         .transpose()?;
     let start = start.as_ref().map(|file| &file.model);
-    let settings = args.learning.search.settings()?;
+    let settings = args.learning.search.settings(0.0)?;
     let found = (args.learning).learn(&data, &settings, start, &args.input.input)?;
     let model = found.model;
     let (styles, edges) = (model.styles(), model.lateral_edges().len());

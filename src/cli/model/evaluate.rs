@@ -4,7 +4,7 @@ use std::path::Path;
 
 use edifice::model::ModelError;
 use edifice::tables::Dataset;
-use edifice::tables::compare::{Contender, held_out, split, summary};
+use edifice::tables::compare::{BACKGROUND, Contender, held_out, split, summary};
 use edifice::{Error, Result};
 
 use super::data::TableInput;
@@ -51,7 +51,7 @@ impl Splits {
         if !(self.share > 0.0 && self.share < 1.0) {
             return Err(Error::option("--share", "must lie between 0 and 1"));
         }
-        let settings = self.search.settings()?;
+        let settings = self.search.settings(BACKGROUND)?;
         let contenders = self.contenders()?;
         print::line("model,split,nll")?;
         let mut losses = vec![Vec::new(); contenders.len()];

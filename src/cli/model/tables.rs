@@ -6,7 +6,7 @@ use edifice::file::write_atomic;
 use edifice::model::ModelError;
 use edifice::rng::stream;
 use edifice::tables::Dataset;
-use edifice::tables::compare::extended;
+use edifice::tables::compare::{BACKGROUND, extended};
 use edifice::tables::encoding::Encoding;
 use edifice::tables::table_model::{FORMAT, TableModel};
 use edifice::{Error, Result};
@@ -28,7 +28,7 @@ pub struct LearnArgs {
     #[command(flatten)]
     learning: Learning,
     /// Learn the model as published: no values as categories of their own, no transforms of columns, no edges from
-    /// categories.
+    /// categories, no background.
     #[arg(long)]
     as_published: bool,
     /// Print a line of JSON.
@@ -85,7 +85,8 @@ pub fn schema(input: &TableInput) -> Result<()> {
 pub fn learn(args: &LearnArgs) -> Result<()> {
     let (data, schema) = args.input.read()?;
     let start = args.learning.from.as_deref().map(read_model).transpose()?;
-    let published = args.learning.search.settings()?;
+    let background = if args.as_published { 0.0 } else { BACKGROUND };
+    let published = args.learning.search.settings(background)?;
     let (encoding, settings) = match &start {
         Some(file) if args.as_published && file.encoding.is_some() => {
             let problem = "the model given with --from was learned otherwise";

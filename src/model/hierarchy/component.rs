@@ -7,6 +7,7 @@
 //! The walk is exact while no more than [`MOST`] assignments are alive; beyond, the least probable
 //! are dropped.
 
+use super::super::conjugate::Linear;
 use super::super::gaussian::{Particle, extend};
 use super::params::{Params, Shape};
 use super::structure::{Selector, configuration};
@@ -114,17 +115,31 @@ impl Component {
                         let s = configuration(c, &shape.sizes, codes);
                         s..s + 1
                     }
-                    Selector::Style => match particle.states.first() {
-                        Some(&s) => s..s + 1,
-                        None => 0..shape.structure.styles,
-                    },
+                    Selector::Style => {
+                        let mut known = particle.states.iter().filter(|s| **s < styles);
+                        known.next().map_or(0..styles, |&s| s..s + 1)
+                    }
                 };
-                for state in states {
-                    let linear = &params.linear[g][state];
+                let extended = |linear: &Linear, state: usize| {
                     let columns = &shape.columns[g];
                     let mut p = extend(particle, &component.missing, columns, linear, real);
                     p.states.push(state);
-                    next.push((p, weighted(shape, params, g, state, weights)));
+                    p
+                };
+                if let Some(background) = &shape.background {
+                    // Its density is the same for every state: one particle for all that the row leaves open.
+                    let selected = match shape.structure.selectors[g] {
+                        Selector::Codes(_) => states.start,
+                        _ => 0,
+                    };
+                    let weights = weights.iter().map(|w| w * background.share).collect();
+                    let state = shape.states(g) + selected;
+                    next.push((extended(&background.linear[g], state), weights));
+                }
+                for state in states {
+                    let linear = &params.linear[g][state];
+                    let weights = weighted(shape, params, g, state, weights);
+                    next.push((extended(linear, state), weights));
                 }
             }
             let own = &shape.columns[g][shape.p[g] - 1..];
@@ -153,7 +168,7 @@ impl Component {
     }
 }
 
-/// `weights` (by style) times P(H_g = state | s).
+/// `weights` (by style) times P(H_g = state, not the background | s).
 fn weighted(shape: &Shape, params: &Params, g: usize, state: usize, weights: &[f64]) -> Vec<f64> {
     let styles = shape.structure.styles;
     let mut out = weights.to_vec();
@@ -167,6 +182,9 @@ fn weighted(shape: &Shape, params: &Params, g: usize, state: usize, weights: &[f
             others.for_each(|(_, w)| *w = 0.0);
         }
         Selector::Codes(_) => {}
+    }
+    if let Some(background) = &shape.background {
+        out.iter_mut().for_each(|w| *w *= 1.0 - background.share);
     }
     out
 }

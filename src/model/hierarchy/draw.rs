@@ -1,6 +1,6 @@
 //! Rows drawn from a learned model: forward, given some of their values, and the most probable.
 
-use rand::Rng;
+use rand::{Rng, RngExt};
 
 use super::super::conjugate::Linear;
 use super::super::error::ModelError;
@@ -209,7 +209,10 @@ impl Hierarchy {
         for &g in &shape.order {
             if scratch.pattern.barren.contains(&g) {
                 let state = categorical(&self.forward(g, &only, &codes), rng);
-                let linear = &self.params.linear[g][state];
+                let linear = match &shape.background {
+                    Some(background) if rng.random_bool(background.share) => &background.linear[g],
+                    _ => &self.params.linear[g][state],
+                };
                 draw_linear(linear, &shape.columns[g], &mut real, rng);
             }
         }

@@ -25,6 +25,8 @@ pub(crate) struct Scratch {
     pub style: Vec<f64>,
     /// `p(x_g | h)` over its maximum, for plain groups.
     pub dens: Vec<Vec<f64>>,
+    /// Share of the state's own Gaussian in it, for plain groups: the rest is the background's.
+    pub own: Vec<Vec<f64>>,
     /// `m_g(s)` over the same maximum, for plain groups with a hidden variable.
     pub messages: Vec<Vec<f64>>,
     pub pattern: Pattern,
@@ -43,6 +45,7 @@ impl Scratch {
             log_likelihood: 0.0,
             style: vec![0.0; styles],
             dens: groups.clone().map(|g| vec![0.0; shape.states(g)]).collect(),
+            own: groups.clone().map(|g| vec![1.0; shape.states(g)]).collect(),
             messages: groups
                 .map(|g| vec![0.0; if shape.hidden(g) { styles } else { 0 }])
                 .collect(),
@@ -134,14 +137,20 @@ impl Scratch {
         if let Selector::Codes(c) = &shape.structure.selectors[g] {
             let state = configuration(c, &shape.sizes, codes);
             dens.fill(0.0);
-            dens[state] = 1.0;
-            return params.linear[g][state].log_density(u, residual);
+            dens[state] = params.linear[g][state].log_density(u, residual);
+            if let Some(background) = &shape.background {
+                let (log, own) = (&mut dens[state..=state], &mut self.own[g][state..=state]);
+                background.mix(g, u, residual, log, own);
+            }
+            return std::mem::replace(&mut dens[state], 1.0);
         }
-        let mut max = f64::NEG_INFINITY;
         for (l, linear) in dens.iter_mut().zip(&params.linear[g]) {
             *l = linear.log_density(u, residual);
-            max = max.max(*l);
         }
+        if let Some(background) = &shape.background {
+            background.mix(g, u, residual, dens, &mut self.own[g]);
+        }
+        let max = dens.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !shape.hidden(g) {
             for (total, l) in self.style.iter_mut().zip(dens.iter()) {
                 *total += l;
@@ -220,6 +229,8 @@ impl Scratch {
                         sum
                     }
                 };
+                // What the background explains says nothing of the regression.
+                let r = r * self.own[g][h];
                 if r > 1e-15 {
                     for i in 0..q {
                         let ru = r * u[i];
@@ -237,7 +248,16 @@ impl Scratch {
                 if w < 1e-15 {
                     continue;
                 }
-                for (&g, &h) in component.groups.iter().zip(&particle.states) {
+                for (&g, &state) in component.groups.iter().zip(&particle.states) {
+                    let (h, background) = shape.read(g, state);
+                    if background {
+                        if shape.hidden(g) {
+                            let table = stats.tables[g].iter_mut().zip(&params.tables[g]);
+                            let every = joint.iter().cycle();
+                            table.zip(every).for_each(|((n, p), j)| *n += p * j);
+                        }
+                        continue;
+                    }
                     let (columns, scatter) = (&shape.columns[g], &mut stats.scatter[g][h]);
                     add_scatter(particle, &component.missing, columns, real, w, scatter);
                     if shape.hidden(g) {

@@ -143,6 +143,9 @@ fn check(settings: &Settings) -> Result<(), ModelError> {
     if settings.most_states < 2 {
         return Err(ModelError::parameter("most_states", "must be at least 2"));
     }
+    if !(0.0..1.0).contains(&settings.background) {
+        return Err(ModelError::parameter("background", "must be at least 0 and below 1"));
+    }
     if settings.searched == 0 {
         return Err(ModelError::parameter("searched", "must be at least 1"));
     }
@@ -282,6 +285,7 @@ pub fn fit_observed(
     let selectors = states.iter().map(|&k| Selector::Hidden(k)).collect();
     let structure = Structure {
         selectors,
+        background: settings.background,
         ..Structure::new(styles, &Selector::Style, states.len(), schema.codes.len())
     };
     let problem = Problem::new(&schema, &rows, &settings.priors, structure)?;

@@ -6,6 +6,7 @@ use super::super::conjugate::{
 use super::super::error::ModelError;
 use super::super::graph;
 use super::super::table::MISSING;
+use super::background::Background;
 use super::schema::Schema;
 use super::structure::{Selector, Structure};
 
@@ -51,6 +52,8 @@ pub(crate) struct Shape {
     pub regressors: Vec<usize>,
     /// Where the indicators of each categorical column start in an extended row, and its length at the end.
     pub indicators: Vec<usize>,
+    /// What rows that no state explains are drawn from.
+    pub background: Option<Background>,
 }
 
 impl Shape {
@@ -77,6 +80,7 @@ impl Shape {
         Ok(Self {
             order,
             sizes: schema.sizes(),
+            background: Background::new(structure.background, &p, &d),
             columns,
             p,
             d,
@@ -113,6 +117,16 @@ impl Shape {
 
     pub fn hidden(&self, g: usize) -> bool {
         matches!(self.structure.selectors[g], Selector::Hidden(_))
+    }
+
+    /// What a particle says of group `g` by `state`: of which state it is, and whether it is of the background instead
+    /// (numbers from [`Self::states`] on; which state is then open but for categories that select it).
+    pub fn read(&self, g: usize, state: usize) -> (usize, bool) {
+        let states = self.states(g);
+        match state.checked_sub(states) {
+            Some(state) => (state, true),
+            None => (state, false),
+        }
     }
 
     fn rows_of_table(&self, c: usize) -> usize {

@@ -191,7 +191,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    pub(super) fn problem(&self, structure: Structure) -> Result<Problem<'a>, ModelError> {
+    pub(super) fn problem(&self, mut structure: Structure) -> Result<Problem<'a>, ModelError> {
+        structure.background = self.settings.background;
         let priors: &'a Priors = &self.settings.priors;
         Problem::new(self.schema, self.rows, priors, structure)
     }

@@ -6,13 +6,13 @@ use super::fit::{Problem, Scored};
 use super::infer::Scratch;
 use super::params::Params;
 use super::structure::Selector;
-use super::wide::states;
+use super::wide::explained;
 
 /// A row's share in the group under study.
 struct Member {
     /// u = (1, parents, own columns).
     u: Vec<f64>,
-    /// P(h | row), times the probability of the row's completion.
+    /// P(h, not the background | row), times the probability of the row's completion.
     states: Vec<f64>,
     /// P(s | row).
     style: Vec<f64>,
@@ -83,7 +83,7 @@ fn members(problem: &Problem, scored: &Scored, g: usize) -> Result<Vec<Member>, 
             &mut scratch,
             |scratch, real, _, weight| {
                 if scratch.pattern.plain.contains(&g) {
-                    let found = states(scratch, scored).into_iter().find(|(i, _)| *i == g);
+                    let found = explained(scratch, scored).into_iter().find(|(i, _)| *i == g);
                     let own = scored.shape.columns[g].iter().map(|&c| real[c]);
                     members.extend(found.map(|(_, states)| Member {
                         u: std::iter::once(1.0).chain(own).collect(),

@@ -164,7 +164,8 @@ fn check_structure(schema: &Schema, structure: &Structure) -> Result<(), ModelEr
         && selectors
         && below(&structure.parents, groups)
         && below(&structure.code_parents, codes)
-        && below(&structure.shifts, codes))
+        && below(&structure.shifts, codes)
+        && (0.0..1.0).contains(&structure.background))
     {
         return Err(corrupt("structure", "does not fit the schema"));
     }

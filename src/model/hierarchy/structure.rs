@@ -15,7 +15,7 @@ pub(crate) enum Selector {
 }
 
 /// Graph of a model over the real groups and the categorical columns of a schema.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Structure {
     /// Cardinality of S.
     pub styles: usize,
@@ -28,6 +28,14 @@ pub(crate) struct Structure {
     /// Per real group, the categorical columns whose categories shift its means, ascending.
     #[serde(default, skip_serializing_if = "none")]
     pub shifts: Vec<Vec<usize>>,
+    /// Share of the background in every real group ([`super::background`]), in [0, 1).
+    #[serde(default, skip_serializing_if = "absent")]
+    pub background: f64,
+}
+
+/// Whether there is no background: files of models without one do not name it.
+fn absent(share: &f64) -> bool {
+    *share == 0.0
 }
 
 /// Whether no list has an entry: files of models without such edges do not name them.
@@ -44,6 +52,7 @@ impl Structure {
             parents: vec![Vec::new(); groups],
             code_parents: vec![Vec::new(); codes],
             shifts: vec![Vec::new(); groups],
+            background: 0.0,
         }
     }
 

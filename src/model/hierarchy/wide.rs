@@ -59,7 +59,7 @@ pub(crate) fn wide(
     let mut v = vec![1.0; q];
     for i in 0..problem.rows.rows {
         problem.visit(params, i, &mut scratch, |scratch, real, codes, weight| {
-            let states = states(scratch, scored);
+            let states = explained(scratch, scored);
             for (v, r) in v[1..].iter_mut().zip(&real[..d]) {
                 *v = if r.is_nan() { 0.0 } else { *r };
             }
@@ -158,14 +158,28 @@ impl Wide {
     }
 }
 
-/// P(state | row) of every group that the row says something about.
+/// P(state | row) of every group that the row says something about. Of a background that categories do not select, P(state)
+/// is that given the style.
 pub(crate) fn states(scratch: &Scratch, scored: &Scored) -> Vec<(usize, Vec<f64>)> {
+    posteriors(scratch, scored, true)
+}
+
+/// P(state, and the row is not of the background | row): with what weight the row says something of a regression.
+pub(crate) fn explained(scratch: &Scratch, scored: &Scored) -> Vec<(usize, Vec<f64>)> {
+    posteriors(scratch, scored, false)
+}
+
+fn posteriors(
+    scratch: &Scratch,
+    scored: &Scored,
+    with_background: bool,
+) -> Vec<(usize, Vec<f64>)> {
     let shape = &scored.shape;
     let params = &scored.params;
     let styles = shape.structure.styles;
     let mut all = Vec::with_capacity(shape.groups());
     for &g in &scratch.pattern.plain {
-        let r = match shape.structure.selectors[g] {
+        let mut r = match shape.structure.selectors[g] {
             Selector::Style => scratch.style.clone(),
             Selector::Codes(_) => scratch.dens[g].clone(),
             Selector::Hidden(k) => (0..k)
@@ -177,6 +191,9 @@ pub(crate) fn states(scratch: &Scratch, scored: &Scored) -> Vec<(usize, Vec<f64>
                 })
                 .collect(),
         };
+        if !with_background {
+            r.iter_mut().zip(&scratch.own[g]).for_each(|(r, own)| *r *= own);
+        }
         all.push((g, r));
     }
     for component in &scratch.components {
@@ -184,7 +201,19 @@ pub(crate) fn states(scratch: &Scratch, scored: &Scored) -> Vec<(usize, Vec<f64>
         for (at, &g) in component.groups.iter().enumerate() {
             let mut r = vec![0.0; shape.states(g)];
             for (particle, j) in component.particles.iter().zip(joint.chunks(styles)) {
-                r[particle.states[at]] += j.iter().sum::<f64>();
+                match shape.read(g, particle.states[at]) {
+                    (state, false) => r[state] += j.iter().sum::<f64>(),
+                    _ if !with_background => {}
+                    (state, true) => match shape.structure.selectors[g] {
+                        Selector::Codes(_) => r[state] += j.iter().sum::<f64>(),
+                        Selector::Style => r.iter_mut().zip(j).for_each(|(r, j)| *r += j),
+                        Selector::Hidden(_) => {
+                            for (r, table) in r.iter_mut().zip(params.tables[g].chunks(styles)) {
+                                *r += table.iter().zip(j).map(|(p, j)| p * j).sum::<f64>();
+                            }
+                        }
+                    },
+                }
             }
             all.push((g, r));
         }
