@@ -4,9 +4,9 @@ use super::averages::mean_and_error;
 use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::experiments::Context;
+use crate::model::hierarchy::Settings;
 use crate::report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
 use crate::tables::Dataset;
-use crate::model::hierarchy::Settings;
 use crate::tables::compare::{BACKGROUND, Contender, held_out, split};
 use crate::{Error, Result};
 
@@ -44,7 +44,11 @@ pub fn left(ctx: &mut Context) -> Result<()> {
         },
     )?;
     for ((set, index, contender, share), loss) in units.iter().zip(&losses) {
-        let metric = if *share > 0.0 { "nll" } else { "nll_without_background" };
+        let metric = if *share > 0.0 {
+            "nll"
+        } else {
+            "nll_without_background"
+        };
         ctx.observe(Row {
             dataset: sets[*set].0.into(),
             method: contender.name().into(),
@@ -73,7 +77,9 @@ pub fn left(ctx: &mut Context) -> Result<()> {
         let own = |c| of(set, c, BACKGROUND);
         figure = figure.panel(bars(name, own));
         verdict(ctx, name, own);
-        verdict(ctx, &format!("{name}, without background"), |c| of(set, c, 0.0));
+        verdict(ctx, &format!("{name}, without background"), |c| {
+            of(set, c, 0.0)
+        });
         let means = Means {
             of: Contender::ALL.map(|c| mean_and_error(&own(c)).0),
         };

@@ -17,18 +17,17 @@ pub(crate) fn fold<T: Send, E: Send>(
 ) -> Result<T, E> {
     let count = rows.div_ceil(chunk).max(1);
     let range = |i: usize| i * chunk..((i + 1) * chunk).min(rows);
-    let mut total = part(range(0))?;
-    let mut next = 1;
-    while next < count {
-        let end = (next + ALIVE).min(count);
-        let parts: Vec<Result<T, E>> = (next..end)
-            .into_par_iter()
-            .map(|i| part(range(i)))
-            .collect();
-        for p in parts {
-            merge(&mut total, p?);
+    let mut total: Option<T> = None;
+    for from in (0..count).step_by(ALIVE) {
+        let batch = (from..count.min(from + ALIVE)).into_par_iter();
+        let parts: Vec<Result<T, E>> = batch.map(|i| part(range(i))).collect();
+        for part in parts {
+            match &mut total {
+                None => total = Some(part?),
+                Some(total) => merge(total, part?),
+            }
         }
-        next = end;
     }
-    Ok(total)
+    // There is always a first chunk.
+    total.map_or_else(|| part(0..0), Ok)
 }

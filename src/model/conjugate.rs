@@ -231,6 +231,25 @@ impl Linear {
         -2.0 * (self.log_norm + 0.5 * self.d as f64 * LN_2PI)
     }
 
+    /// The greatest log density of the chosen coordinates of y, whatever x is; 0 of none.
+    pub(crate) fn log_peak(&self, chosen: &[usize]) -> f64 {
+        let (d, k) = (self.d, chosen.len());
+        if k == d {
+            return self.log_norm;
+        }
+        let mut l = Vec::with_capacity(k * k);
+        for &i in chosen {
+            l.extend(chosen.iter().map(|&j| self.covariance[i * d + j]));
+        }
+        match cholesky(&mut l, k) {
+            true => {
+                let log_det: f64 = (0..k).map(|i| l[i * k + i].ln()).sum();
+                -0.5 * k as f64 * LN_2PI - log_det
+            }
+            false => f64::INFINITY,
+        }
+    }
+
     /// Bᵀx for u = (x, ..).
     pub(crate) fn mean(&self, u: &[f64], mean: &mut [f64]) {
         mean.copy_from_slice(&self.coefficients[..self.d]);

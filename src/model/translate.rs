@@ -35,7 +35,10 @@ impl Hierarchy {
             .collect();
         let style = free("style".to_owned());
         let kinds: Vec<String> = groups.iter().map(|g| free(format!("{g} kind"))).collect();
-        let outliers: Vec<String> = groups.iter().map(|g| free(format!("{g} outlier"))).collect();
+        let outliers: Vec<String> = groups
+            .iter()
+            .map(|g| free(format!("{g} outlier")))
+            .collect();
 
         let mut variables = vec![discrete(&style, structure.styles, &[], &self.params.style)];
         let styles = structure.styles;

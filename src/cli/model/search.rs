@@ -40,7 +40,10 @@ impl Search {
     pub fn settings(&self, background: f64) -> edifice::Result<Settings> {
         let background = self.background.unwrap_or(background);
         if !(0.0..1.0).contains(&background) {
-            return Err(Error::option("--background", "must be at least 0 and below 1"));
+            return Err(Error::option(
+                "--background",
+                "must be at least 0 and below 1",
+            ));
         }
         if self.min_styles < 1 || self.min_styles > self.max_styles {
             return Err(Error::option(

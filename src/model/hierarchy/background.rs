@@ -17,6 +17,8 @@ use super::super::conjugate::Linear;
 
 /// Deviation of the background, in deviations of the table's columns.
 const WIDTH: f64 = 3.0;
+/// A state this much below the background (nats) explains nothing: less than the rounding of a sum.
+const NEGLIGIBLE: f64 = 40.0;
 
 /// The background of every group.
 #[derive(Clone, Debug)]
@@ -39,23 +41,31 @@ impl Background {
         (share > 0.0).then(|| linear.map(|linear| Self { share, linear }))?
     }
 
-    /// Mixes the background into log densities of group `g` at `u`, and says for each which share of it the state's own
-    /// Gaussian has.
+    /// Mixes the background into the states of group `g` at `u`: log densities become densities over a common factor,
+    /// whose log is returned, and `own` says which share of each the state's own Gaussian has.
     pub fn mix(
         &self,
         g: usize,
         u: &[f64],
         residual: &mut [f64],
-        logs: &mut [f64],
+        densities: &mut [f64],
         own: &mut [f64],
-    ) {
+    ) -> f64 {
         let wide = self.share.ln() + self.linear[g].log_density(u, residual);
         let rest = (-self.share).ln_1p();
-        for (l, own) in logs.iter_mut().zip(own) {
-            let narrow = rest + *l;
-            let most = narrow.max(wide);
-            *l = most + ((narrow - most).exp() + (wide - most).exp()).ln();
-            *own = (narrow - *l).exp();
+        let narrow = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let most = wide.max(rest + narrow);
+        let floor = (wide - most).exp();
+        for (density, own) in densities.iter_mut().zip(own) {
+            let narrow = rest + *density;
+            // Most states are far from a row: no exponential for those.
+            (*density, *own) = if narrow < wide - NEGLIGIBLE {
+                (floor, 0.0)
+            } else {
+                let narrow = (narrow - most).exp();
+                (narrow + floor, narrow / (narrow + floor))
+            };
         }
+        most
     }
 }

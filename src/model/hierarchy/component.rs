@@ -4,8 +4,8 @@
 //! of states to a component the values are jointly Gaussian; walking the groups in topological
 //! order, each new group extends the Gaussian over the missing values seen so far and is then
 //! conditioned on its own observed values. An assignment with its Gaussian is a [`Particle`].
-//! The walk is exact while no more than [`MOST`] assignments are alive; beyond, the least probable
-//! are dropped.
+//! An assignment is given up as soon as a bound says that it ends [`NEGLIGIBLE`] nats below one that is known. The walk is
+//! exact (to 1e-10) while no more than [`MOST`] assignments are alive; beyond, the least probable are dropped.
 
 use super::super::conjugate::Linear;
 use super::super::gaussian::{Particle, extend};
@@ -14,6 +14,8 @@ use super::structure::{Selector, configuration};
 
 /// Assignments alive at once.
 pub(crate) const MOST: usize = 2048;
+/// Assignments this much below a known one (nats) are left out: with [`MOST`] of them, less than 1e-10 of the density.
+const NEGLIGIBLE: f64 = 32.0;
 
 /// Groups of one row that missing values link, with their assignments.
 #[derive(Clone, Debug)]
@@ -98,54 +100,38 @@ impl Component {
         real: &[f64],
         codes: &[u32],
     ) -> Self {
-        let styles = shape.structure.styles;
-        let mut component = Self {
-            groups: groups.to_vec(),
-            missing: Vec::new(),
-            particles: Vec::new(),
-            weights: Vec::new(),
+        let row = Row {
+            shape,
+            params,
+            real,
+            codes,
         };
-        let mut alive = vec![(Particle::empty(), vec![1.0; styles])];
+        let mut missing = Vec::new();
+        let mut levels = Vec::with_capacity(groups.len());
         for &g in groups {
-            let mut next: Vec<(Particle, Vec<f64>)> = Vec::new();
-            for (particle, weights) in &alive {
-                let states = match &shape.structure.selectors[g] {
-                    Selector::Hidden(k) => 0..*k,
-                    Selector::Codes(c) => {
-                        let s = configuration(c, &shape.sizes, codes);
-                        s..s + 1
-                    }
-                    Selector::Style => {
-                        let mut known = particle.states.iter().filter(|s| **s < styles);
-                        known.next().map_or(0..styles, |&s| s..s + 1)
-                    }
-                };
-                let extended = |linear: &Linear, state: usize| {
-                    let columns = &shape.columns[g];
-                    let mut p = extend(particle, &component.missing, columns, linear, real);
-                    p.states.push(state);
-                    p
-                };
-                if let Some(background) = &shape.background {
-                    // Its density is the same for every state: one particle for all that the row leaves open.
-                    let selected = match shape.structure.selectors[g] {
-                        Selector::Codes(_) => states.start,
-                        _ => 0,
-                    };
-                    let weights = weights.iter().map(|w| w * background.share).collect();
-                    let state = shape.states(g) + selected;
-                    next.push((extended(&background.linear[g], state), weights));
-                }
-                for state in states {
-                    let linear = &params.linear[g][state];
-                    let weights = weighted(shape, params, g, state, weights);
-                    next.push((extended(linear, state), weights));
-                }
-            }
+            levels.push((g, missing.clone()));
             let own = &shape.columns[g][shape.p[g] - 1..];
-            component
-                .missing
-                .extend(own.iter().filter(|&&c| real[c].is_nan()));
+            missing.extend(own.iter().filter(|&&c| real[c].is_nan()));
+        }
+        let first = (Particle::empty(), vec![1.0; shape.structure.styles]);
+        // What one assignment explains, taken greedily, all together explain at least.
+        let mut one = first.clone();
+        for (g, missing) in &levels {
+            let next = row.extensions(&one, *g, missing).into_iter();
+            let best = next.max_by(|a, b| log_most(a).total_cmp(&log_most(b)));
+            one = best.unwrap_or(one);
+        }
+        let least = log_most(&one) - NEGLIGIBLE;
+        // And no assignment explains what is still to come better than at the peaks of its densities.
+        let mut to_come: f64 = groups.iter().map(|&g| row.peak(g)).sum();
+        let mut alive = vec![first];
+        for (g, missing) in &levels {
+            to_come -= row.peak(*g);
+            let mut next: Vec<Weighted> = Vec::new();
+            for particle in &alive {
+                let extensions = row.extensions(particle, *g, missing).into_iter();
+                next.extend(extensions.filter(|p| log_most(p) + to_come >= least));
+            }
             next.retain(|(p, _)| p.log_density > f64::NEG_INFINITY);
             if next.len() > MOST {
                 next.sort_by(|a, b| b.0.log_density.total_cmp(&a.0.log_density));
@@ -153,11 +139,13 @@ impl Component {
             }
             alive = next;
         }
-        for (particle, weights) in alive {
-            component.particles.push(particle);
-            component.weights.extend(weights);
+        let (particles, weights): (Vec<Particle>, Vec<Vec<f64>>) = alive.into_iter().unzip();
+        Self {
+            groups: groups.to_vec(),
+            missing,
+            particles,
+            weights: weights.concat(),
         }
-        component
     }
 
     /// `exp(log p(observed values | particle) - most)` of every particle, and the greatest, most.
@@ -165,6 +153,80 @@ impl Component {
         let logs = self.particles.iter().map(|p| p.log_density);
         let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
         (logs.map(|l| (l - most).exp()).collect(), most)
+    }
+}
+
+/// An assignment with P(its states | s) of every style s.
+type Weighted = (Particle, Vec<f64>);
+
+/// `max_s log P(states | s) p(observed values | states)`.
+fn log_most((particle, weights): &Weighted) -> f64 {
+    particle.log_density + weights.iter().copied().fold(0.0, f64::max).ln()
+}
+
+/// A row under a model.
+struct Row<'a> {
+    shape: &'a Shape,
+    params: &'a Params,
+    real: &'a [f64],
+    codes: &'a [u32],
+}
+
+impl Row<'_> {
+    /// A particle over `missing` with every state of group `g`, and with the background.
+    fn extensions(&self, from: &Weighted, g: usize, missing: &[usize]) -> Vec<Weighted> {
+        let (shape, params) = (self.shape, self.params);
+        let (particle, weights) = from;
+        let styles = shape.structure.styles;
+        let states = match &shape.structure.selectors[g] {
+            Selector::Hidden(k) => 0..*k,
+            Selector::Codes(c) => {
+                let s = configuration(c, &shape.sizes, self.codes);
+                s..s + 1
+            }
+            Selector::Style => {
+                let mut known = particle.states.iter().filter(|s| **s < styles);
+                known.next().map_or(0..styles, |&s| s..s + 1)
+            }
+        };
+        let extended = |linear: &Linear, state: usize| {
+            let mut p = extend(particle, missing, &shape.columns[g], linear, self.real);
+            p.states.push(state);
+            p
+        };
+        let mut all = Vec::with_capacity(states.len() + 1);
+        if let Some(background) = &shape.background {
+            // Its density is the same for every state: one particle for all that the row leaves open.
+            let selected = match shape.structure.selectors[g] {
+                Selector::Codes(_) => states.start,
+                _ => 0,
+            };
+            let weights = weights.iter().map(|w| w * background.share).collect();
+            let state = shape.states(g) + selected;
+            all.push((extended(&background.linear[g], state), weights));
+        }
+        for state in states {
+            let weights = weighted(shape, params, g, state, weights);
+            // A style that an earlier state excludes.
+            if weights.iter().any(|w| *w > 0.0) {
+                all.push((extended(&params.linear[g][state], state), weights));
+            }
+        }
+        all
+    }
+
+    /// The greatest log density that any state of group `g` can give to its observed values, whatever its inputs are.
+    fn peak(&self, g: usize) -> f64 {
+        let own = &self.shape.columns[g][self.shape.p[g] - 1..];
+        let seen: Vec<usize> = (0..own.len())
+            .filter(|&j| !self.real[own[j]].is_nan())
+            .collect();
+        let states = self.params.linear[g].iter();
+        let background = self.shape.background.iter().map(|b| &b.linear[g]);
+        let peaks = states
+            .chain(background)
+            .map(|linear| linear.log_peak(&seen));
+        peaks.fold(f64::NEG_INFINITY, f64::max)
     }
 }
 

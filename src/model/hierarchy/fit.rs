@@ -15,7 +15,7 @@ use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure, configuration};
 
 /// Rows of one parallel piece of work.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 512;
 /// Rows that a start looks at.
 const SAMPLE: usize = 10_000;
 

@@ -139,18 +139,25 @@ impl Scratch {
             dens.fill(0.0);
             dens[state] = params.linear[g][state].log_density(u, residual);
             if let Some(background) = &shape.background {
-                let (log, own) = (&mut dens[state..=state], &mut self.own[g][state..=state]);
-                background.mix(g, u, residual, log, own);
+                let (only, own) = (&mut dens[state..=state], &mut self.own[g][state..=state]);
+                let most = background.mix(g, u, residual, only, own);
+                return most + std::mem::replace(&mut dens[state], 1.0).ln();
             }
             return std::mem::replace(&mut dens[state], 1.0);
         }
         for (l, linear) in dens.iter_mut().zip(&params.linear[g]) {
             *l = linear.log_density(u, residual);
         }
+        let mut max = dens.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if let Some(background) = &shape.background {
-            background.mix(g, u, residual, dens, &mut self.own[g]);
+            max = background.mix(g, u, residual, dens, &mut self.own[g]);
+            if !shape.hidden(g) {
+                dens.iter_mut()
+                    .for_each(|density| *density = max + density.ln());
+            }
+        } else if shape.hidden(g) {
+            dens.iter_mut().for_each(|l| *l = (*l - max).exp());
         }
-        let max = dens.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !shape.hidden(g) {
             for (total, l) in self.style.iter_mut().zip(dens.iter()) {
                 *total += l;
@@ -159,13 +166,12 @@ impl Scratch {
         }
         let message = &mut self.messages[g];
         message.fill(0.0);
-        for (h, l) in dens.iter_mut().enumerate() {
-            *l = (*l - max).exp();
+        for (h, density) in dens.iter().enumerate() {
             for (m, p) in message
                 .iter_mut()
                 .zip(&params.tables[g][h * styles..(h + 1) * styles])
             {
-                *m += p * *l;
+                *m += p * density;
             }
         }
         multiply(&mut self.product, &mut self.style, message);
@@ -232,7 +238,8 @@ impl Scratch {
                 // What the background explains says nothing of the regression.
                 let r = r * self.own[g][h];
                 if r > 1e-15 {
-                    for i in 0..q {
+                    // Indicators of categories are mostly 0.
+                    for i in (0..q).filter(|&i| u[i] != 0.0) {
                         let ru = r * u[i];
                         for (a, v) in scatter[i * q..i * q + i + 1].iter_mut().zip(u) {
                             *a += ru * v;

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use rand::seq::SliceRandom;
+
 use super::super::em::{Outcome, Stopping};
 use super::super::error::ModelError;
 use super::super::table::Table;
@@ -13,8 +15,9 @@ use super::watch::Watch;
 use super::{Group, Hierarchy, Observer, Priors, Settings, Variant};
 use crate::rng::stream;
 
-/// Gain at which the parameters of all rows are settled, where the structure was searched on some: nats a row.
-const SETTLED: f64 = 1e-6;
+/// Least gain of a round of EM on many rows, nats a row: while a structure is searched, where what decides is far more, and
+/// where the parameters of all rows are settled.
+const SETTLED: f64 = 1e-4;
 
 /// One accepted configuration of the search.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -144,7 +147,10 @@ fn check(settings: &Settings) -> Result<(), ModelError> {
         return Err(ModelError::parameter("most_states", "must be at least 2"));
     }
     if !(0.0..1.0).contains(&settings.background) {
-        return Err(ModelError::parameter("background", "must be at least 0 and below 1"));
+        return Err(ModelError::parameter(
+            "background",
+            "must be at least 0 and below 1",
+        ));
     }
     if settings.searched == 0 {
         return Err(ModelError::parameter("searched", "must be at least 1"));
@@ -171,8 +177,10 @@ impl<'a> Work<'a> {
         let rows = schema.encode(data)?;
         let sample = (rows.rows > settings.searched).then(|| {
             let mut rng = stream(seed, "hierarchy/searched", 0);
-            let chosen = rand::seq::index::sample(&mut rng, rows.rows, settings.searched);
-            let mut chosen = chosen.into_vec();
+            let mut chosen: Vec<usize> = (0..rows.rows).collect();
+            chosen.shuffle(&mut rng);
+            chosen.sort_by_key(|&row| rows.missing(row));
+            chosen.truncate(settings.searched);
             chosen.sort_unstable();
             rows.select(&chosen)
         });
@@ -192,10 +200,13 @@ impl<'a> Work<'a> {
     ) -> Result<Learned, ModelError> {
         let watch = Watch::new(observer);
         let (settings, schema) = (self.settings, self.schema);
+        let rows = self.sample.as_ref().unwrap_or(&self.rows);
+        let mut searching = settings.clone();
+        searching.search.gain = settings.search.gain.max(SETTLED * rows.rows as f64);
         let (mut scored, trace) = search(&Search {
             schema,
-            rows: self.sample.as_ref().unwrap_or(&self.rows),
-            settings,
+            rows,
+            settings: &searching,
             categories: settings.category_edges,
             watch: &watch,
         })?;

@@ -48,7 +48,7 @@
 //!   share the intercept raise the score.
 //! - On request ([`Settings::background`]) a wide background contaminates the Gaussian of every state, so that one row of
 //!   an unforeseen kind costs a few nats.
-//! - Of more rows than [`Settings::searched`] the structure is searched on a sample, and only the parameters are fitted to
+//! - Of more rows than [`Settings::searched`] the structure is searched on a sample of those that lack fewest values, and only the parameters are fitted to
 //!   all: the search costs hundreds of EM runs, each linear in rows.
 //! - On large tables the second level is searched for two |S| only ([`Sweep`]), since every other |S| is then tried above
 //!   the best second level anyway.
@@ -138,7 +138,7 @@ pub struct Settings {
     pub restarts: usize,
     /// Priors.
     pub priors: Priors,
-    /// When EM stops while searching.
+    /// When EM stops while searching; its gain is at least 1e-4 nats a row.
     pub search: Stopping,
     /// When EM of the final model stops.
     pub stopping: Stopping,
@@ -146,8 +146,8 @@ pub struct Settings {
     pub constant: Constant,
     /// For which cardinalities of S the second level is searched from the start.
     pub sweep: Sweep,
-    /// Most rows that the structure is searched on: of more, so many are drawn, and the parameters of the structure found
-    /// are then fitted to all of them, until a round gains less than 1e-6 nats a row.
+    /// Most rows that the structure is searched on: of more, so many are drawn from those that lack fewest values, and the parameters of the structure found
+    /// are then fitted to all of them, until a round gains less than 1e-4 nats a row.
     pub searched: usize,
 }
 

@@ -247,6 +247,12 @@ impl Rows {
         &self.codes[row * self.c..(row + 1) * self.c]
     }
 
+    /// Number of values that a row lacks.
+    pub fn missing(&self, row: usize) -> usize {
+        let reals = self.real(row).iter().filter(|v| v.is_nan()).count();
+        reals + self.code(row).iter().filter(|v| **v == MISSING).count()
+    }
+
     /// The chosen rows, in the given order.
     pub fn select(&self, chosen: &[usize]) -> Self {
         Self {

@@ -83,7 +83,9 @@ fn members(problem: &Problem, scored: &Scored, g: usize) -> Result<Vec<Member>, 
             &mut scratch,
             |scratch, real, _, weight| {
                 if scratch.pattern.plain.contains(&g) {
-                    let found = explained(scratch, scored).into_iter().find(|(i, _)| *i == g);
+                    let found = explained(scratch, scored)
+                        .into_iter()
+                        .find(|(i, _)| *i == g);
                     let own = scored.shape.columns[g].iter().map(|&c| real[c]);
                     members.extend(found.map(|(_, states)| Member {
                         u: std::iter::once(1.0).chain(own).collect(),

@@ -169,11 +169,7 @@ pub(crate) fn explained(scratch: &Scratch, scored: &Scored) -> Vec<(usize, Vec<f
     posteriors(scratch, scored, false)
 }
 
-fn posteriors(
-    scratch: &Scratch,
-    scored: &Scored,
-    with_background: bool,
-) -> Vec<(usize, Vec<f64>)> {
+fn posteriors(scratch: &Scratch, scored: &Scored, with_background: bool) -> Vec<(usize, Vec<f64>)> {
     let shape = &scored.shape;
     let params = &scored.params;
     let styles = shape.structure.styles;
@@ -192,7 +188,9 @@ fn posteriors(
                 .collect(),
         };
         if !with_background {
-            r.iter_mut().zip(&scratch.own[g]).for_each(|(r, own)| *r *= own);
+            r.iter_mut()
+                .zip(&scratch.own[g])
+                .for_each(|(r, own)| *r *= own);
         }
         all.push((g, r));
     }

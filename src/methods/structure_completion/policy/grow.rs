@@ -4,7 +4,8 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::growing::{Growing, most};
-use super::scene::{Item, Scene};
+use super::scene::{Extent, Item, Scene};
+use super::tried::{Step, Tried};
 use super::{Direction, FAILURES, Policy};
 use crate::methods::structure_completion::layout::{Class, Element};
 use crate::shape::Rect;
@@ -16,69 +17,80 @@ const OFFSET: f64 = 0.1;
 
 /// A candidate of a policy: all elements, the observed ones first.
 pub fn grow<R: Rng>(scene: &Scene, policy: &Policy, rng: &mut R) -> Vec<Element> {
-    let mut growing = Growing::new(scene);
-    while let Some(item) = next(scene, &growing, policy, rng) {
+    let (mut growing, mut tried) = (Growing::new(scene), Tried::default());
+    while let Some(item) = next(scene, &growing, &mut tried, policy, rng) {
         growing.add(item);
     }
     growing.elements()
 }
 
-/// What the policy adds next; `None` when the candidate is complete.
+/// What the policy adds next; `None` when the candidate is complete. What it tried is of this growing layout only.
 pub(super) fn next<R: Rng>(
     scene: &Scene,
     growing: &Growing,
+    tried: &mut Tried,
     policy: &Policy,
     rng: &mut R,
 ) -> Option<Item> {
     if growing.items.is_empty() || growing.items.len() >= most(scene.start.items.len()) {
         return None;
     }
-    (0..FAILURES).find_map(|_| action(scene, growing, policy, rng))
+    (0..FAILURES).find_map(|_| action(scene, growing, tried, policy, rng))
 }
 
 /// Seed, direction, label, spacing.
-fn action<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R) -> Option<Item> {
+fn action<R: Rng>(
+    scene: &Scene,
+    growing: &Growing,
+    tried: &mut Tried,
+    policy: &Policy,
+    rng: &mut R,
+) -> Option<Item> {
     let lambda = &policy.0;
-    let seed = seed(scene, growing, policy, rng);
+    let number = seed(scene, growing, policy, rng);
+    let seed = &growing.items[number];
     if rng.random::<f64>() < lambda[10] {
         return mirrored(scene, growing, seed);
     }
     let (class, size, empty) = label(scene, seed, policy, rng);
-    let grid = match (class, size) == (seed.element.class, seed.size()) {
+    let alike = (class, size) == (seed.element.class, seed.size());
+    let grid = match alike {
         true => seed.grid,
         false => growing.grid_of(&Element::new(class, Rect::new(0.0, 0.0, size[0], size[1]))),
     };
     let snap = rng.random::<f64>() < lambda[9];
-    let place = |axis: usize, forward: bool, rng: &mut R| {
-        let step = spacing(scene, growing, seed, (axis, forward), policy, rng);
+    let mut extended = |direction: (usize, bool), inside: Option<&Extent>, rng: &mut R| {
+        let step = spacing(scene, growing, tried, number, direction, policy, rng);
+        if alike && tried.is_taken(growing, number, direction, step, snap) {
+            return None;
+        }
+        let ((axis, forward), length) = (direction, step.length());
         let mut at = seed.centre;
-        at[axis] += if forward { step } else { -step };
+        at[axis] += if forward { length } else { -length };
         if snap {
             at[axis] = growing.snapped(at[axis], axis, SNAP * size[axis]);
         }
-        at
-    };
-    let element = |at: [f64; 2]| {
-        let rect = Rect::new(
-            at[0] - size[0] / 2.0,
-            at[1] - size[1] / 2.0,
-            size[0],
-            size[1],
-        );
-        let element = Element::new(class, rect);
-        growing.fits(scene, &element).then_some(element)
+        if inside.is_some_and(|inside| !inside.holds(at)) {
+            return None;
+        }
+        let low = [0, 1].map(|axis| at[axis] - size[axis] / 2.0);
+        let element = Element::new(class, Rect::new(low[0], low[1], size[0], size[1]));
+        let fits = growing.fits(scene, &element);
+        if alike && !fits {
+            tried.take(growing, number, direction, step, snap);
+        }
+        fits.then_some(element)
     };
     let mut found = None;
     for direction in policy.directions(rng) {
         found = match direction {
-            Direction::Along(axis, forward) => element(place(axis, forward, rng)),
+            Direction::Along(axis, forward) => extended((axis, forward), None, rng),
             Direction::Concave => {
                 let turn = rng.random_range(0..4);
                 let inside = growing.extent(seed.grid);
                 (0..4).find_map(|i| {
                     let side = (i + turn) % 4;
-                    let at = place(side / 2, side % 2 == 0, rng);
-                    if inside.holds(at) { element(at) } else { None }
+                    extended((side / 2, side % 2 == 0), Some(inside), rng)
                 })
             }
         };
@@ -89,10 +101,10 @@ fn action<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R
     found.map(|element| Item::new(element, grid, empty))
 }
 
-/// A seed at random, or one of highest rank (Eq. 23).
-fn seed<'s, R: Rng>(scene: &Scene, growing: &'s Growing, policy: &Policy, rng: &mut R) -> &'s Item {
+/// Number of a seed at random, or of one of highest rank (Eq. 23).
+fn seed<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R) -> usize {
     if rng.random::<f64>() < policy.0[0] {
-        return &growing.items[rng.random_range(0..growing.items.len())];
+        return rng.random_range(0..growing.items.len());
     }
     growing.highest(policy.0[1], scene.facade[0] * scene.facade[1], rng)
 }
@@ -126,28 +138,35 @@ fn label<R: Rng>(
 fn spacing<R: Rng>(
     scene: &Scene,
     growing: &Growing,
-    seed: &Item,
-    (axis, forward): (usize, bool),
+    tried: &mut Tried,
+    seed: usize,
+    direction: (usize, bool),
     policy: &Policy,
     rng: &mut R,
-) -> f64 {
+) -> Step {
+    let axis = direction.0;
     let method = policy.option(7, 8, rng);
     if method == 0
-        && let Some(step) = growing.opposite(seed, axis, forward)
+        && let Some(length) = tried.opposite(growing, seed, direction)
     {
-        return step;
+        return Step::Opposite(length);
     }
     let observed = &scene.spacings[axis];
     let ratios = &scene.model.spacings[axis];
+    let size = growing.items[seed].size()[axis];
     let step = if !observed.is_empty() {
-        observed[rng.random_range(0..observed.len())]
+        let number = rng.random_range(0..observed.len());
+        Step::Observed(number, observed[number])
     } else if !ratios.is_empty() {
-        ratios[rng.random_range(0..ratios.len())] * seed.size()[axis]
+        Step::Other(ratios[rng.random_range(0..ratios.len())] * size)
     } else {
-        2.0 * seed.size()[axis]
+        Step::Other(2.0 * size)
     };
     match method {
-        2 => step * (1.0 + OFFSET * rng.sample::<f64, _>(StandardNormal)),
+        2 => {
+            let offset = OFFSET * rng.sample::<f64, _>(StandardNormal);
+            Step::Other(step.length() * (1.0 + offset))
+        }
         _ => step,
     }
 }

@@ -123,8 +123,8 @@ impl Growing {
         scene.open.allows(element) && !self.places.any_near(&element.rect, excluded)
     }
 
-    /// An item of highest rank `λ1 [inside its grid] + (1 - λ1)(1 - A(g) / A(F))` (Eq. 23), at random among equals.
-    pub(super) fn highest<R: Rng>(&self, lambda: f64, area: f64, rng: &mut R) -> &Item {
+    /// Number of an item of highest rank `λ1 [inside its grid] + (1 - λ1)(1 - A(g) / A(F))` (Eq. 23), at random among equals.
+    pub(super) fn highest<R: Rng>(&self, lambda: f64, area: f64, rng: &mut R) -> usize {
         let ranks = self.groups.iter().flat_map(|g| {
             let small = (1.0 - lambda) * (1.0 - g.extent.area() / area);
             [(small + lambda, &g.inside), (small, &g.boundary)]
@@ -138,11 +138,11 @@ impl Growing {
         let mut at = rng.random_range(0..count);
         for items in equal {
             match items.get(at) {
-                Some(&item) => return &self.items[item as usize],
+                Some(&item) => return item as usize,
                 None => at -= items.len(),
             }
         }
-        &self.items[0]
+        0
     }
 
     /// The grid that a new element of another label joins, or a new one.

@@ -33,6 +33,7 @@ mod model;
 mod optimize;
 mod process;
 mod scene;
+mod tried;
 
 pub use grow::grow;
 pub use model::{PaperModel, WEIGHTS, weight_states};

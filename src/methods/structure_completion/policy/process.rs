@@ -9,6 +9,7 @@ use rand::Rng;
 use super::grow::next;
 use super::growing::Growing;
 use super::scene::Item;
+use super::tried::Tried;
 use super::{Policy, Scene};
 use crate::methods::structure_completion::layout::Element;
 use crate::optim::adp::{Adp, AdpError, Approximation, Epsilon, Heuristic, Process};
@@ -65,7 +66,8 @@ impl Process for Growth<'_> {
 
 impl Heuristic<Growth<'_>> for Policy {
     fn sample<R: Rng>(&mut self, process: &mut Growth<'_>, state: &Walk, rng: &mut R) -> Step {
-        Step(next(process.0, &state.growing, self, rng))
+        let tried = &mut Tried::default();
+        Step(next(process.0, &state.growing, tried, self, rng))
     }
 }
 
@@ -86,9 +88,10 @@ impl Approximation<Growth<'_>> for Rollouts {
                 return Some(step);
             };
             for _ in 0..self.walks {
-                let mut growing = state.growing.clone();
+                let (mut growing, mut tried) = (state.growing.clone(), Tried::default());
                 growing.add(item);
-                while let Some(item) = next(process.0, &growing, &self.policy, &mut self.rng) {
+                let (scene, policy, rng) = (process.0, &self.policy, &mut self.rng);
+                while let Some(item) = next(scene, &growing, &mut tried, policy, rng) {
                     growing.add(item);
                 }
                 let loss = process.loss(&growing);

@@ -2,8 +2,8 @@
 
 use crate::methods::structure_completion::layout::{Class, Element};
 
-/// Elements of one class belong to different grids where their log sizes differ by more.
-const SIZE_STEP: f64 = 0.3;
+/// Elements of one class belong to different grids where their sizes differ by a greater factor: e^0.3.
+const SIZE_STEP: f64 = 1.349_858_807_576_003;
 /// Centres are on different lines where they differ by more than this share of the mean size.
 const SAME_LINE: f64 = 0.35;
 /// A column is the mirror image of another up to this share of the mean size.
@@ -58,8 +58,7 @@ pub fn clusters(elements: &[Element], of_class: &[u32]) -> Vec<Vec<u32>> {
 /// Sorts by size and splits where the ratio of neighbours is above e^0.3.
 fn split(order: &mut [u32], size: impl Fn(u32) -> f64) -> Vec<Vec<u32>> {
     order.sort_unstable_by(|&a, &b| size(a).total_cmp(&size(b)).then(a.cmp(&b)));
-    let step = SIZE_STEP.exp();
-    let runs = order.chunk_by(|&a, &b| size(b) <= step * size(a));
+    let runs = order.chunk_by(|&a, &b| size(b) <= SIZE_STEP * size(a));
     runs.map(<[u32]>::to_vec).collect()
 }
 

@@ -230,6 +230,8 @@ impl Sites {
                     let before = scored.score();
                     let new = self.sites[at];
                     let after = match (old.present, new.present) {
+                        // The same value was proposed.
+                        _ if new == old => before,
                         (false, false) => before,
                         (true, true) => {
                             scored.apply(Change::Set(index[at], new.element(self.facade)))
@@ -238,7 +240,7 @@ impl Sites {
                         (true, false) => scored.apply(Change::Remove(index[at])),
                     };
                     if rng.random::<f64>().ln() >= after - before {
-                        if old.present || new.present {
+                        if (old.present || new.present) && new != old {
                             scored.undo();
                         }
                         self.sites[at] = old;
