@@ -1,12 +1,14 @@
 //! Several facades explained by one joint grammar (Wu et al. 2014, Sec. 4.6): the rules that they share are written once.
 
 use std::path::Path;
+use std::rc::Rc;
 
 use super::super::split_grammar::{Wish, derived};
 use super::super::work::{Work, stoppable};
 use crate::grammar::{Grammar, check};
 use crate::io::facade_json;
-use crate::methods::facade_grammar::{InferError, Outcome, Settings, infer_observed};
+use crate::methods::facade_grammar::{InferError, Outcome, Settings, infer_watched};
+use crate::optim::Step;
 use crate::shape::Facade;
 use crate::{Error, Result};
 
@@ -62,14 +64,20 @@ struct MergeError(String);
 /// [`InferError`].
 pub fn observed(facades: &[Facade], work: &Work) -> std::result::Result<Outcome, InferError> {
     let settings = Settings::default();
-    let (steps, work) = (settings.steps().max(1) as f64, work.clone());
-    infer_observed(facades, &settings, move |step| {
+    let (steps, told, watched) = (settings.steps().max(1) as f64, work.clone(), work.clone());
+    let observer = move |step: Step| {
         let part = (step.iteration as f64 / steps).min(1.0);
-        work.tell_or_unwind(
+        told.tell_or_unwind(
             &format!("inferring the grammar, cost {:.1}", step.best),
             Some(part),
         );
-    })
+    };
+    infer_watched(
+        facades,
+        &settings,
+        observer,
+        Rc::new(move || watched.go_on_or_unwind()),
+    )
 }
 
 /// Facades from the texts of their files.

@@ -1,0 +1,140 @@
+//! A floor or column that is put in and taken out again leaves the facade as it was: all shipped grammars, all their rules.
+
+use std::path::{Path, PathBuf};
+
+use edifice::editing::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
+use edifice::grammar::{Grammar, Operation};
+use edifice::io::{facade_json, read_grammar};
+use edifice::methods::facade_grammar::{Method, Settings, infer};
+use edifice::rng::stream;
+use rand::RngExt;
+
+fn files(ending: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar");
+    let mut files = Vec::new();
+    for folder in [folder.clone(), folder.join("layouts")] {
+        let entries = std::fs::read_dir(folder).expect("listed");
+        files.extend(entries.map(|entry| entry.expect("listed").path()));
+    }
+    files.retain(|file| file.to_string_lossy().ends_with(ending));
+    files.sort();
+    files
+}
+
+/// The shipped grammars, and one inferred from each shipped facade.
+fn grammars() -> Vec<(String, Grammar)> {
+    let settings = Settings {
+        method: Method::Greedy,
+        ..Settings::default()
+    };
+    let shipped = files(".cga").into_iter().chain(files(".grammar.json"));
+    let read = |file: PathBuf| {
+        (
+            file.display().to_string(),
+            read_grammar(&file).expect("ships"),
+        )
+    };
+    let inferred = files(".facade.json").into_iter().map(|file| {
+        let facade = facade_json::read(&file).expect("ships");
+        let found = infer(&[facade], &settings).expect("a grammar");
+        (format!("inferred from {}", file.display()), found.grammar)
+    });
+    shipped.map(read).chain(inferred).collect()
+}
+
+/// The places of a rule that a floor or column can stand at.
+fn places(operation: &Operation) -> Vec<String> {
+    let count = |n: usize, sign: &str| (0..n).map(|k| format!("{sign}{k}")).collect::<Vec<_>>();
+    match operation {
+        Operation::GridSplit { columns, rows, .. } => {
+            let mut all = count(columns.len(), "c");
+            all.extend(count(rows.len(), "r"));
+            all
+        }
+        other => count(other.successor_count(), ""),
+    }
+}
+
+fn shown(grammar: &Grammar) -> Derived {
+    let wish = Wish {
+        start: 0,
+        size: None,
+        seed: 0,
+        align: false,
+    };
+    derived(grammar, &wish).expect("derives")
+}
+
+fn edited(grammar: &Grammar, text: &str) -> Result<Grammar, String> {
+    let read: GrammarEdit = text.parse().expect("an edit");
+    edit(grammar, &[read]).map_err(|e| e.to_string())
+}
+
+#[test]
+fn every_floor_and_column_comes_and_goes() {
+    let mut rng = stream(3, "studio/all floors", 0);
+    let (mut tried, mut fixed, mut refused, mut worst) = (0, 0, 0, 0.0_f64);
+    let (mut inner, mut failures) = (0, Vec::new());
+    for (name, grammar) in grammars() {
+        let start = &grammar.starts[0];
+        let own = format!("outline {},{}", start.width, start.height);
+        let before = edited(&grammar, &own).expect("stays");
+        let facade = shown(&before).facade;
+        for (rule, written) in before.rules.iter().enumerate() {
+            let all = places(&written.operation);
+            let drawn = rng.random_range(0..all.len());
+            for place in [&all[0], &all[drawn]] {
+                let grown = match edited(&before, &format!("grow {rule}.{place}")) {
+                    Err(e) if e.contains("fixed length") => {
+                        fixed += 1;
+                        continue;
+                    }
+                    // A part of absolute size fits into some regions of the rule, and not into others.
+                    Err(e) if e.contains("absolute sizes need") => {
+                        println!("{name} {rule}.{place}: {e}");
+                        refused += 1;
+                        continue;
+                    }
+                    grown => grown.expect("grows"),
+                };
+                let [a, b] = [&before, &grown].map(|g| (g.starts[0].width, g.starts[0].height));
+                let along = [b.0 > a.0 * (1.0 + 1e-9), b.1 > a.1 * (1.0 + 1e-9)];
+                assert!(along[0] != along[1], "{name} {rule}.{place}: {a:?} {b:?}");
+                let back = edited(&grown, &format!("shrink {rule}.{place}")).expect("shrinks");
+                let c = (back.starts[0].width, back.starts[0].height);
+                let off = ((c.0 - a.0) / a.0).abs().max(((c.1 - a.1) / a.1).abs());
+                worst = worst.max(off);
+                if off > 1e-9 {
+                    failures.push(format!("{name} {rule}.{place}: {a:?} {b:?} {c:?}"));
+                }
+                // And all regions inside it are as they were.
+                let again = shown(&back).facade;
+                let near = |(x, y): (&edifice::shape::Region, &edifice::shape::Region)| {
+                    let d = [
+                        x.rect.x - y.rect.x,
+                        x.rect.y - y.rect.y,
+                        x.rect.width - y.rect.width,
+                        x.rect.height - y.rect.height,
+                    ];
+                    x.label == y.label
+                        && d.iter()
+                            .all(|d| d.abs() < 1e-6 * facade.width.max(facade.height))
+                };
+                let same = again.regions.len() == facade.regions.len()
+                    && again.regions.iter().zip(&facade.regions).all(near);
+                inner += usize::from(!same);
+                tried += 1;
+            }
+        }
+    }
+    println!(
+        "{tried} floors and columns, {fixed} of fixed length, {refused} refused; outline off by {worst:e} at most; {inner} facades differ inside"
+    );
+    assert!(
+        failures.is_empty(),
+        "{} of {tried}:\n{}",
+        failures.len(),
+        failures[..failures.len().min(20)].join("\n")
+    );
+    assert!(tried > 1000, "{tried}");
+}
