@@ -105,7 +105,10 @@ fn every_floor_and_column_comes_and_goes() {
                 let off = ((c.0 - a.0) / a.0).abs().max(((c.1 - a.1) / a.1).abs());
                 worst = worst.max(off);
                 if off > 1e-9 {
-                    failures.push(format!("{name} {rule}.{place}: {a:?} {b:?} {c:?}"));
+                    let operation = written.operation.name();
+                    failures.push(format!(
+                        "{name} {rule}.{place} ({operation}): {a:?} {b:?} {c:?}"
+                    ));
                 }
                 // And all regions inside it are as they were.
                 let again = shown(&back).facade;

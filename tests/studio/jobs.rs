@@ -1,16 +1,22 @@
-//! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed.
+//! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed and nothing is computed any
+//! more.
 
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use edifice::editing::examples::example;
+use edifice::editing::open;
+use edifice::editing::work::{Stopped, Work, stoppable};
+use edifice::io::city;
+use edifice::methods::city_proceduralization::decompose_watched;
 use edifice::studio::Settings;
 use serde_json::{Value, json};
 
 use crate::client::Api;
 
-/// A studio with the facade of Fig. 9, and the text of a facade whose joint grammar with it takes long.
-fn long() -> (Api, Value) {
-    let api = Api::new(&Settings::default());
-    api.post("/api/documents", json!({"example": "fig9"}));
+/// A facade whose grammar takes long.
+fn chequered(unit: &Value) -> Value {
     let mut regions = Vec::new();
     for row in 0..14 {
         for column in 0..17 {
@@ -19,16 +25,76 @@ fn long() -> (Api, Value) {
             regions.push(json!({"label": label, "x": column, "y": row, "width": 1, "height": 1}));
         }
     }
-    let facade = json!({
-        "format": "edifice/facade", "version": 1, "name": "chequered", "unit": "px", "width": 17, "height": 14, "regions": regions,
+    json!({
+        "format": "edifice/facade", "version": 1, "name": "chequered", "unit": unit, "width": 17, "height": 14, "regions": regions,
+    })
+}
+
+/// A studio with the facade of Fig. 9, and its joint grammar with another one.
+fn long() -> (Api, Value) {
+    let api = Api::new(&Settings::default());
+    api.post("/api/documents", json!({"example": "fig9"}));
+    let unit = &api.get("/api/documents/d1")["view"]["unit"];
+    let facade = chequered(unit).to_string();
+    (api, json!([{"do": "merge", "facades": [facade]}]))
+}
+
+/// How long a method goes on after it was stopped, having run for this long.
+fn stopped_after(begun: Duration, method: impl FnOnce(&Work) + Send + 'static) -> Duration {
+    let work = Work::default();
+    let own = work.clone();
+    let thread = std::thread::spawn(move || method(&own));
+    std::thread::sleep(begun);
+    assert!(!thread.is_finished(), "it does not take long");
+    work.stop();
+    let stopped = Instant::now();
+    thread.join().expect("no panic");
+    stopped.elapsed()
+}
+
+#[test]
+fn a_stopped_inference_does_not_work_on() {
+    // One facade: its Lagrangian bound comes first and takes seconds. Two: those of each, before their joint one.
+    let opened = |work: &Work| {
+        let text = chequered(&json!("m")).to_string();
+        let path = Path::new("chequered.facade.json");
+        assert!(open(path, text.as_bytes(), work).is_err());
+    };
+    let joint = |work: &Work| {
+        let grammar = example("fig9", &Work::default()).expect("ships");
+        let unit = grammar.view().expect("a view")["unit"].clone();
+        let command = json!({"do": "merge", "facades": [chequered(&unit).to_string()]});
+        assert!(grammar.apply(&command, work).is_err());
+    };
+    let begun = Duration::from_millis(1500);
+    for went_on in [stopped_after(begun, opened), stopped_after(begun, joint)] {
+        println!("{went_on:?} after it was stopped");
+        assert!(went_on < Duration::from_secs(5), "{went_on:?}");
+    }
+}
+
+#[test]
+fn a_stopped_city_is_not_cut_any_further() {
+    let town = example("town", &Work::default()).expect("ships");
+    let bytes = town.export("obj").expect("a city");
+    let city = city::obj::parse(&bytes, Path::new("town.obj")).expect("a city");
+    let (begun, work) = (AtomicUsize::new(0), Work::default());
+    let count = city.buildings.len();
+    assert!(count > 5);
+    let cut = stoppable(|| {
+        decompose_watched(&city, true, || {
+            work.go_on_or_unwind();
+            if begun.fetch_add(1, Ordering::SeqCst) == 2 {
+                work.stop();
+            }
+        })
     });
-    let unit = api.get("/api/documents/d1")["view"]["unit"].clone();
-    let mut facade = facade;
-    facade["unit"] = unit;
-    (
-        api,
-        json!([{"do": "merge", "facades": [facade.to_string()]}]),
-    )
+    assert_eq!(cut.err(), Some(Stopped));
+    // Each thread may have had one in hand.
+    let most = 3 + rayon::current_num_threads();
+    assert!(begun.into_inner() <= most.min(count - 1));
+    let whole = stoppable(|| decompose_watched(&city, true, || Work::default().go_on_or_unwind()));
+    assert_eq!(whole.expect("not stopped").faults.len(), count);
 }
 
 #[test]

@@ -131,7 +131,7 @@ fn what_holds_no_picture_is_refused() {
             &jpeg.replace("jpeg", "png"),
             "another one than its address says",
         ),
-        (&png[..60], "cannot be read"),
+        (&png[..62], "cannot be read"),
     ] {
         let command = json!({"do": "photograph", "picture": address});
         let body = json!({"commands": [command], "revision": 0});

@@ -8,18 +8,15 @@
 
 use super::edits::GrammarEditError;
 use super::line::{Line, along_mut, repeats, totals};
-use super::reach::{Laid, Reach, periods, reach};
+use super::reach::{LEAST_GROWTH, Laid, Reach, periods, reach};
 use super::text::Place;
 use crate::grammar::{Grammar, GrammarError, Size};
 use crate::shape::Axis;
 
-/// A region that grows by less of what the facade grows by has a fixed length.
-const LEAST_GROWTH: f64 = 1e-6;
-
 /// Puts a copy of a part, or of a column or row of a grid, before it (`grows`), or takes it out. In a repeat, a period comes or goes.
 ///
-/// All facades of the grammar that the rule has a region in change with it, so that the region that grows most with the facade
-/// changes by the length of what comes or goes and its other parts keep theirs. What stands beside that region is stretched
+/// All facades of the grammar that the rule has a region in change with it, so that one region of it ([`Reach`]) changes by
+/// the length of what comes or goes and its other parts keep theirs. What stands beside that region is stretched
 /// with it; repeats around it keep their numbers of periods.
 ///
 /// # Errors

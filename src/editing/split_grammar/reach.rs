@@ -8,6 +8,9 @@ use crate::shape::{Axis, Rect};
 /// Growths that differ by less of the larger one are the same.
 const SAME: f64 = 1e-6;
 
+/// A region that grows by less of what the facade grows by has a fixed length.
+pub(super) const LEAST_GROWTH: f64 = 1e-6;
+
 /// How a rule lies along an axis in a region.
 #[derive(Debug, Clone)]
 pub(super) struct Laid {
@@ -77,8 +80,9 @@ impl Laid {
     }
 }
 
-/// The region of a rule that grows most with the facade; of several the first, from left to right and from bottom to top. Which
-/// one that is does not depend on the lengths of the regions, so that it is the same before and after an edit.
+/// The region of a rule that changes by the length of what comes or goes: the first, from left to right and from bottom to top, that
+/// grows with the facade at all; of a repeat, where it matters how many periods there are, the one that grows most. Which one that is
+/// does not depend on the lengths of the regions, so that it is the same before and after an edit.
 pub(super) struct Reach {
     /// The region itself.
     pub own: Laid,
@@ -100,10 +104,15 @@ pub(super) fn reach(
     // The same rules as those that are shown.
     let mut rng = rng::stream(0, "grammar derive", 0);
     let made = derive_at(grammar, index, start.width, start.height, &mut rng)?;
+    let counted = repeats(&grammar.rules[rule].operation);
     let mut best: Option<Reach> = None;
     regions(grammar, axis, &made, |own, stack| {
-        let most = best.as_ref().map_or(0.0, |b| b.own.growth);
-        if own.rule != rule || (best.is_some() && own.growth <= most * (1.0 + SAME)) {
+        let known = best.as_ref().map_or(-1.0, |b| b.own.growth);
+        let better = match counted {
+            true => own.growth > known * (1.0 + SAME),
+            false => known < LEAST_GROWTH,
+        };
+        if own.rule != rule || !(known < 0.0 || better) {
             return;
         }
         let along_axis = |l: &&Laid| {
