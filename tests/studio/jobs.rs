@@ -1,15 +1,19 @@
 //! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed and nothing is computed any
 //! more.
 
+use std::cell::Cell;
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use edifice::editing::examples::example;
 use edifice::editing::open;
-use edifice::editing::work::{Stopped, Work, stoppable};
-use edifice::io::city;
+use edifice::editing::work::{Stopped, Told, Work, stoppable};
+use edifice::io::{city, facade_json};
 use edifice::methods::city_proceduralization::decompose_watched;
+use edifice::methods::facade_grammar::{self, infer_watched};
+use edifice::shape::Facade;
 use edifice::studio::Settings;
 use serde_json::{Value, json};
 
@@ -39,38 +43,71 @@ fn long() -> (Api, Value) {
     (api, json!([{"do": "merge", "facades": [facade]}]))
 }
 
-/// How long a method goes on after it was stopped, having run for this long.
-fn stopped_after(begun: Duration, method: impl FnOnce(&Work) + Send + 'static) -> Duration {
+/// What work said last that was stopped as soon as it said something.
+fn stopped_at_once(method: impl FnOnce(&Work) + Send + 'static) -> Told {
     let work = Work::default();
     let own = work.clone();
     let thread = std::thread::spawn(move || method(&own));
-    std::thread::sleep(begun);
-    assert!(!thread.is_finished(), "it does not take long");
+    while work.told().step.is_empty() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
     work.stop();
-    let stopped = Instant::now();
     thread.join().expect("no panic");
-    stopped.elapsed()
+    work.told()
 }
 
 #[test]
-fn a_stopped_inference_does_not_work_on() {
-    // One facade: its Lagrangian bound comes first and takes seconds. Two: those of each, before their joint one.
-    let opened = |work: &Work| {
+fn an_inference_that_is_stopped_leaves_its_bound() {
+    // The Lagrangian bound comes before the first step that is told of, which has a part of the whole.
+    let opened = stopped_at_once(|work| {
         let text = chequered(&json!("m")).to_string();
         let path = Path::new("chequered.facade.json");
         assert!(open(path, text.as_bytes(), work).is_err());
-    };
-    let joint = |work: &Work| {
+    });
+    let joint = stopped_at_once(|work| {
         let grammar = example("fig9", &Work::default()).expect("ships");
         let unit = grammar.view().expect("a view")["unit"].clone();
         let command = json!({"do": "merge", "facades": [chequered(&unit).to_string()]});
         assert!(grammar.apply(&command, work).is_err());
+    });
+    assert_eq!((opened.part, joint.part), (None, None));
+}
+
+#[test]
+fn a_stopped_inference_takes_no_further_step() {
+    let path = Path::new("chequered.facade.json");
+    let read = |name: &str| {
+        let mut facade = chequered(&json!("m"));
+        facade["name"] = name.into();
+        facade_json::parse(facade.to_string().as_bytes(), path).expect("a facade")
     };
-    let begun = Duration::from_millis(1500);
-    for went_on in [stopped_after(begun, opened), stopped_after(begun, joint)] {
-        println!("{went_on:?} after it was stopped");
-        assert!(went_on < Duration::from_secs(5), "{went_on:?}");
-    }
+    let [one, two] = [read("one"), read("two")];
+    // Whether it was stopped at that pulse, how many there were, and how many steps were told of.
+    let run = |most: usize, facades: &[Facade]| {
+        let settings = facade_grammar::Settings {
+            iterations: 2_500,
+            ..Default::default()
+        };
+        let (pulses, steps) = (Rc::new(Cell::new(0)), Rc::new(Cell::new(0)));
+        let (counted, told) = (Rc::clone(&pulses), Rc::clone(&steps));
+        let work = Work::default();
+        let pulse = move || {
+            counted.set(counted.get() + 1);
+            if counted.get() == most {
+                work.stop();
+            }
+            work.go_on_or_unwind();
+        };
+        let observer = move |_| told.set(told.get() + 1);
+        let done = stoppable(|| infer_watched(facades, &settings, observer, Rc::new(pulse)));
+        (done.is_err(), pulses.get(), steps.get())
+    };
+    let (stopped, whole, steps) = run(usize::MAX, std::slice::from_ref(&one));
+    assert!(!stopped && whole > 20 && steps > 0, "{whole} {steps}");
+    assert_eq!(run(5, std::slice::from_ref(&one)), (true, 5, 0));
+    // Of several facades first the bound of each, then the joint one.
+    let own = whole + 5;
+    assert_eq!(run(own, &[one, two]), (true, own, 0));
 }
 
 #[test]
