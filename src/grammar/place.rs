@@ -96,7 +96,7 @@ pub(super) fn place(
     })
 }
 
-/// The parts that a rule makes of a region, each with the index of the written successor, in the order of [`place`]; and the
+/// The parts that a rule makes of a region, each with the index of the written successor, in the order in which they are laid out; and the
 /// factor by which its absolute sizes shrank, 1 as a rule.
 ///
 /// # Errors

@@ -4,7 +4,8 @@
 //! it, `a` (as a rule 1) and `r` the lengths of sizes of 1. With the new sums at the same `a` and `r` it would have the length
 //! `e'`: its other parts stay as they are. While every repeat around it keeps its number of periods, `e` depends linearly on
 //! the length `w` of the facade, `de / dw = g`, so that the facade becomes `w' = w + (e' - e) / g` long. None of `a`, `r` and `g` changes by
-//! that, so that what is put in and taken out again leaves the facade as it was.
+//! that, so that what is put in and taken out again leaves the outline as it was; and the facade, unless a repeat had to get other sizes
+//! for its number of periods ([`settle`]), which may be another one in another region of its rule.
 
 use super::edits::GrammarEditError;
 use super::line::{Line, along_mut, repeats, totals};
