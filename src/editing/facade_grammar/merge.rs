@@ -8,7 +8,6 @@ use super::super::work::{Work, stoppable};
 use crate::grammar::{Grammar, check};
 use crate::io::facade_json;
 use crate::methods::facade_grammar::{InferError, Outcome, Settings, infer_watched};
-use crate::optim::Step;
 use crate::shape::Facade;
 use crate::{Error, Result};
 
@@ -64,19 +63,19 @@ struct MergeError(String);
 /// [`InferError`].
 pub fn observed(facades: &[Facade], work: &Work) -> std::result::Result<Outcome, InferError> {
     let settings = Settings::default();
-    let (steps, told, watched) = (settings.steps().max(1) as f64, work.clone(), work.clone());
-    let observer = move |step: Step| {
-        let part = (step.iteration as f64 / steps).min(1.0);
-        told.tell_or_unwind(
-            &format!("inferring the grammar, cost {:.1}", step.best),
-            Some(part),
-        );
+    let steps = settings.steps().max(1) as f64;
+    let (told, watched) = (work.clone(), work.clone());
+    let pulse = Rc::new(move || watched.go_on_or_unwind());
+    let tell = move |iteration: u64, best: f64| {
+        let part = (iteration as f64 / steps).min(1.0);
+        let step = format!("inferring the grammar, cost {best:.1}");
+        told.tell_or_unwind(&step, Some(part));
     };
     infer_watched(
         facades,
         &settings,
-        observer,
-        Rc::new(move || watched.go_on_or_unwind()),
+        move |step| tell(step.iteration, step.best),
+        pulse,
     )
 }
 
