@@ -20,7 +20,8 @@ The first line on standard output is the address, with the token that opens it; 
 machine only, and its page asks nothing of any other. Files open in the editor that suits them: whole facades and grammars
 (.facade.json, .grammar.json, .cga), partial facades (.facade.json), houses (.building.json), cities (.city-grammar.json, or
 triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
-Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes.")]
+Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes. A photograph
+that is drawn over is kept in the file.")]
 pub struct Args {
     /// Files to open; without any, the page begins with examples
     files: Vec<PathBuf>,

@@ -307,33 +307,44 @@ fn tidy(cost: f64) -> f64 {
     (cost * 1e9).round() / 1e9
 }
 
-/// A rule with its parts, those of a grid row by row.
+/// A rule with its parts, those of a grid row by row, and the sizes of its columns and rows.
 fn rule(rule: &Rule, line: &str) -> Value {
-    let part = |symbol: &str, size: Option<Size>| {
-        let relative = size.map(|s| matches!(s, Size::Relative(_)));
-        json!({"symbol": symbol, "size": size.map(Size::value), "relative": relative})
+    let sized =
+        |size: Size| json!({"size": size.value(), "relative": matches!(size, Size::Relative(_))});
+    let part = |symbol: &str, size: Size| {
+        let mut part = sized(size);
+        part["symbol"] = symbol.into();
+        part
     };
+    let mut grid = [Vec::new(), Vec::new()];
     let (axis, parts): (Option<&str>, Vec<Value>) = match &rule.operation {
         Operation::Split { axis, successors }
         | Operation::Repeat { axis, successors }
         | Operation::SymSplit {
             axis, successors, ..
         } => {
-            let parts = successors.iter().map(|s| part(&s.symbol, Some(s.size)));
+            let parts = successors.iter().map(|s| part(&s.symbol, s.size));
             (Some(axis.name()), parts.collect())
         }
         Operation::RepeatAba { axis, a, b } => {
-            let parts = [a, b].map(|s| part(&s.symbol, Some(s.size)));
+            let parts = [a, b].map(|s| part(&s.symbol, s.size));
             (Some(axis.name()), parts.into())
         }
-        Operation::GridSplit { cells, .. } => (
-            None,
-            cells.iter().flatten().map(|s| part(s, None)).collect(),
-        ),
+        Operation::GridSplit {
+            columns,
+            rows,
+            cells,
+        } => {
+            grid = [columns, rows].map(|sizes| sizes.iter().map(|s| sized(*s)).collect());
+            let cell = |s: &String| json!({"symbol": s, "size": null, "relative": null});
+            (None, cells.iter().flatten().map(cell).collect())
+        }
     };
+    let [columns, rows] = grid;
+    let center = matches!(rule.operation, Operation::SymSplit { center: true, .. });
     let body = line.split_once('→').map_or(line, |(_, body)| body.trim());
     json!({
-        "symbol": rule.symbol, "weight": rule.weight, "operation": rule.operation.name(), "axis": axis,
-        "parts": parts, "text": body, "cost": tidy(Costs::default().rule(&rule.operation)),
+        "symbol": rule.symbol, "weight": rule.weight, "operation": rule.operation.name(), "axis": axis, "center": center,
+        "parts": parts, "columns": columns, "rows": rows, "text": body, "cost": tidy(Costs::default().rule(&rule.operation)),
     })
 }

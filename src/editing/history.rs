@@ -47,10 +47,31 @@ pub fn steps(state: &Arc<dyn State>, commands: &[Value], work: &Work) -> Result<
 pub struct Logged {
     /// In words.
     pub said: String,
-    /// The commands.
+    /// The commands, without the files that they hold.
     pub commands: Vec<Value>,
     /// Whether it is done, or was undone.
     pub done: bool,
+}
+
+/// Longest text of a logged command, in characters.
+const LONGEST: usize = 500;
+
+/// A command with long texts cut short: a log is for people.
+fn shortened(command: &Value) -> Value {
+    match command {
+        Value::String(text) if text.len() > LONGEST => {
+            let start: String = text.chars().take(60).collect();
+            format!("{start}… ({} bytes)", text.len()).into()
+        }
+        Value::Array(all) => all.iter().map(shortened).collect(),
+        Value::Object(all) => {
+            let each = all
+                .iter()
+                .map(|(key, value)| (key.clone(), shortened(value)));
+            Value::Object(each.collect())
+        }
+        other => other.clone(),
+    }
 }
 
 impl Document {
@@ -127,7 +148,7 @@ impl Document {
                 .map(|s| s.said.as_str())
                 .collect::<Vec<_>>()
                 .join("; "),
-            commands: e.commands.clone(),
+            commands: e.commands.iter().map(shortened).collect(),
             done: k < self.at,
         };
         self.entries.iter().enumerate().map(logged).collect()

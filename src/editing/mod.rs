@@ -17,7 +17,8 @@
 //! | `completion` | `edit` | `edits` (`add door@X,Y,W,H`, `move ID=X,Y`, `resize ID=W,H`, `relabel ID=window`, `remove ID`, `unknown X,Y,W,H`, `known INDEX`, `outline W,H`) | `facade edit` |
 //! | | `complete` | `count`, `seed`, `method`, `pins`, `forbid` | `facade complete` |
 //! | | `choose` | `answer`, from 1 | the file of that answer |
-//! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `remove RULE.PART`, `grow RULE.PART`, `shrink RULE.PART`, `repeat RULE`, `outline W,H`) | `grammar edit` |
+//! | | `photograph` | `picture`, a JPEG or PNG picture as a `data:` address, or null for none | `facade edit --photograph` |
+//! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `insert RULE.PART=SIZE`, `remove RULE.PART`, `grow RULE.PART`, `shrink RULE.PART`, `repeat RULE`, `weight RULE=W`, `outline W,H`; PART is a part `0`, a column `c0` or a row `r0` of a grid) | `grammar edit` |
 //! | | `merge` | `facades`, the texts of `.facade.json` files | `grammar merge` |
 //! | `city` | `edit` | `edits` (`scale TEMPLATE=FX,FY,FZ`, `weight RULE=W`) | `city edit` |
 //! | | `synthesize` | `polygon`, `seed` | `city synthesize` |

@@ -3,6 +3,7 @@
 
 mod edits;
 mod given;
+mod photograph;
 mod view;
 
 use std::path::Path;
@@ -82,7 +83,7 @@ fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
 }
 
 fn is_told(a: &AnnotatedFacade) -> bool {
-    a.unknown.is_some() || a.notes.iter().any(|n| *n != Note::default())
+    a.unknown.is_some() || a.photograph.is_some() || a.notes.iter().any(|n| *n != Note::default())
 }
 
 fn has_wall(a: &AnnotatedFacade) -> bool {
@@ -206,6 +207,9 @@ enum Command {
     },
     Choose {
         answer: usize,
+    },
+    Photograph {
+        picture: Option<String>,
     },
 }
 
@@ -374,7 +378,12 @@ impl State for Sketch {
                 self.complete(&method, count, seed, &pins, &rects)
             }
             Command::Choose { answer } => self.choose(answer),
+            Command::Photograph { picture } => self.photograph(picture.as_deref()),
         }
+    }
+
+    fn ask(&self, question: &Value) -> Result<Value> {
+        photograph::answer(self, question)
     }
 
     fn formats(&self) -> &'static [&'static str] {

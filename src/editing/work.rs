@@ -45,9 +45,15 @@ impl Work {
 
     /// As [`Work::tell`] for an observer that can return nothing: when stopped, unwinds to [`stoppable`].
     pub fn tell_or_unwind(&self, step: &str, part: Option<f64>) {
-        if let Err(stopped) = self.tell(step, part) {
-            // No panic: its message is not printed, and no hook is called.
-            resume_unwind(Box::new(stopped));
+        if let Err(Stopped) = self.tell(step, part) {
+            unwind();
+        }
+    }
+
+    /// Inside a step of which there is nothing new to say: when stopped, unwinds to [`stoppable`].
+    pub fn go_on_or_unwind(&self) {
+        if self.is_stopped() {
+            unwind();
         }
     }
 
@@ -66,6 +72,12 @@ impl Work {
         let told = self.0.told.lock().unwrap_or_else(PoisonError::into_inner);
         told.clone()
     }
+}
+
+/// Leaves the method.
+fn unwind() {
+    // No panic: its message is not printed, and no hook is called.
+    resume_unwind(Box::new(Stopped));
 }
 
 /// Runs a method whose observer is told by [`Work::tell_or_unwind`]. What the method owns is dropped when it is stopped.

@@ -28,7 +28,7 @@ pub use derive::{Derivation, NonTerminal, REGION_LIMIT, derivation, derive};
 pub use error::{GrammarError, Warning};
 pub use evaluate::{EvaluateError, Evaluation, evaluate};
 pub use listing::listing;
-pub use place::LEAST_SHARE;
+pub use place::{LEAST_SHARE, laid_out};
 pub use resize::{THIN_OF_FACADE, THIN_OF_NEIGHBOUR, scaled, size_independent};
 pub use rule::{Grammar, Operation, Rule, Size, Start, Successor};
 pub use sample::{Sampler, derive_at};

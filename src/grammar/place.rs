@@ -1,7 +1,8 @@
 //! Where the successors of a rule go in its rectangle.
 
+use super::check::TOLERANCE;
 use super::derive::REGION_LIMIT;
-use super::{GrammarError, Operation, Rule, Size, summable};
+use super::{Grammar, GrammarError, Operation, Rule, Size, summable};
 use crate::shape::{Axis, Rect};
 
 /// Absolute sizes keep what is written while they leave the relative ones beside them this share of the region, or
@@ -93,6 +94,28 @@ pub(super) fn place(
             factor.min(other)
         }
     })
+}
+
+/// The parts that a rule makes of a region, each with the index of the written successor, in the order in which they are laid out; and the
+/// factor by which its absolute sizes shrank, 1 as a rule.
+///
+/// # Errors
+/// [`GrammarError`] when the rule does not fit the region even so.
+pub fn laid_out(
+    grammar: &Grammar,
+    rule: usize,
+    rect: Rect,
+) -> Result<(Vec<(usize, Rect)>, f64), GrammarError> {
+    let tolerance = TOLERANCE * rect.width.max(rect.height);
+    let written = &grammar.rules[rule];
+    let tried = |fit| {
+        let mut parts = Vec::new();
+        let factor = place(rule, written, rect, tolerance, fit, |k, part| {
+            parts.push((k, part));
+        })?;
+        Ok((parts, factor))
+    };
+    tried(Fit::AsWritten).or_else(|_: GrammarError| tried(Fit::Shrink))
 }
 
 /// One axis of the region that a rule splits.

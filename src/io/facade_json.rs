@@ -6,7 +6,8 @@
 //!   "regions": [ { "label": "window", "x": 20.0, "y": 40.0, "width": 30.0, "height": 60.0 } ] }
 //! ```
 //! Optional keys of a region are `id`, `observed`, `probability` and `reason`, and of a partial layout
-//! `unknown`, a list of rectangles ([`parse_annotated`]).
+//! `unknown`, a list of rectangles, and `photograph`, a JPEG or PNG picture that lies over the outline, as a `data:` address
+//! ([`parse_annotated`]).
 //! Origin at the lower left, y up. The reader is strict about what it knows (types, duplicate
 //! keys, finite numbers, positive sizes, trailing text) and ignores keys that it does not know.
 
@@ -16,8 +17,8 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::json::{check_header, number, parse_json, quoted};
-use super::{read_bytes, write_atomic};
-use crate::shape::{AnnotatedFacade, Facade, Note, Rect, Region};
+use super::{photograph, read_bytes, write_atomic};
+use crate::shape::{AnnotatedFacade, Facade, Note, Photograph, Rect, Region};
 use crate::{Error, Result};
 
 /// The value of the key `format`.
@@ -59,10 +60,14 @@ pub fn parse_annotated(bytes: &[u8], path: &Path) -> Result<AnnotatedFacade> {
     let (regions, notes) = file.regions.into_iter().map(FileRegion::split).unzip();
     let facade = Facade::new(file.name, file.unit, file.width, file.height, regions)
         .map_err(|e| Error::content(path, e))?;
+    let photograph = file.photograph.as_deref().map(photograph::of_address);
     let annotated = AnnotatedFacade {
         facade,
         notes,
         unknown: file.unknown,
+        photograph: photograph
+            .transpose()
+            .map_err(|e| Error::content(path, format!("photograph: {e}")))?,
     };
     annotated.check().map_err(|e| Error::content(path, e))?;
     Ok(annotated)
@@ -70,16 +75,22 @@ pub fn parse_annotated(bytes: &[u8], path: &Path) -> Result<AnnotatedFacade> {
 
 /// The text of a facade file, one region a line. Numbers read back to the same bits.
 pub fn to_string(facade: &Facade) -> String {
-    text(facade, &[], None)
+    text(facade, &[], None, None)
 }
 
 /// As [`to_string`], with the annotations that there are.
 pub fn annotated_to_string(annotated: &AnnotatedFacade) -> String {
     let unknown = annotated.unknown.as_deref();
-    text(&annotated.facade, &annotated.notes, unknown)
+    let photograph = annotated.photograph.as_ref();
+    text(&annotated.facade, &annotated.notes, unknown, photograph)
 }
 
-fn text(facade: &Facade, notes: &[Note], unknown: Option<&[Rect]>) -> String {
+fn text(
+    facade: &Facade,
+    notes: &[Note],
+    unknown: Option<&[Rect]>,
+    photograph: Option<&Photograph>,
+) -> String {
     let mut out = format!(
         "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {}, \"unit\": {},\n  \"width\": {}, \"height\": {},\n  \"regions\": [",
         quoted(&facade.name),
@@ -106,6 +117,10 @@ fn text(facade: &Facade, notes: &[Note], unknown: Option<&[Rect]>) -> String {
             .map(|r| format!("\n    {{ {} }}", place(r)))
             .collect();
         let _ = write!(out, ",\n  \"unknown\": [{}\n  ]", rects.join(","));
+    }
+    if let Some(picture) = photograph {
+        let address = quoted(&photograph::address(picture));
+        let _ = write!(out, ",\n  \"photograph\": {address}");
     }
     out.push_str(" }\n");
     out
@@ -140,6 +155,8 @@ struct File {
     regions: Vec<FileRegion>,
     #[serde(default)]
     unknown: Option<Vec<Rect>>,
+    #[serde(default)]
+    photograph: Option<String>,
 }
 
 #[derive(Deserialize)]

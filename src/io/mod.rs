@@ -27,6 +27,7 @@ pub mod labelme;
 pub mod nearest_colour;
 mod packed;
 pub mod palette;
+pub mod photograph;
 pub mod pixels;
 pub mod raster;
 pub mod scene_png;

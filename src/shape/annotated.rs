@@ -1,7 +1,7 @@
 //! Facade layouts with what is known of their regions: which were observed, and which part of the
 //! facade is unknown (Fan et al. 2014, Sec. 3.2, with a third state beside element and unknown).
 
-use super::{Facade, Rect};
+use super::{Facade, Photograph, Rect};
 
 /// What a file says of one region beside its label and place.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,6 +25,8 @@ pub struct AnnotatedFacade {
     pub notes: Vec<Note>,
     /// Rectangles whose content is not known; without them all that is not observed is unknown.
     pub unknown: Option<Vec<Rect>>,
+    /// A photograph that lies over the outline, to draw over.
+    pub photograph: Option<Photograph>,
 }
 
 /// Why annotations do not fit their layout.
@@ -66,6 +68,7 @@ impl AnnotatedFacade {
             facade,
             notes,
             unknown: None,
+            photograph: None,
         }
     }
 

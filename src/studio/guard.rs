@@ -23,6 +23,9 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// How much and how long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
+    /// Longest time from one request of a connection to the whole head of the next: whoever sends a byte now and then, or nothing,
+    /// is not waited for.
+    pub head: Duration,
     /// Most bytes of a body.
     pub body: usize,
     /// Longest time that a body may take to come.
@@ -34,6 +37,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
+            head: Duration::from_secs(20),
             body: 2 << 20,
             sending: Duration::from_secs(10),
             answering: Duration::from_secs(120),

@@ -3,8 +3,12 @@
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
 
 use super::guard::{Guard, guard};
 use super::{Settings, Studio, router};
@@ -14,6 +18,7 @@ use crate::{Error, Result};
 pub struct Running {
     listener: TcpListener,
     app: Router,
+    head: Duration,
     address: String,
 }
 
@@ -35,9 +40,34 @@ pub fn start(settings: &Settings) -> Result<Running> {
             router(studio),
             Guard::new(port, token.clone(), settings.limits),
         ),
+        head: settings.limits.head,
         address: format!("http://127.0.0.1:{port}/#token={token}"),
         listener,
     })
+}
+
+/// Answers connections. One on which the head of a request does not come in this time is closed, whether it comes slowly or not
+/// at all.
+async fn connections(
+    listener: tokio::net::TcpListener,
+    app: Router,
+    head: Duration,
+) -> std::convert::Infallible {
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(head);
+    loop {
+        let Ok((stream, _)) = listener.accept().await else {
+            // A client that is gone, or too many open files: there is room again later.
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            continue;
+        };
+        let service = TowerToHyperService::new(app.clone());
+        let connection = http.serve_connection(TokioIo::new(stream), service);
+        tokio::spawn(async move {
+            // A client that broke off is told nothing.
+            let _ = connection.await;
+        });
+    }
 }
 
 /// The routes behind the guard: the outer router has none of its own, so that nothing is routed before.
@@ -71,11 +101,10 @@ impl Running {
             .map_err(Error::method)?;
         let served = runtime.block_on(async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            let server = axum::serve(listener, self.app);
             // An open connection, or an edit that still runs, does not hold up the end.
             tokio::select! {
-                served = async { server.await } => served,
-                () = end => Ok(()),
+                never = connections(listener, self.app, self.head) => match never {},
+                () = end => Ok::<_, std::io::Error>(()),
             }
         });
         runtime.shutdown_background();

@@ -19,6 +19,8 @@ interface Element_ extends Rect {
 type Corners = [number, number, number, number];
 
 interface View {
+  /** Which photograph is under the drawing. */
+  photograph: string | null;
   unit: string;
   width: number;
   height: number;
@@ -62,7 +64,8 @@ export function completion(session: Session<View>): Editor<View> {
   let live = true;
   let count = 3;
   let nudge = 0;
-  let photograph: string | null = null;
+  /** The photograph that was asked for last: which, and its address once it has come. */
+  let photograph: { id: string; address: string } | null = null;
 
   const grid = () => {
     // A fiftieth of the facade, as a round number: 0.1 m, or 10 px.
@@ -86,6 +89,24 @@ export function completion(session: Session<View>): Editor<View> {
       return [command, { ...wish, pins: wish.pins.filter((p) => !gone.has(p)) }];
     });
   const again = (change: Partial<ReturnType<typeof complete>> = {}) => session.run(() => [{ ...complete(), ...change }]);
+
+  /** Another photograph, or none; where there were answers, the same again over it. */
+  const put = (picture: string | null) =>
+    session.run(() => [{ do: "photograph", picture }, ...(session.doc.view.answers.length > 0 ? [complete()] : [])]);
+
+  /** The address of the photograph under the drawing, asked for once: it is not in every answer of the server. */
+  function under(id: string | null): string | null {
+    if (id === null) photograph = null;
+    else if (photograph?.id !== id) {
+      const asked = { id, address: "" };
+      photograph = asked;
+      void session.ask<{ picture: string | null }>({ ask: "photograph" }).then((said) => {
+        asked.address = said?.picture ?? "";
+        if (photograph === asked && asked.address !== "") show(session.doc);
+      });
+    }
+    return photograph?.address || null;
+  }
 
   function nudged(elements: Element_[]) {
     clearTimeout(nudge);
@@ -188,10 +209,7 @@ export function completion(session: Session<View>): Editor<View> {
       if (!chosen) return;
       await session.calmly(async () => {
         const made = await rectified(chosen, view.width / view.height);
-        if (made === null) return;
-        if (photograph) URL.revokeObjectURL(photograph);
-        photograph = made;
-        show(session.doc);
+        if (made !== null) await put(made);
       });
     });
     swap(
@@ -203,13 +221,7 @@ export function completion(session: Session<View>): Editor<View> {
         }, { "aria-pressed": String(tool === id), class: `tool ${id}` }),
       ),
       h("label", { class: "tool file" }, "Photograph", file),
-      photograph
-        ? button("No photograph", () => {
-            if (photograph) URL.revokeObjectURL(photograph);
-            photograph = null;
-            show(session.doc);
-          }, { class: "tool" })
-        : null,
+      view.photograph === null ? null : button("No photograph", () => put(null), { class: "tool" }),
     );
   }
 
@@ -252,9 +264,10 @@ export function completion(session: Session<View>): Editor<View> {
     const domain = { x: 0, y: 0, width: view.width, height: view.height };
     drawing.frame(domain);
     drawing.svg.classList.toggle("drawing-tool", tool !== "select");
-    const wall = s("rect", { class: photograph ? "wall clear" : "wall", ...place(domain) });
+    const picture = under(view.photograph);
+    const wall = s("rect", { class: picture ? "wall clear" : "wall", ...place(domain) });
     drawing.layer.replaceChildren(
-      ...(photograph ? [s("image", { href: photograph, ...place(domain), transform: `translate(0,${view.height}) scale(1,-1)`, preserveAspectRatio: "none" })] : []),
+      ...(picture ? [s("image", { href: picture, ...place(domain), transform: `translate(0,${view.height}) scale(1,-1)`, preserveAspectRatio: "none" })] : []),
       wall,
       ...(view.unknown ?? []).map(([x, y, width, height]) => s("rect", { class: "unknown", ...place({ x, y, width, height }) })),
       ...view.forbid.map(([x, y, width, height]) => s("rect", { class: "forbid", ...place({ x, y, width, height }) })),
@@ -319,12 +332,5 @@ export function completion(session: Session<View>): Editor<View> {
   }
 
   drawing.draggable(drawing.svg, begin);
-  return {
-    stage,
-    panel,
-    show,
-    close: () => {
-      if (photograph) URL.revokeObjectURL(photograph);
-    },
-  };
+  return { stage, panel, show, close: () => {} };
 }

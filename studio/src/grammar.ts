@@ -3,23 +3,8 @@
 import { type Doc, exported, listing } from "./api";
 import { button, field, h, s, section, swap, tidy } from "./dom";
 import { Drawing, place, type Rect, snap } from "./drawing";
+import { layout, type Line, lines, type Rule } from "./rules";
 import type { Editor, Session } from "./session";
-
-interface Part {
-  symbol: string;
-  size: number | null;
-  relative: boolean | null;
-}
-
-interface Rule {
-  symbol: string;
-  weight: number | null;
-  operation: string;
-  axis: "x" | "y" | null;
-  parts: Part[];
-  text: string;
-  cost: number;
-}
 
 type Terminal = [string, number, number, number, number, [number, number] | null];
 type Inner = [number, number, number, number, number, number];
@@ -52,21 +37,6 @@ const four = (v: number) => tidy(v, 4);
 const rectOf = ([, , x, y, width, height]: Inner): Rect => ({ x, y, width, height });
 const holds = (r: Rect, [x, y]: [number, number]) => x >= r.x && x <= r.x + r.width && y >= r.y && y <= r.y + r.height;
 
-/** Which parts stand in a region of this extent, in order, and the length of a unit of relative size. */
-function layout(rule: Rule, extent: number): { order: number[]; scale: number } | null {
-  const n = rule.parts.length;
-  const all = [...Array(n).keys()];
-  let order: number[];
-  if (rule.operation === "split") order = all;
-  else if (rule.operation === "repeat") {
-    const period = rule.parts.reduce((sum, p) => sum + (p.size ?? 0), 0);
-    order = Array.from({ length: Math.max(1, Math.round(extent / period)) }, () => all).flat();
-  } else return null;
-  const sum = (relative: boolean) => order.reduce((t, k) => t + (rule.parts[k].relative === relative ? (rule.parts[k].size ?? 0) : 0), 0);
-  const relative = sum(true);
-  return { order, scale: relative > 0 ? (extent - sum(false)) / relative : 1 };
-}
-
 /** The editor. */
 export function grammar(session: Session<View>): Editor<View> {
   const drawing = new Drawing("Facade derived from the grammar. Click a region; click again for the region around it.");
@@ -97,34 +67,34 @@ export function grammar(session: Session<View>): Editor<View> {
     show(session.doc);
   }
 
+  /** The borders between the parts of the selected rule, or the columns and rows of its grid, to be dragged. */
   function handles(view: View): SVGElement[] {
-    if (!selection?.region) return [];
-    const rule = view.rules[selection.rule];
-    const r = selection.region;
-    if (!rule?.axis) return [];
-    const along = rule.axis === "x";
-    const made = layout(rule, along ? r.width : r.height);
-    if (!made) return [];
-    const out: SVGElement[] = [];
-    let at = along ? r.x : r.y;
+    const r = selection?.region;
+    const rule = selection && view.rules[selection.rule];
+    if (!r || !rule) return [];
+    const own = selection!.rule;
     const thick = 7 * drawing.pixel();
-    made.order.slice(0, rule.parts.length - 1).forEach((part, k) => {
-      const own = rule.parts[part];
-      at += (own.size ?? 0) * (own.relative ? made.scale : 1);
-      const here = at;
-      const line = s("rect", {
-        class: `border ${rule.axis}`,
-        ...place(along ? { x: here - thick / 2, y: r.y, width: thick, height: r.height } : { x: r.x, y: here - thick / 2, width: r.width, height: thick }),
+    return lines(rule).flatMap((line) => {
+      const along = line.axis === "x";
+      const { order, scale } = layout(rule, line, along ? r.width : r.height);
+      let at = along ? r.x : r.y;
+      return order.slice(0, line.sizes.length - 1).map((part, k) => {
+        const { size, relative } = line.sizes[part];
+        at += size * (relative ? scale : 1);
+        const border = s("rect", {
+          class: `border ${line.axis}`,
+          "data-border": line.names[part],
+          ...place(along ? { x: at - thick / 2, y: r.y, width: thick, height: r.height } : { x: r.x, y: at - thick / 2, width: r.width, height: thick }),
+        });
+        border.append(s("title", {}, `Border between ${line.labels[part]} and ${line.labels[k + 1]}: drag it`));
+        drawing.draggable(border, () => (dx, dy, done) => {
+          const by = along ? dx : dy;
+          border.setAttribute("transform", along ? `translate(${by},0)` : `translate(0,${by})`);
+          if (done) void edit(`border ${own}.${line.names[part]}=${four(by / (relative ? scale : 1))}`);
+        });
+        return border;
       });
-      line.append(s("title", {}, `Border between ${own.symbol} and ${rule.parts[k + 1].symbol}: drag it`));
-      drawing.draggable(line, () => (dx, dy, done) => {
-        const by = along ? dx : dy;
-        line.setAttribute("transform", along ? `translate(${by},0)` : `translate(0,${by})`);
-        if (done) void edit(`border ${selection!.rule}.${part}=${four(by / (own.relative ? made.scale : 1))}`);
-      });
-      out.push(line);
     });
-    return out;
   }
 
   /** The right and upper edge, to derive at another size. */
@@ -190,7 +160,7 @@ export function grammar(session: Session<View>): Editor<View> {
   }
 
   /** The rule along an axis that is nearest around the selected region, and which of its parts the region lies in. */
-  function around(view: View, axis: "x" | "y"): { rule: number; part: number } | null {
+  function around(view: View, axis: "x" | "y"): { rule: number; line: Line; part: number } | null {
     const own = selection?.region;
     if (!selection || !own) return null;
     const middle: [number, number] = [own.x + own.width / 2, own.y + own.height / 2];
@@ -199,16 +169,18 @@ export function grammar(session: Session<View>): Editor<View> {
     const same = (r: Rect) => r.x === own.x && r.y === own.y && r.width === own.width && r.height === own.height;
     const depth = view.nonTerminals.find((n) => n[0] === selection!.rule && same(rectOf(n)))?.[1] ?? Infinity;
     const below = selection.part === null ? depth : depth + 1;
-    const inner = view.nonTerminals.filter((n) => n[1] < below && holds(rectOf(n), point) && view.rules[n[0]].axis === axis).sort((a, b) => b[1] - a[1]);
+    const inner = view.nonTerminals.filter((n) => n[1] < below && holds(rectOf(n), point)).sort((a, b) => b[1] - a[1]);
     for (const n of inner) {
       const r = rectOf(n);
-      const made = layout(view.rules[n[0]], axis === "x" ? r.width : r.height);
-      if (!made) continue;
+      const rule = view.rules[n[0]];
+      const line = lines(rule).find((l) => l.axis === axis);
+      if (!line) continue;
+      const { order, scale } = layout(rule, line, axis === "x" ? r.width : r.height);
       let at = axis === "x" ? r.x : r.y;
-      for (const part of made.order) {
-        const p = view.rules[n[0]].parts[part];
-        at += (p.size ?? 0) * (p.relative ? made.scale : 1);
-        if (point[axis === "x" ? 0 : 1] < at + 1e-9) return { rule: n[0], part };
+      for (const part of order) {
+        const { size, relative } = line.sizes[part];
+        at += size * (relative ? scale : 1);
+        if (point[axis === "x" ? 0 : 1] < at + 1e-9) return { rule: n[0], line, part };
       }
     }
     return null;
@@ -219,14 +191,15 @@ export function grammar(session: Session<View>): Editor<View> {
     const rows = (["y", "x"] as const).map((axis) => {
       const place = around(view, axis);
       if (!place) return null;
+      const { line, part } = place;
       const name = axis === "y" ? "floor" : "column";
-      const at = `${place.rule}.${place.part}`;
-      const rule = view.rules[place.rule];
+      const at = `${place.rule}.${line.names[part]}`;
+      const what = line.repeats ? "One period more" : `A copy of ${line.labels[part]}`;
       return h(
         "div",
         { class: "row" },
-        button(`Insert ${name}`, () => edit(`grow ${at}`), { title: `A copy of ${rule.parts[place.part].symbol} in the rule of ${rule.symbol}; the facade grows` }),
-        button(`Remove ${name}`, () => edit(`shrink ${at}`), { disabled: rule.operation !== "repeat" && rule.parts.length < 2 }),
+        button(`Insert ${name}`, () => edit(`grow ${at}`), { title: `${what} in the rule of ${view.rules[place.rule].symbol}; the facade grows` }),
+        button(`Remove ${name}`, () => edit(`shrink ${at}`), { disabled: !line.repeats && line.sizes.length < 2 }),
       );
     });
     return rows.some((r) => r) ? h("div", { class: "floors" }, ...rows) : null;
@@ -275,30 +248,54 @@ export function grammar(session: Session<View>): Editor<View> {
     const r = selection.rule;
     const count = view.nonTerminals.filter((n) => n[0] === r).length;
     const symbols = [...new Set([...view.rules.map((o) => o.symbol), ...view.rules.flatMap((o) => o.parts.map((p) => p.symbol))])].sort();
-    const parts = rule.parts.map((p, k) => {
-      const at = `${r}.${k}`;
-      const row = h("tr", { class: selection!.part === k ? "selected" : "" }, h("td", {}, text(`Symbol of part ${k + 1}`, p.symbol, (v) => edit(`symbol ${at}=${v}`))));
-      if (p.size !== null) {
-        const input = h("input", { type: "number", step: "any", value: tidy(p.size, 3), "aria-label": `Size of part ${k + 1}` });
-        input.addEventListener("change", () => edit(`resize ${at}=${Number(input.value)}`));
-        row.append(
-          h("td", {}, input),
+    const symbol = (k: number) => text(`Symbol of part ${k + 1}`, rule.parts[k].symbol, (v) => edit(`symbol ${r}.${k}=${v}`));
+    /** The size of one entry of a line, and what can be done with it. */
+    const sized = (line: Line, k: number, word: string) => {
+      const at = `${r}.${line.names[k]}`;
+      const { size } = line.sizes[k];
+      const input = h("input", { type: "number", step: "any", value: tidy(size, 3), "aria-label": `Size of ${word}` });
+      input.addEventListener("change", () => edit(`resize ${at}=${Number(input.value)}`));
+      const two = rule.operation === "repeat_aba";
+      return [
+        h("td", {}, input),
+        h(
+          "td",
+          { class: "row" },
+          two ? null : button("Copy", () => edit(`insert ${at}=${four(size)}`), { class: "quiet", title: "Insert a copy before this one", "aria-label": `Insert a copy of ${word}` }),
+          two || line.sizes.length < 2 ? null : button("✕", () => edit(`remove ${at}`), { class: "quiet", "aria-label": `Remove ${word}` }),
+        ),
+      ];
+    };
+    const all = lines(rule);
+    const grid = rule.operation === "grid_split";
+    const row = (k: number) => h("tr", { class: selection!.part === k ? "selected" : "" }, h("td", {}, symbol(k)), ...sized(all[0], k, `part ${k + 1}`));
+    const tables = grid
+      ? [
+          // The cells as they stand in the facade, the lowest row last.
           h(
-            "td",
-            { class: "row" },
-            button("Copy", () => edit(`insert ${at}=${p.symbol}:${four(p.size!)}`), { class: "quiet", title: "Insert a copy before this part", "aria-label": `Insert a copy of part ${k + 1}` }),
-            rule.parts.length > 1 ? button("✕", () => edit(`remove ${at}`), { class: "quiet", "aria-label": `Remove part ${k + 1}` }) : null,
+            "table",
+            { class: "parts cells" },
+            h(
+              "tbody",
+              {},
+              ...rule.rows.map((_, j) => rule.rows.length - 1 - j).map((j) => {
+                const row = rule.columns.map((_, i) => j * rule.columns.length + i);
+                return h("tr", {}, ...row.map((k) => h("td", { class: selection!.part === k ? "selected" : "" }, symbol(k))));
+              }),
+            ),
           ),
-        );
-      }
-      return row;
-    });
+          ...all.map((line) => {
+            const each = line.sizes.map((_, k) => h("tr", {}, h("td", {}, line.labels[k]), ...sized(line, k, line.labels[k])));
+            return h("table", { class: "parts lines" }, h("tbody", {}, ...(line.axis === "y" ? each.reverse() : each)));
+          }),
+        ]
+      : [h("table", { class: "parts" }, h("tbody", {}, ...rule.parts.map((_, k) => row(k))))];
     const along = rule.axis === "x" ? "left to right" : rule.axis === "y" ? "bottom to top" : "row by row";
     return section(
       `Rule of ${rule.symbol}`,
       h("p", { class: "hint" }, `${rule.operation} ${along}, cost ${tidy(rule.cost)}; ${count} ${count === 1 ? "region" : "regions"}`),
       h("datalist", { id: "symbols" }, ...symbols.map((v) => h("option", { value: v }))),
-      h("table", { class: "parts" }, h("tbody", {}, ...parts)),
+      ...tables,
       h("div", { class: "row" }, rule.operation === "split" ? button("Turn into a repeat", () => edit(`repeat ${r}`)) : null, rule.weight !== null ? field("Weight", rule.weight, (v) => edit(`weight ${r}=${v}`)) : null),
       floors(view),
     );

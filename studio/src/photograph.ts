@@ -1,4 +1,4 @@
-// A photograph of a facade, made rectangular by its four corners, to draw over. It stays in this page.
+// A photograph of a facade, made rectangular by its four corners, to draw over. What is outside them stays in this page.
 
 import { button, h } from "./dom";
 
@@ -6,6 +6,8 @@ type Point = [number, number];
 
 /** Longest side of the straightened picture in pixels. */
 const LONGEST = 1400;
+/** Most letters of its address: a request with it is within what the server takes. */
+const MOST = 1_500_000;
 
 /** The projective map that takes the corners of the unit square (0,0), (1,0), (1,1), (0,1) to these four points, as nine numbers
  * row by row (Heckbert 1989, Sec. 2.2.3). */
@@ -51,7 +53,17 @@ function straightened(source: ImageData, corners: [Point, Point, Point, Point], 
   return canvas;
 }
 
-/** Asks for the four corners of the facade in a photograph; the address of the straightened picture, or none. */
+/** The picture as an address that holds it, as good as there is room for. */
+function address(canvas: HTMLCanvasElement): string {
+  let text = "";
+  for (const quality of [0.9, 0.75, 0.5, 0.25]) {
+    text = canvas.toDataURL("image/jpeg", quality);
+    if (text.length <= MOST) break;
+  }
+  return text;
+}
+
+/** Asks for the four corners of the facade in a photograph; the straightened picture as a `data:` address, or none. */
 export async function rectified(file: File, proportion: number): Promise<string | null> {
   const bitmap = await createImageBitmap(file);
   const canvas = h("canvas", { width: bitmap.width, height: bitmap.height });
@@ -102,12 +114,12 @@ export async function rectified(file: File, proportion: number): Promise<string 
       put();
       return knob;
     });
-    const end = (address: string | null) => {
+    const end = (picture: string | null) => {
       dialog.close();
       dialog.remove();
-      answer(address);
+      answer(picture);
     };
-    const straighten = () => straightened(source, corners, proportion).toBlob((blob) => end(blob && URL.createObjectURL(blob)), "image/png");
+    const straighten = () => end(address(straightened(source, corners, proportion)));
     picture.append(...knobs);
     dialog.addEventListener("cancel", () => end(null));
     dialog.append(

@@ -1,16 +1,26 @@
-//! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed.
+//! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed and nothing is computed any
+//! more.
 
+use std::cell::Cell;
+use std::path::Path;
+use std::rc::Rc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use edifice::editing::examples::example;
+use edifice::editing::open;
+use edifice::editing::work::{Stopped, Told, Work, stoppable};
+use edifice::io::{city, facade_json};
+use edifice::methods::city_proceduralization::decompose_watched;
+use edifice::methods::facade_grammar::{self, infer_watched};
+use edifice::shape::Facade;
 use edifice::studio::Settings;
 use serde_json::{Value, json};
 
 use crate::client::Api;
 
-/// A studio with the facade of Fig. 9, and the text of a facade whose joint grammar with it takes long.
-fn long() -> (Api, Value) {
-    let api = Api::new(&Settings::default());
-    api.post("/api/documents", json!({"example": "fig9"}));
+/// A facade whose grammar takes long.
+fn chequered(unit: &Value) -> Value {
     let mut regions = Vec::new();
     for row in 0..14 {
         for column in 0..17 {
@@ -19,16 +29,109 @@ fn long() -> (Api, Value) {
             regions.push(json!({"label": label, "x": column, "y": row, "width": 1, "height": 1}));
         }
     }
-    let facade = json!({
-        "format": "edifice/facade", "version": 1, "name": "chequered", "unit": "px", "width": 17, "height": 14, "regions": regions,
+    json!({
+        "format": "edifice/facade", "version": 1, "name": "chequered", "unit": unit, "width": 17, "height": 14, "regions": regions,
+    })
+}
+
+/// A studio with the facade of Fig. 9, and its joint grammar with another one.
+fn long() -> (Api, Value) {
+    let api = Api::new(&Settings::default());
+    api.post("/api/documents", json!({"example": "fig9"}));
+    let unit = &api.get("/api/documents/d1")["view"]["unit"];
+    let facade = chequered(unit).to_string();
+    (api, json!([{"do": "merge", "facades": [facade]}]))
+}
+
+/// What work said last that was stopped as soon as it said something.
+fn stopped_at_once(method: impl FnOnce(&Work) + Send + 'static) -> Told {
+    let work = Work::default();
+    let own = work.clone();
+    let thread = std::thread::spawn(move || method(&own));
+    while work.told().step.is_empty() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    work.stop();
+    thread.join().expect("no panic");
+    work.told()
+}
+
+#[test]
+fn an_inference_that_is_stopped_leaves_its_bound() {
+    // The Lagrangian bound comes before the first step that is told of, which has a part of the whole.
+    let opened = stopped_at_once(|work| {
+        let text = chequered(&json!("m")).to_string();
+        let path = Path::new("chequered.facade.json");
+        assert!(open(path, text.as_bytes(), work).is_err());
     });
-    let unit = api.get("/api/documents/d1")["view"]["unit"].clone();
-    let mut facade = facade;
-    facade["unit"] = unit;
-    (
-        api,
-        json!([{"do": "merge", "facades": [facade.to_string()]}]),
-    )
+    let joint = stopped_at_once(|work| {
+        let grammar = example("fig9", &Work::default()).expect("ships");
+        let unit = grammar.view().expect("a view")["unit"].clone();
+        let command = json!({"do": "merge", "facades": [chequered(&unit).to_string()]});
+        assert!(grammar.apply(&command, work).is_err());
+    });
+    assert_eq!((opened.part, joint.part), (None, None));
+}
+
+#[test]
+fn a_stopped_inference_takes_no_further_step() {
+    let path = Path::new("chequered.facade.json");
+    let read = |name: &str| {
+        let mut facade = chequered(&json!("m"));
+        facade["name"] = name.into();
+        facade_json::parse(facade.to_string().as_bytes(), path).expect("a facade")
+    };
+    let [one, two] = [read("one"), read("two")];
+    // Whether it was stopped at that pulse, how many there were, and how many steps were told of.
+    let run = |most: usize, facades: &[Facade]| {
+        let settings = facade_grammar::Settings {
+            iterations: 2_500,
+            ..Default::default()
+        };
+        let (pulses, steps) = (Rc::new(Cell::new(0)), Rc::new(Cell::new(0)));
+        let (counted, told) = (Rc::clone(&pulses), Rc::clone(&steps));
+        let work = Work::default();
+        let pulse = move || {
+            counted.set(counted.get() + 1);
+            if counted.get() == most {
+                work.stop();
+            }
+            work.go_on_or_unwind();
+        };
+        let observer = move |_| told.set(told.get() + 1);
+        let done = stoppable(|| infer_watched(facades, &settings, observer, Rc::new(pulse)));
+        (done.is_err(), pulses.get(), steps.get())
+    };
+    let (stopped, whole, steps) = run(usize::MAX, std::slice::from_ref(&one));
+    assert!(!stopped && whole > 20 && steps > 0, "{whole} {steps}");
+    assert_eq!(run(5, std::slice::from_ref(&one)), (true, 5, 0));
+    // Of several facades first the bound of each, then the joint one.
+    let own = whole + 5;
+    assert_eq!(run(own, &[one, two]), (true, own, 0));
+}
+
+#[test]
+fn a_stopped_city_is_not_cut_any_further() {
+    let town = example("town", &Work::default()).expect("ships");
+    let bytes = town.export("obj").expect("a city");
+    let city = city::obj::parse(&bytes, Path::new("town.obj")).expect("a city");
+    let (begun, work) = (AtomicUsize::new(0), Work::default());
+    let count = city.buildings.len();
+    assert!(count > 5);
+    let cut = stoppable(|| {
+        decompose_watched(&city, true, || {
+            work.go_on_or_unwind();
+            if begun.fetch_add(1, Ordering::SeqCst) == 2 {
+                work.stop();
+            }
+        })
+    });
+    assert_eq!(cut.err(), Some(Stopped));
+    // Each thread may have had one in hand.
+    let most = 3 + rayon::current_num_threads();
+    assert!(begun.into_inner() <= most.min(count - 1));
+    let whole = stoppable(|| decompose_watched(&city, true, || Work::default().go_on_or_unwind()));
+    assert_eq!(whole.expect("not stopped").faults.len(), count);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice::editing::structure_completion::{FacadeEdit, edit};
-use edifice::io::{facade_json, write_atomic};
+use edifice::io::{facade_json, photograph, write_atomic};
 use edifice::{Error, Result};
 
 use super::input;
@@ -15,6 +15,7 @@ use crate::cli::reading::Reading;
 #[command(after_help = "Examples:
   edifice facade edit partial.facade.json 'add window@1.5,4,1.2,1.7' 'move added_3=6,0' -o edited.facade.json
   edifice facade edit sketch.facade.json 'relabel #2=door' 'unknown 0,0,6,9' -o edited.facade.json
+  edifice facade edit sketch.facade.json --photograph straightened.jpg -o edited.facade.json
 
 Edits, made in turn: add LABEL@X,Y,W,H; move ID=X,Y; resize ID=W,H; relabel ID=LABEL; remove ID; unknown X,Y,W,H;
 known INDEX (of the unknown rectangles, from 0); outline W,H. ID is an element's id, or #K for the K-th in the file, from 0.
@@ -24,8 +25,14 @@ pub struct Args {
     #[arg(value_name = "LAYOUT")]
     input: PathBuf,
     /// Edits
-    #[arg(required = true, value_name = "EDIT", value_parser = parse)]
+    #[arg(required_unless_present_any = ["photograph", "no_photograph"], value_name = "EDIT", value_parser = parse)]
     edits: Vec<FacadeEdit>,
+    /// Picture that lies over the outline, kept in the file: .jpg, .png, or a text file with its data: address
+    #[arg(long, value_name = "PICTURE", conflicts_with = "no_photograph")]
+    photograph: Option<PathBuf>,
+    /// Take the picture out of the file
+    #[arg(long)]
+    no_photograph: bool,
     /// File to write
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -41,7 +48,12 @@ fn parse(text: &str) -> std::result::Result<FacadeEdit, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let layout = input::annotated(&args.input, &args.reading)?;
-    let edited = edit(&layout, &args.edits).map_err(|e| Error::content(&args.input, e))?;
+    let mut edited = edit(&layout, &args.edits).map_err(|e| Error::content(&args.input, e))?;
+    if let Some(path) = &args.photograph {
+        edited.photograph = Some(photograph::read(path)?);
+    } else if args.no_photograph {
+        edited.photograph = None;
+    }
     write_atomic(
         &args.output,
         facade_json::annotated_to_string(&edited).as_bytes(),

@@ -56,6 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
         },
         notes: Vec::new(),
         unknown,
+        photograph: whole.photograph.clone(),
     };
     for ((region, note), hidden) in facade.regions.iter().zip(&whole.notes).zip(&hidden) {
         if !hidden {

@@ -15,11 +15,14 @@ use crate::cli::print;
 #[command(after_help = "Examples:
   edifice grammar edit fig9.grammar.json 'border 2.0=0.5' -o edited.grammar.json
   edifice grammar edit fig9.grammar.json 'symbol 3.1=Door' 'insert 0.2=Cornice:4' -o edited.grammar.json
+  edifice grammar edit grid.grammar.json 'border 0.c1=0.3' 'insert 0.r2=3' 'shrink 0.c0' -o edited.grammar.json
 
 Edits, made in turn: resize RULE.PART=SIZE; border RULE.PART=SHIFT (between this part and the next); symbol RULE.PART=NAME;
-insert RULE.PART=NAME:SIZE (before this part); remove RULE.PART; grow RULE.PART (a copy of the part before it, as a floor or a
-column: the facade grows by its length); shrink RULE.PART (the part goes, the facade shrinks); repeat RULE (a split of equal
-periods); weight RULE=W; outline W,H. Rules and parts are counted from 0, as in the file. Sizes are made relative first, so that what is inside an
+insert RULE.PART=NAME:SIZE (before this part) or RULE.PART=SIZE (a copy of it); remove RULE.PART; grow RULE.PART (a copy of the part
+before it, as a floor or a column, or one more period of a repeat: the facade grows by its length); shrink RULE.PART (the part
+or a period goes, the facade shrinks); repeat RULE (a split of equal periods); weight RULE=W; outline W,H. Rules and parts are
+counted from 0, as in the file; of a repeat A B A, A is part 0 and B part 1. The columns of a grid are RULE.c0, RULE.c1, ... from the left, its
+rows RULE.r0, ... from the bottom, and its cells RULE.0, ... row by row, for symbol. Sizes are made relative first, so that what is inside an
 edited region follows it.")]
 pub struct Args {
     /// Grammar to read: .grammar.json or .cga, also as .gz

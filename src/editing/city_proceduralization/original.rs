@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::super::work::Work;
+use super::super::work::{Work, stoppable};
 use crate::grammar::instance::InstanceGrammar;
 use crate::methods::city_proceduralization::{
-    Budget, Decomposition, Settings, decompose, from_components,
+    Budget, Decomposition, Settings, decompose_watched, from_components,
 };
 use crate::shape::triangles::{City, OrientedBox, TriangleMesh};
 use crate::{Error, Result};
@@ -58,7 +58,9 @@ impl Original {
             &format!("cutting {count} buildings into components"),
             Some(0.05),
         )?;
-        let cut = self.cut.get_or_init(|| decompose(&self.city, true)).clone();
+        let watch = || work.go_on_or_unwind();
+        let cut = || decompose_watched(&self.city, true, watch);
+        let cut = stoppable(|| self.cut.get_or_init(cut).clone())?;
         let count = cut.components.len();
         work.tell(&format!("types and rules of {count} components"), Some(0.3))?;
         let settings = Settings {

@@ -1,12 +1,13 @@
 //! Several facades explained by one joint grammar (Wu et al. 2014, Sec. 4.6): the rules that they share are written once.
 
 use std::path::Path;
+use std::rc::Rc;
 
 use super::super::split_grammar::{Wish, derived};
 use super::super::work::{Work, stoppable};
 use crate::grammar::{Grammar, check};
 use crate::io::facade_json;
-use crate::methods::facade_grammar::{InferError, Outcome, Settings, infer_observed};
+use crate::methods::facade_grammar::{InferError, Outcome, Settings, infer_watched};
 use crate::shape::Facade;
 use crate::{Error, Result};
 
@@ -62,14 +63,20 @@ struct MergeError(String);
 /// [`InferError`].
 pub fn observed(facades: &[Facade], work: &Work) -> std::result::Result<Outcome, InferError> {
     let settings = Settings::default();
-    let (steps, work) = (settings.steps().max(1) as f64, work.clone());
-    infer_observed(facades, &settings, move |step| {
-        let part = (step.iteration as f64 / steps).min(1.0);
-        work.tell_or_unwind(
-            &format!("inferring the grammar, cost {:.1}", step.best),
-            Some(part),
-        );
-    })
+    let steps = settings.steps().max(1) as f64;
+    let (told, watched) = (work.clone(), work.clone());
+    let pulse = Rc::new(move || watched.go_on_or_unwind());
+    let tell = move |iteration: u64, best: f64| {
+        let part = (iteration as f64 / steps).min(1.0);
+        let step = format!("inferring the grammar, cost {best:.1}");
+        told.tell_or_unwind(&step, Some(part));
+    };
+    infer_watched(
+        facades,
+        &settings,
+        move |step| tell(step.iteration, step.best),
+        pulse,
+    )
 }
 
 /// Facades from the texts of their files.

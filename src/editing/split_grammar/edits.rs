@@ -1,26 +1,28 @@
 //! Edits of the rules of a split grammar, as text and as values.
 
-use super::super::{CommandError, numbers};
 use super::floors;
-use crate::grammar::{Grammar, GrammarError, Operation, Size, Successor, check, size_independent};
+use super::line::{Line, unfit};
+use super::text::Place;
+use crate::grammar::{Grammar, GrammarError, Operation, Successor, check, size_independent};
 
-/// One edit. Rules are counted from 0 in the order of the file, parts from 0 in the order written.
+/// One edit. Rules are counted from 0 in the order of the file; PART is a [`Place`] in one: a part, or a column or row of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GrammarEdit {
-    /// `resize RULE.PART=SIZE`: in a split the other parts give way in proportion.
-    Resize(usize, usize, f64),
-    /// `border RULE.PART=SHIFT`: moves the border between this part and the next one.
-    Border(usize, usize, f64),
-    /// `symbol RULE.PART=NAME`: another symbol in its place.
-    Symbol(usize, usize, String),
-    /// `insert RULE.PART=NAME:SIZE`: a new part before this one; in a split the others give way in proportion.
-    Insert(usize, usize, String, f64),
-    /// `remove RULE.PART`: in a split the others take its place in proportion.
-    Remove(usize, usize),
-    /// `grow RULE.PART`: a copy of this part before it, a floor or a column; the facade grows by its length.
-    Grow(usize, usize),
-    /// `shrink RULE.PART`: this part goes, and the facade shrinks by its length.
-    Shrink(usize, usize),
+    /// `resize RULE.PART=SIZE`: in a split and a grid the others give way in proportion.
+    Resize(usize, Place, f64),
+    /// `border RULE.PART=SHIFT`: moves the border between this one and the next.
+    Border(usize, Place, f64),
+    /// `symbol RULE.PART=NAME`: another symbol in the place of a part or a cell.
+    Symbol(usize, Place, String),
+    /// `insert RULE.PART=NAME:SIZE`: a new one before this, of a grid with that symbol in all its cells; `insert RULE.PART=SIZE`:
+    /// a copy of this one before it. In a split and a grid the others give way in proportion.
+    Insert(usize, Place, Option<String>, f64),
+    /// `remove RULE.PART`: in a split and a grid the others take its place in proportion.
+    Remove(usize, Place),
+    /// `grow RULE.PART`: a copy of this one before it, or a period of a repeat, a floor or a column; the facade grows by its length.
+    Grow(usize, Place),
+    /// `shrink RULE.PART`: this one goes, or a period of a repeat, and the facade shrinks by its length.
+    Shrink(usize, Place),
     /// `repeat RULE`: a split of equal periods becomes a repeat.
     Repeat(usize),
     /// `weight RULE=W`: weight among the rules of its symbol.
@@ -41,30 +43,32 @@ pub enum GrammarEditError {
         count: usize,
     },
     /// There is no such part.
-    #[error("rules[{rule}] has no part {part}: it has {count}")]
+    #[error("rules[{rule}] has no {part}: it has {count}")]
     NoPart {
         /// Index of the rule.
         rule: usize,
-        /// Index of the part.
-        part: usize,
-        /// Parts of the rule.
+        /// The part.
+        part: Place,
+        /// How many there are.
         count: usize,
     },
-    /// The parts of the rule's operation are no list with sizes.
-    #[error("the parts of rules[{rule}] ({operation}) cannot be edited so")]
+    /// The rule's operation has nothing of this kind.
+    #[error("rules[{rule}] ({operation}) cannot be edited so: {hint}")]
     Operation {
         /// Index of the rule.
         rule: usize,
         /// Name of its operation.
         operation: &'static str,
+        /// What can be done.
+        hint: &'static str,
     },
     /// A size leaves nothing for the part itself or for the others.
-    #[error("size {size} for part {part} of rules[{rule}]: the parts beside it have {room}")]
+    #[error("size {size} for {part} of rules[{rule}]: what is beside it has {room}")]
     Size {
         /// Index of the rule.
         rule: usize,
-        /// Index of the part.
-        part: usize,
+        /// The part.
+        part: Place,
         /// The size asked for.
         size: f64,
         /// What there is.
@@ -87,72 +91,13 @@ pub enum GrammarEditError {
     Grammar(#[from] GrammarError),
 }
 
-impl std::str::FromStr for GrammarEdit {
-    type Err = CommandError;
-
-    fn from_str(text: &str) -> Result<Self, CommandError> {
-        read(text).map_err(|message| CommandError::Edit {
-            edit: text.to_owned(),
-            message,
-        })
-    }
-}
-
-fn read(text: &str) -> Result<GrammarEdit, String> {
-    let (verb, rest) = text.split_once(' ').unwrap_or((text, ""));
-    let index = |t: &str| t.parse::<usize>().map_err(|_| format!("{t:?} is no index"));
-    let place = |t: &str| {
-        let (rule, part) = t.split_once('.').ok_or("expected RULE.PART")?;
-        Ok::<_, String>((index(rule)?, index(part)?))
-    };
-    let value = || {
-        rest.split_once('=')
-            .ok_or("expected a value after =".to_owned())
-    };
-    let number = |t: &str| numbers::<1>(t).map(|[v]| v);
-    Ok(match verb {
-        "resize" | "border" => {
-            let (at, size) = value()?;
-            let ((rule, part), size) = (place(at)?, number(size)?);
-            match verb {
-                "resize" => GrammarEdit::Resize(rule, part, size),
-                _ => GrammarEdit::Border(rule, part, size),
-            }
-        }
-        "symbol" => {
-            let (at, name) = value()?;
-            let (rule, part) = place(at)?;
-            GrammarEdit::Symbol(rule, part, name.to_owned())
-        }
-        "insert" => {
-            let (at, what) = value()?;
-            let (rule, part) = place(at)?;
-            let (name, size) = what.rsplit_once(':').ok_or("expected NAME:SIZE")?;
-            GrammarEdit::Insert(rule, part, name.to_owned(), number(size)?)
-        }
-        "remove" => place(rest).map(|(rule, part)| GrammarEdit::Remove(rule, part))?,
-        "grow" => place(rest).map(|(rule, part)| GrammarEdit::Grow(rule, part))?,
-        "shrink" => place(rest).map(|(rule, part)| GrammarEdit::Shrink(rule, part))?,
-        "repeat" => GrammarEdit::Repeat(index(rest)?),
-        "weight" => {
-            let (rule, weight) = value()?;
-            GrammarEdit::Weight(index(rule)?, number(weight)?)
-        }
-        "outline" => GrammarEdit::Outline(numbers(rest)?),
-        _ => {
-            return Err(
-                "expected resize, border, symbol, insert, remove, grow, shrink, repeat, weight or outline".into(),
-            );
-        }
-    })
-}
-
 /// The grammar after edits, made in turn. Its sizes are made relative first, as for a derivation at another size, so that
 /// what is inside an edited region follows it.
 ///
 /// # Errors
 /// [`GrammarEditError`]; the edited grammar is checked whole.
 pub fn edit(grammar: &Grammar, edits: &[GrammarEdit]) -> Result<Grammar, GrammarEditError> {
+    check(grammar)?;
     let mut out = size_independent(grammar);
     for edit in edits {
         apply(&mut out, edit)?;
@@ -183,51 +128,47 @@ fn apply(grammar: &mut Grammar, edit: &GrammarEdit) -> Result<(), GrammarEditErr
             *symbol(grammar, *rule, *part)? = name.clone();
         }
         GrammarEdit::Resize(rule, part, size) => {
-            let mut list = parts(grammar, *rule, *part)?;
-            let old = list.sizes()[*part];
+            let mut line = Line::of(grammar, *rule, *part)?;
+            let k = part.index();
+            let old = line.sizes()[k];
             // A part that stands twice takes from the others twice.
-            list.set(*part, *size)?;
-            let times = list.times(*part);
-            list.give_way(Some(*part), times * (old - size))?;
+            line.set(k, *size)?;
+            let more = line.times(k) * (old - size);
+            line.give_way(Some(k), more)?;
         }
         GrammarEdit::Border(rule, part, shift) => {
-            let list = parts(grammar, *rule, part + 1)?;
-            let (a, b) = (list.sizes()[*part], list.sizes()[part + 1]);
-            let room = a + b;
+            let k = part.index();
+            let mut line = Line::of(grammar, *rule, part.at(k.saturating_add(1)))?;
+            let (a, b) = (line.sizes()[k], line.sizes()[k + 1]);
             if a + shift <= 0.0 || b - shift <= 0.0 {
-                return Err(list.error(*part, a + shift, room));
+                return Err(line.error(k, a + shift, a + b));
             }
-            list.successors[*part].size = with(list.successors[*part].size, a + shift);
-            list.successors[part + 1].size = with(list.successors[part + 1].size, b - shift);
+            line.change(k, |v| v + shift);
+            line.change(k + 1, |v| v - shift);
         }
         GrammarEdit::Insert(rule, part, name, size) => {
-            let mut list = parts(grammar, *rule, part.saturating_sub(1))?;
-            let size_of = Size::Relative(*size);
-            list.successors.insert(
-                *part,
-                Successor {
-                    symbol: name.clone(),
-                    size: size_of,
-                },
-            );
-            list.set(*part, *size)?;
-            let times = list.times(*part);
-            list.give_way(Some(*part), -times * size)?;
+            let k = part.index();
+            // A new one may stand behind the last; a copy is of one that is there.
+            let near = name.as_ref().map_or(k, |_| k.saturating_sub(1));
+            let mut line = Line::of(grammar, *rule, part.at(near))?;
+            let before = line.total();
+            line.insert(k, name.as_deref(), *size)?;
+            line.set(k, *size)?;
+            line.give_way(Some(k), before - line.total())?;
         }
         GrammarEdit::Remove(rule, part) => {
-            let mut list = parts(grammar, *rule, *part)?;
-            if list.successors.len() == 1 {
-                return Err(list.error(*part, 0.0, 0.0));
-            }
-            let freed = list.times(*part) * list.sizes()[*part];
-            list.successors.remove(*part);
-            list.give_way(None, freed)?;
+            let mut line = Line::of(grammar, *rule, *part)?;
+            let k = part.index();
+            let before = line.total();
+            line.remove(k)?;
+            line.give_way(None, before - line.total())?;
         }
     }
     Ok(())
 }
 
-fn known(grammar: &Grammar, rule: usize) -> Result<(), GrammarEditError> {
+/// Refuses a rule that is not there.
+pub(super) fn known(grammar: &Grammar, rule: usize) -> Result<(), GrammarEditError> {
     let count = grammar.rules.len();
     match rule < count {
         true => Ok(()),
@@ -238,130 +179,25 @@ fn known(grammar: &Grammar, rule: usize) -> Result<(), GrammarEditError> {
 fn symbol(
     grammar: &mut Grammar,
     rule: usize,
-    part: usize,
+    part: Place,
 ) -> Result<&mut String, GrammarEditError> {
     known(grammar, rule)?;
     let operation = &mut grammar.rules[rule].operation;
+    let Place::Part(index) = part else {
+        let hint = "symbols are of parts and of cells, which are named by a number";
+        return Err(unfit(rule, operation, hint));
+    };
     let count = operation.successor_count();
     let found = match operation {
         Operation::Split { successors, .. }
         | Operation::Repeat { successors, .. }
-        | Operation::SymSplit { successors, .. } => successors.get_mut(part).map(|s| &mut s.symbol),
-        Operation::RepeatAba { a, b, .. } => [&mut a.symbol, &mut b.symbol].into_iter().nth(part),
-        Operation::GridSplit { cells, .. } => cells.iter_mut().flatten().nth(part),
+        | Operation::SymSplit { successors, .. } => {
+            successors.get_mut(index).map(|s| &mut s.symbol)
+        }
+        Operation::RepeatAba { a, b, .. } => [&mut a.symbol, &mut b.symbol].into_iter().nth(index),
+        Operation::GridSplit { cells, .. } => cells.iter_mut().flatten().nth(index),
     };
     found.ok_or(GrammarEditError::NoPart { rule, part, count })
-}
-
-/// The parts of a rule whose sizes are edited.
-pub(super) struct Parts<'g> {
-    rule: usize,
-    pub(super) successors: &'g mut Vec<Successor>,
-    /// Whether the parts fill the region once, so that others give way.
-    fills: bool,
-    /// Of a mirrored split: whether its last part stands once in the middle.
-    center: Option<bool>,
-}
-
-pub(super) fn parts(
-    grammar: &mut Grammar,
-    rule: usize,
-    last: usize,
-) -> Result<Parts<'_>, GrammarEditError> {
-    known(grammar, rule)?;
-    let operation = &mut grammar.rules[rule].operation;
-    let name = operation.name();
-    let (successors, fills, center) = match operation {
-        Operation::Split { successors, .. } => (successors, true, None),
-        Operation::Repeat { successors, .. } => (successors, false, None),
-        Operation::SymSplit {
-            successors, center, ..
-        } => (successors, true, Some(*center)),
-        _ => {
-            return Err(GrammarEditError::Operation {
-                rule,
-                operation: name,
-            });
-        }
-    };
-    let count = successors.len();
-    match last < count {
-        true => Ok(Parts {
-            rule,
-            successors,
-            fills,
-            center,
-        }),
-        false => Err(GrammarEditError::NoPart {
-            rule,
-            part: last,
-            count,
-        }),
-    }
-}
-
-impl Parts<'_> {
-    pub(super) fn sizes(&self) -> Vec<f64> {
-        self.successors.iter().map(|s| s.size.value()).collect()
-    }
-
-    /// How often a part stands in the region.
-    pub(super) fn times(&self, part: usize) -> f64 {
-        match self.center {
-            None => 1.0,
-            Some(true) if part + 1 == self.successors.len() => 1.0,
-            Some(_) => 2.0,
-        }
-    }
-
-    pub(super) fn error(&self, part: usize, size: f64, room: f64) -> GrammarEditError {
-        let rule = self.rule;
-        GrammarEditError::Size {
-            rule,
-            part,
-            size,
-            room,
-        }
-    }
-
-    fn set(&mut self, part: usize, size: f64) -> Result<(), GrammarEditError> {
-        if !(size.is_finite() && size > 0.0) {
-            return Err(self.error(part, size, self.sizes().iter().sum()));
-        }
-        let own = &mut self.successors[part].size;
-        *own = with(*own, size);
-        Ok(())
-    }
-
-    /// Scales all parts but one so that together they take `more` than before, where the parts fill a region.
-    fn give_way(&mut self, but: Option<usize>, more: f64) -> Result<(), GrammarEditError> {
-        if !self.fills {
-            return Ok(());
-        }
-        let others: Vec<usize> = (0..self.successors.len())
-            .filter(|k| Some(*k) != but)
-            .collect();
-        let sizes = self.sizes();
-        let now: f64 = others.iter().map(|k| self.times(*k) * sizes[*k]).sum();
-        let factor = (now + more) / now;
-        if !(factor.is_finite() && factor > 0.0) {
-            let part = but.unwrap_or(0);
-            return Err(self.error(part, sizes[part], now));
-        }
-        for k in others {
-            let own = &mut self.successors[k].size;
-            *own = with(*own, sizes[k] * factor);
-        }
-        Ok(())
-    }
-}
-
-/// The same kind of size with another number.
-fn with(size: Size, value: f64) -> Size {
-    match size {
-        Size::Absolute(_) => Size::Absolute(value),
-        Size::Relative(_) => Size::Relative(value),
-    }
 }
 
 /// A split of equal periods as a repeat of the shortest one.

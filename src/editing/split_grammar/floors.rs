@@ -1,161 +1,126 @@
 //! Floors and columns put in and taken out: the facade grows or shrinks by their length, where the other edits leave its size.
+//!
+//! A region of the rule has the length `e = a A + r R`: `A` and `R` are the sums of the absolute and the relative sizes in
+//! it, `a` (as a rule 1) and `r` the lengths of sizes of 1. With the new sums at the same `a` and `r` it would have the length
+//! `e'`: its other parts stay as they are. While every repeat around it keeps its number of periods, `e` depends linearly on
+//! the length `w` of the facade, `de / dw = g`, so that the facade becomes `w' = w + (e' - e) / g` long. None of `a`, `r` and `g` changes by
+//! that, so that what is put in and taken out again leaves the outline as it was; and the facade, unless a repeat had to get other sizes
+//! for its number of periods ([`settle`]), which may be another one in another region of its rule.
 
-use super::edits::{GrammarEditError, parts};
-use crate::grammar::{Grammar, Operation, Size, Start, derive_at};
-use crate::rng;
+use super::edits::GrammarEditError;
+use super::line::{Line, along_mut, repeats, totals};
+use super::reach::{LEAST_GROWTH, Laid, Reach, periods, reach};
+use super::text::Place;
+use crate::grammar::{Grammar, GrammarError, Size};
 use crate::shape::Axis;
 
-/// Share of a facade by which it is made larger to see how regions grow with it.
-const STEP: f64 = 1e-4;
-/// A region that grows by less of what the facade grows by has a fixed length.
-const LEAST_GROWTH: f64 = 1e-6;
-
-/// Puts a copy of a part before it (`grows`), or takes the part out. In a repeat, a period comes or goes.
+/// Puts a copy of a part, or of a column or row of a grid, before it (`grows`), or takes it out. In a repeat, a period comes or goes.
 ///
-/// All facades of the grammar that the rule has a part in change with it, so that the rule's longest region in them changes by the
-/// length of the part and its other parts keep theirs. What stands beside that region is stretched with it.
+/// All facades of the grammar that the rule has a region in change with it, so that one region of it ([`Reach`]) changes by
+/// the length of what comes or goes and its other parts keep theirs. What stands beside that region is stretched
+/// with it; repeats around it keep their numbers of periods.
 ///
 /// # Errors
 /// [`GrammarEditError`].
 pub(super) fn change(
     grammar: &mut Grammar,
     rule: usize,
-    part: usize,
+    place: Place,
     grows: bool,
 ) -> Result<(), GrammarEditError> {
-    let before = grammar.starts.clone();
-    let extents = before
-        .iter()
-        .enumerate()
-        .map(|(k, s)| reach(grammar, rule, k, s));
-    let extents: Vec<Option<Reach>> = extents.collect::<Result<_, _>>()?;
-    let operation = grammar.rules.get(rule).map(|r| &r.operation);
-    let is_repeat = matches!(operation, Some(Operation::Repeat { .. }));
-    // The length of what comes or goes, as a share of a region of this extent.
-    let share: Box<dyn Fn(f64) -> f64> = if is_repeat {
-        let list = parts(grammar, rule, part)?;
-        let period: f64 = list.sizes().iter().sum();
-        Box::new(move |extent| 1.0 / (extent / period).round().max(1.0))
-    } else {
-        let list = parts(grammar, rule, part)?;
-        let own = list.successors[part].clone();
-        if grows {
-            list.successors.insert(part, own.clone());
-        }
-        let times = list.times(part);
-        let sum = |relative: bool| -> f64 {
-            let of_kind = list
-                .successors
-                .iter()
-                .enumerate()
-                .filter(|(_, s)| is_relative(s.size) == relative);
-            of_kind.map(|(k, s)| list.times(k) * s.size.value()).sum()
-        };
-        let own_length = times * own.size.value();
-        let without = |total: f64, counts: bool| {
-            if grows && counts {
-                total - own_length
-            } else {
-                total
-            }
-        };
-        let relative = is_relative(own.size);
-        let (shared, fixed) = (without(sum(true), relative), without(sum(false), !relative));
-        if !grows {
-            if list.successors.len() == 1 {
-                return Err(list.error(part, 0.0, 0.0));
-            }
-            list.successors.remove(part);
-        }
-        Box::new(move |extent| match relative {
-            true => own_length / shared * (extent - fixed) / extent,
-            false => own_length / extent,
-        })
-    };
-    for (start, found) in grammar.starts.iter_mut().zip(extents) {
-        let Some(reach) = found else {
+    let axis = Line::of(grammar, rule, place)?.axis;
+    let found = (0..grammar.starts.len()).map(|k| reach(grammar, rule, axis, k));
+    let found: Vec<Option<Reach>> = found.collect::<Result<_, _>>()?;
+    let before = grammar.rules[rule].operation.clone();
+    let index = place.index();
+    let mut line = Line::of(grammar, rule, place)?;
+    let size = line.sizes()[index];
+    let counted = repeats(line.operation);
+    match (counted, grows) {
+        (true, _) => {}
+        (false, true) => line.insert(index, None, size)?,
+        (false, false) => line.remove(index)?,
+    }
+    let after = grammar.rules[rule].operation.clone();
+    let mut first = true;
+    for (index, found) in found.iter().enumerate() {
+        let Some(Reach { own, around }) = found else {
             continue;
         };
-        if reach.growth < LEAST_GROWTH {
+        if own.growth < LEAST_GROWTH {
             return Err(GrammarEditError::Fixed { rule });
         }
-        let side = match reach.axis {
+        let count = match (counted, grows) {
+            (false, _) => 1,
+            (true, true) => own.periods + 1,
+            (true, false) => own.periods - 1,
+        };
+        let refused = |size, room| GrammarEditError::Size {
+            rule,
+            part: place,
+            size,
+            room,
+        };
+        if count == 0 {
+            return Err(refused(0.0, 0.0));
+        }
+        let [a, b] = [(&before, own.periods), (&after, count)];
+        let came = own.length(totals(b.0, axis, b.1)) - own.length(totals(a.0, axis, a.1));
+        let by = came / own.growth;
+        let start = &mut grammar.starts[index];
+        let side = match axis {
             Axis::X => &mut start.width,
             Axis::Y => &mut start.height,
         };
-        let by = share(reach.extent) * reach.extent / reach.growth;
-        let by = if grows { by } else { -by };
         if !(by.is_finite() && *side + by > 1e-9 * *side) {
-            let (size, room) = (by, *side);
-            return Err(GrammarEditError::Size {
-                rule,
-                part,
-                size,
-                room,
-            });
+            return Err(refused(came, own.extent));
         }
         *side += by;
+        // The rules are shared: they follow the first facade.
+        if std::mem::take(&mut first) {
+            if counted {
+                settle(grammar, axis, own, own.extent + came, count)?;
+            }
+            for repeat in around {
+                let extent = repeat.extent + by * repeat.growth;
+                settle(grammar, axis, repeat, extent, repeat.periods)?;
+            }
+        }
     }
     Ok(())
 }
 
-fn is_relative(size: Size) -> bool {
-    matches!(size, Size::Relative(_))
-}
-
-/// The longest region of a rule in a facade.
-struct Reach {
+/// Changes the relative sizes of a repeat with the length of its region, so that it takes that number of periods there.
+fn settle(
+    grammar: &mut Grammar,
     axis: Axis,
+    laid: &Laid,
     extent: f64,
-    /// By how much it grows with the facade.
-    growth: f64,
+    count: usize,
+) -> Result<(), GrammarError> {
+    let [absolute, relative] = totals(&grammar.rules[laid.rule].operation, axis, count);
+    let unit = (extent - laid.units[0] * absolute) / relative;
+    if !(unit.is_finite() && unit > 0.0) {
+        return Ok(());
+    }
+    // In proportion to the region; a repeat that itself gets a period stays as it is.
+    let factor = match count == laid.periods {
+        true => unit / laid.units[1],
+        false => 1.0,
+    };
+    scale(grammar, laid.rule, axis, factor);
+    if periods(grammar, laid.rule, axis, extent)? != count {
+        // Where that is not enough they become the lengths that they have.
+        scale(grammar, laid.rule, axis, unit / factor);
+    }
+    Ok(())
 }
 
-/// The longest region of a rule in a facade; `None` where it has none.
-fn reach(
-    grammar: &Grammar,
-    rule: usize,
-    index: usize,
-    start: &Start,
-) -> Result<Option<Reach>, GrammarEditError> {
-    let operation = grammar.rules.get(rule).map(|r| &r.operation);
-    let Some(
-        Operation::Split { axis, .. }
-        | Operation::Repeat { axis, .. }
-        | Operation::SymSplit { axis, .. },
-    ) = operation
-    else {
-        return Ok(None);
-    };
-    let axis = *axis;
-    let extents = |width: f64, height: f64| -> Result<Vec<f64>, GrammarEditError> {
-        // The same rules as those that are shown.
-        let mut rng = rng::stream(0, "grammar derive", 0);
-        let made = derive_at(grammar, index, width, height, &mut rng)?;
-        let own = made.non_terminals.iter().filter(|n| n.rule == rule);
-        Ok(own.map(|n| n.rect.extent(axis)).collect())
-    };
-    let now = extents(start.width, start.height)?;
-    let Some(longest) = (0..now.len()).max_by(|a, b| now[*a].total_cmp(&now[*b])) else {
-        return Ok(None);
-    };
-    let (extent, whole) = match axis {
-        Axis::X => (now[longest], start.width),
-        Axis::Y => (now[longest], start.height),
-    };
-    // Extents depend on the facade's own linearly, as long as no repeat takes another number of periods.
-    let step = STEP * whole;
-    let later = match axis {
-        Axis::X => extents(start.width + step, start.height)?,
-        Axis::Y => extents(start.width, start.height + step)?,
-    };
-    let growth = match later.len() == now.len() {
-        true => (later[longest] - extent) / step,
-        false => extent / whole,
-    };
-    Ok(Some(Reach {
-        axis,
-        extent,
-        growth,
-    }))
+/// Multiplies the relative sizes of a rule along an axis.
+fn scale(grammar: &mut Grammar, rule: usize, axis: Axis, factor: f64) {
+    for size in along_mut(&mut grammar.rules[rule].operation, axis) {
+        if let Size::Relative(v) = size {
+            *v *= factor;
+        }
+    }
 }

@@ -4,8 +4,12 @@
 mod derivation;
 mod edits;
 mod floors;
+mod line;
+mod reach;
 mod relief;
+mod text;
 
 pub use derivation::{DeriveError, Derived, Wish, derived};
 pub use edits::{GrammarEdit, GrammarEditError, edit};
 pub use relief::glb;
+pub use text::Place;

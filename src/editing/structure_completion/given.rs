@@ -124,6 +124,7 @@ impl Given {
             facade,
             notes,
             unknown,
+            photograph: annotated.photograph,
         };
         Ok(Self {
             shown,

@@ -25,7 +25,9 @@ pub fn view(sketch: &Sketch) -> Value {
         })
         .collect();
     let unknown = sketch.layout.unknown.as_ref();
+    let picture = sketch.layout.photograph.as_ref();
     json!({
+        "photograph": picture.map(|p| format!("{:016x}", p.id())),
         "unit": facade.unit, "width": facade.width, "height": facade.height,
         "elements": elements(&sketch.layout, &sketch.pins),
         "unknown": unknown.map(|u| u.iter().map(corners).collect::<Vec<_>>()),

@@ -62,10 +62,16 @@ pub struct Decomposition {
 /// Cuts every building of a city into components, on all threads. With `bottoms`, components are closed
 /// below, too: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
 pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
+    decompose_watched(city, bottoms, || {})
+}
+
+/// As [`decompose`], calling `pulse` before each building, on any thread: whoever waits no longer may unwind from it.
+pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) -> Decomposition {
     let order = canonical_order(city);
     let parts: Vec<(Vec<Component>, MeshFaults)> = order
         .par_iter()
         .map(|&b| {
+            pulse();
             let (mesh, faults) = repair(&city.buildings[b].mesh);
             (components_of(&mesh, b, bottoms), faults)
         })

@@ -48,7 +48,7 @@ pub mod synthesis;
 pub mod type_graph;
 pub mod types;
 
-pub use components::{Component, Decomposition, decompose};
+pub use components::{Component, Decomposition, decompose, decompose_watched};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{

@@ -144,6 +144,7 @@ impl Search<'_> {
         };
         let cost = known.map_or(f64::INFINITY, |rules| self.cost(rules));
         let mut incumbent = Incumbent::new(cost, costs, operations.without_grids());
+        incumbent.pulse = Some(Rc::clone(&self.pulse));
         let (lower, _) = solve(program, &mut incumbent, &limits);
         let rules = match known {
             Some(rules) if incumbent.cost >= cost => rules.to_vec(),

@@ -1,5 +1,7 @@
 //! Inference: from facades to one grammar.
 
+use std::rc::Rc;
+
 use std::fmt;
 use std::str::FromStr;
 
@@ -202,9 +204,26 @@ pub fn infer_observed(
     settings: &Settings,
     observer: impl FnMut(Step) + Clone + 'static,
 ) -> Result<Outcome, InferError> {
+    infer_watched(facades, settings, observer, Rc::new(|| {}))
+}
+
+/// Called often inside steps that take long, the Lagrangian bound above all: whoever waits no longer may unwind from it.
+pub type Pulse = Rc<dyn Fn()>;
+
+/// As [`infer_observed`], calling `pulse` inside long steps, too.
+///
+/// # Errors
+/// [`InferError`].
+pub fn infer_watched(
+    facades: &[Facade],
+    settings: &Settings,
+    observer: impl FnMut(Step) + Clone + 'static,
+    pulse: Pulse,
+) -> Result<Outcome, InferError> {
     settings.costs.check()?;
     check(facades)?;
-    let search = Search::new(facades, settings)?;
+    let mut search = Search::new(facades, settings)?;
+    search.pulse = pulse;
     let (rules, lower_bound) = match settings.method {
         Method::AdpBest => {
             let (rules, lower) = search.best(facades, observer)?;

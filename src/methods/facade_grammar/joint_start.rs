@@ -30,8 +30,10 @@ impl Search<'_> {
         let mut known: FxHashMap<TypeId, Ruled> = FxHashMap::default();
         for (index, facade) in facades.iter().enumerate() {
             let alone = std::slice::from_ref(facade);
-            let search = Search::new(alone, self.settings)?;
-            let (rules, _) = search.best(alone, |_| {})?;
+            let mut search = Search::new(alone, self.settings)?;
+            search.pulse = Rc::clone(&self.pulse);
+            let pulse = Rc::clone(&self.pulse);
+            let (rules, _) = search.best(alone, move |_| pulse())?;
             let (from, to) = (&mut search.types.borrow_mut(), &mut self.types.borrow_mut());
             for rule in rules {
                 let region = on_layout(from, rule.id, to, index);

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync } from "node:fs";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { changed, open, picture, press, shown, studio } from "./studio.mjs";
@@ -98,6 +98,74 @@ export const designs = (begin, saved) => ({
     return faults.concat(second.faults);
   },
 
+  /** The columns and rows of a grid, and a repeat A B A: dragged, sized, put in and taken out. */
+  async grids(_server, context) {
+    const folder = mkdtempSync(join(tmpdir(), "studio-"));
+    const file = join(folder, "hall.grammar.json");
+    const part = (symbol, size) => ({ symbol, size });
+    const rules = [
+      { symbol: "Hall", op: "split", axis: "y", successors: [part("Ground", 4), part("Upper", 8)] },
+      { symbol: "Ground", op: "split", axis: "x", successors: [part("Bay", 8), part("door", 8), part("Bay", 8)] },
+      { symbol: "Bay", op: "grid_split", columns: [2, 4, 2], rows: [1, 3], cells: [["wall", "balcony", "wall"], ["wall", "window", "wall"]] },
+      { symbol: "Upper", op: "repeat_aba", axis: "x", successors: [part("wall", 2), part("Opening", 3.5)] },
+      { symbol: "Opening", op: "split", axis: "y", successors: [part("wall", 2), part("window", 6)] },
+    ];
+    writeFileSync(file, JSON.stringify({ format: "edifice/grammar", version: 1, axiom: "Hall", unit: "m", width: 24, height: 12, rules }));
+    const server = await studio([file]);
+    server.folder = folder;
+    server.read = (name) => readFileSync(join(folder, name));
+    const { page, faults } = await open(context, server.address);
+    await page.getByRole("button", { name: /hall/ }).first().click();
+    let doc = await shown(page);
+    const windows = (view) => view.terminals.filter((t) => t[0] === "window" && t[2] < 4);
+    const drag = async (border, dx, dy) => {
+      const box = await page.locator(`svg.drawing rect.border[data-border="${border}"]`).first().boundingBox();
+      const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await page.mouse.move(x + dx, y + dy, { steps: 4 });
+      await page.mouse.up();
+    };
+    // A column and a row of the grid are dragged: both bays follow.
+    await page.locator("ol.rules button").nth(2).click();
+    assert.equal(await page.locator("svg.drawing rect.border").count(), 3);
+    doc = await changed(page, () => drag("c0", 10, 0));
+    assert.match(doc.log.at(-1).said, /^border 2\.c0=/);
+    doc = await changed(page, () => drag("r0", 0, 8));
+    const [one, two] = windows(doc.view);
+    assert.ok(one[3] < 4 && one[4] > 3 && Math.abs(one[3] - two[3]) < 1e-6 && Math.abs(one[4] - two[4]) < 1e-6);
+    // A copy of a column, another size for it, and a floor by the buttons.
+    doc = await changed(page, () => page.getByRole("button", { name: "Insert a copy of column 2" }).click());
+    assert.equal(windows(doc.view).length, 4);
+    doc = await changed(page, async () => {
+      const size = page.getByLabel("Size of column 1");
+      await size.fill("1");
+      await size.press("Enter");
+    });
+    assert.match(doc.log.at(-1).said, /^resize 2\.c0=1$/);
+    const height = doc.view.height;
+    await press(page, doc.view.terminals.findIndex((t) => t[0] === "window"));
+    doc = await changed(page, () => page.getByRole("button", { name: "Insert floor" }).click());
+    assert.equal(doc.log.at(-1).said, "grow 2.r1");
+    assert.ok(doc.view.height > height);
+    await picture(page, "grid");
+    doc = await changed(page, () => page.getByRole("button", { name: "Remove floor" }).click());
+    assert.ok(Math.abs(doc.view.height - height) < 1e-9);
+    // The repeat: its border, and a period more; it always has two parts.
+    await page.locator("ol.rules button").nth(3).click();
+    assert.equal(await page.getByRole("button", { name: /^Remove part/ }).count(), 0);
+    doc = await changed(page, () => drag("0", 6, 0));
+    assert.match(doc.log.at(-1).said, /^border 3\.0=/);
+    const { width } = doc.view;
+    await press(page, doc.view.terminals.findIndex((t) => t[0] === "window" && t[2] > 4));
+    doc = await changed(page, () => page.getByRole("button", { name: "Insert column" }).click());
+    assert.equal(doc.log.at(-1).said, "grow 3.1");
+    assert.ok(doc.view.width > width);
+    await saved(server, page, ".grammar.json");
+    assert.equal(await server.end(), 0);
+    return faults;
+  },
+
   /** A facade over a photograph whose corners are put on the facade's. */
   async photograph(server, context) {
     const { page, faults } = await begin(server, context, /An empty facade/);
@@ -181,8 +249,27 @@ export const designs = (begin, saved) => ({
       await page.mouse.up();
     });
     assert.ok(doc.view.elements.find((e) => e.id === id).width < given[0].width);
-    await saved(server, page, ".facade.json");
-    return faults;
+    // It is part of the document: undone with it, saved with it, and there when the file is opened again.
+    const picked = () => page.locator("svg.drawing image").getAttribute("href");
+    const address = await picked();
+    assert.match(address, /^data:image\/jpeg;base64,/);
+    await changed(page, () => page.getByRole("button", { name: "No photograph" }).click());
+    await page.locator("svg.drawing image").waitFor({ state: "detached" });
+    doc = await changed(page, () => page.keyboard.press("Control+z"));
+    await page.locator("svg.drawing image").waitFor();
+    assert.equal(await picked(), address);
+    const file = JSON.parse(await saved(server, page, ".facade.json"));
+    assert.equal(file.photograph, address);
+    const again = await studio([join(server.folder, `${doc.name}.facade.json`), "--read-only"]);
+    const second = await open(context, again.address);
+    await second.page.getByRole("button", { name: new RegExp(doc.name) }).first().click();
+    assert.equal((await shown(second.page)).view.elements.length, doc.view.elements.length);
+    await second.page.locator("svg.drawing image").waitFor();
+    assert.equal(await second.page.locator("svg.drawing image").getAttribute("href"), address);
+    await picture(second.page, "photograph_again");
+    await second.page.close();
+    await again.end();
+    return faults.concat(second.faults);
   },
 
   /** A city of triangles: levels, the original beside, a building and its rules, a drawn shape, where one is. */

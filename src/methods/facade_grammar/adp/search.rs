@@ -10,7 +10,7 @@ use super::symmetry;
 use super::walk::{Explore, Inference, SharedTypes};
 use crate::grammar::Grammar;
 use crate::methods::facade_grammar::baselines;
-use crate::methods::facade_grammar::infer::{InferError, Settings};
+use crate::methods::facade_grammar::infer::{InferError, Pulse, Settings};
 use crate::methods::facade_grammar::regions::Types;
 use crate::methods::facade_grammar::rules::AddRule;
 use crate::methods::facade_grammar::rules::extract;
@@ -25,6 +25,8 @@ pub(in crate::methods::facade_grammar) struct Search<'a> {
     pub fresh: Types,
     pub types: SharedTypes,
     pub exploration: Rc<RefCell<Exploration>>,
+    /// Called inside long steps.
+    pub pulse: Pulse,
 }
 
 impl<'a> Search<'a> {
@@ -51,6 +53,7 @@ impl<'a> Search<'a> {
             fresh,
             types: Rc::new(RefCell::new(types)),
             exploration: Rc::new(RefCell::new(exploration)),
+            pulse: Rc::new(|| {}),
         })
     }
 

@@ -47,6 +47,9 @@ impl Dual<'_> {
         // One step at least: a branch is closed only by what a derivation shows.
         for _ in 0..steps.max(1) {
             *work = work.saturating_sub(self.program.items as u64);
+            if let Some(pulse) = &incumbent.pulse {
+                pulse();
+            }
             let bound = self.bound();
             if bound > found.bound + 1e-6 {
                 found.bound = bound;

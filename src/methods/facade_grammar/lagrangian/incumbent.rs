@@ -4,6 +4,7 @@ use super::derivation::{Paths, Prices, Rule};
 use super::program::Program;
 use super::region_type::Written;
 use crate::grammar::Costs;
+use crate::methods::facade_grammar::infer::Pulse;
 use crate::methods::facade_grammar::operations::Operations;
 use crate::methods::facade_grammar::regions::Types;
 use crate::methods::facade_grammar::rules::AddRule;
@@ -12,9 +13,10 @@ use crate::methods::facade_grammar::rules::AddRule;
 pub(crate) const NOISE: f64 = 1e-7;
 
 /// The cheapest grammar met, and when a bound shows that none is cheaper.
-#[derive(Debug)]
 pub(crate) struct Incumbent {
     pub cost: f64,
+    /// Called at every step of the search for a cheaper one.
+    pub pulse: Option<Pulse>,
     /// Its rules; none when only the cost is known.
     rules: Vec<Written>,
     /// What all costs are multiples of.
@@ -26,6 +28,7 @@ impl Incumbent {
     pub fn new(cost: f64, costs: &Costs, operations: Operations) -> Self {
         Self {
             cost,
+            pulse: None,
             rules: Vec::new(),
             granularity: granularity(costs, operations),
         }

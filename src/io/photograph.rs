@@ -1,0 +1,98 @@
+//! Photographs as `data:` addresses: text that holds the picture itself, and leads nowhere.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use image::{ImageFormat, ImageReader};
+
+use super::read_bytes;
+use crate::shape::{Photograph, PhotographError, PhotographFormat};
+use crate::{Error, Result};
+
+/// Why a text or a file is no photograph.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadPhotographError {
+    /// The text is no address of a picture that it holds.
+    #[error(
+        "expected a picture as text, data:image/jpeg;base64,... or data:image/png;base64,..., found {0:?}"
+    )]
+    Address(String),
+    /// The text after the comma is not base64.
+    #[error("the picture is not base64: {0}")]
+    Base64(#[from] base64::DecodeError),
+    /// The bytes are of no picture, or of another format than the address says.
+    #[error("neither a JPEG nor a PNG picture, or another one than its address says")]
+    Format,
+    /// Its header cannot be read.
+    #[error("the picture cannot be read: {0}")]
+    Picture(#[from] image::ImageError),
+    /// It is too large.
+    #[error(transparent)]
+    Large(#[from] PhotographError),
+}
+
+/// Reads a picture, `.jpg` or `.png`, or a text file that holds its address.
+///
+/// # Errors
+/// Names the file and what is wrong with it.
+pub fn read(path: &Path) -> Result<Photograph> {
+    let bytes = read_bytes(path)?;
+    let read = match std::str::from_utf8(&bytes) {
+        Ok(text) if text.starts_with("data:") => of_address(text.trim_end()),
+        _ => of_bytes(bytes),
+    };
+    read.map_err(|e| Error::content(path, e.to_string()))
+}
+
+/// The picture of a file's bytes.
+///
+/// # Errors
+/// [`ReadPhotographError`].
+pub fn of_bytes(bytes: Vec<u8>) -> Result<Photograph, ReadPhotographError> {
+    let reader = ImageReader::new(Cursor::new(&bytes)).with_guessed_format();
+    let reader = reader.map_err(image::ImageError::IoError)?;
+    let format = match reader.format() {
+        Some(ImageFormat::Jpeg) => PhotographFormat::Jpeg,
+        Some(ImageFormat::Png) => PhotographFormat::Png,
+        _ => return Err(ReadPhotographError::Format),
+    };
+    let (width, height) = reader.into_dimensions()?;
+    Ok(Photograph::new(format, [width, height], bytes)?)
+}
+
+/// The picture in an address.
+///
+/// # Errors
+/// [`ReadPhotographError`].
+pub fn of_address(text: &str) -> Result<Photograph, ReadPhotographError> {
+    let begin = |format| text.strip_prefix(head(format));
+    let found = [PhotographFormat::Jpeg, PhotographFormat::Png]
+        .into_iter()
+        .find_map(|format| Some((format, begin(format)?)));
+    let Some((format, encoded)) = found else {
+        let start = text.chars().take(40).collect();
+        return Err(ReadPhotographError::Address(start));
+    };
+    let picture = of_bytes(STANDARD.decode(encoded)?)?;
+    match picture.format() == format {
+        true => Ok(picture),
+        false => Err(ReadPhotographError::Format),
+    }
+}
+
+/// The address of a picture.
+pub fn address(picture: &Photograph) -> String {
+    let mut text = head(picture.format()).to_owned();
+    STANDARD.encode_string(picture.bytes(), &mut text);
+    text
+}
+
+/// What stands before the picture in its address.
+fn head(format: PhotographFormat) -> &'static str {
+    match format {
+        PhotographFormat::Jpeg => "data:image/jpeg;base64,",
+        PhotographFormat::Png => "data:image/png;base64,",
+    }
+}
