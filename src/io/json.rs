@@ -23,6 +23,10 @@ pub(super) fn number(value: f64) -> String {
 /// [`Error::Input`] for malformed JSON, wrong types, missing or duplicate keys, numbers that do not
 /// fit, and text after the value.
 pub fn parse_json<T: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<T> {
+    // Keeping track of the place more than doubles the time; it is needed only where something is wrong.
+    if let Ok(value) = serde_json::from_slice(bytes) {
+        return Ok(value);
+    }
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let value = serde_path_to_error::deserialize(&mut json).map_err(|e| {
         let place = match e.path().to_string() {

@@ -25,12 +25,23 @@ pub struct Cell {
     pub intervals: Vec<(Plane, Plane)>,
 }
 
+/// A prism that stands, as far as is known, on a part of the polygon: some of its sides may still cut it.
+#[derive(Clone)]
+struct Candidate {
+    prism: usize,
+    /// Sides that ran across the polygon before its last cut; the polygon is left of all others.
+    sides: Vec<Line>,
+}
+
 /// Cuts the plan.
 pub fn cells(prisms: &[Prism]) -> Vec<Cell> {
     let mut cells = Vec::new();
-    let all: Vec<usize> = (0..prisms.len()).collect();
+    let all = prisms.iter().enumerate().map(|(prism, p)| Candidate {
+        prism,
+        sides: p.region.clone(),
+    });
     if let Some(polygon) = frame(prisms) {
-        subdivide(polygon, &all, prisms, &mut cells);
+        subdivide(polygon, &all.collect::<Vec<_>>(), prisms, &mut cells);
     }
     cells
 }
@@ -61,34 +72,40 @@ fn frame(prisms: &[Prism]) -> Option<Polygon> {
     })
 }
 
-fn subdivide(polygon: Polygon, candidates: &[usize], prisms: &[Prism], out: &mut Vec<Cell>) {
-    let mut over = Vec::with_capacity(candidates.len());
+fn subdivide(polygon: Polygon, candidates: &[Candidate], prisms: &[Prism], out: &mut Vec<Cell>) {
+    let mut over: Vec<Candidate> = Vec::with_capacity(candidates.len());
     let mut cut = None;
-    for &i in candidates {
+    for candidate in candidates {
+        let mut sides = Vec::new();
         let mut outside = false;
-        let mut cutting = None;
-        for line in &prisms[i].region {
+        for line in &candidate.sides {
             match polygon.against(line) {
-                Position::Right => outside = true,
-                Position::Across => cutting = Some(*line),
+                Position::Right => {
+                    outside = true;
+                    break;
+                }
+                Position::Across => sides.push(*line),
                 Position::Left => {}
             }
         }
         if !outside {
-            over.push(i);
-            cut = cut.or(cutting);
+            cut = cut.or(sides.last().copied());
+            let prism = candidate.prism;
+            over.push(Candidate { prism, sides });
         }
     }
     if over.is_empty() {
         return;
     }
-    let cut = cut.or_else(|| crossing_planes(&polygon, &over, prisms));
+    let standing = || over.iter().map(|c| c.prism);
+    let cut = cut.or_else(|| crossing_planes(&polygon, standing(), prisms));
     if let Some(line) = cut {
         let (left, right) = polygon.split(&line);
         subdivide(left, &over, prisms, out);
         subdivide(right, &over, prisms, out);
         return;
     }
+    let over: Vec<usize> = standing().collect();
     let intervals = intervals(&polygon, &over, prisms);
     if !intervals.is_empty() {
         out.push(Cell {
@@ -99,20 +116,28 @@ fn subdivide(polygon: Polygon, candidates: &[usize], prisms: &[Prism], out: &mut
     }
 }
 
-/// A line in which two planes cross over the polygon.
-fn crossing_planes(polygon: &Polygon, over: &[usize], prisms: &[Prism]) -> Option<Line> {
+/// A line in which two planes cross over the polygon: one is higher at one vertex, the other at another.
+fn crossing_planes(
+    polygon: &Polygon,
+    over: impl Iterator<Item = usize>,
+    prisms: &[Prism],
+) -> Option<Line> {
     let mut planes: Vec<Plane> = over
-        .iter()
-        .flat_map(|&i| [prisms[i].lower, prisms[i].upper])
+        .flat_map(|i| [prisms[i].lower, prisms[i].upper])
         .collect();
     planes.sort_unstable();
     planes.dedup();
-    for (i, p) in planes.iter().enumerate() {
-        for q in &planes[i + 1..] {
-            if let Some(line) = p.above(q)
-                && polygon.against(&line) == Position::Across
-            {
-                return Some(line);
+    let corners = &polygon.vertices;
+    let heights: Vec<i128> = planes
+        .iter()
+        .flat_map(|p| corners.iter().map(|v| p.at(v)))
+        .collect();
+    let of = |i: usize| &heights[i * corners.len()..(i + 1) * corners.len()];
+    for i in 0..planes.len() {
+        for j in i + 1..planes.len() {
+            let both = || of(i).iter().zip(of(j));
+            if both().any(|(p, q)| p > q) && both().any(|(p, q)| p < q) {
+                return planes[i].above(&planes[j]);
             }
         }
     }
@@ -161,11 +186,13 @@ impl Polygon {
                 Ordering::Less => right = true,
                 Ordering::Equal => {}
             }
+            if left && right {
+                return Position::Across;
+            }
         }
-        match (left, right) {
-            (true, true) => Position::Across,
-            (false, true) => Position::Right,
-            _ => Position::Left,
+        match right {
+            true => Position::Right,
+            false => Position::Left,
         }
     }
 

@@ -87,7 +87,8 @@ pub struct Point {
 impl Point {
     /// A point from any homogeneous coordinates, `w` not zero.
     pub fn new(x: i128, y: i128, w: i128) -> Self {
-        let g = gcd(gcd(x, y), w) * w.signum();
+        // The denominator is the smallest number as a rule, and 1 where both lines run along the axes.
+        let g = gcd(gcd(w, x), y) * w.signum();
         Self {
             x: x / g,
             y: y / g,
@@ -160,6 +161,9 @@ impl Plane {
 /// Greatest common divisor, not negative.
 fn gcd(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.abs(), b.abs());
+    if a == 1 || b == 1 {
+        return 1;
+    }
     while b != 0 {
         // Most numbers fit 64 bits, where division is much faster.
         if let (Ok(p), Ok(q)) = (u64::try_from(a), u64::try_from(b)) {

@@ -91,6 +91,10 @@ pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &Plan) -> Faces {
         for (i, line) in lines.iter().enumerate() {
             let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
             let other = plan.left.get(&(b, a)).map(|&o| &cells[o as usize]);
+            // Nothing ends here, as on most edges: a side of one prism cut the cells of others too.
+            if other.is_some_and(|o| o.intervals == cells[k].intervals) {
+                continue;
+            }
             let edge = Edge { a, b, line: *line };
             walls(
                 prisms,

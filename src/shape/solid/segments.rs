@@ -40,11 +40,11 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
     for (line, on) in &mut by_line {
         *on = points.on(line);
     }
-    let first = rings(cells, &corners, &by_line);
+    let (first, lines) = rings(cells, &corners, &by_line);
     // Where walls of the two sides cross within a segment, it is split once more.
     let left = owners(&first);
     let mut extra: FxHashMap<Line, Vec<u32>> = FxHashMap::default();
-    for (k, (ring, lines)) in first.0.iter().zip(&first.1).enumerate() {
+    for (k, (ring, lines)) in first.iter().zip(&lines).enumerate() {
         for (i, line) in lines.iter().enumerate() {
             let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
             let Some(&other) = left.get(&(b, a)) else {
@@ -60,6 +60,14 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
             }
         }
     }
+    if extra.is_empty() {
+        return Plan {
+            points: points.list,
+            rings: first,
+            lines,
+            left,
+        };
+    }
     for (line, more) in extra {
         if let Some(on) = by_line.get_mut(&line) {
             on.extend(more);
@@ -67,7 +75,7 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
         }
     }
     let (rings, lines) = rings(cells, &corners, &by_line);
-    let left = owners(&(rings.clone(), lines.clone()));
+    let left = owners(&rings);
     Plan {
         points: points.list,
         rings,
@@ -78,19 +86,26 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
 
 /// Points strictly between the ends where a plane of one cell crosses one of the other.
 fn crossings(a: &Cell, b: &Cell, line: &Line, ends: &[Point; 2]) -> Vec<Point> {
-    let planes =
-        |c: &Cell| -> Vec<Plane> { c.intervals.iter().flat_map(|(l, u)| [*l, *u]).collect() };
     let mut found = Vec::new();
+    // Planes of one cell never cross inside it or on its edges.
+    if a.intervals == b.intervals {
+        return found;
+    }
     for p in planes(a) {
+        let own = ends.each_ref().map(|end| p.at(end));
         for q in planes(b) {
-            let Some(equal) = p.above(&q) else { continue };
-            let sides = [equal.side(&ends[0]), equal.side(&ends[1])];
+            let sides = [0, 1].map(|k| own[k].cmp(&q.at(&ends[k])));
             if sides[0] == sides[1].reverse() && sides[0].is_ne() {
-                found.extend(line.crossing(&equal));
+                found.extend(p.above(&q).and_then(|equal| line.crossing(&equal)));
             }
         }
     }
     found
+}
+
+/// Lower and upper planes of the intervals.
+fn planes(cell: &Cell) -> impl Iterator<Item = Plane> + '_ {
+    cell.intervals.iter().flat_map(|(l, u)| [*l, *u])
 }
 
 type Rings = (Vec<Vec<u32>>, Vec<Vec<Line>>);
@@ -121,8 +136,9 @@ fn rings(cells: &[Cell], corners: &[Vec<u32>], by_line: &FxHashMap<Line, OnLine>
     (rings, lines)
 }
 
-fn owners((rings, _): &Rings) -> FxHashMap<(u32, u32), u32> {
+fn owners(rings: &[Vec<u32>]) -> FxHashMap<(u32, u32), u32> {
     let mut left = FxHashMap::default();
+    left.reserve(rings.iter().map(Vec::len).sum());
     for (k, ring) in rings.iter().enumerate() {
         for i in 0..ring.len() {
             left.insert((ring[i], ring[(i + 1) % ring.len()]), k as u32);

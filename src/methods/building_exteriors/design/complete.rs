@@ -13,7 +13,7 @@ use crate::methods::building_exteriors::data::table;
 use crate::methods::building_exteriors::facade::FixedPiece;
 use crate::methods::building_exteriors::house::walls::walls_of_pieces;
 use crate::methods::building_exteriors::house::{
-    Database, Frozen, GenerateError, Generated, Options, Wish, finish,
+    Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft,
 };
 use crate::methods::building_exteriors::mass::contradiction::check_given;
 use crate::methods::building_exteriors::mass::repair::{changes, repair};
@@ -131,9 +131,10 @@ pub fn completions(
         }
         let name = format!("{}_{}", partial.name, k + 1);
         let mut rng = stream(seed, "building/complete/house", k as u64);
-        match around(
+        let house = around(
             &name, partial, wanted, &is_given, database, options, &mut rng,
-        ) {
+        );
+        match house.and_then(|house| Ok(house.build()?)) {
             Ok(house) => houses.push(house),
             Err(e) => first = first.or(Some(e)),
         }
@@ -162,7 +163,7 @@ pub fn completions(
 }
 
 /// A house with the wanted attributes around the boxes and facade pieces of a partial house, at the corner of
-/// `options.frozen` where it is known.
+/// `options.frozen` where it is known; without its surface, so that rows can be compared.
 ///
 /// # Errors
 /// [`CompleteError`].
@@ -174,7 +175,7 @@ pub fn around(
     database: &Database,
     options: &Options,
     rng: &mut impl Rng,
-) -> Result<Generated, CompleteError> {
+) -> Result<Draft, CompleteError> {
     check_given(wanted, given).map_err(GenerateError::from)?;
     let frozen = Frozen {
         boxes: partial.boxes.clone(),
@@ -187,7 +188,7 @@ pub fn around(
         ..options.clone()
     };
     let (row, known) = reconciled(partial, wanted, given)?;
-    let mut best: Option<(Generated, f64)> = None;
+    let mut best: Option<Draft> = None;
     let mut failed = None;
     let corners = corner.map_or_else(|| origins(partial, &row), |c| vec![c]);
     for origin in corners {
@@ -201,21 +202,18 @@ pub fn around(
             rng,
         ) {
             Ok(house) => {
-                let z = house.report.repaired_z;
-                if best.as_ref().is_none_or(|(_, least)| z < *least) {
-                    best = Some((house, z));
+                let z = house.repaired_z();
+                if best.as_ref().is_none_or(|b| z < b.repaired_z()) {
+                    best = Some(house);
                 }
             }
             Err(e) => failed = failed.or(Some(e)),
         }
-        if best.as_ref().is_some_and(|(_, z)| *z <= NEAR) {
+        if best.as_ref().is_some_and(|b| b.repaired_z() <= NEAR) {
             break;
         }
     }
-    match best {
-        Some((house, _)) => Ok(house),
-        None => Err(failed.unwrap_or(CompleteError::Hidden)),
-    }
+    best.ok_or_else(|| failed.unwrap_or(CompleteError::Hidden))
 }
 
 /// The house with its corner at `origin`; `rows` are the wanted and the reconciled row and which columns must stay.
@@ -227,7 +225,7 @@ fn placed(
     database: &Database,
     options: &Options,
     rng: &mut impl Rng,
-) -> Result<Generated, CompleteError> {
+) -> Result<Draft, CompleteError> {
     let (wanted, mut row, mut known) = (rows.0, *rows.1, *rows.2);
     for b in &partial.boxes {
         if let Some(k) = part_of(b, origin[1] + row[1] / 2.0) {
@@ -274,7 +272,7 @@ fn placed(
         row: &row,
         repaired: changes,
     };
-    let house = finish(wish, mass, database, options, rng)?;
+    let house = draft(wish, mass, database, options, rng)?;
     match stands(&house.building, &options.frozen.pieces) {
         true => Ok(house),
         false => Err(CompleteError::Hidden),

@@ -7,7 +7,7 @@ use super::observed::wanted_rows;
 use crate::methods::building_exteriors::attributes::{AttributeRow, COLUMNS, attributes};
 use crate::methods::building_exteriors::data::table;
 use crate::methods::building_exteriors::house::{
-    Database, Frozen, GenerateError, Generated, Options, Wish, finish,
+    Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft,
 };
 use crate::methods::building_exteriors::mass::target::{PARTS, bounds};
 use crate::methods::building_exteriors::mass::{MASS, MassModel, Search, is_sound};
@@ -169,7 +169,8 @@ pub fn edited(
         row: &row,
         repaired: Vec::new(),
     };
-    Ok(finish(wish, mass, database, &options, rng)?)
+    let house = draft(wish, mass, database, &options, rng)?;
+    Ok(house.build()?)
 }
 
 fn sound(boxes: &Building) -> Result<(), EditError> {
@@ -233,13 +234,13 @@ pub fn suggested(
             },
             ..options.clone()
         };
-        let mut best: Option<Generated> = None;
+        let mut best: Option<Draft> = None;
         for wanted in &rows {
             let name = &house.name;
             match around(name, &own, wanted, &given, database, &options, rng) {
                 Ok(found) => {
-                    let z = found.report.repaired_z;
-                    if best.as_ref().is_none_or(|b| z < b.report.repaired_z) {
+                    let z = found.repaired_z();
+                    if best.as_ref().is_none_or(|b| z < b.repaired_z()) {
                         best = Some(found);
                     }
                     if z <= NEAR {
@@ -250,7 +251,7 @@ pub fn suggested(
             }
         }
         if let Some(best) = best {
-            return Ok(best);
+            return Ok(best.build()?);
         }
     }
     Err(failed.unwrap_or(CompleteError::Hidden).into())

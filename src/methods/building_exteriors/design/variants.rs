@@ -4,7 +4,7 @@ use rand::Rng;
 
 use crate::methods::building_exteriors::attributes::attributes;
 use crate::methods::building_exteriors::house::{
-    Database, GenerateError, Generated, Options, Wish, finish,
+    Database, GenerateError, Generated, Options, Wish, draft,
 };
 use crate::methods::building_exteriors::mass::{MassTarget, variations};
 use crate::shape::Building;
@@ -42,7 +42,8 @@ pub fn variants(
             row: &row,
             repaired: Vec::new(),
         };
-        houses.push(finish(wish, mass, database, options, rng)?);
+        let house = draft(wish, mass, database, options, rng)?;
+        houses.push(house.build()?);
     }
     houses.sort_by_key(|h| h.report.max_z > NEAR);
     houses.truncate(count);

@@ -1,5 +1,7 @@
 //! The houses that donate: boxes, roofs, windows.
 
+use rayon::prelude::*;
+
 use crate::methods::building_exteriors::attributes::{
     AttributeError, AttributeRow, COLUMNS, attributes,
 };
@@ -36,8 +38,8 @@ impl Database {
         if buildings.is_empty() {
             return Err(DatabaseError::Empty);
         }
-        let rows = buildings.iter().map(attributes);
-        let rows = rows.collect::<Result<Vec<_>, _>>()?;
+        let rows: Vec<_> = buildings.par_iter().map(attributes).collect();
+        let rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
         let deviations = std::array::from_fn(|c| deviation(&rows, c));
         debug_assert_eq!(COLUMNS.len(), 49);
         Ok(Self {

@@ -4,7 +4,7 @@ use rand::{Rng, RngExt};
 use serde::Serialize;
 
 use super::Database;
-use super::model::{Model, model};
+use super::model::{Model, furnished};
 use super::roof_styles::roof;
 use super::roofs::Joining;
 use super::solids::prisms;
@@ -21,7 +21,7 @@ use crate::methods::building_exteriors::mass::{
 };
 use crate::optim::annealing::AnnealingError;
 use crate::optim::genetic::{GeneticError, Settings};
-use crate::shape::solid::{SurfaceError, faces};
+use crate::shape::solid::{Faces, SurfaceError, faces};
 use crate::shape::{Building, MassBox, Rect, Special};
 
 /// Continuous columns: mass and facades.
@@ -203,30 +203,29 @@ pub fn generate(
         repaired,
     };
     let first = mass.building.clone();
-    let house = finish(wish.clone(), mass, database, options, rng)?;
+    let mut best = draft(wish.clone(), mass, database, options, rng)?;
     let searched = options.footprint.is_none() && options.method == Method::Best;
-    if !searched || house.report.repaired_z <= NEAR {
-        return Ok(house);
+    if !searched || best.repaired_z() <= NEAR {
+        return best.build();
     }
     // The walls have no room for the wanted facades: other plans may.
-    let mut best = house;
     let few = Search {
         rounds: ROUNDS,
         ..options.search.clone()
     };
     let unlike = [first];
     for mass in variations(&target, OTHERS, APART, &unlike, database, &few, rng) {
-        let other = finish(wish.clone(), mass, database, options, rng)?;
+        let other = draft(wish.clone(), mass, database, options, rng)?;
         let spent = best.report.evaluations + other.report.evaluations;
-        if other.report.repaired_z < best.report.repaired_z {
+        if other.repaired_z() < best.repaired_z() {
             best = other;
         }
         best.report.evaluations = spent;
-        if best.report.repaired_z <= NEAR {
+        if best.repaired_z() <= NEAR {
             break;
         }
     }
-    Ok(best)
+    best.build()
 }
 
 /// What a mass model is to become.
@@ -242,17 +241,58 @@ pub struct Wish<'a> {
     pub repaired: Vec<Change>,
 }
 
+/// A house with roofs and facades, measured, but without its surface: what alternatives are compared by, since the
+/// exact surface costs more than all the rest.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    /// Its parameters.
+    pub building: Building,
+    /// Its walls and roofs without openings.
+    shell: Faces,
+    /// The numbers of the surface are still 0.
+    report: HouseReport,
+}
+
+impl Draft {
+    /// Largest distance from the repaired row in standard deviations.
+    pub fn repaired_z(&self) -> f64 {
+        self.report.repaired_z
+    }
+
+    /// The house with its surface.
+    ///
+    /// # Errors
+    /// [`GenerateError::Surface`].
+    pub fn build(self) -> Result<Generated, GenerateError> {
+        let Self {
+            building,
+            shell,
+            mut report,
+        } = self;
+        let model = furnished(&building, shell)?;
+        report.triangles = model.report.triangles;
+        report.shells = model.report.shells;
+        report.volume = model.report.volume;
+        report.unplaced = model.unplaced.len();
+        Ok(Generated {
+            building,
+            model,
+            report,
+        })
+    }
+}
+
 /// Puts roofs and facades on a mass model.
 ///
 /// # Errors
 /// [`GenerateError`].
-pub fn finish(
+pub fn draft(
     wish: Wish,
     mass: MassModel,
     database: &Database,
     options: &Options,
     rng: &mut impl Rng,
-) -> Result<Generated, GenerateError> {
+) -> Result<Draft, GenerateError> {
     let Wish {
         name, wanted, row, ..
     } = wish;
@@ -268,9 +308,9 @@ pub fn finish(
         .filter(|(c, _)| flag(*c))
         .map(|(_, s)| s)
         .collect();
-    let facades = facades(&building, row, database, options, rng)?;
+    let shell = faces(&prisms(&building, options.joining));
+    let facades = facades(&building, &shell, row, database, options, rng)?;
     building.facades = facades.pieces;
-    let model = model(&building, options.joining)?;
     let reached: Vec<f64> = attributes(&building)?
         .into_iter()
         .map(|v| v.unwrap_or(0.0))
@@ -286,17 +326,17 @@ pub fn finish(
         styles: (NUMBERS..49).all(|c| (reached[c] > 0.5) == (wanted[c] > 0.5)),
         donor: mass.donor.map(|d| database.buildings[d].name.clone()),
         evaluations: mass.evaluations + facades.evaluations,
-        triangles: model.report.triangles,
-        shells: model.report.shells,
-        volume: model.report.volume,
-        unplaced: model.unplaced.len(),
+        triangles: 0,
+        shells: 0,
+        volume: 0.0,
+        unplaced: 0,
         wanted: wanted.to_vec(),
         repaired: wish.repaired,
         reached,
     };
-    Ok(Generated {
+    Ok(Draft {
         building,
-        model,
+        shell,
         report,
     })
 }
@@ -304,12 +344,12 @@ pub fn finish(
 /// The facades of a method.
 fn facades(
     building: &Building,
+    shell: &Faces,
     row: &[f64; 49],
     database: &Database,
     options: &Options,
     rng: &mut impl Rng,
 ) -> Result<Facades, GenerateError> {
-    let shell = faces(&prisms(building, options.joining));
     let flag = |c: usize| row[c] > 0.5;
     let target = FacadeTarget {
         wanted: std::array::from_fn(|k| row[MASS + k]),
@@ -319,7 +359,7 @@ fn facades(
     };
     let deviations = &database.deviations[MASS..NUMBERS];
     if options.method == Method::Best {
-        return Ok(furnish(building, &shell, &target, deviations));
+        return Ok(furnish(building, shell, &target, deviations));
     }
     let flags = std::array::from_fn(|k| flag(NUMBERS + k));
     let own = elements(database, &flags, options.search.leave_out, rng);
@@ -328,5 +368,5 @@ fn facades(
         ..Settings::default()
     };
     let seed = rng.random();
-    Ok(breed(building, &shell, &target, &own, deviations, settings, seed)?.0)
+    Ok(breed(building, shell, &target, &own, deviations, settings, seed)?.0)
 }

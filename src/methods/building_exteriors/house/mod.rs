@@ -12,7 +12,7 @@ pub mod windows;
 
 pub use database::{Database, DatabaseError};
 pub use generate::{
-    Frozen, GenerateError, Generated, HouseReport, Method, Options, Wish, finish, generate,
+    Draft, Frozen, GenerateError, Generated, HouseReport, Method, Options, Wish, draft, generate,
 };
 pub use model::{Model, model};
 pub use roofs::Joining;

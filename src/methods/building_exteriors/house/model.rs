@@ -34,8 +34,14 @@ const LINTEL: f64 = 0.25;
 /// # Errors
 /// [`SurfaceError`] when the solids touch in a line only.
 pub fn model(building: &Building, joining: Joining) -> Result<Model, SurfaceError> {
-    let solids = prisms(building, joining);
-    let mut shell = faces(&solids);
+    furnished(building, faces(&prisms(building, joining)))
+}
+
+/// The same from the faces of the building's prisms, without openings.
+///
+/// # Errors
+/// As [`model`].
+pub(super) fn furnished(building: &Building, mut shell: Faces) -> Result<Model, SurfaceError> {
     let mut unplaced = Vec::new();
     let mut openings = 0.0;
     let walls = walls_of_pieces(building);
