@@ -8,10 +8,11 @@ use super::houses::wild;
 use super::{data, settings};
 use crate::experiments::Context;
 use crate::methods::building_exteriors::attributes::{COLUMNS, mass_attributes};
+use crate::methods::building_exteriors::design::possible_rows;
 use crate::methods::building_exteriors::house::{Database, Options, generate, model};
 use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use crate::methods::building_exteriors::mass::{
-    MASS, MassModel, MassTarget, Search, is_sound, max_z, nearest, search,
+    MASS, MassModel, MassTarget, Search, is_sound, least_z, max_z, nearest, search,
 };
 use crate::model::hierarchy::learn;
 use crate::model::{Cell, Table as Data};
@@ -73,6 +74,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .model
         .sample(many, &mut rng)
         .map_err(Error::method)?;
+    let possible = possible_rows(many, &[false; 49], &database.deviations, || {
+        let draws = learned.model.sample(many, &mut rng);
+        draws.map(|d| d.table).map_err(Error::method)
+    })?;
+    ctx.setting("drawn_for_possible", possible.drawn);
     let probable = learned
         .model
         .most_probable(&Data::new(), many.min(100), 2000, 0.05, None, &mut rng)
@@ -102,6 +108,10 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let wild_rows = (0..wilder as u64).map(|i| mass_attributes(&wild(WILD_SEED, i)));
     add("wild", wild_rows.collect());
     add("sampled", rows_of(&sampled.table));
+    add(
+        "possible",
+        possible.rows.iter().map(|r| r.to_vec()).collect(),
+    );
     add("most_probable", rows_of(&probable.table));
 
     let answers: Vec<Answer> = ctx.units(
@@ -109,7 +119,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         |u| format!("{}/{}/{}", u.dataset, u.method, u.house),
         |u| answer(u, &database, seed),
     )?;
-    tell(ctx, &units, &answers);
+    tell(ctx, &units, &answers, &database.deviations);
     Ok(())
 }
 
@@ -247,7 +257,7 @@ fn mass_model(
 }
 
 /// Rows, and a table of shares by set and method.
-fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer]) {
+fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer], deviations: &[f64; 49]) {
     let seed = ctx.seed();
     for (unit, answer) in units.iter().zip(answers) {
         let flag = |b: bool| f64::from(u8::from(b));
@@ -282,6 +292,7 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer]) {
                 "all ≤ 0.05",
                 "all ≤ 0.25",
                 "repaired ≤ 0.05",
+                "cannot be ≤ 0.25",
                 "valid",
                 "watertight",
                 "ms (median)",
@@ -303,6 +314,20 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer]) {
                 own.iter().filter(|a| keep(a)).count() as f64 / own.len() as f64
             )
         };
+        // Of whole rows only.
+        let rows = units
+            .iter()
+            .filter(|u| (u.dataset, u.method) == (dataset, method));
+        let rows: Vec<[f64; 49]> = rows
+            .filter_map(|u| u.wanted.as_slice().try_into().ok())
+            .collect();
+        let beyond = match rows.is_empty() {
+            true => "–".to_owned(),
+            false => {
+                let far = rows.iter().filter(|r| least_z(r, deviations) > 0.25);
+                format!("{:.3}", far.count() as f64 / rows.len() as f64)
+            }
+        };
         let median = |value: &dyn Fn(&Answer) -> f64| {
             let mut values: Vec<f64> = own.iter().map(|a| value(a)).collect();
             values.sort_by(f64::total_cmp);
@@ -318,6 +343,7 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer]) {
             share(&|a| a.max_z <= 0.05),
             share(&|a| a.max_z <= 0.25),
             share(&|a| a.repaired_z <= 0.05),
+            beyond,
             share(&|a| a.valid),
             share(&|a| a.watertight),
             format!("{:.2}", 1e3 * median(&|a| a.seconds)),
@@ -329,6 +355,9 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer]) {
         "`best` on `shipped` (the house itself is no donor), `sampled` and `most_probable` builds whole houses, all 39 \
          numbers; the other methods, and `wild`, are mass models, 27 numbers. Wild houses have donors of the shipped \
          set only. Sampled rows contradict themselves (`far` is not `bcr / arf.0`, absent parts have sizes): \
-         \"repaired\" is the distance from the nearest row that a house can have.",
+         \"repaired\" is the distance from the nearest row that a house can have; \"cannot be ≤ 0.25\" is the share \
+         of rows to which no house at all comes nearer than 0.25, by a lower bound from conditions that hold of every \
+         house (porches stand inside the bounding box, `far = bcr / arf.0`, storeys of 2.1 m, ...). `possible` is the \
+         model truncated to rows that need repairs of at most 0.25, by rejection: what `building generate` builds.",
     );
 }

@@ -8,4 +8,5 @@ mod errors;
 mod fuzz;
 mod generation;
 mod io;
+mod possible;
 mod shipped;

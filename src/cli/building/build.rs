@@ -6,16 +6,20 @@ use edifice::editing::building_exteriors::is_file_name;
 use edifice::io::building_csv::{self, TextTable};
 use edifice::io::footprint;
 use edifice::methods::building_exteriors::attributes::COLUMNS;
+use edifice::methods::building_exteriors::design::{MOVED, Possible, possible_rows, wanted_rows};
 use edifice::methods::building_exteriors::house::Options;
 use edifice::methods::building_exteriors::mass::footprint::decided;
-use edifice::model::{Cell, Table};
+use edifice::methods::building_exteriors::model_file::ModelFile;
+use edifice::model::Table;
 use edifice::rng::stream;
+use edifice::shape::Rect;
 use edifice::{Error, Result};
 
 use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
 use crate::cli::model::given::evidence;
+use crate::cli::print;
 
 /// Options of `build`.
 #[derive(clap::Args)]
@@ -46,6 +50,9 @@ pub struct GenerateArgs {
     /// Draw many and keep the most probable that differ.
     #[arg(long)]
     most_probable: bool,
+    /// Build every sample, also those that no house can have; they are repaired. Without it such samples are drawn anew.
+    #[arg(long, conflicts_with = "most_probable")]
+    untruncated: bool,
     /// Footprint of all houses: one rectilinear polygon without holes, in degrees or metres (GeoJSON).
     #[arg(long, value_name = "FILE", conflicts_with = "style")]
     footprint: Option<PathBuf>,
@@ -107,40 +114,72 @@ fn orders(table: &TextTable, path: &Path, given: bool) -> Result<Vec<Order>> {
     Ok(orders)
 }
 
+/// Draws a batch of samples at each call.
+type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
+
+/// Where the samples of `generate` come from, and what is given.
+fn sampler<'a>(
+    args: &'a GenerateArgs,
+    file: &'a ModelFile,
+    plan: Option<&[Rect]>,
+) -> Result<(Sampler<'a>, Table)> {
+    let mut rng = stream(args.output.seed, "building/sample", 0);
+    if let Some(style) = args.style {
+        let index = style.checked_sub(1);
+        let index = index.ok_or_else(|| Error::option("--style", "the first style is 1"))?;
+        let batch = move || {
+            let draws = file.model.sample_style(index, args.count, &mut rng);
+            let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
+            Ok(draws.table)
+        };
+        return Ok((Box::new(batch), Table::new()));
+    }
+    let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
+    let mut given = evidence(&file.groups, &kinds.table, &args.given)
+        .map_err(|e| Error::option("--given", e.to_string()))?;
+    for (c, value) in plan.into_iter().flat_map(decided) {
+        // What --given says of the plan is checked against it when the houses are made.
+        if given.column(COLUMNS[c]).is_err() {
+            given = given
+                .real(COLUMNS[c], [Some(value)])
+                .map_err(Error::method)?;
+        }
+    }
+    let draw = Draw::new(args.count, args.most_probable, args.output.seed);
+    let (evidence, mut batches) = (given.clone(), 0..);
+    let batch = move || drawn_table(file, &evidence, &draw, batches.next().unwrap_or(0));
+    Ok((Box::new(batch), given))
+}
+
 /// Runs `generate`.
 pub fn generate(args: &GenerateArgs) -> Result<()> {
     let file = data::model(&args.model)?;
-    let mut rng = stream(args.output.seed, "building/sample", 0);
     if args.count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
     let plan = args.footprint.as_deref().map(footprint::read).transpose()?;
-    let (table, given) = match args.style {
-        Some(style) => {
-            let index = style.checked_sub(1);
-            let index = index.ok_or_else(|| Error::option("--style", "the first style is 1"))?;
-            let draws = file.model.sample_style(index, args.count, &mut rng);
-            let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
-            (draws.table, Table::new())
-        }
-        None => {
-            let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-            let mut given = evidence(&file.groups, &kinds.table, &args.given)
-                .map_err(|e| Error::option("--given", e.to_string()))?;
-            for (c, value) in plan.iter().flat_map(|plan| decided(plan)) {
-                // What --given says of the plan is checked against it when the houses are made.
-                if given.column(COLUMNS[c]).is_err() {
-                    given = given
-                        .real(COLUMNS[c], [Some(value)])
-                        .map_err(Error::method)?;
-                }
-            }
-            let draw = Draw::new(args.count, args.most_probable, args.output.seed);
-            (drawn_table(&file, &given, &draw, 0)?, given)
+    let (mut draw, given) = sampler(args, &file, plan.as_deref())?;
+    let is_given: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
+    let database = args.output.making.database()?;
+    let rows = match args.most_probable || args.untruncated {
+        true => wanted_rows(&whole(draw()?, &args.model)?),
+        false => {
+            let deviations = &database.deviations;
+            let whole = || whole(draw()?, &args.model);
+            let possible = possible_rows(args.count, &is_given, deviations, whole)?;
+            tell(&possible);
+            possible.rows
         }
     };
-    let orders = sampled(&table, &given, &args.model)?;
-    let database = args.output.making.database()?;
+    let orders: Vec<Order> = rows
+        .iter()
+        .enumerate()
+        .map(|(row, wanted)| Order {
+            name: format!("house_{:04}", row + 1),
+            wanted: *wanted,
+            given: is_given,
+        })
+        .collect();
     let options = Options {
         footprint: plan,
         ..args.output.making.options()
@@ -148,30 +187,32 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
     produce(&orders, &database, &options, &args.output)
 }
 
-/// The rows of a table of draws; columns of the evidence are given.
-pub fn sampled(table: &Table, given: &Table, model: &Path) -> Result<Vec<Order>> {
-    let is_given: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
-    let mut orders = Vec::with_capacity(table.rows());
-    for row in 0..table.rows() {
-        let mut wanted = [0.0; 49];
-        for (value, name) in wanted.iter_mut().zip(COLUMNS) {
-            let column = table.column(name).map_err(|_| {
-                Error::content(
-                    model,
-                    format!("the model has no column `{name}`: houses need all 49"),
-                )
-            })?;
-            *value = match column.cell(row) {
-                Cell::Real(v) => v,
-                Cell::Code(code) => code as f64,
-                Cell::Missing => 0.0,
-            };
-        }
-        orders.push(Order {
-            name: format!("house_{:04}", row + 1),
-            wanted,
-            given: is_given,
-        });
+/// Says how many samples were passed over.
+fn tell(possible: &Possible) {
+    let houses = possible.rows.len();
+    if possible.drawn > houses {
+        print::message(&format!(
+            "{} of {} samples passed over: no house can have them within {MOVED} standard deviations (--untruncated \
+             builds them too)",
+            possible.drawn - houses,
+            possible.drawn
+        ));
     }
-    Ok(orders)
+    if possible.impossible > 0 {
+        print::message(&format!(
+            "the last {} of {houses} rows were among them: nothing better was drawn",
+            possible.impossible
+        ));
+    }
+}
+
+/// A table of draws that has all columns.
+fn whole(table: Table, model: &Path) -> Result<Table> {
+    match COLUMNS.iter().find(|name| table.column(name).is_err()) {
+        None => Ok(table),
+        Some(name) => Err(Error::content(
+            model,
+            format!("the model has no column `{name}`: houses need all 49"),
+        )),
+    }
 }

@@ -26,6 +26,7 @@
 //! - A garage and a porch are one box each.
 
 pub mod anneal;
+mod bound;
 pub mod contradiction;
 mod fit;
 pub mod footprint;
@@ -35,6 +36,7 @@ mod scheme;
 mod search;
 pub mod target;
 
+pub use bound::least_z;
 pub use scheme::Block;
 pub use search::{MassError, MassModel, Search, iou, nearest, search, variations};
 pub use target::{MassTarget, PartTarget};

@@ -9,7 +9,7 @@ const N: usize = COLUMNS.len();
 /// A part smaller or lower than this is absent (m).
 const ABSENT: [f64; 2] = [0.8, 1.2];
 /// Least height of a floor and of a part (m).
-const LEAST_FLOOR: f64 = 2.1;
+pub(super) const LEAST_FLOOR: f64 = 2.1;
 const LEAST_PART: f64 = 1.8;
 /// Alignment nearer than this to none or all is none or all.
 const NEARLY: f64 = 0.12;
@@ -67,6 +67,10 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N], deviations: &[f64; N]) -> V
         );
     }
     let floors = floors(row) as f64;
+    if floors == 1.0 {
+        // Elements are aligned with those of the floor below.
+        (35..39).for_each(|c| set(row, c, 0.0));
+    }
     for (c, least) in [(0, 4.0), (1, 4.0), (2, LEAST_FLOOR * floors)] {
         let value = row[c].max(least);
         set(row, c, value);
