@@ -292,6 +292,7 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer], deviations: &[f64
                 "all ≤ 0.05",
                 "all ≤ 0.25",
                 "repaired ≤ 0.05",
+                "cannot be ≤ 0.05",
                 "cannot be ≤ 0.25",
                 "valid",
                 "watertight",
@@ -321,10 +322,10 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer], deviations: &[f64
         let rows: Vec<[f64; 49]> = rows
             .filter_map(|u| u.wanted.as_slice().try_into().ok())
             .collect();
-        let beyond = match rows.is_empty() {
+        let beyond = |z: f64| match rows.is_empty() {
             true => "–".to_owned(),
             false => {
-                let far = rows.iter().filter(|r| least_z(r, deviations) > 0.25);
+                let far = rows.iter().filter(|r| least_z(r, deviations) > z);
                 format!("{:.3}", far.count() as f64 / rows.len() as f64)
             }
         };
@@ -343,7 +344,8 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer], deviations: &[f64
             share(&|a| a.max_z <= 0.05),
             share(&|a| a.max_z <= 0.25),
             share(&|a| a.repaired_z <= 0.05),
-            beyond,
+            beyond(0.05),
+            beyond(0.25),
             share(&|a| a.valid),
             share(&|a| a.watertight),
             format!("{:.2}", 1e3 * median(&|a| a.seconds)),
@@ -355,8 +357,8 @@ fn tell(ctx: &mut Context, units: &[Unit], answers: &[Answer], deviations: &[f64
         "`best` on `shipped` (the house itself is no donor), `sampled` and `most_probable` builds whole houses, all 39 \
          numbers; the other methods, and `wild`, are mass models, 27 numbers. Wild houses have donors of the shipped \
          set only. Sampled rows contradict themselves (`far` is not `bcr / arf.0`, absent parts have sizes): \
-         \"repaired\" is the distance from the nearest row that a house can have; \"cannot be ≤ 0.25\" is the share \
-         of rows to which no house at all comes nearer than 0.25, by a lower bound from conditions that hold of every \
+         \"repaired\" is the distance from the nearest row that a house can have; \"cannot be\" is the share of \
+         rows to which no house at all comes nearer, by a lower bound from conditions that hold of every \
          house (porches stand inside the bounding box, `far = bcr / arf.0`, storeys of 2.1 m, ...). `possible` is the \
          model truncated to rows that need repairs of at most 0.25, by rejection: what `building generate` builds.",
     );

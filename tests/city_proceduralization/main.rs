@@ -4,4 +4,5 @@ mod commands;
 mod compact;
 mod gltf;
 mod grammar;
+mod interrupted;
 mod invariance;

@@ -141,6 +141,11 @@ impl PartialLayout {
     /// Whether an added element may stand there: within the outline, its centre in the unknown part,
     /// outside forbidden rectangles, and no observed element excludes it.
     pub fn allows(&self, element: &Element) -> bool {
+        self.has_room(element) && self.observed.iter().all(|o| !o.excludes(element))
+    }
+
+    /// The same but for the observed elements.
+    pub fn has_room(&self, element: &Element) -> bool {
         let r = &element.rect;
         let (x, y) = r.centre();
         let slack = 1e-9 * self.width.max(self.height);
@@ -152,7 +157,6 @@ impl PartialLayout {
             && r.top() <= self.height + slack
             && self.is_unknown(x, y)
             && self.forbidden.iter().all(|f| f.overlap(r) <= 0.0)
-            && self.observed.iter().all(|o| !o.excludes(element))
     }
 
     /// The observed elements of a class.

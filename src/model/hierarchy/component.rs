@@ -114,14 +114,12 @@ impl Component {
             missing.extend(own.iter().filter(|&&c| real[c].is_nan()));
         }
         let first = (Particle::empty(), vec![1.0; shape.structure.styles]);
-        // What one assignment explains, taken greedily, all together explain at least.
-        let mut one = first.clone();
-        for (g, missing) in &levels {
-            let next = row.extensions(&one, *g, missing).into_iter();
-            let best = next.max_by(|a, b| log_most(a).total_cmp(&log_most(b)));
-            one = best.unwrap_or(one);
-        }
-        let least = log_most(&one) - NEGLIGIBLE;
+        let least = row.least(&first, &levels);
+        let reaches = |(particle, weights): &Weighted, to_come: f64| {
+            let most = particle.log_density + to_come;
+            let mut styles = weights.iter().zip(&least);
+            styles.any(|(w, least)| *w > 0.0 && most + w.ln() >= *least)
+        };
         // And no assignment explains what is still to come better than at the peaks of its densities.
         let mut to_come: f64 = groups.iter().map(|&g| row.peak(g)).sum();
         let mut alive = vec![first];
@@ -130,7 +128,7 @@ impl Component {
             let mut next: Vec<Weighted> = Vec::new();
             for particle in &alive {
                 let extensions = row.extensions(particle, *g, missing).into_iter();
-                next.extend(extensions.filter(|p| log_most(p) + to_come >= least));
+                next.extend(extensions.filter(|p| reaches(p, to_come)));
             }
             next.retain(|(p, _)| p.log_density > f64::NEG_INFINITY);
             if next.len() > MOST {
@@ -148,21 +146,34 @@ impl Component {
         }
     }
 
-    /// `exp(log p(observed values | particle) - most)` of every particle, and the greatest, most.
-    pub fn densities(&self) -> (Vec<f64>, f64) {
-        let logs = self.particles.iter().map(|p| p.log_density);
-        let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
-        (logs.map(|l| (l - most).exp()).collect(), most)
+    /// `P(states | s) exp(log p(observed values | particle) - most(s))`, particle by particle, and for every style the
+    /// greatest log density of its particles, `most(s)`: a style of small densities may be the one that other groups
+    /// of the row ask for.
+    pub fn by_style(&self, styles: usize) -> (Vec<f64>, Vec<f64>) {
+        let mut most = vec![f64::NEG_INFINITY; styles];
+        let rows = || self.weights.chunks(styles).zip(&self.particles);
+        for (weights, particle) in rows() {
+            for (most, _) in most.iter_mut().zip(weights).filter(|(_, w)| **w > 0.0) {
+                *most = most.max(particle.log_density);
+            }
+        }
+        let mut densities = self.weights.clone();
+        for (row, particle) in densities.chunks_mut(styles).zip(&self.particles) {
+            // As a rule all styles have the same greatest one.
+            let mut last = (f64::NAN, 0.0);
+            for (density, &most) in row.iter_mut().zip(&most).filter(|(w, _)| **w > 0.0) {
+                if most != last.0 {
+                    last = (most, (particle.log_density - most).exp());
+                }
+                *density *= last.1;
+            }
+        }
+        (densities, most)
     }
 }
 
 /// An assignment with P(its states | s) of every style s.
 type Weighted = (Particle, Vec<f64>);
-
-/// `max_s log P(states | s) p(observed values | states)`.
-fn log_most((particle, weights): &Weighted) -> f64 {
-    particle.log_density + weights.iter().copied().fold(0.0, f64::max).ln()
-}
 
 /// A row under a model.
 struct Row<'a> {
@@ -213,6 +224,40 @@ impl Row<'_> {
             }
         }
         all
+    }
+
+    /// For every style, [`NEGLIGIBLE`] nats less than `log P(states | s) p(observed values | states)` of one assignment,
+    /// taken greedily: what all together come to at least. Other groups of the row may leave any style alone possible, so
+    /// that an assignment is negligible only where it is so for each style by itself.
+    fn least(&self, first: &Weighted, levels: &[(usize, Vec<usize>)]) -> Vec<f64> {
+        let styles = self.shape.structure.styles;
+        let log = |(particle, weights): &Weighted, s: usize| particle.log_density + weights[s].ln();
+        // Styles that took the same states so far share their assignment.
+        let mut taken = vec![(first.clone(), (0..styles).collect::<Vec<_>>())];
+        for (g, missing) in levels {
+            let mut next: Vec<(Weighted, Vec<usize>)> = Vec::new();
+            for (one, own) in taken {
+                let extensions = self.extensions(&one, *g, missing);
+                let mut of: Vec<Vec<usize>> = vec![Vec::new(); extensions.len()];
+                for s in own {
+                    let best = (0..extensions.len())
+                        .max_by(|&a, &b| log(&extensions[a], s).total_cmp(&log(&extensions[b], s)));
+                    if let Some(best) = best {
+                        of[best].push(s);
+                    }
+                }
+                let all = extensions.into_iter().zip(of);
+                next.extend(all.filter(|(_, styles)| !styles.is_empty()));
+            }
+            taken = next;
+        }
+        let mut least = vec![f64::NEG_INFINITY; styles];
+        for (one, own) in &taken {
+            for &s in own {
+                least[s] = log(one, s) - NEGLIGIBLE;
+            }
+        }
+        least
     }
 
     /// The greatest log density that any state of group `g` can give to its observed values, whatever its inputs are.

@@ -90,14 +90,12 @@ impl Scratch {
         for i in 0..self.pattern.linked.len() {
             let groups = &self.pattern.linked[i];
             let component = Component::new(shape, params, groups, real, codes);
-            let (densities, most) = component.densities();
+            let (densities, most) = component.by_style(styles);
             let mut totals = vec![0.0; styles];
-            for (weights, density) in component.weights.chunks(styles).zip(&densities) {
-                for (total, w) in totals.iter_mut().zip(weights) {
-                    *total += w * density;
-                }
+            for row in densities.chunks(styles) {
+                totals.iter_mut().zip(row).for_each(|(t, d)| *t += d);
             }
-            for (l, total) in self.style.iter_mut().zip(&totals) {
+            for ((l, total), most) in self.style.iter_mut().zip(&totals).zip(&most) {
                 *l += most + total.ln();
             }
             self.components.push(component);
@@ -281,14 +279,10 @@ impl Scratch {
 
 /// `P(s, particle | x)` given `P(s | x)`, particle by particle.
 pub(crate) fn joint(component: &Component, style: &[f64]) -> Vec<f64> {
-    let (densities, _) = component.densities();
-    let mut joint = component.weights.clone();
+    let (mut joint, _) = component.by_style(style.len());
     let mut totals = vec![0.0; style.len()];
-    for (row, density) in joint.chunks_mut(style.len()).zip(&densities) {
-        for (j, total) in row.iter_mut().zip(&mut totals) {
-            *j *= density;
-            *total += *j;
-        }
+    for row in joint.chunks(style.len()) {
+        totals.iter_mut().zip(row).for_each(|(t, j)| *t += j);
     }
     let factors = totals.iter().zip(style);
     let factors: Vec<f64> = factors

@@ -2,6 +2,7 @@
 
 use rand::{Rng, RngExt};
 
+use super::by_place::ByPlace;
 use super::scene::{Scene, of};
 use crate::methods::structure_completion::layout::lines::{Line, median};
 use crate::methods::structure_completion::layout::{Class, Element};
@@ -22,7 +23,8 @@ const DOORS: f64 = 0.1;
 /// with the share of windows with balconies in its row and its column, placed as the nearest one of them.
 pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R) -> Vec<Element> {
     let lattice = Lattice::new(scene, columns, rows);
-    let mut added: Vec<Element> = Vec::new();
+    let facade = [scene.partial.width, scene.partial.height];
+    let mut added = ByPlace::new(facade, scene.size, rows.len() * columns.len());
     for (r, row) in rows.iter().enumerate() {
         for (c, column) in columns.iter().enumerate() {
             let cell = lattice.cell(r, c);
@@ -33,12 +35,7 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
                     let rect = Rect::new(column.at - wide / 2.0, row.at - high / 2.0, wide, high);
                     let element = Element::new(Class::Window, rect);
                     let share = lattice.share(r, c, |cell| cell.window.is_some());
-                    let taken = scene
-                        .elements
-                        .iter()
-                        .chain(&added)
-                        .any(|e| e.excludes(&element));
-                    if taken || !scene.partial.allows(&element) || rng.random::<f64>() > share {
+                    if !is_free(scene, &added, &element) || rng.random::<f64>() > share {
                         continue;
                     }
                     added.push(element);
@@ -57,17 +54,17 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
             repeat(scene, element, columns, share, rng, &mut added);
         }
     }
-    added
+    added.into_elements()
+}
+
+/// Whether an element may stand there: observed elements are among those of the scene.
+fn is_free(scene: &Scene, added: &ByPlace, element: &Element) -> bool {
+    !scene.elements.exclude(element) && !added.exclude(element) && scene.partial.has_room(element)
 }
 
 /// Adds an element where it is allowed and free.
-fn add(scene: &Scene, element: Element, added: &mut Vec<Element>) {
-    let taken = scene
-        .elements
-        .iter()
-        .chain(added.iter())
-        .any(|e| e.excludes(&element));
-    if !taken && scene.partial.allows(&element) {
+fn add(scene: &Scene, element: Element, added: &mut ByPlace) {
+    if is_free(scene, added, &element) {
         added.push(element);
     }
 }
@@ -79,7 +76,7 @@ fn repeat<R: Rng>(
     columns: &[Line],
     share: f64,
     rng: &mut R,
-    added: &mut Vec<Element>,
+    added: &mut ByPlace,
 ) {
     let x = element.rect.centre().0;
     let near = columns

@@ -6,6 +6,7 @@
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
 //! 4. [`select`]: the set of elements with the largest expected F1.
 
+mod by_place;
 pub mod candidates;
 pub mod chain;
 pub mod density;

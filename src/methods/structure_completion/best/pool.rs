@@ -126,7 +126,7 @@ pub fn pool(
     if !scene.elements.is_empty() {
         for (axis, count) in sampled_axes(&scene, &model.columns, DRAWS, rng) {
             let added = symmetry::additions(&scene, axis);
-            let mut elements = scene.elements.clone();
+            let mut elements = scene.elements.to_vec();
             elements.extend(&added);
             let mirrored = Scene::new(partial, elements, fallback);
             let images: Vec<(Element, Reason)> =

@@ -1,5 +1,6 @@
 //! What a partial layout says of its lattice: lines of its windows, how much of them is seen, typical sizes.
 
+use super::by_place::ByPlace;
 use crate::methods::structure_completion::layout::lines::{Line, lines, median};
 use crate::methods::structure_completion::layout::{Class, Element};
 use crate::methods::structure_completion::partial::PartialLayout;
@@ -14,7 +15,7 @@ pub struct Scene<'a> {
     /// The input.
     pub partial: &'a PartialLayout,
     /// Observed elements, and those that are taken as observed (mirrored ones).
-    pub elements: Vec<Element>,
+    pub elements: ByPlace,
     /// Columns of the windows.
     pub columns: Vec<Line>,
     /// Rows of the windows, from the bottom.
@@ -48,9 +49,12 @@ impl<'a> Scene<'a> {
         } else {
             0.0
         };
+        let facade = [partial.width, partial.height];
+        let mut by_place = ByPlace::new(facade, (wide, high), elements.len());
+        elements.into_iter().for_each(|e| by_place.push(e));
         Self {
             partial,
-            elements,
+            elements: by_place,
             columns,
             rows,
             size: (wide, high),

@@ -4,6 +4,7 @@
 //! of the width). The weight of an axis is its prior by offset, times how well the mirrored lines continue
 //! the observed ones (density of gap ratios), times how well mirrored elements agree with the known part.
 
+use super::by_place::ByPlace;
 use super::density::Spacing;
 use super::scene::Scene;
 use crate::methods::structure_completion::layout::{Class, Element};
@@ -42,19 +43,20 @@ pub fn mirrored(element: &Element, axis: f64) -> Element {
 
 /// Mirror images that may be added: allowed, and excluded by none of the observed or added ones.
 pub fn additions(scene: &Scene, axis: f64) -> Vec<Element> {
-    let mut added: Vec<Element> = Vec::new();
-    for element in &scene.elements {
+    let facade = [scene.partial.width, scene.partial.height];
+    let mut added = ByPlace::new(facade, scene.size, scene.elements.len());
+    for element in scene.elements.iter() {
         let image = mirrored(element, axis);
         let same = |other: &Element| {
             other.excludes(&image)
                 || (other.class == image.class && other.rect.iou(&image.rect) > 0.3)
         };
-        let taken = scene.elements.iter().chain(&added).any(same);
-        if scene.partial.allows(&image) && !taken {
+        let near = |elements: &ByPlace| elements.any_near(&image.rect, same);
+        if !near(&scene.elements) && !near(&added) && scene.partial.has_room(&image) {
             added.push(image);
         }
     }
-    added
+    added.into_elements()
 }
 
 fn log_weight(scene: &Scene, spacing: &Spacing, axis: f64) -> f64 {
@@ -91,14 +93,7 @@ fn of_elements(scene: &Scene, axis: f64) -> f64 {
     for element in scene.elements.iter().filter(|e| e.class == Class::Window) {
         let image = mirrored(element, axis);
         let (x, y) = image.rect.centre();
-        let own = |e: &&Element| e.class == element.class;
-        let best = scene
-            .elements
-            .iter()
-            .filter(own)
-            .map(|e| e.rect.iou(&image.rect));
-        let best = best.fold(0.0, f64::max);
-        log += match (masked, best) {
+        log += match (masked, scene.elements.best_iou(&image)) {
             (_, iou) if iou > 0.3 => 0.5 * iou,
             (true, _) if !scene.partial.is_unknown(x, y) => -1.0,
             (false, iou) if iou > 0.0 => -0.7,
