@@ -26,7 +26,6 @@ impl Process for Stairs {
 }
 
 struct Coin;
-
 impl Heuristic<Stairs> for Coin {
     fn sample<R: Rng>(&mut self, _: &mut Stairs, _: &usize, rng: &mut R) -> usize {
         if rng.random::<bool>() { 1 } else { 3 }
@@ -39,9 +38,7 @@ struct Table([f64; 13]);
 impl Approximation<Stairs> for Table {
     fn best(&mut self, stairs: &mut Stairs, step: &usize) -> Option<usize> {
         let value = |stride: &usize| stairs.cost(step, stride) + self.0[step + stride];
-        [1, 3]
-            .into_iter()
-            .min_by(|a, b| value(a).total_cmp(&value(b)))
+        Some(if value(&1) <= value(&3) { 1 } else { 3 })
     }
     fn learn(&mut self, _: &mut Stairs, walk: &[usize], costs: &[f64]) {
         let mut step = 0;
@@ -53,9 +50,8 @@ impl Approximation<Stairs> for Table {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let table = Table(std::array::from_fn(
-        |step| if step >= 10 { 0.0 } else { 100.0 },
-    ));
+    let dear = |step| if step >= 10 { 0.0 } else { 100.0 };
+    let table = Table(std::array::from_fn(dear));
     let run = Adp::new(Coin, table, Epsilon::default(), 500, 7).run(&mut Stairs, |_| {})?;
     println!("strides {:?}, cost {}", run.best, run.cost);
     assert_eq!(run.cost, 6.0);
