@@ -1,9 +1,9 @@
 //! Figures of generated houses: Fig. 6 and 15 of Fan and Wonka 2016.
 
-use super::generation::rows_of;
 use super::{data, settings};
 use crate::experiments::Context;
 use crate::io::scene_png::picture_png;
+use crate::methods::building_exteriors::design::possible_rows;
 use crate::methods::building_exteriors::house::scene::{Placed, scene};
 use crate::methods::building_exteriors::house::{Database, Options, generate};
 use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
@@ -85,12 +85,11 @@ pub fn figure_15(ctx: &mut Context) -> Result<()> {
     // One house of each of the first six styles shows what the styles are.
     for k in 0..6 {
         let style = k % learned.model.styles();
-        let draws = learned
-            .model
-            .sample_style(style, 1, &mut rng)
-            .map_err(Error::method)?;
-        let row = &rows_of(&draws.table)[0];
-        let wanted: [f64; 49] = std::array::from_fn(|c| row[c]);
+        let possible = possible_rows(1, &[false; 49], &database.deviations, || {
+            let draws = learned.model.sample_style(style, 1, &mut rng);
+            draws.map(|d| d.table).map_err(Error::method)
+        })?;
+        let wanted = possible.rows[0];
         let name = format!("house_{}", k + 1);
         let made = generate(
             &name,

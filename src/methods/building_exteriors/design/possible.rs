@@ -3,15 +3,18 @@
 //! The groups of the model are Gaussian, and independent but for their edges: a part of its rows has a porch outside
 //! the bounding box, a share of the windows below zero, two storeys in the height of one. The paper repairs them
 //! (Sec. 7: the attributes of a sample conflict). Here the model is truncated to rows that need next to no repair, by
-//! rejection; its density is otherwise as it was learned.
+//! rejection, and with storeys of at most 4.5 m; its density is otherwise as it was learned.
 
 use super::observed::wanted_rows;
 use crate::methods::building_exteriors::mass::max_z;
 use crate::methods::building_exteriors::mass::repair::repair;
+use crate::methods::building_exteriors::mass::target::floors;
 use crate::model::Table;
 
 /// Most that a repair moves a number of a possible row, in standard deviations.
 pub const MOVED: f64 = 0.25;
+/// Highest storey of a dwelling (m): a sample of two storeys' height whose shares of the floors say one has none such.
+const MOST_STOREY: f64 = 4.5;
 /// The 39 numbers.
 const NUMBERS: usize = 39;
 /// Batches of as many rows as are wanted before the search for possible rows ends.
@@ -24,7 +27,7 @@ pub struct Possible {
     pub rows: Vec<[f64; 49]>,
     /// Rows drawn in all.
     pub drawn: usize,
-    /// Those of `rows` that a repair moves by more than [`MOVED`], the last ones: nothing better was drawn.
+    /// Those of `rows` that are not possible, the last ones: nothing better was drawn.
     pub impossible: usize,
 }
 
@@ -50,7 +53,8 @@ pub fn possible_rows<E>(
             let mut repaired = row;
             repair(&mut repaired, given, deviations);
             let moved = max_z(&repaired[..NUMBERS], &row[..NUMBERS], deviations);
-            match moved <= MOVED {
+            let low = row[2] <= MOST_STOREY * floors(&row) as f64;
+            match moved <= MOVED && low {
                 true => rows.push(row),
                 false => others.push((moved, row)),
             }
