@@ -226,19 +226,14 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
         true => Err(CompactError::Truncated),
         false => {
             grammar.check()?;
+            steps::writable(&grammar)?;
             Ok(grammar)
         }
     }
 }
 
-fn in_steps(mesh: &TriangleMesh, steps: i64) -> Result<StepMesh, CompactError> {
-    let step = |v: f64| {
-        let whole = (v * steps as f64).round();
-        match whole.abs() < (1_u64 << 40) as f64 {
-            true => Ok(whole as i64),
-            false => Err(CompactError::Number(v)),
-        }
-    };
+fn in_steps(mesh: &TriangleMesh, shape: i64) -> Result<StepMesh, CompactError> {
+    let step = |v: f64| steps::in_steps(v, shape);
     let mut out = StepMesh::default();
     for p in &mesh.positions {
         let corner = [step(p[0] + 0.5)?, step(p[1] + 0.5)?, step(p[2])?];

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use super::identity::Identities;
 use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
+use super::steps::in_steps;
 use super::{CompactError, Steps};
 use crate::grammar::instance::{InstanceRule, Placement};
 
@@ -316,13 +317,6 @@ impl<'a, C: Coder> Rules<'a, C> {
     fn pose(&self, placed: &Placement) -> Result<Pose, CompactError> {
         let symbol = self.numbers.get(placed.symbol.as_str()).copied();
         let symbol = symbol.ok_or(CompactError::Index("symbol"))?;
-        let in_steps = |v: f64, steps: i64| {
-            let whole = (v * steps as f64).round();
-            match whole.abs() < (1_u64 << 40) as f64 {
-                true => Ok(whole as i64),
-                false => Err(CompactError::Number(v)),
-            }
-        };
         let length = |v: f64| in_steps(v, self.steps.length);
         let [x, y, z] = placed.at;
         let [w, d, h] = match symbol < self.templates {

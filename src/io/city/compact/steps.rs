@@ -24,12 +24,7 @@ const SHAPES: [i64; 8] = [31, 63, 127, 255, 511, 1023, 4095, 65_535];
 impl Steps {
     /// The coarsest steps on which a grammar lies; the finest, where it lies on none.
     pub(super) fn of(grammar: &InstanceGrammar) -> Self {
-        let mut placements = Vec::new();
-        let mut open: Vec<&Placement> = grammar.rules.iter().flat_map(|r| &r.successors).collect();
-        while let Some(p) = open.pop() {
-            placements.push(p);
-            open.extend(p.parts.iter().flatten());
-        }
+        let placements = placements(grammar);
         let templates = || grammar.templates.iter();
         let terminals: rustc_hash::FxHashSet<&str> =
             templates().map(|t| t.symbol.as_str()).collect();
@@ -70,6 +65,44 @@ impl Steps {
             false => Err(CompactError::Steps(self)),
         }
     }
+}
+
+/// A number of steps, if there are not too many.
+pub(super) fn in_steps(v: f64, steps: i64) -> Result<i64, CompactError> {
+    let whole = (v * steps as f64).round();
+    match whole.abs() < (1_u64 << 40) as f64 {
+        true => Ok(whole as i64),
+        false => Err(CompactError::Number(v)),
+    }
+}
+
+/// Refuses numbers that could not be written again, whatever the steps.
+pub(super) fn writable(grammar: &InstanceGrammar) -> Result<(), CompactError> {
+    let finest = |tried: &[i64]| tried.last().copied().unwrap_or(1);
+    let (length, turn, shape) = (finest(&LENGTHS), finest(&TURNS), finest(&SHAPES));
+    for p in placements(grammar) {
+        for v in p.at.into_iter().chain(p.size) {
+            in_steps(v, length)?;
+        }
+        in_steps(p.turn, turn)?;
+    }
+    let corners = grammar.templates.iter().flat_map(|t| &t.mesh.positions);
+    for v in corners.flatten() {
+        // Corners are counted from the side of the box.
+        in_steps(v.abs() + 0.5, shape)?;
+    }
+    Ok(())
+}
+
+/// All placements of all rules, parts of parts too.
+fn placements(grammar: &InstanceGrammar) -> Vec<&Placement> {
+    let mut all = Vec::new();
+    let mut open: Vec<&Placement> = grammar.rules.iter().flat_map(|r| &r.successors).collect();
+    while let Some(p) = open.pop() {
+        all.push(p);
+        open.extend(p.parts.iter().flatten());
+    }
+    all
 }
 
 fn first(tried: &[i64], fits: impl Fn(i64) -> bool) -> i64 {
