@@ -13,6 +13,19 @@ const VARIANTS: [Variant; 4] = [
     Variant::Directed,
 ];
 
+type Cells<T> = Vec<Option<T>>;
+
+/// Width, depth and area, garage and roof as a table.
+fn table_of(lengths: Vec<Cells<f64>>, garage: Cells<bool>, roof: Cells<&str>) -> Table {
+    let mut table = Table::new();
+    for (name, column) in ["width", "depth", "area"].iter().zip(lengths) {
+        table = table.real(name, column).unwrap();
+    }
+    table = table.binary("garage", garage).unwrap();
+    let names = ["flat", "gable", "hip"];
+    table.categorical("roof", &names, roof).unwrap()
+}
+
 /// Houses of three kinds: a group of two lengths, one of a single area that goes with them, a yes or no, a category; one
 /// cell in ten missing.
 fn houses(rows: usize, seed: u64) -> (Table, Vec<Group>) {
@@ -36,14 +49,7 @@ fn houses(rows: usize, seed: u64) -> (Table, Vec<Group>) {
         };
         roof.push(seen(&mut rng).then_some(names[at]));
     }
-    let mut table = Table::new();
-    for (name, column) in ["width", "depth", "area"].iter().zip(columns) {
-        table = table.real(name, column).unwrap();
-    }
-    table = table.binary("garage", garage).unwrap();
-    table = table
-        .categorical("roof", &["flat", "gable", "hip"], roof)
-        .unwrap();
+    let table = table_of(columns, garage, roof);
     let groups = vec![
         Group::new("box", &["width", "depth"]),
         Group::new("size", &["area"]),
@@ -134,14 +140,7 @@ fn rows_anywhere_are_as_dense_in_both() {
                 let name = ["gable", "hip", "flat"][rng.random_range(0..3)];
                 roof.push(known[4].then_some(name));
             }
-            let mut table = Table::new();
-            for (name, column) in ["width", "depth", "area"].iter().zip(columns) {
-                table = table.real(name, column).unwrap();
-            }
-            table = table.binary("garage", garage).unwrap();
-            table = table
-                .categorical("roof", &["flat", "gable", "hip"], roof)
-                .unwrap();
+            let table = table_of(columns, garage, roof);
             let logs = model.log_likelihood(&table).unwrap();
             for (row, &own) in logs.iter().enumerate() {
                 let log = network.log_probability(&evidence(&table, row)).unwrap();
