@@ -81,8 +81,8 @@ pub fn read(path: &Path) -> Result<City> {
     check(city, path)
 }
 
-/// What holds for every format: a building with triangles, finite metres.
-fn check(city: City, path: &Path) -> Result<City> {
+/// What holds for every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
+fn check(mut city: City, path: &Path) -> Result<City> {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for building in &city.buildings {
         for p in &building.mesh.positions {
@@ -104,5 +104,6 @@ fn check(city: City, path: &Path) -> Result<City> {
     if extent < 1.0 {
         return Err(Error::content(path, CityError::Degrees(extent)));
     }
+    city.number_duplicates();
     Ok(city)
 }
