@@ -2,13 +2,14 @@
 //!
 //! A view is a set of buildings near each other, each with width, depth, height and the share of its box that is solid.
 //! Every building of the city is a place to stand; what is seen there are the buildings nearest to it. The
-//! cost of a place is that of the best one-to-one assignment of the view to what is seen there, by squared
-//! differences of standardized features: places are compared by how the buildings look, not by their types alone, because
+//! cost of a place is that of the best one-to-one assignment of the view to what is seen there, by
+//! differences of standardized features under a heavy-tailed loss: places are compared by how the buildings look, not by their types alone, because
 //! a type is all that is left of a building once it is assigned.
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
-use crate::shape::triangles::{City, CityBuilding, OrientedBox};
+use crate::shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
 
 /// What is measured of a building in a view: logarithms of width, depth, height; the solid share.
 pub const VIEW_FEATURES: usize = 4;
@@ -16,6 +17,10 @@ pub const VIEW_FEATURES: usize = 4;
 pub const MOST_SEEN: usize = 10;
 /// More buildings are taken as seen at a place than the view has, since the nearest ones may be hidden.
 const MORE: usize = 1;
+/// Scale of Cauchy's distribution of differences, in standard deviations of a feature.
+const SPREAD: f64 = 0.1;
+/// Cost of a building that is nearer than others in the view and hidden: its chance is e^-HIDDEN.
+const HIDDEN: f64 = 2.0;
 
 /// A building as it is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,22 +46,26 @@ pub struct Landmark {
 
 /// The landmarks of a city, with the indices of their buildings; those without triangles are left out.
 pub fn landmarks(city: &City) -> (Vec<Landmark>, Vec<usize>) {
-    let one = |(i, building): (usize, &CityBuilding)| {
-        let frame = OrientedBox::around(&building.mesh)?;
-        let [width, depth, height] = frame.size;
-        let volume = building.mesh.volume_above(frame.base[2]);
-        let seen = Seen {
+    let one = |(i, b): (usize, &CityBuilding)| Some((landmark(&b.mesh)?, i));
+    let found: Vec<Option<(Landmark, usize)>> =
+        city.buildings.par_iter().enumerate().map(one).collect();
+    found.into_iter().flatten().unzip()
+}
+
+/// A building as a landmark; `None` without positions.
+pub(super) fn landmark(mesh: &TriangleMesh) -> Option<Landmark> {
+    let frame = OrientedBox::around(mesh)?;
+    let [width, depth, height] = frame.size;
+    let volume = mesh.volume_above(frame.base[2]);
+    Some(Landmark {
+        at: [frame.base[0], frame.base[1]],
+        seen: Seen {
             width,
             depth,
             height,
             solid: Some((volume / frame.volume()).clamp(0.0, 1.0)),
-        };
-        let at = [frame.base[0], frame.base[1]];
-        Some((Landmark { at, seen }, i))
-    };
-    let found: Vec<Option<(Landmark, usize)>> =
-        city.buildings.par_iter().enumerate().map(one).collect();
-    found.into_iter().flatten().unzip()
+        },
+    })
 }
 
 /// A place where the view may have been taken.
@@ -64,7 +73,8 @@ pub fn landmarks(city: &City) -> (Vec<Landmark>, Vec<usize>) {
 pub struct Located {
     /// The landmark nearest to it.
     pub landmark: usize,
-    /// Mean squared difference of standardized features.
+    /// Mean over the features of the view of ln(1 + (d / 0.1)²), d the difference in standard deviations; a building that is
+    /// nearer and not in the view adds to it.
     pub cost: f64,
     /// The landmark of each building in the view.
     pub matched: Vec<usize>,
@@ -112,7 +122,7 @@ pub fn locate(landmarks: &[Landmark], view: &[Seen], top: usize) -> Vec<Located>
             let near = index.nearest(landmarks, i, shown);
             let cost = |q: usize, n: usize| {
                 let terms = (0..VIEW_FEATURES).map(|k| (wanted[q][k] - own[near[n]][k]) / scale[k]);
-                terms.filter(|t| t.is_finite()).map(|t| t * t).sum::<f64>()
+                terms.filter(|t| t.is_finite()).map(lost).sum::<f64>()
             };
             let (cost, matched) = assign(view.len(), near.len(), cost);
             Located {
@@ -123,13 +133,51 @@ pub fn locate(landmarks: &[Landmark], view: &[Seen], top: usize) -> Vec<Located>
         })
         .collect();
     found.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.landmark.cmp(&b.landmark)));
-    found.truncate(top);
-    found
+    one_place_each(landmarks, found, top)
 }
 
-/// The cheapest assignment of `rows` rows to different ones of `columns` columns, by dynamic programming over sets
-/// of columns.
+/// What a difference of a standardized feature costs: the negative logarithm of Cauchy's density. A template's solid share may
+/// be far from that of the building it stands for; such a difference must not outweigh all others.
+fn lost(difference: f64) -> f64 {
+    (difference / SPREAD).powi(2).ln_1p()
+}
+
+/// The `top` first of `found`, of the places where the same buildings are seen only the one nearest to them.
+fn one_place_each(landmarks: &[Landmark], found: Vec<Located>, top: usize) -> Vec<Located> {
+    let mut index: FxHashMap<Vec<usize>, usize> = FxHashMap::default();
+    let mut places: Vec<(f64, Located)> = Vec::new();
+    for place in found {
+        let from = landmarks[place.landmark].at;
+        let far = |&l: &usize| {
+            let at = landmarks[l].at;
+            (at[0] - from[0]).hypot(at[1] - from[1])
+        };
+        let away: f64 = place.matched.iter().map(far).sum();
+        let mut seen = place.matched.clone();
+        seen.sort_unstable();
+        match index.get(&seen) {
+            Some(&known) => {
+                let better = away < places[known].0;
+                if better {
+                    places[known] = (away, place);
+                }
+            }
+            None if places.len() < top => {
+                index.insert(seen, places.len());
+                places.push((away, place));
+            }
+            None => {}
+        }
+    }
+    places.into_iter().map(|p| p.1).collect()
+}
+
+/// The cheapest assignment of `rows` rows to different ones of `columns` columns, the nearest first, by dynamic programming over
+/// sets of columns; passing over a column before the last one used costs [`HIDDEN`].
 fn assign(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> (f64, Vec<usize>) {
+    let costs: Vec<Vec<f64>> = (0..rows)
+        .map(|r| (0..columns).map(|c| cost(r, c)).collect())
+        .collect();
     let sets = 1usize << columns;
     let mut best = vec![f64::INFINITY; sets];
     let mut last = vec![usize::MAX; sets];
@@ -140,7 +188,7 @@ fn assign(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> (f
             continue;
         }
         for c in (0..columns).filter(|c| set >> c & 1 == 0) {
-            let (next, now) = (set | 1 << c, best[set] + cost(row, c));
+            let (next, now) = (set | 1 << c, best[set] + costs[row][c]);
             if now < best[next] {
                 best[next] = now;
                 last[next] = c;
@@ -148,10 +196,13 @@ fn assign(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> (f
         }
     }
     let full = (0..sets).filter(|s| s.count_ones() as usize == rows);
-    let Some(mut set) = full.min_by(|&a, &b| best[a].total_cmp(&best[b])) else {
+    // Columns passed over before the last one used.
+    let hidden = |set: usize| (set.ilog2() as usize + 1).saturating_sub(rows) as f64;
+    let whole = |set: usize| best[set] + HIDDEN * hidden(set);
+    let Some(mut set) = full.min_by(|&a, &b| whole(a).total_cmp(&whole(b))) else {
         return (f64::INFINITY, Vec::new());
     };
-    let total = best[set];
+    let total = whole(set);
     let mut matched = vec![0; rows];
     for row in (0..rows).rev() {
         matched[row] = last[set];
@@ -161,21 +212,21 @@ fn assign(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> (f
 }
 
 /// Landmarks on a grid.
-struct Nearest {
+pub(super) struct Nearest {
     cell: f64,
-    grid: rustc_hash::FxHashMap<[i64; 2], Vec<usize>>,
+    grid: FxHashMap<[i64; 2], Vec<usize>>,
     widest: i64,
 }
 
 impl Nearest {
-    fn new(landmarks: &[Landmark]) -> Self {
+    pub(super) fn new(landmarks: &[Landmark]) -> Self {
         let bound = |k: usize, pick: fn(f64, f64) -> f64, from: f64| {
             landmarks.iter().map(|l| l.at[k]).fold(from, pick)
         };
         let extent = |k| bound(k, f64::max, f64::NEG_INFINITY) - bound(k, f64::min, f64::INFINITY);
         let area = extent(0).max(1.0) * extent(1).max(1.0);
         let cell = (2.0 * area / landmarks.len().max(1) as f64).sqrt().max(1.0);
-        let mut grid: rustc_hash::FxHashMap<[i64; 2], Vec<usize>> = Default::default();
+        let mut grid: FxHashMap<[i64; 2], Vec<usize>> = Default::default();
         for (i, l) in landmarks.iter().enumerate() {
             let key = l.at.map(|v| (v / cell).floor() as i64);
             grid.entry(key).or_default().push(i);
@@ -185,7 +236,7 @@ impl Nearest {
     }
 
     /// The `count` landmarks nearest to landmark `i`, itself the first.
-    fn nearest(&self, landmarks: &[Landmark], i: usize, count: usize) -> Vec<usize> {
+    pub(super) fn nearest(&self, landmarks: &[Landmark], i: usize, count: usize) -> Vec<usize> {
         let at = landmarks[i].at;
         let [x, y] = at.map(|v| (v / self.cell).floor() as i64);
         let far = |j: usize| (landmarks[j].at[0] - at[0]).hypot(landmarks[j].at[1] - at[1]);
@@ -221,17 +272,20 @@ mod tests {
     fn the_assignment_is_that_of_all_permutations() {
         let cost = |r: usize, c: usize| ((r * 7 + c * c * 3 + r * c * 5) % 11) as f64;
         let mut least = f64::INFINITY;
+        let passed = |last: usize| HIDDEN * (last as f64 - 2.0);
         for a in 0..4 {
             for b in (0..4).filter(|b| *b != a) {
                 for c in (0..4).filter(|c| *c != a && *c != b) {
-                    least = least.min(cost(0, a) + cost(1, b) + cost(2, c));
+                    let last = a.max(b).max(c);
+                    least = least.min(cost(0, a) + cost(1, b) + cost(2, c) + passed(last));
                 }
             }
         }
         let (found, matched) = assign(3, 4, cost);
         assert_eq!(found, least);
         let sum: f64 = matched.iter().enumerate().map(|(r, &c)| cost(r, c)).sum();
-        assert_eq!(sum, least);
+        let last = matched.iter().max().unwrap();
+        assert_eq!(sum + passed(*last), least);
     }
 
     #[test]

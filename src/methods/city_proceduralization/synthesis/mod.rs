@@ -10,119 +10,40 @@
 //! Whether buildings overlap is read off a grid of 1 m: inner points of a new building must find cells that no other
 //! building covers. A building also brings the open ground that is nearer to it than to any other building of its city: no other may
 //! stand there, so that streets and yards stay open. Buildings are in classes of equally many, by plan area and height, and no class
-//! may run ahead of the others, so that small buildings do not take over where large ones do not fit.
+//! may run ahead of the others, so that small buildings do not take over where large ones do not fit; of the largest, some are put
+//! down before anything else. At the end, buildings are taken out again that make sizes and distances unlike those of the grammar's
+//! city ([`trim`]).
 
 mod occupancy;
+mod shape;
+mod sources;
+mod trim;
 
 use std::collections::VecDeque;
 
 use rand::RngExt;
 
-use self::occupancy::{Footprint, Occupancy, footprint, open_ground};
-use crate::grammar::instance::{
-    InstanceGrammar, InstanceGrammarError, InstanceRule, Placement, TemplateInstance,
-};
+use self::occupancy::Occupancy;
+pub use self::shape::Shape;
+use self::sources::{AREAS, HEIGHTS, Source, sources};
+use super::localization::Landmark;
+use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, InstanceRule};
 use crate::rng;
-use crate::shape::triangles::TriangleMesh;
 
 /// Share of buildings whose neighbours are those of another building of the same type.
-const JUMP: f64 = 0.12;
-/// Neighbours of a building are no farther from it, in metres,
-const REACH: f64 = 80.0;
-/// and so many at most.
-const NEIGHBOURS: usize = 10;
+const JUMP: f64 = 0.08;
 /// Chance places tried one after the other without success before the shape is full.
 const TRIES: usize = 200;
-/// Classes by plan area,
-const AREAS: usize = 16;
-/// and in each by height.
-const HEIGHTS: usize = 2;
 /// A class may have so many times its share of the copies,
 const AHEAD: f64 = 1.05;
 /// and so many more.
 const MORE: f64 = 1.0;
+/// Classes by plan area, from the largest, of which buildings are put down first,
+const LARGE: usize = 1;
+/// as many as this share of the grammar's city's density.
+const DENSITY: f64 = 0.5;
 /// A building is copied no more often than the one copied least, plus this.
 const SPREAD: usize = 1;
-
-/// A shape on the ground: rings in metres, even-odd.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Shape {
-    /// The rings; the last corner joins the first.
-    pub rings: Vec<Vec<[f64; 2]>>,
-}
-
-impl Shape {
-    /// Whether a point is inside.
-    pub fn contains(&self, p: [f64; 2]) -> bool {
-        let mut inside = false;
-        for ring in &self.rings {
-            for (i, a) in ring.iter().enumerate() {
-                let b = ring[(i + 1) % ring.len()];
-                if (a[1] > p[1]) != (b[1] > p[1])
-                    && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-                {
-                    inside = !inside;
-                }
-            }
-        }
-        inside
-    }
-
-    /// Lowest and highest coordinates; `None` without corners.
-    pub fn bounds(&self) -> Option<([f64; 2], [f64; 2])> {
-        let corners = self.rings.iter().flatten();
-        corners.fold(None, |b: Option<([f64; 2], [f64; 2])>, p| {
-            let (l, h) = b.unwrap_or((*p, *p));
-            Some((
-                [l[0].min(p[0]), l[1].min(p[1])],
-                [h[0].max(p[0]), h[1].max(p[1])],
-            ))
-        })
-    }
-
-    /// Area, holes taken off.
-    pub fn area(&self) -> f64 {
-        // Rings inside others count against them, whatever way they turn.
-        let ring_area = |ring: &Vec<[f64; 2]>| {
-            let n = ring.len();
-            let doubled: f64 = (0..n)
-                .map(|i| {
-                    let (a, b) = (ring[i], ring[(i + 1) % n]);
-                    a[0] * b[1] - a[1] * b[0]
-                })
-                .sum();
-            doubled.abs() / 2.0
-        };
-        let depth = |i: usize| {
-            let others = self.rings.iter().enumerate().filter(|(j, _)| *j != i);
-            let around = others.filter(|(_, r)| {
-                let one = Self {
-                    rings: vec![(*r).clone()],
-                };
-                self.rings[i].first().is_some_and(|&p| one.contains(p))
-            });
-            around.count()
-        };
-        (0..self.rings.len())
-            .map(|i| ring_area(&self.rings[i]) * if depth(i) % 2 == 0 { 1.0 } else { -1.0 })
-            .sum()
-    }
-}
-
-/// A building of the grammar's city, to be copied.
-struct Source {
-    /// What stands under the axiom: one symbol, or the templates of a building.
-    placed: Vec<Placement>,
-    kind: usize,
-    /// Class of plan area and height.
-    class: usize,
-    at: [f64; 3],
-    turn: f64,
-    height: f64,
-    footprint: Footprint,
-    /// Other sources near it, the nearest first.
-    near: Vec<usize>,
-}
 
 /// A copy: source, place and turn.
 #[derive(Clone, Copy)]
@@ -142,7 +63,7 @@ pub fn synthesize(
     seed: u64,
 ) -> Result<InstanceGrammar, InstanceGrammarError> {
     let sources = sources(grammar)?;
-    let copies = fill(&sources, shape, seed);
+    let copies = like_the_city(&sources, fill(&sources, shape, seed));
     let mut successors = Vec::new();
     for (i, copy) in copies.iter().enumerate() {
         let source = &sources[copy.source];
@@ -177,120 +98,6 @@ pub fn synthesize(
     Ok(out)
 }
 
-/// The buildings of the grammar's city.
-fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, InstanceGrammarError> {
-    let derivation = grammar.derive()?;
-    let mut parts: Vec<Vec<&TemplateInstance>> = vec![Vec::new(); derivation.buildings.len()];
-    for instance in &derivation.instances {
-        if let Some(b) = instance.building {
-            parts[b].push(instance);
-        }
-    }
-    // What stands right under the axiom is copied as it is, with its rule.
-    let axiom = grammar.rules.iter().find(|r| r.symbol == grammar.axiom);
-    let mut whole = rustc_hash::FxHashMap::default();
-    for s in axiom.iter().flat_map(|r| &r.successors) {
-        if let Some(id) = &s.id {
-            whole.entry(id.as_str()).or_insert_with(Vec::new).push(s);
-        }
-    }
-    let mut kinds: rustc_hash::FxHashMap<Vec<String>, usize> = rustc_hash::FxHashMap::default();
-    let mut out = Vec::new();
-    for ((id, _), parts) in derivation.buildings.iter().zip(&parts) {
-        let Some(first) = parts.first() else { continue };
-        let placed: Vec<Placement> = match whole.get(id.as_str()) {
-            Some(list) => list.iter().map(|p| (*p).clone()).collect(),
-            None => parts.iter().map(|i| terminal(grammar, i)).collect(),
-        };
-        let symbols: Vec<String> = placed.iter().map(|p| p.symbol.clone()).collect();
-        let next = kinds.len();
-        let kind = *kinds.entry(symbols).or_insert(next);
-        let mut mesh = TriangleMesh::default();
-        for part in parts {
-            let template = &grammar.templates[part.template].mesh;
-            mesh.append(&TriangleMesh {
-                positions: template.positions.iter().map(|&p| part.place(p)).collect(),
-                triangles: template.triangles.clone(),
-            });
-        }
-        let (at, turn) = (first.at, placed.first().map_or(0.0, |p| p.turn));
-        out.push(Source {
-            placed,
-            kind,
-            class: 0,
-            at,
-            turn,
-            height: mesh.bounds().map_or(0.0, |b| b.1[2] - b.0[2]),
-            footprint: footprint(&mesh, at, turn),
-            near: Vec::new(),
-        });
-    }
-    let frames: Vec<([f64; 3], f64)> = out.iter().map(|s| (s.at, s.turn)).collect();
-    let prints: Vec<&Footprint> = out.iter().map(|s| &s.footprint).collect();
-    let open = open_ground(&prints, &frames);
-    for (source, open) in out.iter_mut().zip(open) {
-        source.footprint.open = open;
-    }
-    classify(&mut out);
-    let near: Vec<Vec<usize>> = neighbours(&out);
-    for (source, near) in out.iter_mut().zip(near) {
-        source.near = near;
-    }
-    Ok(out)
-}
-
-/// Puts sources into classes of equally many.
-fn classify(sources: &mut [Source]) {
-    let n = sources.len();
-    let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by_key(|&i| (sources[i].footprint.points(), i));
-    for a in 0..AREAS {
-        let own = &mut order[a * n / AREAS..(a + 1) * n / AREAS];
-        own.sort_by(|&i, &j| {
-            sources[i]
-                .height
-                .total_cmp(&sources[j].height)
-                .then(i.cmp(&j))
-        });
-        for (rank, &i) in own.iter().enumerate() {
-            sources[i].class = a * HEIGHTS + rank * HEIGHTS / own.len();
-        }
-    }
-}
-
-fn terminal(grammar: &InstanceGrammar, i: &TemplateInstance) -> Placement {
-    let symbol = grammar.templates[i.template].symbol.clone();
-    Placement::new(symbol, i.at, i.turn, i.size)
-}
-
-/// The nearest sources of each, by a grid.
-fn neighbours(sources: &[Source]) -> Vec<Vec<usize>> {
-    let cell = |p: &[f64; 3]| [0, 1].map(|k| (p[k] / REACH).floor() as i64);
-    let mut grid: rustc_hash::FxHashMap<[i64; 2], Vec<usize>> = rustc_hash::FxHashMap::default();
-    for (i, s) in sources.iter().enumerate() {
-        grid.entry(cell(&s.at)).or_default().push(i);
-    }
-    let far = |i: usize, j: usize| {
-        let (a, b) = (sources[i].at, sources[j].at);
-        (a[0] - b[0]).hypot(a[1] - b[1])
-    };
-    (0..sources.len())
-        .map(|i| {
-            let [x, y] = cell(&sources[i].at);
-            let around = (-1..=1).flat_map(|u| (-1..=1).map(move |v| [x + u, y + v]));
-            let mut near: Vec<usize> = around
-                .filter_map(|c| grid.get(&c))
-                .flatten()
-                .copied()
-                .filter(|&j| j != i && far(i, j) <= REACH)
-                .collect();
-            near.sort_by(|&a, &b| far(i, a).total_cmp(&far(i, b)).then(a.cmp(&b)));
-            near.truncate(NEIGHBOURS);
-            near
-        })
-        .collect()
-}
-
 /// Grows copies inside the shape.
 fn fill(sources: &[Source], shape: &Shape, seed: u64) -> Vec<Copy> {
     let Some((low, high)) = shape.bounds() else {
@@ -313,19 +120,41 @@ fn fill(sources: &[Source], shape: &Shape, seed: u64) -> Vec<Copy> {
     let mut classes = [0usize; AREAS * HEIGHTS];
     // Copies when all of them were last asked for neighbours.
     let mut asked = 0;
-    let mut put =
-        |copy: Copy, copies: &mut Vec<Copy>, used: &mut [usize], classes: &mut [usize]| {
-            let source = &sources[copy.source];
-            let share = copies.len() as f64 / classes.len() as f64;
-            let fits = (classes[source.class] as f64) < AHEAD * share + MORE
-                && ground.take(&source.footprint, copy.at, copy.turn, shape);
-            if fits {
-                classes[source.class] += 1;
-                used[copy.source] += 1;
-                copies.push(copy);
+    let chance =
+        |rng: &mut rng::Stream| [0, 1].map(|k| low[k] + rng.random::<f64>() * (high[k] - low[k]));
+    let mut put = |copy: Copy,
+                   ahead: f64,
+                   copies: &mut Vec<Copy>,
+                   used: &mut [usize],
+                   classes: &mut [usize]| {
+        let source = &sources[copy.source];
+        let share = copies.len() as f64 / classes.len() as f64;
+        let fits = (classes[source.class] as f64) < ahead * (share + MORE)
+            && ground.take(&source.footprint, copy.at, copy.turn, shape);
+        if fits {
+            classes[source.class] += 1;
+            used[copy.source] += 1;
+            copies.push(copy);
+        }
+        fits
+    };
+    // Large buildings find no room between others: as many as the shape will hold are put down first.
+    for source in large(sources, shape, &mut rng) {
+        for _ in 0..TRIES {
+            let at = chance(&mut rng);
+            let turn = sources[source].turn;
+            if put(
+                Copy { source, at, turn },
+                f64::INFINITY,
+                &mut copies,
+                &mut used,
+                &mut classes,
+            ) {
+                queue.push_back(copies.len() - 1);
+                break;
             }
-            fits
-        };
+        }
+    }
     loop {
         let least = used.iter().copied().min().unwrap_or(0);
         let Some(i) = queue.pop_front() else {
@@ -345,10 +174,10 @@ fn fill(sources: &[Source], shape: &Shape, seed: u64) -> Vec<Copy> {
             let least = own.clone().map(|s| used[s]).min().unwrap_or(0);
             let rare: Vec<usize> = own.filter(|&s| used[s] == least).collect();
             let source = rare[rng.random_range(0..rare.len())];
-            let at = [0, 1].map(|k| low[k] + rng.random::<f64>() * (high[k] - low[k]));
+            let at = chance(&mut rng);
             let turn = sources[source].turn;
             let copy = Copy { source, at, turn };
-            if put(copy, &mut copies, &mut used, &mut classes) {
+            if put(copy, AHEAD, &mut copies, &mut used, &mut classes) {
                 failed = 0;
                 queue.push_back(copies.len() - 1);
             } else {
@@ -377,11 +206,55 @@ fn fill(sources: &[Source], shape: &Shape, seed: u64) -> Vec<Copy> {
                 at: [stands.at[0] + shift[0], stands.at[1] + shift[1]],
                 turn: next.turn + turn,
             };
-            if put(copy, &mut copies, &mut used, &mut classes) {
+            if put(copy, AHEAD, &mut copies, &mut used, &mut classes) {
                 queue.push_back(copies.len() - 1);
             }
         }
     }
+}
+
+/// The copies without those that make the new city unlike the grammar's.
+fn like_the_city(sources: &[Source], copies: Vec<Copy>) -> Vec<Copy> {
+    let old: Vec<Landmark> = sources.iter().map(|s| s.looks).collect();
+    let moved = |copy: &Copy| {
+        let source = &sources[copy.source];
+        let shift = [0, 1].map(|k| source.looks.at[k] - source.at[k]);
+        let [x, y] = rotated(shift, copy.turn - source.turn);
+        Landmark {
+            at: [copy.at[0] + x, copy.at[1] + y],
+            seen: source.looks.seen,
+        }
+    };
+    let new: Vec<Landmark> = copies.iter().map(moved).collect();
+    let stays = trim::trim(&old, &new);
+    let kept = copies.into_iter().zip(stays).filter(|c| c.1);
+    kept.map(|c| c.0).collect()
+}
+
+/// The sources that are put down first, the largest first: of the classes of the largest plans, evenly over their heights.
+fn large(sources: &[Source], shape: &Shape, rng: &mut rng::Stream) -> Vec<usize> {
+    let ground: f64 = sources.iter().map(|s| s.footprint.ground()).sum();
+    let share = DENSITY * shape.area() / ground;
+    let mut own: Vec<usize> = (0..sources.len())
+        .filter(|&s| sources[s].class >= (AREAS - LARGE) * HEIGHTS)
+        .collect();
+    own.sort_by(|&a, &b| {
+        let key = |s: usize| (sources[s].class, sources[s].looks.seen.height);
+        let ((i, u), (j, v)) = (key(a), key(b));
+        i.cmp(&j).then(u.total_cmp(&v)).then(a.cmp(&b))
+    });
+    // Systematic sampling.
+    let mut due = rng.random::<f64>();
+    let mut chosen = Vec::new();
+    for source in own {
+        due += share;
+        while due >= 1.0 {
+            due -= 1.0;
+            chosen.push(source);
+        }
+    }
+    chosen.sort_by_key(|&s| std::cmp::Reverse(sources[s].footprint.points()));
+    chosen
 }
 
 /// A vector turned by degrees.

@@ -34,6 +34,11 @@ impl Footprint {
     pub(super) fn points(&self) -> usize {
         self.inner.len() + self.rim.len()
     }
+
+    /// Square metres of plan and of open ground.
+    pub(super) fn ground(&self) -> f64 {
+        CELL * CELL * self.points() as f64 + OPEN_CELL * OPEN_CELL * self.open.len() as f64
+    }
 }
 
 /// The plan of a mesh, in the frame at `at`, turned by `turn` degrees.
