@@ -4,6 +4,7 @@ use rand::RngExt;
 
 use super::data;
 use crate::experiments::Context;
+use crate::experiments::frame::memory::{peak_megabytes, reset_peak};
 use crate::model::em::Stopping;
 use crate::model::hierarchy::{Priors, fit};
 use crate::report::{Chart, Corner, Figure, Row, Scale, Series, Table};
@@ -92,18 +93,4 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         "speed",
         &Figure::single("seconds of one run of EM by houses", chart),
     )
-}
-
-/// Sets the peak of resident memory back to what is resident now, where the system can.
-fn reset_peak() {
-    // A system without this file reports the peak of the whole run, which is an upper bound.
-    let _ = std::fs::write("/proc/self/clear_refs", "5");
-}
-
-/// Peak of resident memory in megabytes (10^6 bytes), where the system tells.
-fn peak_megabytes() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024.0 / 1e6)
 }

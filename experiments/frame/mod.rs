@@ -5,6 +5,7 @@ pub mod datasets;
 mod document;
 mod journal;
 pub(super) mod lock;
+pub(super) mod memory;
 mod options;
 mod progress;
 pub(super) mod provenance;

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::data::{Source, sources};
 use super::{data_table, row};
+use crate::experiments::frame::memory::peak_megabytes;
 use crate::experiments::{Budget, Context};
 use crate::methods::procedural_logic::{
     Alphabet, Canvas, Coefficients, Inference, NaryTree, Parameters, learn_affinity, parse,
@@ -226,7 +227,7 @@ fn resampled(
             *seconds = start.elapsed().as_secs_f64();
             rules = inference.rules.len();
         }
-        let memory = peak_memory();
+        let memory = peak_megabytes();
         table.row([
             source.dataset.to_owned(),
             size.to_string(),
@@ -246,14 +247,4 @@ fn resampled(
         }
     }
     Ok(())
-}
-
-/// Largest memory of this process so far, in MB, where the system tells.
-fn peak_memory() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kilobytes: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
-    Some(kilobytes / 1024.0)
 }
