@@ -12,7 +12,7 @@
 //! stand there, so that streets and yards stay open. Buildings are in classes of equally many, by plan area and height, and no class
 //! may run ahead of the others, so that small buildings do not take over where large ones do not fit; of the largest, some are put
 //! down before anything else. At the end, buildings are taken out again that make sizes and distances unlike those of the grammar's
-//! city ([`trim`]).
+//! city (`trim`).
 
 mod occupancy;
 mod shape;
