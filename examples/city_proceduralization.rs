@@ -31,6 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             id: format!("building {i}"),
             attributes: serde_json::Map::new(),
             mesh,
+            parts: Vec::new(),
         }
     });
     let city = City {

@@ -5,8 +5,9 @@ use std::time::Instant;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::{data, synthetic};
-use crate::experiments::Context;
+use crate::experiments::frame::Progress;
 use crate::experiments::frame::memory::{peak_megabytes, reset_peak};
+use crate::experiments::{Budget, Context};
 use crate::io::city;
 use crate::methods::city_proceduralization::{
     Decomposition, Mode, decompose, from_components, proceduralize,
@@ -38,6 +39,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let sizes: &[usize] =
         ctx.budget()
             .choose(&[16, 32], &[170, 500, 1700, 5000], &[170, 1700, 17_000]);
+    let progress = Progress::new("scaling: made cities", sizes.len() as u64, 0);
     for &motifs in sizes {
         let (city, _) = synthetic::city(motifs, 0.03, seed);
         let found = timed(city.buildings.len(), || {
@@ -49,8 +51,10 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         })?;
         found.note(ctx, "synthetic", &mut table);
         lines[0].1.push((found.buildings as f64, found.seconds));
+        progress.step();
     }
-    if ctx.budget() > crate::experiments::Budget::Smoke
+    drop(progress);
+    if ctx.budget() > Budget::Smoke
         && let Some(path) = ctx.real("city/nyc_manhattan_lod2.npz")?
     {
         let manhattan = city::read(&path)?;
@@ -60,6 +64,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             &[10_000, 47_815, 150_000, 400_000, 1_000_000],
         );
         let mut line = Vec::new();
+        let progress = Progress::new("scaling: Manhattan, tiled", sizes.len() as u64, 0);
         for &buildings in sizes {
             let found = timed(buildings, || {
                 let (city, cut) = tiled(&manhattan, buildings, seed);
@@ -69,7 +74,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             })?;
             found.note(ctx, "manhattan, tiled", &mut table);
             line.push((buildings as f64, found.seconds));
+            progress.step();
         }
+        drop(progress);
         lines.push(("Manhattan, tiled with jitter".to_owned(), line));
         ctx.note("Manhattan, tiled: copies side by side, each building with its own factors of width, depth and height (3 %); a copy is made when it is its turn to be cut, so that the triangles of one copy only are in memory. Seconds include making the copies.");
     }
@@ -192,6 +199,7 @@ fn jittered(city: &City, most: usize, copy: usize, shift: [f64; 2], seed: u64) -
             id: format!("{copy}-{}", b.id),
             attributes: serde_json::Map::new(),
             mesh,
+            parts: Vec::new(),
         }
     };
     City {

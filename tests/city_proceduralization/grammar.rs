@@ -9,9 +9,9 @@ use edifice::grammar::instance::{
 };
 use edifice::io::city::{cityjson, glb, grammar_json, npz, obj};
 use edifice::methods::city_proceduralization::{
-    Budget, Mode, Settings, Structure, decompose, proceduralize,
+    Budget, Mode, Precision, Settings, Structure, decompose, proceduralize,
 };
-use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster};
+use edifice::shape::triangles::{City, CityBuilding, TriangleMesh, VolumeRaster};
 
 fn settings(mode: Mode, budget: Budget) -> Settings {
     Settings {
@@ -373,4 +373,62 @@ fn gltf_instances_are_those_of_the_derivation() {
             assert_eq!([float(0), float(1), float(2)], [x, z, -y]);
         }
     }
+}
+
+#[test]
+fn a_file_of_instances_becomes_the_grammar_it_was_derived_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = [
+        (15, Budget::Level(4)),
+        (15, Budget::Level(1)),
+        (15, Budget::Templates(5)),
+        (15, Budget::All),
+    ];
+    let small = (0..60).map(|i| (2 + i % 3, Budget::Level(i as u32 % 4)));
+    for (seed, (motifs, budget)) in large.into_iter().chain(small).enumerate() {
+        let (city, _) = synthetic::city(motifs, 0.04, seed as u64);
+        let asked = Settings {
+            precision: [None, Some(Precision::Decimetre)][seed % 2],
+            ..settings(Mode::Best, budget)
+        };
+        let (_, mut grammar) = derived(&city, &asked);
+        let instancing = seed % 3 > 0;
+        let mut last: Option<Vec<u8>> = None;
+        for round in 0..3 {
+            let derivation = grammar.derive().unwrap();
+            let bytes = glb::to_bytes(&grammar, &derivation, instancing).unwrap();
+            if let Some(last) = &last {
+                assert!(*last == bytes, "seed {seed}, round {round}, {instancing}");
+            }
+            let path = folder.path().join("city.glb");
+            std::fs::write(&path, &bytes).unwrap();
+            let read = edifice::io::city::read(&path).unwrap();
+            grammar = derived(&read, &asked).1;
+            last = Some(bytes);
+        }
+    }
+}
+
+#[test]
+fn parts_that_are_not_all_of_a_building_are_not_believed() {
+    let (city, _) = synthetic::city(3, 0.0, 1);
+    let (mut derived, _) = derived(&city, &settings(Mode::Best, Budget::All));
+    assert!(derived.buildings.iter().all(|b| b.stated_parts().is_some()));
+    let more = derived.buildings[1].mesh.clone();
+    derived.buildings[0].mesh.append(&more);
+    assert!(derived.buildings[0].stated_parts().is_none());
+    // A template that reaches out of its box has no box.
+    let mesh = derived.buildings[1].mesh.clone();
+    let mut frame = derived.buildings[1].parts[0].frame;
+    frame.size[2] *= 0.5;
+    let mut building = CityBuilding::default();
+    building.append_instance(&mesh, 0, Some(frame));
+    assert!(building.stated_parts().is_none());
+    assert_eq!(building.mesh.triangles, mesh.triangles);
+    let components = decompose(&derived, true).components;
+    let stated = |b: usize| {
+        let mut own = components.iter().filter(move |c| c.building == b);
+        own.all(|c| c.stated.is_some())
+    };
+    assert!(!stated(0) && stated(1));
 }

@@ -1,7 +1,7 @@
 //! Cities of the data folder as grammars (needs `EDIFICE_DATA` or `../shared/data`).
 
 use edifice::grammar::instance::Kept;
-use edifice::io::city::{compact, read};
+use edifice::io::city::{compact, glb, read};
 use edifice::methods::city_proceduralization::{Budget, Precision, Settings, proceduralize};
 use edifice::rng::stream;
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
@@ -68,4 +68,22 @@ fn midtown_is_stored_in_few_bytes_whatever_the_order_of_its_buildings() {
     let mut other = city.clone();
     other.buildings.shuffle(&mut stream(3, "midtown", 0));
     assert!(bytes(&other) == whole);
+}
+
+#[test]
+fn midtown_derived_becomes_the_same_grammar() {
+    let Some(city) = midtown() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("city.glb");
+    let mut last: Option<(City, Vec<u8>)> = None;
+    for round in 0..2 {
+        let city = last.as_ref().map_or(&city, |l| &l.0);
+        let grammar = proceduralize(city, &Settings::default()).unwrap().grammar;
+        let bytes = glb::to_bytes(&grammar, &grammar.derive().unwrap(), true).unwrap();
+        std::fs::write(&path, &bytes).unwrap();
+        if let Some((_, last)) = &last {
+            assert!(*last == bytes, "round {round}");
+        }
+        last = Some((read(&path).unwrap(), bytes));
+    }
 }

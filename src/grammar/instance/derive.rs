@@ -186,11 +186,11 @@ impl InstanceDerivation {
 
     /// The triangles of each building; instances outside all buildings are buildings of their own.
     pub fn city(&self, grammar: &InstanceGrammar) -> crate::shape::triangles::City {
-        use crate::shape::triangles::{City, CityBuilding};
+        use crate::shape::triangles::{City, CityBuilding, OrientedBox};
         let named = self.buildings.iter().map(|(id, attributes)| CityBuilding {
             id: id.clone(),
             attributes: attributes.clone(),
-            mesh: TriangleMesh::default(),
+            ..CityBuilding::default()
         });
         let mut buildings: Vec<CityBuilding> = named.collect();
         for (i, instance) in self.instances.iter().enumerate() {
@@ -203,10 +203,17 @@ impl InstanceDerivation {
             });
             let template = &grammar.templates[instance.template].mesh;
             let positions = template.positions.iter().map(|&p| instance.place(p));
-            buildings[building].mesh.append(&TriangleMesh {
+            let placed = TriangleMesh {
                 positions: positions.collect(),
                 triangles: template.triangles.clone(),
-            });
+            };
+            let frame = OrientedBox {
+                base: instance.at,
+                size: instance.size,
+                angle: instance.turn.to_radians(),
+            };
+            let frame = Some(frame).filter(|f| f.size.iter().all(|&s| s > 0.0));
+            buildings[building].append_instance(&placed, instance.template, frame);
         }
         City {
             name: grammar.name.clone(),

@@ -107,6 +107,7 @@ fn read_objects(
                 id: id.clone(),
                 attributes: attributes.cloned().unwrap_or_default(),
                 mesh: TriangleMesh::default(),
+                parts: Vec::new(),
             });
         }
     }

@@ -97,7 +97,7 @@ fn translation(i: &TemplateInstance) -> [f32; 3] {
 }
 
 fn rotation(i: &TemplateInstance) -> [f32; 4] {
-    let (sin, cos) = (i.turn.to_radians() / 2.0).sin_cos();
+    let (sin, cos) = (i.turn.rem_euclid(360.0).to_radians() / 2.0).sin_cos();
     [0.0, sin as f32, 0.0, cos as f32]
 }
 

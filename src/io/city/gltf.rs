@@ -2,9 +2,10 @@
 //!
 //! A node of the scene with a mesh is a building, called by its name. Instances of `EXT_mesh_gpu_instancing` are drawn out.
 //! What Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
-//! of one building become one. glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
+//! of one building become one, which knows the instances it is put together from ([`Part`](crate::shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
 //! lines are left out. Every index and length is checked against the bytes there are.
 
+use std::collections::hash_map::Entry;
 use std::path::Path;
 
 use rustc_hash::FxHashMap;
@@ -13,7 +14,9 @@ use serde_json::{Map, Value};
 
 use super::CityError;
 use super::gltf_data::{Accessor, Buffer, Buffers, View, load};
-use super::gltf_transform::{IDENTITY, Matrix, applied, composed, determinant, product};
+use super::gltf_transform::{
+    IDENTITY, Matrix, applied, composed, determinant, product, upright_box,
+};
 use crate::io::glb_container::split;
 use crate::io::json::parse_json;
 use crate::io::read_bytes;
@@ -55,6 +58,8 @@ struct Document {
 
 #[derive(Deserialize)]
 struct Scene {
+    #[serde(default)]
+    name: String,
     #[serde(default)]
     nodes: Vec<usize>,
     #[serde(default)]
@@ -149,7 +154,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
             ..City::default()
         },
         ids: Vec::new(),
-        places: FxHashMap::default(),
+        listed: FxHashMap::default(),
         triangles: 0,
     };
     let fault = |(place, error): (String, CityError)| Error::input(path, place, error);
@@ -166,10 +171,10 @@ struct Reader<'a> {
     /// Meshes read so far, in glTF's axes.
     meshes: FxHashMap<usize, TriangleMesh>,
     city: City,
-    /// Identifiers of the buildings that instances belong to.
+    /// Identifiers of the buildings that instances belong to; they are the first buildings of the city.
     ids: Vec<String>,
     /// Which building of the city has the identifier.
-    places: FxHashMap<String, usize>,
+    listed: FxHashMap<String, usize>,
     triangles: usize,
 }
 
@@ -188,9 +193,27 @@ impl Reader<'_> {
         self.ids = ids
             .and_then(|ids| serde_json::from_value(ids).ok())
             .unwrap_or_default();
+        // Other programs call every scene "Scene".
+        if !self.ids.is_empty() && !scene.name.is_empty() {
+            self.city.name.clone_from(&scene.name);
+        }
+        for id in &self.ids {
+            let next = self.listed.len();
+            if let Entry::Vacant(new) = self.listed.entry(id.clone()) {
+                new.insert(next);
+                self.city.buildings.push(CityBuilding {
+                    id: id.clone(),
+                    ..CityBuilding::default()
+                });
+            }
+        }
         for &root in &scene.nodes {
             self.node(root, &IDENTITY, 0)?;
         }
+        // One that is listed and has no instance is no building.
+        let listed = &self.listed;
+        let missing = |b: &CityBuilding| b.mesh.positions.is_empty() && listed.contains_key(&b.id);
+        self.city.buildings.retain(|b| !missing(b));
         self.city.number_duplicates();
         Ok(())
     }
@@ -245,7 +268,8 @@ impl Reader<'_> {
         id: String,
         extras: &Value,
     ) -> std::result::Result<(), Fault> {
-        let mesh = &self.meshes[&mesh];
+        let template = mesh;
+        let mesh = &self.meshes[&template];
         self.triangles += mesh.triangles.len();
         if self.triangles > MOST_TRIANGLES {
             let text = format!("more than {MOST_TRIANGLES} triangles with all instances");
@@ -259,16 +283,19 @@ impl Reader<'_> {
         if determinant(transform) < 0.0 {
             moved.flip();
         }
-        let listed = self.ids.contains(&id);
-        if let Some(&at) = self.places.get(&id).filter(|_| listed) {
-            self.city.buildings[at].mesh.append(&moved);
+        if let Some(&at) = self.listed.get(&id) {
+            let building = &mut self.city.buildings[at];
+            building.append_instance(&moved, template, upright_box(transform));
+            if let Some(extras) = extras.as_object() {
+                building.attributes.extend(extras.clone());
+            }
             return Ok(());
         }
-        self.places.insert(id.clone(), self.city.buildings.len());
         self.city.buildings.push(CityBuilding {
             id,
             attributes: extras.as_object().cloned().unwrap_or_default(),
             mesh: moved,
+            parts: Vec::new(),
         });
         Ok(())
     }

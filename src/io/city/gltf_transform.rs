@@ -1,5 +1,10 @@
 //! Transforms of glTF's nodes: 4 x 4 matrices, column after column.
 
+use crate::shape::triangles::OrientedBox;
+
+/// Share of a length by which an axis may be askew: single precision.
+const ALIGNED: f64 = 1e-6;
+
 /// A matrix.
 pub(super) type Matrix = [f64; 16];
 
@@ -50,4 +55,24 @@ pub(super) fn applied(m: &Matrix, p: [f64; 3]) -> [f64; 3] {
 pub(super) fn determinant(m: &Matrix) -> f64 {
     m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2])
         + m[8] * (m[1] * m[6] - m[5] * m[2])
+}
+
+/// The unit box, z up, in its place: where the matrix scales along the axes, turns about the vertical and shifts.
+pub(super) fn upright_box(m: &Matrix) -> Option<OrientedBox> {
+    let turned = |[x, y, z]: [f64; 3]| [x, -z, y];
+    let base = turned([m[12], m[13], m[14]]);
+    let x = turned([m[0], m[1], m[2]]);
+    let y = turned([-m[8], -m[9], -m[10]]);
+    let z = turned([m[4], m[5], m[6]]);
+    let size = [x[0].hypot(x[1]), y[0].hypot(y[1]), z[2]];
+    let least = ALIGNED * (size[0] + size[1] + size[2]);
+    let level = x[2].abs().max(y[2].abs()).max(z[0].abs()).max(z[1].abs()) <= least;
+    let along = x[0] * y[0] + x[1] * y[1];
+    let right = along.abs() <= ALIGNED * size[0] * size[1] && x[0] * y[1] > x[1] * y[0];
+    let upright = level && right && size.iter().all(|&s| s > 0.0 && s.is_finite());
+    upright.then(|| OrientedBox {
+        base,
+        size,
+        angle: x[1].atan2(x[0]),
+    })
 }

@@ -97,6 +97,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                 id,
                 attributes: serde_json::Map::new(),
                 mesh: own(&positions, &triangles),
+                parts: Vec::new(),
             })
             .collect(),
     })

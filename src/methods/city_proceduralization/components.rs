@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
 use crate::shape::triangles::{
-    City, MeshFaults, OrientedBox, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
+    City, MeshFaults, OrientedBox, Part, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
     height_map, repair,
 };
 
@@ -45,6 +45,8 @@ pub struct Component {
     pub volume: f64,
     /// Whether half a turn does not change it.
     pub symmetric: bool,
+    /// The template that it is an instance of, where the input says it.
+    pub stated: Option<usize>,
 }
 
 /// All components of a city.
@@ -72,8 +74,13 @@ pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) ->
         .par_iter()
         .map(|&b| {
             pulse();
-            let (mesh, faults) = repair(&city.buildings[b].mesh);
-            (components_of(&mesh, b, bottoms), faults)
+            let building = &city.buildings[b];
+            let (mesh, faults) = repair(&building.mesh);
+            let components = match building.stated_parts() {
+                Some(parts) => stated_components(parts, b),
+                None => components_of(&mesh, b, bottoms),
+            };
+            (components, faults)
         })
         .collect();
     let mut out = Decomposition {
@@ -89,6 +96,24 @@ pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) ->
     }
     out.empty.sort_unstable();
     out
+}
+
+/// The components of a building of which the input says what it is put together from: nothing is cut.
+fn stated_components(parts: Vec<(&Part, TriangleMesh)>, building: usize) -> Vec<Component> {
+    let component = |(slab, (part, mesh)): (usize, (&Part, TriangleMesh))| {
+        let heights = height_map(&mesh, CELLS, SAMPLES);
+        Component {
+            building,
+            slab,
+            frame: part.frame,
+            volume: mesh.volume_above(0.0) * part.frame.volume(),
+            symmetric: upside_down(&heights).is_none(),
+            heights,
+            mesh,
+            stated: Some(part.template),
+        }
+    };
+    parts.into_iter().enumerate().map(component).collect()
 }
 
 /// The components of a repaired building.
@@ -126,6 +151,7 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
             heights,
             volume,
             symmetric: turned.is_none(),
+            stated: None,
         };
         if turned == Some(true) {
             half_turn(&mut component);

@@ -75,7 +75,7 @@ pub fn placed_components(
     types: &Types,
 ) -> Vec<(usize, [f64; 3], Placement)> {
     let one = |(i, c): (usize, &Component)| {
-        let mut placed = part(i, c, types, &Frame::WORLD, &Detail::CENTIMETRE);
+        let mut placed = part(i, c, types, &Frame::world(), &Detail::CENTIMETRE);
         let building = &city.buildings[c.building];
         placed.id = Some(building.id.clone());
         if i == 0 || components[i - 1].building != c.building {
@@ -96,7 +96,12 @@ fn terminals(
     let templates = types.representatives.iter().enumerate();
     let template = |(kind, &c): (usize, &usize)| Template {
         symbol: terminal(kind),
-        mesh: template(&components[c].mesh, detail, merge),
+        // A stated template was merged when it was made.
+        mesh: template(
+            &components[c].mesh,
+            detail,
+            merge && components[c].stated.is_none(),
+        ),
     };
     InstanceGrammar {
         name: city.name.clone(),
@@ -135,23 +140,25 @@ pub(super) fn emit(
         if let ([b], [i]) = (&list[..], &buildings.parts[list[0]][..])
             && alone
         {
-            start.push((*b, part(*i, &components[*i], types, &Frame::WORLD, detail)));
+            start.push((
+                *b,
+                part(*i, &components[*i], types, &Frame::world(), detail),
+            ));
             continue;
         }
+        let symbol = building_symbol(label);
         let placed = |&b: &usize| {
-            let frame = Frame::of(&components[buildings.parts[b][0]], detail);
+            let frame = Frame::of(&components[buildings.parts[b][0]], &symbol, detail);
             let parts = buildings.parts[b].iter();
             let parts = parts.map(|&i| part(i, &components[i], types, &frame, detail));
             let parts: Vec<Placement> = parts.collect();
-            (b, frame, parts)
+            (b, frame.placed, parts)
         };
-        let placed: Vec<(usize, Frame, Vec<Placement>)> = list.iter().map(placed).collect();
+        let placed: Vec<(usize, Placement, Vec<Placement>)> = list.iter().map(placed).collect();
         let mean: Vec<Placement> = (0..placed[0].2.len())
             .map(|k| mean_part(placed.iter().map(|p| &p.2[k]), detail))
             .collect();
-        let symbol = building_symbol(label);
-        for (b, frame, parts) in placed {
-            let mut instance = Placement::new(symbol.clone(), frame.at, frame.turn, [1.0; 3]);
+        for (b, mut instance, parts) in placed {
             if parts != mean {
                 instance.parts = parts.into_iter().map(Some).collect();
             }
@@ -241,27 +248,29 @@ pub fn terminal(kind: usize) -> String {
     format!("T{}", kind + 1)
 }
 
-/// The frame of a building: its lowest component's.
+/// The frame of a building: its lowest component's. Parts stand where they do relative to `base` and `turn`, the frame before
+/// it is rounded, so that like buildings have like parts wherever they are; `placed` is the frame as it is written.
 struct Frame {
-    at: [f64; 3],
+    base: [f64; 3],
     turn: f64,
+    placed: Placement,
 }
 
 impl Frame {
-    const WORLD: Self = Self {
-        at: [0.0; 3],
-        turn: 0.0,
-    };
-
-    fn of(component: &Component, detail: &Detail) -> Self {
-        let turn = component.frame.angle.to_degrees();
-        let placed = rounded(
-            Placement::new("", component.frame.base, turn, [1.0; 3]),
-            detail,
-        );
+    fn world() -> Self {
         Self {
-            at: placed.at,
-            turn: placed.turn,
+            base: [0.0; 3],
+            turn: 0.0,
+            placed: Placement::new("", [0.0; 3], 0.0, [1.0; 3]),
+        }
+    }
+
+    fn of(component: &Component, symbol: &str, detail: &Detail) -> Self {
+        let (base, turn) = (component.frame.base, component.frame.angle.to_degrees());
+        Self {
+            base,
+            turn,
+            placed: rounded(Placement::new(symbol, base, turn, [1.0; 3]), detail),
         }
     }
 }
@@ -292,7 +301,7 @@ fn part(
         [d, w, h]
     };
     let turn = component.frame.angle.to_degrees() + 90.0 * f64::from(used.quarter);
-    let shift = [0, 1, 2].map(|k| component.frame.base[k] - frame.at[k]);
+    let shift = [0, 1, 2].map(|k| component.frame.base[k] - frame.base[k]);
     let (sin, cos) = frame.turn.to_radians().sin_cos();
     let at = [
         shift[0] * cos + shift[1] * sin,

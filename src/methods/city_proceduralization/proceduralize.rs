@@ -7,7 +7,7 @@ use super::features::geometric_features;
 use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
-use super::types::{TypeTree, Types, distinct_types, paper_types};
+use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
 use crate::cluster::WardError;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
 use crate::shape::triangles::City;
@@ -165,6 +165,9 @@ struct Prepared<'a> {
 
 /// What in `best` is the same for all budgets.
 struct Best<'a> {
+    /// The templates that the input states: where there are no more of them than asked for, they are kept, so that
+    /// a derived city becomes the grammar that it was derived from.
+    stated: Option<Types>,
     types: TypeTree<'a>,
     buildings: BuildingTypes,
     patterns: Vec<Repeated>,
@@ -203,6 +206,7 @@ impl<'a> Prepared<'a> {
                 let shape = geometric_features(components);
                 let buildings = building_types(components, &shape, city.buildings.len())?;
                 Some(Best {
+                    stated: stated_types(components),
                     types: TypeTree::new(components, &shape)?,
                     patterns: patterns(components, &buildings),
                     buildings,
@@ -237,9 +241,12 @@ impl<'a> Prepared<'a> {
                 structure: Structure::Tree(tree),
             };
         };
-        let (types, detail) = match budget {
-            Budget::All => (distinct_types(components), Detail::MILLIMETRE),
-            _ => (best.types.cut(k), Detail::CENTIMETRE),
+        let stated = best.stated.as_ref();
+        let (types, detail) = match (stated.filter(|s| s.representatives.len() <= k), budget) {
+            (Some(stated), Budget::All) => (stated.clone(), Detail::MILLIMETRE),
+            (Some(stated), _) => (stated.clone(), Detail::CENTIMETRE),
+            (None, Budget::All) => (distinct_types(components), Detail::MILLIMETRE),
+            (None, _) => (best.types.cut(k), Detail::CENTIMETRE),
         };
         let detail = match settings.precision {
             None => detail,

@@ -1,5 +1,7 @@
 //! Component types and their representatives (Sec. IV.D).
 
+use std::collections::BTreeMap;
+
 use rustc_hash::FxHashMap;
 
 use super::components::Component;
@@ -111,6 +113,24 @@ fn renumbered(labels: &[usize]) -> (Vec<usize>, usize) {
         out.push(*numbers.entry(l).or_insert(next));
     }
     (out, numbers.len())
+}
+
+/// A type for each template that the input states, in the order of their numbers; `None` where it does not state one for
+/// every component.
+pub fn stated_types(components: &[Component]) -> Option<Types> {
+    let mut first: BTreeMap<usize, usize> = BTreeMap::new();
+    for (i, c) in components.iter().enumerate() {
+        first.entry(c.stated?).or_insert(i);
+    }
+    let kinds: FxHashMap<usize, usize> = first.keys().enumerate().map(|(k, &t)| (t, k)).collect();
+    let one = |c: &Component| Use {
+        kind: c.stated.map_or(0, |t| kinds[&t]),
+        quarter: 0,
+    };
+    Some(Types {
+        uses: components.iter().map(one).collect(),
+        representatives: first.into_values().collect(),
+    })
 }
 
 /// Steps of a box within which components are the same.

@@ -1,6 +1,8 @@
 //! A city: buildings with identifiers, attributes and triangles.
 
-use super::TriangleMesh;
+use std::ops::Range;
+
+use super::{OrientedBox, TriangleMesh};
 
 /// A building of a city.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -11,6 +13,84 @@ pub struct CityBuilding {
     pub attributes: serde_json::Map<String, serde_json::Value>,
     /// Its surface, relative to the city's origin.
     pub mesh: TriangleMesh,
+    /// What the surface is put together from, where the input says it: all of it, or nothing. Whoever changes the mesh
+    /// clears them.
+    pub parts: Vec<Part>,
+}
+
+/// A part of a building's mesh that is an instance of a template: a mesh in the unit box (x and y from -1/2 to 1/2, z from
+/// 0 to 1) that a box puts into its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// Number of the template: parts of one number are instances of the same mesh.
+    pub template: usize,
+    /// Where the box is.
+    pub frame: OrientedBox,
+    /// Positions of the building's mesh that belong to it.
+    pub positions: Range<usize>,
+    /// Triangles of the building's mesh that belong to it.
+    pub triangles: Range<usize>,
+}
+
+/// How far a template may reach out of the unit box.
+const OUTSIDE: f64 = 1e-6;
+
+impl CityBuilding {
+    /// Appends an instance, `placed`, of the template with that number, which `frame` puts into its place. The part is
+    /// noted where the template lies in the unit box.
+    pub fn append_instance(
+        &mut self,
+        placed: &TriangleMesh,
+        template: usize,
+        frame: Option<OrientedBox>,
+    ) {
+        let (p, t) = (self.mesh.positions.len(), self.mesh.triangles.len());
+        self.mesh.append(placed);
+        let inside = |frame: &OrientedBox| {
+            let mut unit = placed.positions.iter().map(|&p| frame.to_unit(p));
+            unit.all(|[x, y, z]| {
+                x.abs().max(y.abs()) <= 0.5 + OUTSIDE && (z - 0.5).abs() <= 0.5 + OUTSIDE
+            })
+        };
+        if let Some(frame) = frame.filter(inside) {
+            self.parts.push(Part {
+                template,
+                frame,
+                positions: p..self.mesh.positions.len(),
+                triangles: t..self.mesh.triangles.len(),
+            });
+        }
+    }
+
+    /// The parts, from the ground up, if they are all of the mesh.
+    pub fn stated_parts(&self) -> Option<Vec<(&Part, TriangleMesh)>> {
+        let covered: usize = self.parts.iter().map(|p| p.triangles.len()).sum();
+        if self.parts.is_empty() || covered != self.mesh.triangles.len() {
+            return None;
+        }
+        let mut parts: Vec<&Part> = self.parts.iter().collect();
+        let key = |p: &Part| {
+            let [x, y, z] = p.frame.base;
+            [z, x, y]
+        };
+        parts.sort_by(|a, b| {
+            let places = key(a).into_iter().zip(key(b));
+            let unequal = places.map(|(x, y)| x.total_cmp(&y)).find(|o| o.is_ne());
+            unequal.unwrap_or_else(|| a.template.cmp(&b.template))
+        });
+        Some(parts.into_iter().map(|p| (p, self.unit(p))).collect())
+    }
+
+    /// The template of a part.
+    fn unit(&self, part: &Part) -> TriangleMesh {
+        let first = part.positions.start as u32;
+        let positions = self.mesh.positions[part.positions.clone()].iter();
+        let triangles = self.mesh.triangles[part.triangles.clone()].iter();
+        TriangleMesh {
+            positions: positions.map(|&p| part.frame.to_unit(p)).collect(),
+            triangles: triangles.map(|t| t.map(|i| i - first)).collect(),
+        }
+    }
 }
 
 /// Buildings in one frame: metres, z up.
@@ -35,8 +115,15 @@ impl City {
     /// Appends the buildings of another city, moved into this one's frame.
     pub fn merge(&mut self, other: Self) {
         let shift = [0, 1, 2].map(|k| other.origin[k] - self.origin[k]);
+        let templates = self.buildings.iter().flat_map(|b| &b.parts);
+        let known = templates.map(|p| p.template + 1).max().unwrap_or(0);
         for mut building in other.buildings {
-            for p in &mut building.mesh.positions {
+            let parts = building.parts.iter_mut();
+            let bases = parts.map(|part| {
+                part.template += known;
+                &mut part.frame.base
+            });
+            for p in bases.chain(&mut building.mesh.positions) {
                 *p = [0, 1, 2].map(|k| p[k] + shift[k]);
             }
             self.buildings.push(building);

@@ -73,17 +73,17 @@ impl TriangleMesh {
         let mut known = rustc_hash::FxHashMap::default();
         let mut out = Self::default();
         for t in &self.triangles {
-            let t = t.map(|i| {
-                let p = self.positions[i as usize];
-                let key = p.map(|v| (v / step).round() as i64);
-                *known.entry(key).or_insert_with(|| {
-                    out.positions.push(p);
+            let corners = t.map(|i| self.positions[i as usize]);
+            let keys = corners.map(|p| p.map(|v| (v / step).round() as i64));
+            if keys[0] == keys[1] || keys[1] == keys[2] || keys[2] == keys[0] {
+                continue;
+            }
+            out.triangles.push(std::array::from_fn(|k| {
+                *known.entry(keys[k]).or_insert_with(|| {
+                    out.positions.push(corners[k]);
                     out.positions.len() as u32 - 1
                 })
-            });
-            if t[0] != t[1] && t[1] != t[2] && t[2] != t[0] {
-                out.triangles.push(t);
-            }
+            }));
         }
         out
     }

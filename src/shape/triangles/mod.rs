@@ -22,7 +22,7 @@ mod raster;
 mod repair;
 mod triangulate;
 
-pub use city::{City, CityBuilding};
+pub use city::{City, CityBuilding, Part};
 pub use clip::clip_to_slabs;
 pub use coplanar::merge_coplanar;
 pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
