@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::components::CELLS;
 use super::types::Use;
+use crate::cluster::KdTree;
 
 /// Rounds of medoids.
 const ROUNDS: usize = 3;
@@ -58,16 +59,21 @@ impl Table<'_> {
             near.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
             near.truncate(TRIED);
             near.extend(before.get(kind));
-            let cost = |m: usize| -> f64 {
-                let mismatch = |&i: &usize| {
+            let mut best = (f64::INFINITY, 0);
+            for m in near {
+                let mut cost = 0.0;
+                for &i in list {
                     let turned = uses[i].quarter;
-                    self.weights[i] * mismatch(self.heights[m], self.heights[i], turned)
-                };
-                list.iter().map(mismatch).sum::<f64>()
-            };
-            let costs = near.iter().map(|&m| (cost(m), m));
-            let best = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            best.map_or(0, |b| b.1)
+                    cost += self.weights[i] * mismatch(self.heights[m], self.heights[i], turned);
+                    if cost > best.0 {
+                        break;
+                    }
+                }
+                if (cost, m) < best {
+                    best = (cost, m);
+                }
+            }
+            best.1
         };
         members.par_iter().enumerate().map(medoid).collect()
     }
@@ -80,7 +86,8 @@ impl Table<'_> {
             let near = nearest.of(self.row(i)).into_iter();
             for kind in near.chain([uses[i].kind]) {
                 for quarter in 0..4 {
-                    let cost = mismatch(self.heights[medoids[kind]], self.heights[i], quarter);
+                    let (medoid, own) = (self.heights[medoids[kind]], self.heights[i]);
+                    let cost = mismatch_below(medoid, own, quarter, best.0);
                     if cost < best.0 {
                         best = (cost, Use { kind, quarter });
                     }
@@ -92,62 +99,59 @@ impl Table<'_> {
     }
 }
 
-/// Medoids by their first feature, so that those nearest to a point are found without all distances.
+/// Medoids in a kd-tree of their features.
 struct Nearest<'a> {
     table: &'a Table<'a>,
-    /// First feature, type, component; increasing.
-    sorted: Vec<(f64, usize, usize)>,
+    medoids: &'a [usize],
+    tree: KdTree,
 }
 
 impl<'a> Nearest<'a> {
-    fn new(table: &'a Table<'a>, medoids: &[usize]) -> Self {
-        let first = |&m: &usize| table.row(m).first().copied().unwrap_or(0.0);
-        let medoids = medoids.iter().enumerate();
-        let mut sorted: Vec<_> = medoids.map(|(kind, m)| (first(m), kind, *m)).collect();
-        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Self { table, sorted }
+    fn new(table: &'a Table<'a>, medoids: &'a [usize]) -> Self {
+        let rows: Vec<f64> = medoids
+            .iter()
+            .flat_map(|&m| table.row(m).iter().copied())
+            .collect();
+        let kinds = (0..medoids.len() as u32).collect();
+        let tree = KdTree::new(&rows, table.d, &vec![1.0; medoids.len()], kinds);
+        Self {
+            table,
+            medoids,
+            tree,
+        }
     }
 
     /// The types nearest to a point, [`CANDIDATES`] at most, the nearest first, of equals the lower.
     fn of(&self, point: &[f64]) -> Vec<usize> {
-        let first = point.first().copied().unwrap_or(0.0);
-        let mut high = self.sorted.partition_point(|s| s.0 < first);
-        let mut low = high;
         let mut found: Vec<(f64, usize)> = Vec::with_capacity(CANDIDATES + 1);
-        let away =
-            |at: Option<&(f64, usize, usize)>| at.map_or(f64::INFINITY, |s| (s.0 - first).powi(2));
-        loop {
-            let below = away(low.checked_sub(1).and_then(|l| self.sorted.get(l)));
-            let above = away(self.sorted.get(high));
-            let farthest = match found.len() < CANDIDATES {
-                true => f64::INFINITY,
-                false => found[CANDIDATES - 1].0,
-            };
-            let least = below.min(above);
-            // What is farther along one axis is farther.
-            if least.is_infinite() || least > farthest {
-                return found.into_iter().map(|f| f.1).collect();
-            }
-            let (_, kind, medoid) = if below <= above {
-                low -= 1;
-                self.sorted[low]
-            } else {
-                high += 1;
-                self.sorted[high - 1]
-            };
-            let entry = (square(point, self.table.row(medoid)), kind);
+        let visit = |kind: u32| {
+            let kind = kind as usize;
+            let entry = (square(point, self.table.row(self.medoids[kind])), kind);
             let before = |f: &(f64, usize)| f.0.total_cmp(&entry.0).then(f.1.cmp(&entry.1)).is_lt();
             let at = found.partition_point(before);
-            found.insert(at, entry);
-            found.truncate(CANDIDATES);
-        }
+            if at < CANDIDATES {
+                found.insert(at, entry);
+                found.truncate(CANDIDATES);
+            }
+            found.get(CANDIDATES - 1).map_or(f64::INFINITY, |f| f.0)
+        };
+        // A box as far as the last one may hold an equal of a lower number.
+        let bound = |gap: f64, _: f64| gap * (1.0 - 1e-12);
+        self.tree.search(point, f64::INFINITY, bound, visit);
+        found.into_iter().map(|f| f.1).collect()
     }
 }
 
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched
 /// share of the box.
 pub fn mismatch(template: &[f32], component: &[f32], quarter: u8) -> f64 {
+    mismatch_below(template, component, quarter, f64::INFINITY)
+}
+
+/// As [`mismatch`]; infinite as soon as it is not below `limit`.
+fn mismatch_below(template: &[f32], component: &[f32], quarter: u8, limit: f64) -> f64 {
     let last = CELLS - 1;
+    let cells = (CELLS * CELLS) as f64;
     let mut sum = 0.0f32;
     for y in 0..CELLS {
         for x in 0..CELLS {
@@ -160,8 +164,11 @@ pub fn mismatch(template: &[f32], component: &[f32], quarter: u8) -> f64 {
             };
             sum += (template[v * CELLS + u] - component[y * CELLS + x]).abs();
         }
+        if f64::from(sum) / cells >= limit {
+            return f64::INFINITY;
+        }
     }
-    f64::from(sum) / (CELLS * CELLS) as f64
+    f64::from(sum) / cells
 }
 
 pub(super) fn square(a: &[f64], b: &[f64]) -> f64 {

@@ -3,17 +3,20 @@
 //! Within one row, groups that are linked by missing values form components. For every assignment
 //! of states to a component the values are jointly Gaussian; walking the groups in topological
 //! order, each new group extends the Gaussian over the missing values seen so far and is then
-//! conditioned on its own observed values. An assignment with its Gaussian is a [`Particle`].
+//! conditioned on its own observed values. An assignment with its Gaussian is a [`Particle`]; all of them lie in one piece of memory.
 //! An assignment is given up as soon as a bound says that it ends [`NEGLIGIBLE`] nats below one that is known. The walk is
-//! exact (to 1e-10) while no more than [`MOST`] assignments are alive; beyond, the least probable are dropped.
+//! exact (to 1e-10) while no more than [`MOST`] assignments are alive; beyond, the least probable are dropped. While structures are
+//! searched no more than [`MOST_SEARCHED`] are kept; the structure that is found is fitted with all.
 
 use super::super::conjugate::Linear;
-use super::super::gaussian::{Particle, extend};
+use super::super::gaussian::{Extension, Particle, Particles, Workspace};
 use super::params::{Params, Shape};
 use super::structure::{Selector, configuration};
 
 /// Assignments alive at once.
 pub(crate) const MOST: usize = 2048;
+/// The same while structures are searched: their scores differ by far more than what the least probable ones add.
+pub(crate) const MOST_SEARCHED: usize = 64;
 /// Assignments this much below a known one (nats) are left out: with [`MOST`] of them, less than 1e-10 of the density.
 const NEGLIGIBLE: f64 = 32.0;
 
@@ -24,7 +27,7 @@ pub(crate) struct Component {
     pub groups: Vec<usize>,
     /// Real columns without a value, in order of appearance.
     pub missing: Vec<usize>,
-    pub particles: Vec<Particle>,
+    pub particles: Particles,
     /// P(states of a particle | s), particle by particle.
     pub weights: Vec<f64>,
 }
@@ -109,40 +112,36 @@ impl Component {
         let mut missing = Vec::new();
         let mut levels = Vec::with_capacity(groups.len());
         for &g in groups {
-            levels.push((g, missing.clone()));
+            let extension = Extension::new(&missing, &shape.columns[g], shape.d[g], real);
+            levels.push((g, extension));
             let own = &shape.columns[g][shape.p[g] - 1..];
             missing.extend(own.iter().filter(|&&c| real[c].is_nan()));
         }
-        let first = (Particle::empty(), vec![1.0; shape.structure.styles]);
-        let least = row.least(&first, &levels);
-        let reaches = |(particle, weights): &Weighted, to_come: f64| {
-            let most = particle.log_density + to_come;
+        let mut work = Workspace::default();
+        let least = row.least(&levels, &mut work);
+        let reaches = |density: f64, weights: &[f64], to_come: f64| {
+            let most = density + to_come;
             let mut styles = weights.iter().zip(&least);
-            styles.any(|(w, least)| *w > 0.0 && most + w.ln() >= *least)
+            density > f64::NEG_INFINITY
+                && styles.any(|(w, least)| *w > 0.0 && most + w.ln() >= *least)
         };
         // And no assignment explains what is still to come better than at the peaks of its densities.
         let mut to_come: f64 = groups.iter().map(|&g| row.peak(g)).sum();
-        let mut alive = vec![first];
-        for (g, missing) in &levels {
-            to_come -= row.peak(*g);
-            let mut next: Vec<Weighted> = Vec::new();
-            for particle in &alive {
-                let extensions = row.extensions(particle, *g, missing).into_iter();
-                next.extend(extensions.filter(|p| reaches(p, to_come)));
+        let mut alive = Front::start(shape.structure.styles);
+        for level in &levels {
+            to_come -= row.peak(level.0);
+            let mut next = alive.after(&level.1);
+            for (particle, weights) in alive.iter() {
+                let kept = |density: f64, weights: &[f64]| reaches(density, weights, to_come);
+                row.extend((particle, weights), level, &mut work, &mut next, kept);
             }
-            next.retain(|(p, _)| p.log_density > f64::NEG_INFINITY);
-            if next.len() > MOST {
-                next.sort_by(|a, b| b.0.log_density.total_cmp(&a.0.log_density));
-                next.truncate(MOST);
-            }
-            alive = next;
+            alive = next.most_probable(shape.alive);
         }
-        let (particles, weights): (Vec<Particle>, Vec<Vec<f64>>) = alive.into_iter().unzip();
         Self {
             groups: groups.to_vec(),
             missing,
-            particles,
-            weights: weights.concat(),
+            particles: alive.particles,
+            weights: alive.weights,
         }
     }
 
@@ -151,14 +150,14 @@ impl Component {
     /// of the row ask for.
     pub fn by_style(&self, styles: usize) -> (Vec<f64>, Vec<f64>) {
         let mut most = vec![f64::NEG_INFINITY; styles];
-        let rows = || self.weights.chunks(styles).zip(&self.particles);
+        let rows = || self.weights.chunks(styles).zip(self.particles.iter());
         for (weights, particle) in rows() {
             for (most, _) in most.iter_mut().zip(weights).filter(|(_, w)| **w > 0.0) {
                 *most = most.max(particle.log_density);
             }
         }
         let mut densities = self.weights.clone();
-        for (row, particle) in densities.chunks_mut(styles).zip(&self.particles) {
+        for (row, particle) in densities.chunks_mut(styles).zip(self.particles.iter()) {
             // As a rule all styles have the same greatest one.
             let mut last = (f64::NAN, 0.0);
             for (density, &most) in row.iter_mut().zip(&most).filter(|(w, _)| **w > 0.0) {
@@ -172,8 +171,89 @@ impl Component {
     }
 }
 
-/// An assignment with P(its states | s) of every style s.
-type Weighted = (Particle, Vec<f64>);
+/// Particles with P(their states | s) of every style s.
+struct Front {
+    particles: Particles,
+    styles: usize,
+    weights: Vec<f64>,
+}
+
+impl Front {
+    fn start(styles: usize) -> Self {
+        Self {
+            particles: Particles::start(),
+            styles,
+            weights: vec![1.0; styles],
+        }
+    }
+
+    fn get(&self, i: usize) -> (Particle<'_>, &[f64]) {
+        let weights = &self.weights[i * self.styles..(i + 1) * self.styles];
+        (self.particles.get(i), weights)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (Particle<'_>, &[f64])> {
+        (0..self.particles.len()).map(|i| self.get(i))
+    }
+
+    /// Nothing yet, over one group more.
+    fn after(&self, extension: &Extension) -> Self {
+        Self {
+            particles: self.particles.after(extension),
+            styles: self.styles,
+            weights: Vec::new(),
+        }
+    }
+
+    /// The extended particle whose weights were appended already stays if a style is left that an earlier state does not
+    /// exclude, and if `kept` holds.
+    fn finish(
+        &mut self,
+        from: Particle,
+        extension: &Extension,
+        linear: &Linear,
+        state: usize,
+        work: &mut Workspace,
+        kept: &impl Fn(f64, &[f64]) -> bool,
+    ) {
+        let first = self.particles.len() * self.styles;
+        let own = &self.weights[first..];
+        if own.iter().any(|w| *w > 0.0) && kept(extension.density(from, linear, work), own) {
+            extension.append(from, Some(state), work, &mut self.particles);
+        } else {
+            self.weights.truncate(first);
+        }
+    }
+
+    /// Some of them.
+    fn some(&self, chosen: &[usize]) -> Self {
+        let mut some = Self {
+            particles: self.particles.like(),
+            styles: self.styles,
+            weights: Vec::with_capacity(chosen.len() * self.styles),
+        };
+        for &i in chosen {
+            let (particle, weights) = self.get(i);
+            some.particles.push(particle);
+            some.weights.extend(weights);
+        }
+        some
+    }
+
+    /// The `most` of greatest density.
+    fn most_probable(self, most: usize) -> Self {
+        if self.particles.len() <= most {
+            return self;
+        }
+        let density = |i: usize| self.particles.get(i).log_density;
+        let mut order: Vec<usize> = (0..self.particles.len()).collect();
+        order.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
+        self.some(&order[..most])
+    }
+}
+
+/// A group, and how it extends the particles of the groups before it.
+type Level<'a> = (usize, Extension<'a>);
 
 /// A row under a model.
 struct Row<'a> {
@@ -184,10 +264,16 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// A particle over `missing` with every state of group `g`, and with the background.
-    fn extensions(&self, from: &Weighted, g: usize, missing: &[usize]) -> Vec<Weighted> {
-        let (shape, params) = (self.shape, self.params);
-        let (particle, weights) = from;
+    /// Appends a particle with every state of a group, and with the background, where `kept` holds of density and weights.
+    fn extend(
+        &self,
+        (particle, weights): (Particle, &[f64]),
+        (g, extension): &Level,
+        work: &mut Workspace,
+        out: &mut Front,
+        kept: impl Fn(f64, &[f64]) -> bool,
+    ) {
+        let (shape, params, g) = (self.shape, self.params, *g);
         let styles = shape.structure.styles;
         let states = match &shape.structure.selectors[g] {
             Selector::Hidden(k) => 0..*k,
@@ -200,61 +286,61 @@ impl Row<'_> {
                 known.next().map_or(0..styles, |&s| s..s + 1)
             }
         };
-        let extended = |linear: &Linear, state: usize| {
-            let mut p = extend(particle, missing, &shape.columns[g], linear, self.real);
-            p.states.push(state);
-            p
-        };
-        let mut all = Vec::with_capacity(states.len() + 1);
         if let Some(background) = &shape.background {
             // Its density is the same for every state: one particle for all that the row leaves open.
             let selected = match shape.structure.selectors[g] {
                 Selector::Codes(_) => states.start,
                 _ => 0,
             };
-            let weights = weights.iter().map(|w| w * background.share).collect();
+            let scaled = weights.iter().map(|w| w * background.share);
+            out.weights.extend(scaled);
             let state = shape.states(g) + selected;
-            all.push((extended(&background.linear[g], state), weights));
+            let linear = &background.linear[g];
+            out.finish(particle, extension, linear, state, work, &kept);
         }
         for state in states {
-            let weights = weighted(shape, params, g, state, weights);
-            // A style that an earlier state excludes.
-            if weights.iter().any(|w| *w > 0.0) {
-                all.push((extended(&params.linear[g][state], state), weights));
-            }
+            weigh(shape, params, g, state, weights, &mut out.weights);
+            let linear = &params.linear[g][state];
+            out.finish(particle, extension, linear, state, work, &kept);
         }
-        all
     }
 
     /// For every style, [`NEGLIGIBLE`] nats less than `log P(states | s) p(observed values | states)` of one assignment,
     /// taken greedily: what all together come to at least. Other groups of the row may leave any style alone possible, so
     /// that an assignment is negligible only where it is so for each style by itself.
-    fn least(&self, first: &Weighted, levels: &[(usize, Vec<usize>)]) -> Vec<f64> {
+    fn least(&self, levels: &[Level], work: &mut Workspace) -> Vec<f64> {
         let styles = self.shape.structure.styles;
-        let log = |(particle, weights): &Weighted, s: usize| particle.log_density + weights[s].ln();
+        let log = |(particle, weights): (Particle, &[f64]), s: usize| {
+            particle.log_density + weights[s].ln()
+        };
         // Styles that took the same states so far share their assignment.
-        let mut taken = vec![(first.clone(), (0..styles).collect::<Vec<_>>())];
-        for (g, missing) in levels {
-            let mut next: Vec<(Weighted, Vec<usize>)> = Vec::new();
+        let mut taken = vec![(Front::start(styles), (0..styles).collect::<Vec<_>>())];
+        for level in levels {
+            let mut next = Vec::new();
             for (one, own) in taken {
-                let extensions = self.extensions(&one, *g, missing);
-                let mut of: Vec<Vec<usize>> = vec![Vec::new(); extensions.len()];
+                let mut all = one.after(&level.1);
+                self.extend(one.get(0), level, work, &mut all, |_, _| true);
+                let count = all.particles.len();
+                let mut of: Vec<Vec<usize>> = vec![Vec::new(); count];
                 for s in own {
-                    let best = (0..extensions.len())
-                        .max_by(|&a, &b| log(&extensions[a], s).total_cmp(&log(&extensions[b], s)));
+                    let best = (0..count)
+                        .max_by(|&a, &b| log(all.get(a), s).total_cmp(&log(all.get(b), s)));
                     if let Some(best) = best {
                         of[best].push(s);
                     }
                 }
-                let all = extensions.into_iter().zip(of);
-                next.extend(all.filter(|(_, styles)| !styles.is_empty()));
+                let chosen = of
+                    .into_iter()
+                    .enumerate()
+                    .filter(|(_, own)| !own.is_empty());
+                next.extend(chosen.map(|(i, own)| (all.some(&[i]), own)));
             }
             taken = next;
         }
         let mut least = vec![f64::NEG_INFINITY; styles];
         for (one, own) in &taken {
             for &s in own {
-                least[s] = log(one, s) - NEGLIGIBLE;
+                least[s] = log(one.get(0), s) - NEGLIGIBLE;
             }
         }
         least
@@ -275,10 +361,19 @@ impl Row<'_> {
     }
 }
 
-/// `weights` (by style) times P(H_g = state, not the background | s).
-fn weighted(shape: &Shape, params: &Params, g: usize, state: usize, weights: &[f64]) -> Vec<f64> {
+/// Appends `weights` (by style) times P(H_g = state, not the background | s).
+fn weigh(
+    shape: &Shape,
+    params: &Params,
+    g: usize,
+    state: usize,
+    weights: &[f64],
+    all: &mut Vec<f64>,
+) {
     let styles = shape.structure.styles;
-    let mut out = weights.to_vec();
+    let first = all.len();
+    all.extend(weights);
+    let out = &mut all[first..];
     match shape.structure.selectors[g] {
         Selector::Hidden(_) => {
             let row = &params.tables[g][state * styles..(state + 1) * styles];
@@ -293,5 +388,4 @@ fn weighted(shape: &Shape, params: &Params, g: usize, state: usize, weights: &[f
     if let Some(background) = &shape.background {
         out.iter_mut().for_each(|w| *w *= 1.0 - background.share);
     }
-    out
 }

@@ -200,8 +200,8 @@ impl Hierarchy {
         for component in &scratch.components {
             let joint = joint(component, &only);
             let weights: Vec<f64> = joint.chunks(styles).map(|j| j[s]).collect();
-            let particle = &component.particles[categorical(&weights, rng)];
-            let drawn = gaussian(&particle.mean, &particle.cov, rng);
+            let particle = component.particles.get(categorical(&weights, rng));
+            let drawn = gaussian(particle.mean, particle.cov, rng);
             for (&c, v) in component.missing.iter().zip(drawn) {
                 real[c] = v;
             }

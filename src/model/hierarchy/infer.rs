@@ -253,7 +253,7 @@ impl Scratch {
                 if w < 1e-15 {
                     continue;
                 }
-                for (&g, &state) in component.groups.iter().zip(&particle.states) {
+                for (&g, &state) in component.groups.iter().zip(particle.states) {
                     let (h, background) = shape.read(g, state);
                     if background {
                         if shape.hidden(g) {

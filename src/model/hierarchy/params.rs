@@ -7,6 +7,7 @@ use super::super::error::ModelError;
 use super::super::graph;
 use super::super::table::MISSING;
 use super::background::Background;
+use super::component::MOST;
 use super::schema::Schema;
 use super::structure::{Selector, Structure};
 
@@ -54,6 +55,8 @@ pub(crate) struct Shape {
     pub indicators: Vec<usize>,
     /// What rows that no state explains are drawn from.
     pub background: Option<Background>,
+    /// Assignments of linked groups that are alive at once in a row with missing values.
+    pub alive: usize,
 }
 
 impl Shape {
@@ -87,6 +90,7 @@ impl Shape {
             regressors: structure.regressors(),
             indicators: schema.indicators(),
             structure,
+            alive: MOST,
         })
     }
 

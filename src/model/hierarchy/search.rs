@@ -8,6 +8,7 @@ use super::super::em::Stopping;
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
 use super::Priors;
+use super::component::{MOST, MOST_SEARCHED};
 use super::edges::propose;
 use super::fit::{Problem, Scored};
 use super::infer::Scratch;
@@ -130,7 +131,8 @@ impl<'a> Search<'a> {
 
     /// EM run to its end.
     fn settled(&self, best: Scored) -> Result<Scored, ModelError> {
-        let problem = self.problem(best.shape.structure.clone())?;
+        let mut problem = self.problem(best.shape.structure.clone())?;
+        problem.shape.alive = MOST;
         self.fit(&problem, best.params, &self.settings.stopping)
     }
 
@@ -194,7 +196,9 @@ impl<'a> Search<'a> {
     pub(super) fn problem(&self, mut structure: Structure) -> Result<Problem<'a>, ModelError> {
         structure.background = self.settings.background;
         let priors: &'a Priors = &self.settings.priors;
-        Problem::new(self.schema, self.rows, priors, structure)
+        let mut problem = Problem::new(self.schema, self.rows, priors, structure)?;
+        problem.shape.alive = MOST_SEARCHED;
+        Ok(problem)
     }
 
     /// The search of the paper for one cardinality of S.

@@ -67,7 +67,7 @@ pub(crate) fn wide(
                 let joint = joint(component, &scratch.style);
                 for (particle, j) in component.particles.iter().zip(joint.chunks(styles)) {
                     let w: f64 = j.iter().sum();
-                    for (&c, m) in component.missing.iter().zip(&particle.mean) {
+                    for (&c, m) in component.missing.iter().zip(particle.mean) {
                         v[c + 1] += w * m;
                     }
                 }

@@ -7,7 +7,7 @@ use rand::Rng;
 
 use super::super::elimination::{Factor, advance};
 use super::super::error::ModelError;
-use super::super::gaussian::{Particle, extend, gaussian};
+use super::super::gaussian::{Particles, extend, gaussian};
 use super::super::linalg::{categorical_of_logs, log_sum_exp};
 use super::evidence::{Asked, Evidence, Known, softmax};
 use super::{Answer, Cpd, Network};
@@ -79,9 +79,11 @@ impl Network {
             match &node.cpd {
                 Cpd::Linear(states) => {
                     let linear = &states[self.configuration(n, &assignment)];
-                    let given = extend(&Particle::empty(), &[], &self.columns(n), linear, &real);
+                    let start = Particles::start();
+                    let given = extend(start.get(0), &[], &self.columns(n), linear, &real);
+                    let given = given.get(0);
                     weight += given.log_density;
-                    let drawn = gaussian(&given.mean, &given.cov, rng);
+                    let drawn = gaussian(given.mean, given.cov, rng);
                     let open = node.coordinates.clone().filter(|&c| real[c].is_nan());
                     let open: Vec<usize> = open.collect();
                     for (c, v) in open.into_iter().zip(drawn) {

@@ -3,7 +3,7 @@
 use super::super::conjugate::Linear;
 use super::super::elimination::{Factor, advance};
 use super::super::error::ModelError;
-use super::super::gaussian::{Particle, extend};
+use super::super::gaussian::{Particles, extend};
 use super::{Cpd, Network};
 
 /// What is known.
@@ -74,7 +74,7 @@ pub(crate) struct Linked {
     /// Unobserved discrete parents.
     pub vars: Vec<usize>,
     /// One Gaussian per configuration of `vars`, the last fastest.
-    pub particles: Vec<Particle>,
+    pub particles: Particles,
 }
 
 /// What a question is about, besides the evidence.
@@ -295,20 +295,23 @@ impl Network {
         vars.dedup();
         let count: usize = vars.iter().map(|&v| self.sizes[v]).product();
         let mut assignment = known.assignment();
-        let mut particles = Vec::with_capacity(count);
+        let mut particles = Particles::default();
         let mut missing = Vec::new();
         for _ in 0..count {
             missing.clear();
-            let mut particle = Particle::empty();
+            let mut one = Particles::start();
             for &n in &nodes {
                 let columns = self.columns(n);
                 if let Some(linear) = self.state(n, &assignment) {
-                    particle = extend(&particle, &missing, &columns, linear, &known.real);
+                    one = extend(one.get(0), &missing, &columns, linear, &known.real);
                 }
                 let own = self.nodes[n].coordinates.clone();
                 missing.extend(own.filter(|&c| known.real[c].is_nan()));
             }
-            particles.push(particle);
+            match particles.len() {
+                0 => particles = one,
+                _ => particles.push(one.get(0)),
+            }
             advance(&vars, &self.sizes, &mut assignment);
         }
         Linked {

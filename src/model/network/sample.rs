@@ -62,8 +62,8 @@ impl Network {
         for linked in &question.linked {
             let vars = linked.vars.iter();
             let index = vars.fold(0, |i, &v| i * self.sizes[v] + assignment[v]);
-            let particle = &linked.particles[index];
-            let drawn = gaussian(&particle.mean, &particle.cov, rng);
+            let particle = linked.particles.get(index);
+            let drawn = gaussian(particle.mean, particle.cov, rng);
             for (&c, v) in linked.missing.iter().zip(drawn) {
                 real[c] = v;
             }
