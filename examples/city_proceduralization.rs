@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             id: format!("building {i}"),
             attributes: serde_json::Map::new(),
             mesh,
-            parts: Vec::new(),
+            ..CityBuilding::default()
         }
     });
     let city = City {

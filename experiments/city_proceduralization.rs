@@ -13,6 +13,7 @@ mod figure_6;
 mod figure_7;
 mod figure_8;
 mod figure_9;
+mod ingolstadt;
 mod judge;
 mod recovery;
 mod scaling;

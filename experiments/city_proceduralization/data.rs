@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::synthetic;
+use super::{ingolstadt, synthetic};
 use crate::experiments::Context;
 use crate::grammar::instance::Kept;
 use crate::io::city;
@@ -17,8 +17,10 @@ use crate::{Error, Result};
 pub const RESOLUTION: f64 = 1.0;
 
 /// Real cities below the data folder, the first of which most artefacts take.
-const REAL: [(&str, &str); 3] = [
+const REAL: [(&str, &str); 5] = [
     ("midtown", "city/nyc_midtown4500.npz"),
+    ("chiba", "city/chiba_textured.tar.xz"),
+    ("ingolstadt", "city/ingolstadt_lod3_semantic.json.gz"),
     ("delft", "city/delft_bag3d.npz"),
     ("manhattan", "city/nyc_manhattan_lod2.npz"),
 ];
@@ -43,7 +45,11 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     if ctx.budget() > crate::experiments::Budget::Smoke {
         for (name, file) in &REAL[..real] {
             if let Some(path) = ctx.real(file)? {
-                found.push(((*name).to_owned(), city::read(&path)?));
+                let city = match *name {
+                    "ingolstadt" => ingolstadt::read(&path)?,
+                    _ => city::read(&path)?,
+                };
+                found.push(((*name).to_owned(), city));
             }
         }
     }
@@ -59,6 +65,10 @@ pub struct Measures {
     pub components: f64,
     /// Triangles of all components, as cut.
     pub soup: f64,
+    /// Bytes of the textures that the templates show.
+    pub texture_bytes: f64,
+    /// Bytes of the textures that all components show.
+    pub texture_soup: f64,
     /// Terminals.
     pub terminals: f64,
     /// Non-terminals.
@@ -97,6 +107,12 @@ pub fn measure(city: &City, settings: &Settings) -> Result<Measures> {
             .components
             .iter()
             .map(|c| c.mesh.triangles.len() as f64)
+            .sum(),
+        texture_bytes: (made.types.representatives.iter())
+            .map(|&c| made.decomposition.components[c].texture_bytes)
+            .sum(),
+        texture_soup: (made.decomposition.components.iter())
+            .map(|c| c.texture_bytes)
             .sum(),
         terminals: grammar.templates.len() as f64,
         non_terminals: grammar.non_terminals() as f64,

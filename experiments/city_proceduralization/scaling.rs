@@ -199,7 +199,7 @@ fn jittered(city: &City, most: usize, copy: usize, shift: [f64; 2], seed: u64) -
             id: format!("{copy}-{}", b.id),
             attributes: serde_json::Map::new(),
             mesh,
-            parts: Vec::new(),
+            ..CityBuilding::default()
         }
     };
     City {

@@ -70,7 +70,7 @@ pub fn city(motifs: usize, noise: f64, seed: u64) -> (City, Vec<Truth>) {
                 id: format!("{m}-{slot}"),
                 attributes: serde_json::Map::new(),
                 mesh,
-                parts: Vec::new(),
+                ..CityBuilding::default()
             });
             truths.push(Truth { kind, cuts });
         }

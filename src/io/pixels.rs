@@ -46,6 +46,9 @@ pub enum PixelError {
     /// Not a JPEG, or a damaged or truncated one.
     #[error("not a readable JPEG: {0}")]
     Jpeg(#[from] image::ImageError),
+    /// Not a PNG, JPEG or WebP, or a damaged or truncated one.
+    #[error("not a readable picture: {0}")]
+    Picture(image::ImageError),
 }
 
 /// A decoded image: rows from the top, `stride` bytes a pixel.
@@ -58,6 +61,23 @@ pub struct Pixels {
     pub stride: usize,
     bytes: Vec<u8>,
     palette: Option<Vec<u8>>,
+}
+
+/// The columns and greys of a PNG, JPEG or WebP, row after row from the top.
+///
+/// # Errors
+/// [`PixelError`]; an image above [`MAX_PIXELS`] is refused from its header.
+pub fn greys(bytes: &[u8]) -> Result<(usize, Vec<u8>), PixelError> {
+    let reader = || {
+        let guessed = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+        guessed.map_err(|e| PixelError::Picture(e.into()))
+    };
+    let (width, height) = reader()?.into_dimensions().map_err(PixelError::Picture)?;
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(PixelError::TooLarge { width, height });
+    }
+    let picture = reader()?.decode().map_err(PixelError::Picture)?;
+    Ok((width as usize, picture.into_luma8().into_raw()))
 }
 
 /// Width and height of a PNG, from its header.

@@ -1,10 +1,12 @@
 //! Cities as CityJSON 1.0 to 2.0 (`.city.json`) and CityJSONSeq (`.city.jsonl`): z up, metres.
 //!
 //! A first-level city object with its parts is a building. Read are MultiSurface, CompositeSurface, Solid,
-//! MultiSolid and CompositeSolid of the highest level of detail; polygons with holes are triangulated.
+//! MultiSolid and CompositeSolid of the highest level of detail; polygons with holes are triangulated. Where
+//! surfaces are named (semantics) and windows among them, they are painted: openings dark, all else light.
 //! Written is CityJSON 2.0 with a MultiSurface of triangles for each building.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
@@ -13,7 +15,9 @@ use serde_json::{Map, Value, json};
 use super::CityError;
 use crate::io::json::parse_json;
 use crate::io::read_bytes;
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
+use crate::shape::triangles::{
+    City, CityBuilding, Painted, Surface, TriangleMesh, polygon_triangles,
+};
 use crate::{Error, Result};
 
 #[derive(Deserialize)]
@@ -107,7 +111,7 @@ fn read_objects(
                 id: id.clone(),
                 attributes: attributes.cloned().unwrap_or_default(),
                 mesh: TriangleMesh::default(),
-                parts: Vec::new(),
+                ..CityBuilding::default()
             });
         }
     }
@@ -124,12 +128,22 @@ fn read_objects(
             let text = format!("its parent {root:?} does not exist");
             return Err((id.clone(), CityError::Format(text)));
         };
-        let mut mesh = TriangleMesh::default();
+        let mut drawing = Drawing {
+            vertices,
+            kinds: Vec::new(),
+            mesh: TriangleMesh::default(),
+            paint: Vec::new(),
+        };
         if let Some(geometry) = highest(object) {
             let boundaries = geometry.get("boundaries").unwrap_or(&Value::Null);
-            surfaces(boundaries, vertices, &mut mesh).map_err(|e| (id.clone(), e))?;
+            drawing.kinds = greys(geometry);
+            let values = geometry.pointer("/semantics/values");
+            let drawn = drawing.surfaces(boundaries, values);
+            drawn.map_err(|e| (id.clone(), e))?;
         }
-        city.buildings[building].mesh.append(&mesh.welded(1e-6));
+        let building = &mut city.buildings[building];
+        building.mesh.append(&drawing.mesh.welded(1e-6));
+        building.paint.extend(drawing.paint);
     }
     city.buildings.retain(|b| !b.mesh.triangles.is_empty());
     Ok(())
@@ -156,39 +170,82 @@ fn highest(object: &Value) -> Option<&Value> {
         .max_by(|a, b| lod(a).total_cmp(&lod(b)))
 }
 
-/// Surfaces at any depth of nesting: a surface is a list of rings, a ring a list of indices.
-fn surfaces(
-    value: &Value,
-    vertices: &[[f64; 3]],
-    mesh: &mut TriangleMesh,
-) -> std::result::Result<(), CityError> {
-    let wrong = || CityError::Format("boundaries are not nested lists of indices".to_owned());
-    let list = value.as_array().ok_or_else(wrong)?;
-    let is_surface = list
-        .first()
-        .and_then(Value::as_array)
-        .and_then(|ring| ring.first())
-        .is_some_and(Value::is_number);
-    if !is_surface {
-        return list
-            .iter()
-            .try_for_each(|inner| surfaces(inner, vertices, mesh));
+/// Greys of openings and of everything else.
+const OPENING: u8 = 40;
+const WALL: u8 = 220;
+
+/// The grey of each kind of surface of a geometry, if windows are among them: what a drawing of the building would show.
+fn greys(geometry: &Value) -> Vec<Arc<Surface>> {
+    let kinds = geometry.pointer("/semantics/surfaces");
+    let kinds = kinds.and_then(Value::as_array).into_iter().flatten();
+    let names: Vec<&str> = kinds
+        .map(|k| k.get("type").and_then(Value::as_str).unwrap_or_default())
+        .collect();
+    if !names.contains(&"Window") {
+        return Vec::new();
     }
-    let mut rings: Vec<Vec<[f64; 3]>> = Vec::new();
-    for ring in list {
-        let mut corners = Vec::new();
-        for index in ring.as_array().ok_or_else(wrong)? {
-            let index = index.as_u64().ok_or_else(wrong)?;
-            let count = vertices.len();
-            let vertex = usize::try_from(index).ok().and_then(|i| vertices.get(i));
-            corners.push(*vertex.ok_or(CityError::Dangling { index, count })?);
+    let grey = |name: &&str| match *name {
+        "Window" | "Door" => OPENING,
+        _ => WALL,
+    };
+    let surface = |name| Arc::new(Surface::Plain(grey(name)));
+    names.iter().map(surface).collect()
+}
+
+/// An object as it is drawn.
+struct Drawing<'a> {
+    vertices: &'a [[f64; 3]],
+    /// What surfaces of each kind look like.
+    kinds: Vec<Arc<Surface>>,
+    mesh: TriangleMesh,
+    paint: Vec<Painted>,
+}
+
+impl Drawing<'_> {
+    /// Surfaces at any depth of nesting: a surface is a list of rings, a ring a list of indices. `kinds` are nested in the
+    /// same way, down to one for each surface.
+    fn surfaces(
+        &mut self,
+        value: &Value,
+        kinds: Option<&Value>,
+    ) -> std::result::Result<(), CityError> {
+        let wrong = || CityError::Format("boundaries are not nested lists of indices".to_owned());
+        let list = value.as_array().ok_or_else(wrong)?;
+        let is_surface = list
+            .first()
+            .and_then(Value::as_array)
+            .and_then(|ring| ring.first())
+            .is_some_and(Value::is_number);
+        if !is_surface {
+            let own = |i: usize| kinds.and_then(|k| k.get(i));
+            let mut inner = list.iter().enumerate();
+            return inner.try_for_each(|(i, inner)| self.surfaces(inner, own(i)));
         }
-        rings.push(corners);
+        let mut rings: Vec<Vec<[f64; 3]>> = Vec::new();
+        for ring in list {
+            let mut corners = Vec::new();
+            for index in ring.as_array().ok_or_else(wrong)? {
+                let index = index.as_u64().ok_or_else(wrong)?;
+                let count = self.vertices.len();
+                let vertex = usize::try_from(index).ok();
+                let vertex = vertex.and_then(|i| self.vertices.get(i));
+                corners.push(*vertex.ok_or(CityError::Dangling { index, count })?);
+            }
+            rings.push(corners);
+        }
+        let kind = kinds.and_then(Value::as_u64);
+        let kind = kind.and_then(|k| usize::try_from(k).ok());
+        let surface = kind.and_then(|k| self.kinds.get(k)).cloned();
+        for corners in polygon_triangles(&rings) {
+            self.mesh.push(corners);
+            self.paint.extend(surface.clone().map(|surface| Painted {
+                corners,
+                uv: [[0.0; 2]; 3],
+                surface,
+            }));
+        }
+        Ok(())
     }
-    polygon_triangles(&rings)
-        .into_iter()
-        .for_each(|t| mesh.push(t));
-    Ok(())
 }
 
 /// Millimetres: coordinates are written as integers.

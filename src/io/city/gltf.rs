@@ -295,7 +295,7 @@ impl Reader<'_> {
             id,
             attributes: extras.as_object().cloned().unwrap_or_default(),
             mesh: moved,
-            parts: Vec::new(),
+            ..CityBuilding::default()
         });
         Ok(())
     }

@@ -3,15 +3,17 @@
 //! | extension | read | written |
 //! | --- | --- | --- |
 //! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
-//! | `.obj` | [`obj`]: an object or group is a building | yes |
+//! | `.obj` | [`obj`]: an object or group is a building; materials and textures of its `.mtl` | yes, without |
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
 //! | `.glb`, `.gltf` | [`gltf`]: a node is a building | `.glb`, [`glb`]: a node with instances for each template |
+//! | `.tar`, `.tar.xz` | the `.obj` files in it, with their materials and textures, as one city | no |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
 //! | `.city-grammar.bin` | [`compact`]: the same in few bytes | yes |
 //! | `tileset.json` | no | [`tiles`]: 3D Tiles 1.1 |
 //! | `.geojson` | [`geojson`]: a shape on the ground | no |
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
+mod archive;
 pub mod cityjson;
 pub mod compact;
 pub mod geojson;
@@ -21,6 +23,7 @@ mod gltf_data;
 mod gltf_transform;
 pub mod grammar_file;
 pub mod grammar_json;
+mod mtl;
 pub mod npz;
 pub mod obj;
 pub mod picture;
@@ -43,7 +46,9 @@ pub enum CityError {
     #[error("no buildings with triangles")]
     NoBuildings,
     /// An extension that is no city format.
-    #[error("unknown city format; expected .npz, .obj, .glb, .gltf, .city.json or .city.jsonl")]
+    #[error(
+        "unknown city format; expected .npz, .obj, .glb, .gltf, .city.json, .city.jsonl or .tar.xz"
+    )]
     UnknownFormat,
     /// Coordinates look like degrees.
     #[error(
@@ -76,6 +81,7 @@ pub fn read(path: &Path) -> Result<City> {
         "obj" => obj::read(path)?,
         "glb" | "gltf" => gltf::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,
+        "tar" | "xz" => archive::read(path)?,
         _ => return Err(Error::content(path, CityError::UnknownFormat)),
     };
     check(city, path)

@@ -77,7 +77,7 @@ pub fn parse(bytes: Vec<u8>, path: &Path) -> Result<City> {
             id,
             attributes: attributes.next().unwrap_or_default(),
             mesh,
-            parts: Vec::new(),
+            ..CityBuilding::default()
         });
     }
     let meta = arrays.json("meta")?.unwrap_or_default();

@@ -1,14 +1,17 @@
 //! Cities as Wavefront OBJ: each object (`o`), or group (`g`) in a file without objects, is a building; z up, metres.
-//! Faces of more than three corners are cut into fans. Materials and texture coordinates are not read.
+//! Faces of more than three corners are cut into fans. Materials ([`super::mtl`]) and texture coordinates are read as what
+//! the surface looks like.
 
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
 use super::CityError;
+use super::mtl::{self, Materials};
 use crate::io::read_bytes;
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh};
+use crate::shape::triangles::{City, CityBuilding, Painted, Surface, TriangleMesh};
 use crate::{Error, Result};
 
 /// Reads a file.
@@ -19,7 +22,7 @@ pub fn read(path: &Path) -> Result<City> {
     parse(&read_bytes(path)?, path)
 }
 
-/// Parses the bytes of a file; `path` only names it in errors.
+/// Parses the bytes of a file; materials that it names lie beside `path`.
 ///
 /// # Errors
 /// As [`read`].
@@ -30,6 +33,10 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     let mut names: FxHashMap<String, usize> = FxHashMap::default();
     let mut faces: Vec<(String, Vec<[u32; 3]>)> = Vec::new();
     let mut current: Option<usize> = None;
+    let mut coordinates: Vec<[f64; 2]> = Vec::new();
+    let mut materials = Materials::default();
+    let mut material: Option<Arc<Surface>> = None;
+    let mut paint: Vec<Vec<Painted>> = Vec::new();
     for (number, line) in text.lines().enumerate() {
         let fail = |error: CityError| Error::input(path, format!("line {}", number + 1), error);
         let mut words = line.split_whitespace();
@@ -44,24 +51,39 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                 }
                 positions.push(p);
             }
+            Some("vt") => {
+                let mut next = || words.next().and_then(|w| w.parse().ok());
+                let uv = next().zip(next().or(Some(0.0)));
+                let uv = uv.filter(|(u, v): &(f64, f64)| u.is_finite() && v.is_finite());
+                let bad = || CityError::Format("not texture coordinates".into());
+                let (u, v) = uv.ok_or_else(|| fail(bad()))?;
+                coordinates.push([u, v]);
+            }
+            Some("mtllib") => {
+                for name in words {
+                    mtl::read(&path.with_file_name(name), &mut materials)?;
+                }
+            }
+            Some("usemtl") => {
+                let name = words.collect::<Vec<_>>().join(" ");
+                material = materials.get(&name).cloned();
+            }
             Some("f") => {
                 let mut corners: Vec<u32> = Vec::new();
+                let mut uv: Vec<[f64; 2]> = Vec::new();
                 for word in words {
-                    let index = word.split('/').next().unwrap_or_default();
-                    let bad = || CityError::Format(format!("{word:?} is not a corner"));
-                    let index: i64 = index.parse().map_err(|_| fail(bad()))?;
-                    // Negative indices count from the last position so far.
-                    let count = positions.len();
-                    let at = if index < 0 {
-                        count as i64 + index
-                    } else {
-                        index - 1
+                    let mut indices = word.split('/');
+                    let mut next = |count: usize| -> Result<Option<usize>> {
+                        let index = indices.next().filter(|i| !i.is_empty());
+                        let bad = || CityError::Format(format!("{word:?} is not a corner"));
+                        let index = index.map(|i| i.parse().map_err(|_| fail(bad())));
+                        let index = index.transpose()?;
+                        index.map(|i| place(i, count).map_err(&fail)).transpose()
                     };
-                    if at < 0 || at >= count as i64 {
-                        let index = index.unsigned_abs();
-                        return Err(fail(CityError::Dangling { index, count }));
-                    }
+                    let bad = || CityError::Format(format!("{word:?} is not a corner"));
+                    let at = next(positions.len())?.ok_or_else(|| fail(bad()))?;
                     corners.push(at as u32);
+                    uv.extend(next(coordinates.len())?.map(|i| coordinates[i]));
                 }
                 if corners.len() < 3 {
                     return Err(fail(CityError::Format(
@@ -72,8 +94,19 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                     faces.push((crate::io::file_stem(path), Vec::new()));
                     faces.len() - 1
                 });
-                let fan = (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]);
-                faces[building].1.extend(fan);
+                uv.resize(corners.len(), [0.0; 2]);
+                let fan = || (2..corners.len()).map(|k| [0, k - 1, k]);
+                faces[building]
+                    .1
+                    .extend(fan().map(|t| t.map(|k| corners[k])));
+                if let Some(surface) = &material {
+                    paint.resize(paint.len().max(building + 1), Vec::new());
+                    paint[building].extend(fan().map(|t| Painted {
+                        corners: t.map(|k| positions[corners[k] as usize]),
+                        uv: t.map(|k| uv[k]),
+                        surface: surface.clone(),
+                    }));
+                }
             }
             Some(key) if key == if objects { "o" } else { "g" } => {
                 let name = words.collect::<Vec<_>>().join(" ");
@@ -85,22 +118,34 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
             _ => {}
         }
     }
-    let buildings = faces
-        .into_iter()
-        .filter(|(_, triangles)| !triangles.is_empty());
+    paint.resize(faces.len(), Vec::new());
+    let buildings = faces.into_iter().zip(paint);
+    let buildings = buildings.filter(|((_, triangles), _)| !triangles.is_empty());
     Ok(City {
         name: crate::io::file_stem(path),
         reference_system: None,
         origin: [0.0; 3],
         buildings: buildings
-            .map(|(id, triangles)| CityBuilding {
+            .map(|((id, triangles), paint)| CityBuilding {
                 id,
-                attributes: serde_json::Map::new(),
                 mesh: own(&positions, &triangles),
-                parts: Vec::new(),
+                paint,
+                ..CityBuilding::default()
             })
             .collect(),
     })
+}
+
+/// Where an index of OBJ leads to among `count`; negative ones count from the last so far.
+fn place(index: i64, count: usize) -> std::result::Result<usize, CityError> {
+    let at = match index < 0 {
+        true => index.checked_add_unsigned(count as u64),
+        false => index.checked_sub(1),
+    };
+    let at = at.and_then(|at| usize::try_from(at).ok());
+    let index = index.unsigned_abs();
+    at.filter(|&at| at < count)
+        .ok_or(CityError::Dangling { index, count })
 }
 
 /// A mesh with only the positions that its triangles use.

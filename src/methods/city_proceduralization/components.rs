@@ -4,9 +4,10 @@ use rayon::prelude::*;
 
 use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
+use super::windows::{WindowFeatures, window_features};
 use crate::shape::triangles::{
-    City, MeshFaults, OrientedBox, Part, SectionProfile, TriangleMesh, clip_to_slabs, closing_lid,
-    height_map, repair,
+    City, MeshFaults, OrientedBox, Painted, Part, SectionProfile, Surface, TriangleMesh,
+    clip_to_slabs, closing_lid, height_map, repair,
 };
 
 /// Step of A(z), in metres.
@@ -47,6 +48,10 @@ pub struct Component {
     pub symmetric: bool,
     /// The template that it is an instance of, where the input says it.
     pub stated: Option<usize>,
+    /// The window features, where its sides are painted.
+    pub windows: Option<WindowFeatures>,
+    /// Bytes of the textures that it shows, by texels.
+    pub texture_bytes: f64,
 }
 
 /// All components of a city.
@@ -76,10 +81,13 @@ pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) ->
             pulse();
             let building = &city.buildings[b];
             let (mesh, faults) = repair(&building.mesh);
-            let components = match building.stated_parts() {
+            let mut components = match building.stated_parts() {
                 Some(parts) => stated_components(parts, b),
                 None => components_of(&mesh, b, bottoms),
             };
+            for component in &mut components {
+                component.look_at(&building.paint);
+            }
             (components, faults)
         })
         .collect();
@@ -98,6 +106,22 @@ pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) ->
     out
 }
 
+impl Component {
+    /// What its building's paint says of it.
+    fn look_at(&mut self, paint: &[Painted]) {
+        let (low, high) = (self.frame.base[2], self.frame.base[2] + self.frame.size[2]);
+        self.windows = window_features(paint, &self.frame);
+        let bytes = |p: &Painted| match &*p.surface {
+            Surface::Texture(t) => {
+                let share = p.texels() * p.share_between(low, high);
+                share * t.bytes as f64 / t.greys.len().max(1) as f64
+            }
+            Surface::Plain(_) => 0.0,
+        };
+        self.texture_bytes = paint.iter().map(bytes).sum();
+    }
+}
+
 /// The components of a building of which the input says what it is put together from: nothing is cut.
 fn stated_components(parts: Vec<(&Part, TriangleMesh)>, building: usize) -> Vec<Component> {
     let component = |(slab, (part, mesh)): (usize, (&Part, TriangleMesh))| {
@@ -111,6 +135,8 @@ fn stated_components(parts: Vec<(&Part, TriangleMesh)>, building: usize) -> Vec<
             heights,
             mesh,
             stated: Some(part.template),
+            windows: None,
+            texture_bytes: 0.0,
         }
     };
     parts.into_iter().enumerate().map(component).collect()
@@ -152,6 +178,8 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
             volume,
             symmetric: turned.is_none(),
             stated: None,
+            windows: None,
+            texture_bytes: 0.0,
         };
         if turned == Some(true) {
             half_turn(&mut component);

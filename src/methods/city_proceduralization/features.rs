@@ -40,14 +40,17 @@ impl Points {
     }
 }
 
-/// The eleven features of the paper (Sec. IV.C), standardized and multiplied by `weights` (Eq. 1). Components
-/// carry no textures, so that the six window features are equal and fall out.
+/// The eleven features of the paper (Sec. IV.C), standardized and multiplied by `weights` (Eq. 1). Window features that a
+/// component does not have are the mean of those of the others; features that are all equal fall out.
 pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
     let raw: Vec<[f64; 11]> = components
         .par_iter()
         .map(|c| {
             let [w, d, h] = c.frame.size;
-            let mut row = [0.0; 11];
+            let mut row = [f64::NAN; 11];
+            if let Some(windows) = &c.windows {
+                row[1..7].copy_from_slice(windows);
+            }
             row[0] = outline_vertices(c) as f64;
             row[7] = w;
             row[8] = h;
@@ -56,11 +59,12 @@ pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
             row
         })
         .collect();
-    let n = raw.len().max(1) as f64;
     let mut columns: Vec<(usize, f64, f64)> = Vec::new();
     for k in 0..11 {
-        let mean = raw.iter().map(|r| r[k]).sum::<f64>() / n;
-        let variance = raw.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>() / n;
+        let known = || raw.iter().map(|r| r[k]).filter(|v| !v.is_nan());
+        let n = known().count().max(1) as f64;
+        let mean = known().sum::<f64>() / n;
+        let variance = known().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
         if variance > 0.0 && weights[k] != 0.0 {
             columns.push((k, mean, weights[k] / variance.sqrt()));
         }
@@ -69,7 +73,10 @@ pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
         columns.push((0, 0.0, 0.0));
     }
     let dimension = columns.len();
-    let value = |r: &[f64; 11], &(k, mean, factor): &(usize, f64, f64)| (r[k] - mean) * factor;
+    let value = |r: &[f64; 11], &(k, mean, factor): &(usize, f64, f64)| match r[k].is_nan() {
+        true => 0.0,
+        false => (r[k] - mean) * factor,
+    };
     let values = raw
         .iter()
         .flat_map(|r| columns.iter().map(move |c| value(r, c)));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{OrientedBox, TriangleMesh};
+use super::{OrientedBox, Painted, TriangleMesh};
 
 /// A building of a city.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -16,6 +16,8 @@ pub struct CityBuilding {
     /// What the surface is put together from, where the input says it: all of it, or nothing. Whoever changes the mesh
     /// clears them.
     pub parts: Vec<Part>,
+    /// What the surface looks like, as far as the input says it, in the same coordinates.
+    pub paint: Vec<Painted>,
 }
 
 /// A part of a building's mesh that is an instance of a template: a mesh in the unit box (x and y from -1/2 to 1/2, z from
@@ -123,7 +125,8 @@ impl City {
                 part.template += known;
                 &mut part.frame.base
             });
-            for p in bases.chain(&mut building.mesh.positions) {
+            let paint = building.paint.iter_mut().flat_map(|p| &mut p.corners);
+            for p in bases.chain(&mut building.mesh.positions).chain(paint) {
                 *p = [0, 1, 2].map(|k| p[k] + shift[k]);
             }
             self.buildings.push(building);

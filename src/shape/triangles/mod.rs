@@ -5,6 +5,7 @@
 //! - [`SectionProfile`]: the area A(z) of horizontal sections, exact, without a bottom face.
 //! - [`clip_to_slabs`]: the parts of a mesh between horizontal planes.
 //! - [`section_lid`], [`closing_lid`]: a horizontal section as triangles, and what of it closes a cut.
+//! - [`Painted`]: what a triangle looks like, for what is read off facades.
 //! - [`OrientedBox`]: the smallest rectangle around a plan, extruded.
 //! - [`merge_coplanar`]: the same surface with fewer triangles.
 //! - [`VolumeRaster`]: columns of solid material on a square grid; volumetric intersection over union.
@@ -17,6 +18,7 @@ mod distance;
 mod lid;
 mod mesh;
 mod oriented_box;
+mod painted;
 mod profile;
 mod raster;
 mod repair;
@@ -29,6 +31,7 @@ pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
 pub use lid::{closing_lid, section_lid};
 pub use mesh::{Corners, TriangleMesh, plan_area};
 pub use oriented_box::{OrientedBox, convex_hull};
+pub use painted::{Painted, Surface, Texture};
 pub use profile::SectionProfile;
 pub use raster::{Overlap, VolumeRaster, height_map, solid_intervals};
 pub use repair::{MeshFaults, repair};

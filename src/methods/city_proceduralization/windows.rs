@@ -1,0 +1,330 @@
+//! The six window features of a component (Sec. IV.C): its four sides are drawn, windows are told from the wall by Otsu's
+//! threshold, opening and closing.
+
+use crate::shape::triangles::{OrientedBox, Painted, Surface};
+use crate::shape::{LabelGrid, Span, components};
+
+/// Pixels along the longer side of a picture at most.
+const MOST_PIXELS: usize = 256;
+/// Least side of a pixel, in metres.
+const PIXEL: f64 = 0.1;
+/// A triangle is seen from a side if its normal turns no more than 60 degrees away from it.
+const FACING: f64 = 0.5;
+/// Share of a side that has to be painted.
+const COVERED: f64 = 0.25;
+/// Types of windows of a side: clusters of areas.
+const TYPES: usize = 3;
+/// Rounds of k-means at most.
+const ROUNDS: usize = 50;
+/// Windows whose area is so many standard deviations off that of their type are outliers.
+const OUTLIER: f64 = 2.0;
+/// Fewer pixels are no window.
+const LEAST_AREA: usize = 4;
+
+/// Window width and height, spacing in x and y (metres), emptiness (share of background pixels to window pixels in the
+/// windows' boxes), intensity of the background (0 to 1).
+pub type WindowFeatures = [f64; 6];
+
+/// The features of a component in a box, the mean over its painted sides; `None` where no side is painted.
+pub fn window_features(paint: &[Painted], frame: &OrientedBox) -> Option<WindowFeatures> {
+    let sides = (0..4).filter_map(|side| Picture::of(paint, frame, side));
+    let found: Vec<WindowFeatures> = sides.filter_map(|p| p.features()).collect();
+    let n = found.len() as f64;
+    let mean = |k: usize| found.iter().map(|f| f[k]).sum::<f64>() / n;
+    (!found.is_empty()).then(|| std::array::from_fn(mean))
+}
+
+/// A side of a component in greys.
+struct Picture {
+    width: usize,
+    height: usize,
+    /// Metres.
+    pixel: f64,
+    /// Row after row from below; `None` where nothing is painted.
+    greys: Vec<Option<u8>>,
+}
+
+impl Picture {
+    /// The side that looks along +x, +y, -x or -y of the box, drawn without perspective.
+    fn of(paint: &[Painted], frame: &OrientedBox, side: usize) -> Option<Self> {
+        let turn = frame.angle + side as f64 * std::f64::consts::FRAC_PI_2;
+        let normal = [turn.cos(), turn.sin()];
+        let right = [-normal[1], normal[0]];
+        let across = frame.size[1 - side % 2];
+        let pixel = PIXEL.max(across.max(frame.size[2]) / MOST_PIXELS as f64);
+        let count = |length: f64| ((length / pixel).ceil() as usize).clamp(1, MOST_PIXELS + 1);
+        let (width, height) = (count(across), count(frame.size[2]));
+        let mut greys = vec![None; width * height];
+        let mut depths = vec![f64::NEG_INFINITY; width * height];
+        for painted in paint {
+            if facing(&painted.corners, normal) < FACING {
+                continue;
+            }
+            // Pixels to the right and up, and metres towards the viewer.
+            let seen = painted.corners.map(|p| {
+                let [x, y, z] = [0, 1, 2].map(|k| p[k] - frame.base[k]);
+                let along = x * right[0] + y * right[1] + across / 2.0;
+                let depth = x * normal[0] + y * normal[1];
+                [along / pixel, z / pixel, depth]
+            });
+            cover(&seen, width, height, |at, weights| {
+                let depth: f64 = (0..3).map(|k| weights[k] * seen[k][2]).sum();
+                if depth > depths[at] {
+                    depths[at] = depth;
+                    greys[at] = Some(match &*painted.surface {
+                        Surface::Plain(grey) => *grey,
+                        Surface::Texture(texture) => texture.at([0, 1]
+                            .map(|c| (0..3).map(|k| weights[k] * painted.uv[k][c]).sum::<f64>())),
+                    });
+                }
+            });
+        }
+        let painted = greys.iter().flatten().count() as f64;
+        (painted >= COVERED * greys.len() as f64).then_some(Self {
+            width,
+            height,
+            pixel,
+            greys,
+        })
+    }
+
+    /// `None` for a side of one grey.
+    fn features(&self) -> Option<WindowFeatures> {
+        let mut counts = [0_usize; 256];
+        self.greys
+            .iter()
+            .flatten()
+            .for_each(|&g| counts[usize::from(g)] += 1);
+        let threshold = otsu(&counts)?;
+        let dark = |g: &Option<u8>| g.is_some_and(|g| g < threshold);
+        let mut mask = Mask {
+            width: self.width,
+            cells: self.greys.iter().map(dark).collect(),
+        };
+        // Opening, then closing.
+        for grow in [false, true, true, false] {
+            mask = mask.morphed(grow);
+        }
+        let wall = self
+            .greys
+            .iter()
+            .zip(&mask.cells)
+            .filter(|(_, window)| !**window);
+        let wall: Vec<f64> = wall.filter_map(|(g, _)| *g).map(f64::from).collect();
+        let intensity = wall.iter().sum::<f64>() / (255.0 * wall.len().max(1) as f64);
+        let windows = dominant(mask.regions(self.height));
+        if windows.is_empty() {
+            return Some([0.0, 0.0, 0.0, 0.0, 0.0, intensity]);
+        }
+        let n = windows.len() as f64;
+        let mean = |f: &dyn Fn(&Region) -> f64| windows.iter().map(f).sum::<f64>() / n;
+        let sides = |r: &Region| {
+            [
+                r.bounds.right - r.bounds.left,
+                r.bounds.top - r.bounds.bottom,
+            ]
+        };
+        let [width, height] = [0, 1].map(|k| mean(&|r| sides(r)[k] as f64));
+        let emptiness = mean(&|r| {
+            let [w, h] = sides(r);
+            (w * h - r.cells) as f64 / r.cells as f64
+        });
+        let middles = |k: usize| -> Vec<usize> {
+            let both = |r: &Region| match k {
+                0 => r.bounds.left + r.bounds.right,
+                _ => r.bounds.bottom + r.bounds.top,
+            };
+            windows.iter().map(|r| both(r) / 2).collect()
+        };
+        let spacing = |k: usize, side: f64| {
+            usual_distance(middles(k), side / 2.0).map_or(0.0, |d| (d as f64 - side).max(0.0))
+        };
+        let metres = |pixels: f64| pixels * self.pixel;
+        Some([
+            metres(width),
+            metres(height),
+            metres(spacing(0, width)),
+            metres(spacing(1, height)),
+            emptiness,
+            intensity,
+        ])
+    }
+}
+
+/// Cosine between a triangle's normal and a horizontal direction.
+fn facing([a, b, c]: &[[f64; 3]; 3], direction: [f64; 2]) -> f64 {
+    let edge = |q: &[f64; 3]| [0, 1, 2].map(|k| q[k] - a[k]);
+    let ([ux, uy, uz], [vx, vy, vz]) = (edge(b), edge(c));
+    let n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+    (n[0] * direction[0] + n[1] * direction[1]) / length.max(f64::MIN_POSITIVE)
+}
+
+/// Calls `visit` with every pixel whose middle the triangle covers, and the barycentric coordinates there.
+fn cover(t: &[[f64; 3]; 3], width: usize, height: usize, mut visit: impl FnMut(usize, [f64; 3])) {
+    let [a, b, c] = t;
+    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    if area == 0.0 {
+        return;
+    }
+    let range = |k: usize, n: usize| {
+        let low = a[k].min(b[k]).min(c[k]);
+        let high = a[k].max(b[k]).max(c[k]);
+        // Conversions of floats saturate.
+        ((low - 0.5).ceil().max(0.0) as usize)..((high + 0.5).ceil().max(0.0) as usize).min(n)
+    };
+    for j in range(1, height) {
+        for i in range(0, width) {
+            let (x, y) = (i as f64 + 0.5, j as f64 + 0.5);
+            let part = |p: &[f64; 3], q: &[f64; 3]| {
+                ((p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x)) / area
+            };
+            let weights = [part(b, c), part(c, a), part(a, b)];
+            if weights.iter().all(|w| *w >= 0.0) {
+                visit(j * width + i, weights);
+            }
+        }
+    }
+}
+
+/// The grey below which pixels are foreground: greatest variance between the two classes (Otsu 1979); `None` for one grey.
+fn otsu(counts: &[usize; 256]) -> Option<u8> {
+    let total: usize = counts.iter().sum();
+    let sum: usize = counts.iter().enumerate().map(|(g, n)| g * n).sum();
+    let (mut below, mut sum_below) = (0, 0);
+    let mut best: Option<(f64, u8)> = None;
+    for (grey, &count) in (0..=255_u8).zip(counts) {
+        let above = total - below;
+        if below > 0 && above > 0 {
+            let mean = sum_below as f64 / below as f64;
+            let apart = (sum - sum_below) as f64 / above as f64 - mean;
+            let between = below as f64 * above as f64 * apart * apart;
+            if best.is_none_or(|b| between > b.0) {
+                best = Some((between, grey));
+            }
+        }
+        below += count;
+        sum_below += usize::from(grey) * count;
+    }
+    best.map(|b| b.1)
+}
+
+/// Pixels that are windows.
+struct Mask {
+    width: usize,
+    cells: Vec<bool>,
+}
+
+/// A connected region of the mask.
+struct Region {
+    bounds: Span,
+    cells: usize,
+}
+
+impl Mask {
+    /// Dilated, or eroded, by 3 x 3; what is outside the picture does not count.
+    fn morphed(&self, grow: bool) -> Self {
+        let (w, h) = (self.width, self.cells.len() / self.width);
+        let near = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+        let cell = |at: usize| {
+            let mut around = near(at / w, h).flat_map(|j| near(at % w, w).map(move |i| j * w + i));
+            match grow {
+                true => around.any(|k| self.cells[k]),
+                false => around.all(|k| self.cells[k]),
+            }
+        };
+        Self {
+            width: w,
+            cells: (0..self.cells.len()).map(cell).collect(),
+        }
+    }
+
+    fn regions(&self, height: usize) -> Vec<Region> {
+        let line = |n: usize| (0..=n).map(|v| v as f64).collect();
+        let grid = LabelGrid {
+            name: String::new(),
+            unit: "px".to_owned(),
+            xs: line(self.width),
+            ys: line(height),
+            labels: vec!["wall".to_owned(), "window".to_owned()],
+            cells: self.cells.iter().map(|&c| u16::from(c)).collect(),
+        };
+        let whole = Span {
+            left: 0,
+            right: self.width,
+            bottom: 0,
+            top: height,
+        };
+        let mut of_cell = vec![0; self.cells.len()];
+        let all = components(&grid, whole, &mut of_cell).into_iter();
+        all.filter(|c| c.label == 1 && c.cells >= LEAST_AREA)
+            .map(|c| Region {
+                bounds: c.bounds,
+                cells: c.cells,
+            })
+            .collect()
+    }
+}
+
+/// The regions of the type with most members, without outliers: types are clusters of areas (k-means in one dimension from
+/// evenly spread quantiles).
+fn dominant(mut regions: Vec<Region>) -> Vec<Region> {
+    if regions.is_empty() {
+        return regions;
+    }
+    regions.sort_by_key(|r| r.cells);
+    let area = |r: &Region| r.cells as f64;
+    let quantile = |k: usize| area(&regions[(2 * k + 1) * regions.len() / (2 * TYPES)]);
+    let mut centres: Vec<f64> = (0..TYPES).map(quantile).collect();
+    centres.dedup();
+    let nearest = |centres: &[f64], r: &Region| {
+        let far = |c: usize| (centres[c] - area(r)).abs();
+        (0..centres.len())
+            .min_by(|&a, &b| far(a).total_cmp(&far(b)))
+            .unwrap_or(0)
+    };
+    let mut labels: Vec<usize> = regions.iter().map(|r| nearest(&centres, r)).collect();
+    for _ in 0..ROUNDS {
+        for (c, centre) in centres.iter_mut().enumerate() {
+            let own = regions.iter().zip(&labels).filter(|(_, l)| **l == c);
+            let own: Vec<f64> = own.map(|(r, _)| area(r)).collect();
+            if !own.is_empty() {
+                *centre = own.iter().sum::<f64>() / own.len() as f64;
+            }
+        }
+        let next: Vec<usize> = regions.iter().map(|r| nearest(&centres, r)).collect();
+        if next == labels {
+            break;
+        }
+        labels = next;
+    }
+    let count = |c: usize| labels.iter().filter(|l| **l == c).count();
+    // Of types of as many members, the larger windows.
+    let most = (0..centres.len()).max_by_key(|&c| count(c)).unwrap_or(0);
+    let n = count(most) as f64;
+    let own = || regions.iter().zip(&labels).filter(|(_, l)| **l == most);
+    let variance = own()
+        .map(|(r, _)| (area(r) - centres[most]).powi(2))
+        .sum::<f64>()
+        / n;
+    let limit = OUTLIER * variance.sqrt();
+    let mut labels = labels.iter();
+    let centre = centres[most];
+    regions.retain(|r| labels.next() == Some(&most) && (area(r) - centre).abs() <= limit);
+    regions
+}
+
+/// The most frequent distance between neighbouring middles, of those of at least `least` pixels (windows above each other
+/// are not neighbours); of equally frequent ones the smallest.
+fn usual_distance(mut middles: Vec<usize>, least: f64) -> Option<usize> {
+    middles.sort_unstable();
+    let mut distances: Vec<usize> = middles.windows(2).map(|w| w[1] - w[0]).collect();
+    distances.retain(|&d| d as f64 >= least);
+    distances.sort_unstable();
+    let runs = distances.chunk_by(|a, b| a == b);
+    let most = runs.rev().max_by_key(|run| run.len());
+    most.map(|run| run[0])
+}
+
+#[cfg(test)]
+mod tests;
