@@ -6,3 +6,4 @@ mod gltf;
 mod grammar;
 mod interrupted;
 mod invariance;
+mod textures;

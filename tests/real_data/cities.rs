@@ -2,7 +2,9 @@
 
 use edifice::grammar::instance::Kept;
 use edifice::io::city::{compact, glb, read};
-use edifice::methods::city_proceduralization::{Budget, Precision, Settings, proceduralize};
+use edifice::methods::city_proceduralization::{
+    Budget, Precision, Settings, decompose, proceduralize,
+};
 use edifice::rng::stream;
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
 use rand::seq::SliceRandom;
@@ -86,4 +88,33 @@ fn midtown_derived_becomes_the_same_grammar() {
         }
         last = Some((read(&path).unwrap(), bytes));
     }
+}
+
+#[test]
+fn windows_of_chiba_are_found_on_its_photographs() {
+    const CHIBA: &str = "city/chiba_textured.tar.xz";
+    let Some(folder) = crate::common::real_data(CHIBA) else {
+        return;
+    };
+    let city = read(&folder.join(CHIBA)).unwrap();
+    let painted = |b: &&edifice::shape::triangles::CityBuilding| {
+        let textured = |p: &edifice::shape::triangles::Painted| p.texels() > 0.0;
+        b.paint.iter().any(textured)
+    };
+    assert_eq!(city.buildings.iter().filter(painted).count(), 389);
+    let components = decompose(&city, true).components;
+    let windows: Vec<_> = components.iter().filter_map(|c| c.windows).collect();
+    println!(
+        "{} components, {} with windows",
+        components.len(),
+        windows.len()
+    );
+    assert!(windows.len() > 300);
+    let mut widths: Vec<f64> = windows.iter().map(|w| w[0]).filter(|w| *w > 0.0).collect();
+    widths.sort_by(f64::total_cmp);
+    let median = widths[widths.len() / 2];
+    assert!((0.5..6.0).contains(&median), "{median}");
+    let bytes: f64 = components.iter().map(|c| c.texture_bytes).sum();
+    println!("median width of windows {median:.2} m, {bytes:.0} bytes of textures");
+    assert!(bytes > 1e6 && bytes < 2.6e6, "{bytes}");
 }
