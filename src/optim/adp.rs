@@ -65,6 +65,34 @@ use super::run::{Run, Search, Step, execute};
 use crate::rng::{Stream, stream};
 
 /// A finite decision process with additive costs.
+///
+/// A walk is `S_0, a_0, S_1, .., S_T` with `S_0` from [`Process::initial`], `S_{t+1}` from [`Process::apply`] and `S_T`
+/// final; its cost is `Σ_t C_t(S_t, a_t)`, in any one unit. A cost that depends on t keeps t in the state. Every sequence of
+/// possible actions has to end in a final state, or [`Adp::run`] does not return.
+///
+/// Source: Wu et al. 2014, Eq. 3 and Sec. 4.2; Powell 2011. The [module](self)'s example solves a process with all three traits.
+///
+/// # Examples
+/// ```
+/// use edifice::optim::adp::Process;
+/// /// Pay 6 with coins of 1, 3 and 4, each of cost 1.
+/// struct Change;
+/// impl Process for Change {
+///     type State = u32;
+///     type Action = u32;
+///     fn initial(&self) -> u32 { 6 }
+///     fn is_final(&self, left: &u32) -> bool { *left == 0 }
+///     fn cost(&self, _: &u32, _: &u32) -> f64 { 1.0 }
+///     fn apply(&self, left: &mut u32, coin: &u32) { *left -= coin }
+/// }
+/// let (mut left, mut cost) = (Change.initial(), 0.0);
+/// for coin in [4, 1, 1] {
+///     cost += Change.cost(&left, &coin);
+///     Change.apply(&mut left, &coin);
+/// }
+/// assert!(Change.is_final(&left));
+/// assert_eq!(cost, 3.0);
+/// ```
 pub trait Process {
     /// Where the walk stands.
     type State;
@@ -86,6 +114,10 @@ pub trait Process {
 }
 
 /// Where exploration draws its actions from.
+///
+/// One call of [`Heuristic::sample`] per explored step, so that its cost is a factor of the whole run's. An action that has
+/// probability 0 here is found by no walk: the approximation only repeats actions that it has learnt of.
+/// Source: Wu et al. 2014, Sec. 4.2. The [module](self) has an example.
 pub trait Heuristic<P: Process> {
     /// An action that is possible in `state`, usually with probability proportional to `exp(-H)`.
     fn sample<R: Rng>(&mut self, process: &mut P, state: &P::State, rng: &mut R) -> P::Action;
@@ -94,6 +126,11 @@ pub trait Heuristic<P: Process> {
 }
 
 /// What was learnt about the value function.
+///
+/// It stands for `V` in Bellman's equation (see the [module](self)): [`Approximation::best`] is
+/// `argmin_a C(S, a) + V(S')`, over the actions that are known; [`Approximation::learn`] gets a walk of T actions from the
+/// initial state and its T costs, in order, so that `Σ_{s >= t} costs[s]` is an upper bound of the optimal `V_t(S_t)`.
+/// A table of the least such sums never rises and is exact once all walks have been seen: the [module](self)'s example keeps one.
 pub trait Approximation<P: Process> {
     /// The action that minimizes `C + V`, or `None` when nothing is known of `state` yet.
     fn best(&mut self, process: &mut P, state: &P::State) -> Option<P::Action>;
@@ -113,6 +150,20 @@ impl<P: Process, V: Approximation<P>> Approximation<P> for &mut V {
 }
 
 /// Probability of exploring at iteration `n` of `N`: `start (end / start)^(n / (N - 1))`.
+///
+/// Valid are two positive probabilities (at most 1) in either order, or 0 for both, which never explores where
+/// anything is known. Source: Wu et al. 2014, Sec. 4.2, with 0.9 at the start in Sec. 6.1.
+///
+/// # Examples
+/// ```
+/// use edifice::optim::adp::Epsilon;
+/// let falling = Epsilon { start: 0.9, end: 0.1 };
+/// // Of 5 iterations the middle one has the geometric mean of both ends.
+/// for (n, expected) in [(0, 0.9), (2, 0.3), (4, 0.1)] {
+///     assert!((falling.at(n, 5) - expected).abs() < 1e-12);
+/// }
+/// assert_eq!(Epsilon::ALWAYS_EXPLORE.at(3, 5), 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Epsilon {
     /// At the first iteration: 0.9 in Wu et al. 2014, Sec. 6.1.
@@ -153,7 +204,12 @@ impl Epsilon {
     }
 }
 
-/// The solver.
+/// The solver: approximate dynamic programming over a [`Process`], from a [`Heuristic`] and an [`Approximation`].
+///
+/// One iteration of argmin is one walk, explored and exploited as the [module](self) says; the trace of the [`Run`] has the
+/// cost of each walk. N walks of at most T steps take N T calls of `sample` or `best`, of `cost` and of `apply`, and N calls
+/// of `learn`; memory is O(N + T) besides the caller's own. Source: Wu et al. 2014, Sec. 4.2.
+/// The module's example runs it, and asserts the least cost.
 #[derive(Debug)]
 pub struct Adp<H, V> {
     heuristic: H,
@@ -163,7 +219,7 @@ pub struct Adp<H, V> {
     rng: Stream,
 }
 
-/// What goes wrong in a run.
+/// What goes wrong in a run: returned by [`Adp::run`], before the first walk for the first two.
 #[derive(Debug, thiserror::Error)]
 pub enum AdpError {
     /// Not a single iteration was asked for.

@@ -14,6 +14,37 @@ use super::run::{Run, Search, Step, execute};
 use crate::rng::{Stream, stream};
 
 /// A solution that can be changed a little and changed back.
+///
+/// A state machine: after [`Landscape::propose`] has returned a cost, exactly one of `accept` and `reject` follows, and
+/// `reject` restores the former state and cost. For Metropolis' rule to sample `exp(-cost / T)` at a fixed temperature,
+/// proposals have to be symmetric: as probable from x to y as from y to x.
+/// One call of each per move, which should cost O(size of the change). [`Annealing`] has an example that minimizes.
+///
+/// # Examples
+/// ```
+/// use edifice::optim::annealing::Landscape;
+/// use edifice::rng::stream;
+/// use rand::{Rng, RngExt};
+/// /// Walk on the integers towards 3.
+/// struct Walk { at: i32, before: i32 }
+/// impl Landscape for Walk {
+///     type Solution = i32;
+///     fn cost(&self) -> f64 { f64::from((self.at - 3).abs()) }
+///     fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64> {
+///         self.before = self.at;
+///         self.at += if rng.random::<bool>() { 1 } else { -1 };
+///         Some(self.cost())
+///     }
+///     fn accept(&mut self) {}
+///     fn reject(&mut self) { self.at = self.before }
+///     fn solution(&self) -> i32 { self.at }
+/// }
+/// let mut walk = Walk { at: 0, before: 0 };
+/// let tried = walk.propose(&mut stream(1, "walk", 0));
+/// assert!(tried == Some(2.0) || tried == Some(4.0));
+/// walk.reject();
+/// assert_eq!((walk.solution(), walk.cost()), (0, 3.0));
+/// ```
 pub trait Landscape {
     /// What to remember of the best solution.
     type Solution: Clone;
@@ -31,7 +62,18 @@ pub trait Landscape {
     fn solution(&self) -> Self::Solution;
 }
 
-/// Geometric cooling.
+/// Geometric cooling, `T_n = start (end / start)^(n / (N - 1))` at iteration n of N; both temperatures in units of cost.
+///
+/// A change of cost by d is accepted half of the time at `T = d / ln 2`: `start` is of the size of the largest changes to be
+/// crossed, `end` well below the smallest difference that matters. Source: Kirkpatrick, Gelatt and Vecchi 1983.
+///
+/// # Examples
+/// ```
+/// use edifice::optim::annealing::Cooling;
+/// let cooling = Cooling { start: 4.0, end: 1.0 };
+/// let temperatures = [0, 1, 2].map(|n| cooling.at(n, 3));
+/// assert!(temperatures.iter().zip([4.0, 2.0, 1.0]).all(|(t, expected)| (t - expected).abs() < 1e-12));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cooling {
     /// Temperature of the first move, in units of cost.
@@ -48,7 +90,38 @@ impl Cooling {
     }
 }
 
-/// The solver. One iteration of argmin is `moves` proposals.
+/// The solver: Metropolis' rule under [`Cooling`] on a [`Landscape`]. One iteration of argmin is `moves` proposals at one
+/// temperature; the trace has the least cost of each.
+///
+/// Complexity: `iterations * moves` proposals, and one copy of the solution per improvement of the best cost by more
+/// than 1e-6, which also is the precision of the result. Sources: Metropolis et al. 1953; Kirkpatrick, Gelatt and Vecchi 1983.
+///
+/// # Examples
+/// Numbers with signs, such that the sum is 0 (number partitioning):
+/// ```
+/// use edifice::optim::Outcome;
+/// use edifice::optim::annealing::{Annealing, Cooling, Landscape};
+/// use rand::{Rng, RngExt};
+/// struct Signs { numbers: Vec<f64>, flipped: usize }
+/// impl Landscape for Signs {
+///     type Solution = Vec<f64>;
+///     fn cost(&self) -> f64 { self.numbers.iter().sum::<f64>().abs() }
+///     fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64> {
+///         self.flipped = rng.random_range(0..self.numbers.len());
+///         self.reject(); // flips, which is its own inverse
+///         Some(self.cost())
+///     }
+///     fn accept(&mut self) {}
+///     fn reject(&mut self) { self.numbers[self.flipped] *= -1.0 }
+///     fn solution(&self) -> Vec<f64> { self.numbers.clone() }
+/// }
+/// let mut signs = Signs { numbers: vec![8.0, 7.0, 6.0, 5.0, 4.0], flipped: 0 };
+/// let cooling = Cooling { start: 10.0, end: 0.5 };
+/// let run = Annealing::new(cooling, 100, 20, 1)?.until(0.0).run(&mut signs, |_| {})?;
+/// assert_eq!((run.cost, run.outcome), (0.0, Outcome::TargetReached));
+/// assert_eq!(run.best[0].signum(), run.best[1].signum()); // 8 + 7 = 6 + 5 + 4
+/// # Ok::<(), edifice::optim::annealing::AnnealingError>(())
+/// ```
 #[derive(Debug)]
 pub struct Annealing {
     cooling: Cooling,
@@ -58,7 +131,7 @@ pub struct Annealing {
     rng: Stream,
 }
 
-/// What goes wrong in a run.
+/// What goes wrong in a run: temperatures in [`Annealing::new`], anything else in [`Annealing::run`].
 #[derive(Debug, thiserror::Error)]
 pub enum AnnealingError {
     /// Temperatures must be positive numbers, the first at least the last.

@@ -29,6 +29,10 @@ use super::run::{Run, Search, Step, execute};
 use crate::rng::{Stream, stream};
 
 /// What is bred: how genomes begin, cross, change, and what they cost.
+///
+/// Costs have any unit, as only their order counts; the [module](self) says how often each function is called. Most of
+/// the time is usually spent in [`Breed::costs`], the only function that may compute in parallel: the others draw
+/// from the one generator of the run, in order. [`Genetic`] has an example.
 pub trait Breed {
     /// A candidate solution, in the form in which it is crossed and changed.
     type Genome: Clone;
@@ -47,7 +51,7 @@ pub trait Breed {
     }
 }
 
-/// Settings of a run.
+/// Settings of a run, for [`Genetic::new`], whose example uses them. Ranges are checked there.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     /// Genomes in the population, at least 2.
@@ -86,7 +90,7 @@ impl Default for Settings {
 /// Genomes with their costs, from the best to the worst.
 pub type Population<G> = Vec<(G, f64)>;
 
-/// What goes wrong in a run.
+/// What goes wrong in a run: settings in [`Genetic::new`], anything else in [`Genetic::run`].
 #[derive(Debug, thiserror::Error)]
 pub enum GeneticError {
     /// A setting is out of its range.
@@ -146,7 +150,36 @@ impl Settings {
     }
 }
 
-/// The solver. One iteration of argmin is one generation.
+/// The solver of the [module](self): [`Settings`] and first genomes. One iteration of argmin is one generation; the trace
+/// has the best cost of each, and never rises where `elite` is at least 1.
+///
+/// Complexity of a generation of n genomes: n - `elite` costs, O(n `tournament`) draws and a sort, O(n log n). Memory: two
+/// generations. Sources: Goldberg 1989; Baker 1985.
+///
+/// # Examples
+/// All bits of a word of 16 to 1, by one-point crossover and flips of single bits:
+/// ```
+/// use edifice::optim::Outcome;
+/// use edifice::optim::genetic::{Breed, Genetic, Settings};
+/// use rand::{Rng, RngExt};
+/// struct Ones;
+/// impl Breed for Ones {
+///     type Genome = u16;
+///     fn cost(&mut self, word: &u16) -> f64 { f64::from(word.count_zeros()) }
+///     fn random<R: Rng>(&mut self, rng: &mut R) -> u16 { rng.random() }
+///     fn cross<R: Rng>(&mut self, a: &u16, b: &u16, rng: &mut R) -> u16 {
+///         let low = (1 << rng.random_range(0..16)) - 1;
+///         a & low | b & !low
+///     }
+///     fn mutate<R: Rng>(&mut self, word: &mut u16, rng: &mut R) { *word ^= 1 << rng.random_range(0..16) }
+/// }
+/// let settings = Settings { population: 40, goal: 0.0, ..Settings::default() };
+/// let (run, population) = Genetic::new(settings, vec![0], 1)?.run(&mut Ones, |_| {})?;
+/// assert_eq!((run.best, run.outcome), (u16::MAX, Outcome::TargetReached));
+/// assert!(run.trace.windows(2).all(|w| w[1].cost <= w[0].cost));
+/// assert!(population.len() == 40 && population.is_sorted_by(|a, b| a.1 <= b.1));
+/// # Ok::<(), edifice::optim::genetic::GeneticError>(())
+/// ```
 #[derive(Debug)]
 pub struct Genetic<G> {
     settings: Settings,

@@ -8,7 +8,7 @@ use argmin::core::{TerminationReason, TerminationStatus};
 
 use super::run::{Run, Search, execute};
 
-/// Why a search has no result.
+/// Why a search has no result: from [`minimize`], [`GridError::Cost`] at the first point that fails.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// A variable has no value to try, or there is no variable.
@@ -34,6 +34,19 @@ pub enum GridError {
 }
 
 /// Every point of the grid spanned by `axes`, in the order of evaluation: the last variable fastest.
+///
+/// d axes of n_1, .., n_d values span `n_1 n_2 .. n_d` points of d values; none where an axis is empty, and one, the empty
+/// point, without axes. Points are made when asked for, O(d) each. The number of points has to fit a `usize`,
+/// which [`minimize`] checks and this does not.
+///
+/// # Examples
+/// ```
+/// use edifice::optim::grid::points;
+/// let all: Vec<Vec<f64>> = points(&[vec![0.0, 1.0], vec![5.0, 6.0, 7.0]]).collect();
+/// assert_eq!(all.len(), 6);
+/// assert_eq!(all[..2], [[0.0, 5.0], [0.0, 6.0]]);
+/// assert_eq!(all[5], [1.0, 7.0]);
+/// ```
 pub fn points(axes: &[Vec<f64>]) -> impl Iterator<Item = Vec<f64>> {
     let point = |mut number: usize| {
         let value = |values: &Vec<f64>| {

@@ -13,12 +13,19 @@ use nalgebra::{DMatrix, DVector};
 use super::run::{Run, Search, Step, execute};
 
 /// A vector of residuals that depends on a vector of variables.
+///
+/// `r: R^n -> R^m`, differentiable, and m the same for every x. All residuals should have one unit, or be divided by their
+/// standard deviations: then the sum of squares is twice a negative log likelihood of Gaussian errors.
+/// [`minimize`] calls it n + 1 times or more an iteration, and has an example.
 pub trait Residuals {
     /// Writes the residuals at `x` into `out`, always the same number of them, all finite.
     fn residuals(&self, x: &[f64], out: &mut Vec<f64>);
 }
 
-/// Limits of a run.
+/// Limits of a run of [`minimize`], whose example uses them.
+///
+/// `step` and `difference` have the unit of the variables. For variables of size 1 and residuals computed to machine
+/// precision, a `difference` near `sqrt(f64::EPSILON)`, about 1e-8, has the least error (Nocedal and Wright 2006, Sec. 8.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Iterations at most.
@@ -31,7 +38,7 @@ pub struct Limits {
     pub difference: f64,
 }
 
-/// A run failed.
+/// A run of [`minimize`] failed within argmin; limits that are reached are an [`Outcome`](super::Outcome) instead.
 #[derive(Debug, thiserror::Error)]
 #[error("least squares stopped: {0}")]
 pub struct LeastSquaresError(String);
@@ -39,8 +46,33 @@ pub struct LeastSquaresError(String);
 /// Minimises the sum of squares from `start`, telling `observer` of every iteration. The cost of the run is the sum of
 /// squared residuals; reaching a limit is no error.
 ///
+/// The steps are in the [module](self)'s formula, for m residuals of n variables. A local minimum is found, the one whose
+/// basin `start` is in. [`Outcome::Converged`](super::Outcome::Converged) where no step lowers the sum by more than one
+/// part in 10^12.
+///
+/// Complexity of an iteration: n + 1 evaluations of the residuals, O(m n²) for `J'J` and O(n³) for its factor; for each
+/// step refused one evaluation and one factor more. Memory O(m n). Sources: Levenberg 1944; Marquardt 1963.
+///
 /// # Errors
 /// [`LeastSquaresError`] when argmin fails.
+///
+/// # Examples
+/// A decay `y = a exp(-b t)` through four points without errors:
+/// ```
+/// use edifice::optim::least_squares::{Limits, Residuals, minimize};
+/// struct Decay(Vec<(f64, f64)>);
+/// impl Residuals for Decay {
+///     fn residuals(&self, x: &[f64], out: &mut Vec<f64>) {
+///         out.extend(self.0.iter().map(|(t, y)| x[0] * (-x[1] * t).exp() - y));
+///     }
+/// }
+/// let points = (0..4).map(|t| (f64::from(t), 2.0 * (-0.5 * f64::from(t)).exp()));
+/// let limits = Limits { iterations: 100, step: 1.0, goal: 1e-20, difference: 1e-7 };
+/// let fit = minimize(&Decay(points.collect()), vec![1.0, 0.0], limits, |_| {})?;
+/// assert!((fit.best[0] - 2.0).abs() < 1e-6 && (fit.best[1] - 0.5).abs() < 1e-6);
+/// assert!(fit.cost < 1e-12);
+/// # Ok::<(), edifice::optim::least_squares::LeastSquaresError>(())
+/// ```
 pub fn minimize<R: Residuals>(
     residuals: &R,
     start: Vec<f64>,

@@ -4,6 +4,7 @@
 //! - [`annealing`]: Metropolis simulated annealing on a landscape that changes in place.
 //! - [`genetic`]: a genetic algorithm on genomes of any kind, ranked and elitist.
 //! - [`grid`]: exhaustive search over a grid of values.
+//! - [`least_squares`]: nonlinear least squares, damped Gauss-Newton steps.
 //! - [`qp`]: convex quadratic programming, the mathematics being Clarabel's.
 //! - [`projection`]: onto one equality and bounds, exactly.
 //!

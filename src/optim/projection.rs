@@ -17,6 +17,24 @@
 //! [`qp`](super::qp) solves the same problem iteratively and is the oracle of its tests.
 
 /// Bounds, and one linear equality.
+///
+/// `{x in R^n : Σ_i a_i x_i = b, l <= x <= u}`, never empty: [`BoundedSimplex::new`] refuses an equality that no point within the
+/// bounds meets. Coefficients may be negative or 0, bounds infinite. [`BoundedSimplex::project`] finds the nearest point
+/// exactly, by the method and with the sources of the [module](self); O(n) memory, O(n log n) time.
+///
+/// # Examples
+/// Four widths that fill a wall of 10, none below 1:
+/// ```
+/// use edifice::optim::projection::{BoundedSimplex, ProjectionError};
+/// let wall = |total| BoundedSimplex::new(vec![1.0; 4], total, vec![1.0; 4], vec![f64::INFINITY; 4]);
+/// let widths = wall(10.0)?.project(&[4.0, 3.0, 0.5, 4.0], &[1.0; 4])?;
+/// // The third meets its bound; the others, 11 together, share the difference to 9.
+/// for (width, expected) in widths.iter().zip([10.0 / 3.0, 7.0 / 3.0, 1.0, 10.0 / 3.0]) {
+///     assert!((width - expected).abs() < 1e-12);
+/// }
+/// assert!(matches!(wall(3.0), Err(ProjectionError::Infeasible { .. })));
+/// # Ok::<(), ProjectionError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundedSimplex {
     coefficients: Vec<f64>,
@@ -25,7 +43,7 @@ pub struct BoundedSimplex {
     upper: Vec<f64>,
 }
 
-/// Why there is no projection.
+/// Why there is no projection: bounds and equality in [`BoundedSimplex::new`], the rest also in [`BoundedSimplex::project`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProjectionError {
     /// A list has not one number for each variable.

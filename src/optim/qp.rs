@@ -21,7 +21,8 @@ use clarabel::solver::{
 pub use super::qp_problem::{QpError, QuadraticProgram, Row};
 use super::run::{Outcome, Run, Search, Step};
 
-/// Limits of a run.
+/// Limits of a run of [`solve`], whose example uses the default: 200 iterations, no limit of time, tolerance 1e-9. A limit
+/// that is reached is an [`Outcome`], not an error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QpOptions {
     /// Interior-point iterations at most.

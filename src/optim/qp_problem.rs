@@ -4,6 +4,26 @@ use nalgebra::DMatrix;
 
 /// minimise 1/2 x' P x + q' x subject to equalities, inequalities and bounds; see
 /// [`qp`](super::qp).
+///
+/// n variables; P is n x n and symmetric positive semidefinite, stored by its entries on and on one side of the diagonal;
+/// constraints are sparse rows. Memory is O(n + entries + terms). [`QuadraticProgram::check`] decides whether the numbers are a
+/// convex program; a missing lower or upper bound is an infinity of the right sign.
+/// Source: Boyd and Vandenberghe, *Convex Optimization* (2004), Sec. 4.4.
+///
+/// # Examples
+/// P has the rows (2, 1) and (1, 2), q is (-3, -3); the minimum is where `P x = -q`, at (1, 1):
+/// ```
+/// use edifice::optim::qp::{QpError, QpOptions, QuadraticProgram, solve};
+/// let mut program = QuadraticProgram::new(2);
+/// program.quadratic = vec![(0, 0, 2.0), (0, 1, 1.0), (1, 1, 2.0)];
+/// program.linear = vec![-3.0, -3.0];
+/// assert_eq!(program.value(&[1.0, 1.0]), -3.0);
+/// let run = solve(&program, QpOptions::default())?;
+/// assert!(run.best.iter().all(|x| (x - 1.0).abs() < 1e-6));
+/// program.quadratic[1].2 = 3.0; // eigenvalues 5 and -1
+/// assert!(matches!(program.check(), Err(QpError::NotConvex(_))));
+/// # Ok::<(), QpError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuadraticProgram {
     /// Entries `(i, j, value)` of the symmetric P, each pair `i`, `j` given once, in either order
@@ -22,6 +42,10 @@ pub struct QuadraticProgram {
 }
 
 /// One linear constraint: sum of `value * x[index]` against `right`.
+///
+/// Among [`QuadraticProgram::equalities`] the sum is equal to `right`, among [`QuadraticProgram::inequalities`] it is at most `right`;
+/// "at least" has all signs changed. Indices count from 0; terms of one index add up. The example of
+/// [`solve`](super::qp::solve) has a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Terms `(index, value)`.
@@ -40,7 +64,8 @@ impl Row {
     }
 }
 
-/// Why numbers are not a convex quadratic program.
+/// Why numbers are not a convex quadratic program: from [`QuadraticProgram::check`], and through it from
+/// [`solve`](super::qp::solve). That there is no solution is an [`Outcome`](super::Outcome), not an error.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum QpError {
     /// A list has not one number for each variable.

@@ -9,6 +9,22 @@ use argmin::core::{
 };
 
 /// The result of a run.
+///
+/// `S` is the optimizer's form of a solution: a vector, a genome, the actions of a walk. The trace takes O(iterations) memory;
+/// only a linear or quadratic program has one step for the whole run ([`qp::solve`](super::qp::solve)).
+///
+/// # Examples
+/// ```
+/// use edifice::optim::{Outcome, grid};
+/// let run = grid::minimize(&[vec![3.0, 1.0, 2.0]], |x| Ok::<_, String>((x[0] - 1.2).powi(2)))?;
+/// assert_eq!(run.best, [1.0]);
+/// assert_eq!(run.outcome, Outcome::Converged);
+/// // The cost of each point tried, and the least so far.
+/// let best: Vec<f64> = run.trace.iter().map(|step| step.best).collect();
+/// assert_eq!((run.trace.len(), best[2]), (3, run.cost));
+/// assert!(run.trace[2].cost > best[2] && best.is_sorted_by(|a, b| a >= b));
+/// # Ok::<(), grid::GridError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run<S> {
     /// The solution of lowest cost, the first of several.
@@ -22,6 +38,9 @@ pub struct Run<S> {
 }
 
 /// One iteration of a run.
+///
+/// Both costs have the unit of the problem. Observers get each step when it is done; [`Run::trace`] keeps them all. [`Run`]
+/// has an example.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Step {
     /// Iterations done before this one.
@@ -33,6 +52,10 @@ pub struct Step {
 }
 
 /// Why a run ended. None of these is an error: each is the answer to a well-posed question.
+///
+/// Every [`Run`] has one, as its example shows; [`Outcome::is_solved`] tells whether it is optimal. Which ones an optimizer can
+/// return follows from its kind: only [`qp`](super::qp) knows `Infeasible` and `Unbounded`, for instance, and only
+/// a search for a goal has `TargetReached`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Outcome {
     /// Solved: to the tolerance asked for, or because everything was tried.
