@@ -11,6 +11,41 @@
 use super::error::ModelError;
 
 /// A model that can be learned by EM from data it holds.
+///
+/// `expect` is called once a round on the whole data, `maximize` on its result, whose size should not depend on the
+/// number of rows. The steps are given in the [module](self); `log_prior` may leave out a constant.
+/// Sources: Dempster, Laird and Rubin 1977; Fan and Wonka 2016, Sec. 5.3.
+///
+/// # Examples
+/// The share w of the first of two known densities, from their values at each row; the likelihood
+/// `(1 + 2w) (2 - w)` has its maximum at 3/4:
+/// ```
+/// use edifice::model::ModelError;
+/// use edifice::model::em::{Em, Outcome, Stopping, run};
+/// struct Share(Vec<[f64; 2]>);
+/// impl Em for Share {
+///     type Model = f64;
+///     type Stats = f64;
+///     fn expect(&self, share: &f64) -> Result<(f64, f64), ModelError> {
+///         let (mut rows, mut log_likelihood) = (0.0, 0.0);
+///         for [p, q] in &self.0 {
+///             let density = share * p + (1.0 - share) * q;
+///             rows += share * p / density;
+///             log_likelihood += density.ln();
+///         }
+///         Ok((rows, log_likelihood))
+///     }
+///     fn maximize(&self, rows: &f64) -> Result<f64, ModelError> { Ok(rows / self.0.len() as f64) }
+///     fn log_prior(&self, _: &f64) -> f64 { 0.0 }
+///     fn movement(&self, before: &f64, after: &f64) -> f64 { (after - before).abs() }
+/// }
+/// let fit = run(&Share(vec![[3.0, 1.0], [1.0, 2.0]]), 0.5, &Stopping::default())?;
+/// assert!((fit.model - 0.75).abs() < 1e-4);
+/// assert!((fit.log_likelihood - 3.125_f64.ln()).abs() < 1e-6);
+/// assert_eq!(fit.outcome, Outcome::Converged);
+/// assert!(fit.trace.is_sorted());
+/// # Ok::<(), ModelError>(())
+/// ```
 pub trait Em {
     /// Parameters Θ.
     type Model: Clone;
@@ -36,7 +71,8 @@ pub trait Em {
     fn movement(&self, before: &Self::Model, after: &Self::Model) -> f64;
 }
 
-/// When to stop.
+/// When to stop a [`run`]: the first of three conditions that holds. Movements have the unit of the parameters, gains are
+/// nats of the whole data. The example of [`Em`] uses the default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stopping {
     /// Stop when no parameter moves by more than this (paper: 1e-6).
@@ -57,7 +93,7 @@ impl Default for Stopping {
     }
 }
 
-/// Why a run ended.
+/// Why a [`run`] ended, in [`Fit::outcome`]; none is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// No parameter moved by more than the tolerance.
@@ -72,7 +108,7 @@ pub enum Outcome {
     Interrupted,
 }
 
-/// Result of EM.
+/// Result of EM, of [`run`], [`run_while`] and [`restarts`]; the example of [`Em`] reads one. A maximum found is a local one.
 #[derive(Clone, Debug)]
 pub struct Fit<M> {
     /// The parameters.
@@ -89,6 +125,9 @@ pub struct Fit<M> {
 
 /// Runs EM from `start`.
 ///
+/// R rounds take R + 1 E steps and R M steps, and the memory of two models and their statistics. Convergence is linear, the
+/// slower the more of the information is hidden (Dempster, Laird and Rubin 1977). [`Em`] has an example.
+///
 /// # Errors
 /// Those of [`Em::expect`] and [`Em::maximize`].
 pub fn run<E: Em>(
@@ -100,6 +139,8 @@ pub fn run<E: Em>(
 }
 
 /// Runs EM from `start` as long as `goes_on`, which is asked before every round.
+///
+/// For limits of time, and for users who cancel: what has been reached is kept, with [`Outcome::Interrupted`].
 ///
 /// # Errors
 /// As [`run`].
@@ -150,6 +191,9 @@ pub fn run_while<E: Em>(
 }
 
 /// Runs EM from every start and keeps the first of highest log posterior.
+///
+/// Starts run one after the other, so that a lazy iterator has one start in memory at a time. The cost is the sum of
+/// the runs'. [`gmm::fit`](super::gmm::fit) uses it, with k-means++ starts.
 ///
 /// # Errors
 /// [`ModelError::Empty`] without starts; the first error of a run.

@@ -18,6 +18,28 @@ use super::factor_graph::{Chain, Settings, fit};
 use crate::rng::Stream;
 
 /// A model by its features and its negative sampler.
+///
+/// `p(x; w) ∝ exp(wᵀ f(x))`: f gives as many values as there are weights, the sampler changes a state under given weights, in the
+/// features' own units. [`LogLinear::fit`] costs what [`fit`] does, and one more evaluation of the features per example.
+///
+/// # Examples
+/// A bit that is 1 in 3 of 4 examples, its feature in some unit: the weight is the log odds over the unit.
+/// ```
+/// use edifice::model::factor_graph::Settings;
+/// use edifice::model::log_linear::LogLinear;
+/// use edifice::rng::Stream;
+/// use rand::RngExt;
+/// let model = LogLinear::new(
+///     1,
+///     |x: &bool| vec![if *x { 100.0 } else { 0.0 }],
+///     |x: &mut bool, weights: &[f64], rng: &mut Stream| *x = rng.random::<f64>() < 1.0 / (1.0 + (-100.0 * weights[0]).exp()),
+/// );
+/// let data = [true, true, true, false].repeat(250);
+/// let settings = Settings { newton: true, ..Settings::default() };
+/// let weights = model.fit(&data, &settings, 1)?;
+/// assert!((100.0 * weights[0] - 3.0_f64.ln()).abs() < 0.1);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub struct LogLinear<X, F, S> {
     weights: usize,
     scales: Vec<f64>,

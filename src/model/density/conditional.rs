@@ -6,6 +6,23 @@ use super::LogDensity;
 use crate::model::ModelError;
 
 /// `p(x | g)`: one density of x for each range of g.
+///
+/// The edges are quantiles of g, halfway between neighbours; below the first and above the last the outermost densities serve.
+/// Between ranges the density is not continuous in g. [`Conditional::fit`] sorts n pairs, O(n log n), and fits the parts;
+/// [`Conditional::given`] is O(log ranges).
+///
+/// # Examples
+/// ```
+/// use edifice::model::density::{Conditional, LogDensity, ScalarMixture};
+/// // x is about 1 where g is below 10, and about 5 above.
+/// let pairs: Vec<(f64, f64)> = (0..20)
+///     .map(|g| (f64::from(g), if g < 10 { 1.0 } else { 5.0 } + 0.1 * f64::from(g % 3)))
+///     .collect();
+/// let density = Conditional::fit(&pairs, 2, |x| ScalarMixture::fit(x, 0.01, 1))?;
+/// assert!(density.given(3.0).at(1.1) > density.given(3.0).at(5.1));
+/// assert!(density.given(99.0).at(5.1) > density.given(99.0).at(1.1));
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditional<D> {
     /// Where a range ends and the next begins, ascending.

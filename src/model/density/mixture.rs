@@ -15,6 +15,20 @@ const GROUPS: usize = 256;
 const LEAST: f64 = 0.02;
 
 /// `p(x) = Σ w_k N(x; μ_k, σ_k)`.
+///
+/// K components of one value, in its unit; a density is O(K). A fit sorts n values, O(n log n), and runs [`gmm`](crate::model::gmm)'s
+/// EM for K = 1 to 4 on at most 256 groups of them, whatever n is. Source: Rissanen 1983 for the number of components.
+///
+/// # Examples
+/// ```
+/// use edifice::model::density::{LogDensity, ScalarMixture};
+/// let values: Vec<f64> = (0..60).map(|i| if i % 3 == 0 { 0.0 } else { 20.0 } + f64::from(i % 7) / 10.0).collect();
+/// let density = ScalarMixture::fit(&values, 0.01, 1)?;
+/// assert_eq!(density.components(), 2);
+/// assert!(density.at(20.3) > density.at(0.3) && density.at(0.3) > density.at(10.0) + 100.0);
+/// assert!(density.relative(&[20.3]) > -0.1);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct ScalarMixture {

@@ -30,6 +30,18 @@ use super::gmm::Mixture;
 use super::linalg::log_sum_exp;
 
 /// A density over vectors of [`LogDensity::dimension`] values.
+///
+/// Logarithms are natural; the unit of the density is that of `1 / (x_1 .. x_d)`, so that differences of `log_density` at
+/// two points have none. [`LogDensity::relative`] is what scores add up, as the [module](self) explains.
+///
+/// # Examples
+/// ```
+/// use edifice::model::density::{LogDensity, ScalarMixture};
+/// let standard = ScalarMixture::new(vec![1.0], vec![0.0], vec![1.0])?;
+/// assert!((standard.log_density(&[0.0]) + 0.5 * std::f64::consts::TAU.ln()).abs() < 1e-12);
+/// assert!((standard.relative(&[2.0]) + 2.0).abs() < 1e-12); // -x² / 2
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub trait LogDensity {
     /// Number of values d.
     fn dimension(&self) -> usize;

@@ -10,6 +10,10 @@ use crate::rng::Stream;
 pub type Feature = Box<dyn Fn(&[usize]) -> f64 + Send + Sync>;
 
 /// A factor: a feature of a few discrete variables, with the weight it shares.
+///
+/// It adds `w[weight] feature(values)` to the log of `p(x; w)`; factors with the same weight are of one kind. The feature of
+/// a factor of at most 2^12 configurations is evaluated once for each, by [`Gibbs::new`], and otherwise at every move.
+/// [`Gibbs`] has an example.
 pub struct Factor {
     /// The variables it looks at.
     pub variables: Vec<usize>,
@@ -20,6 +24,30 @@ pub struct Factor {
 }
 
 /// Discrete variables under factors: Gibbs sampling, one sweep a move.
+///
+/// `p(x; w) ∝ exp(Σ_i w[weight_i] f_i(x))` over x of n values, variable v from 0 to `sizes[v] - 1`. A sweep draws each variable
+/// given all others: O(Σ_v sizes[v] (factors around v)). [`Gibbs::exact`] is exponential in the width of the elimination order
+/// instead, and feasible for trees and narrow graphs. Sources: Geman and Geman 1984; Koller and Friedman 2009, Sec. 9.3 and 12.3.
+///
+/// # Examples
+/// A chain of three bits with weight `log 3` for equal neighbours: `Z = 2 (1 + 3)^2`.
+/// ```
+/// use edifice::model::factor_graph::{Factor, Gibbs, sample};
+/// use edifice::rng::stream;
+/// let equal = |a, b| Factor {
+///     variables: vec![a, b],
+///     weight: 0,
+///     feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))),
+/// };
+/// let gibbs = Gibbs::new(vec![2; 3], vec![equal(0, 1), equal(1, 2)])?;
+/// let weights = [3.0_f64.ln()];
+/// let (log_z, mean) = gibbs.exact(&weights)?;
+/// assert!((log_z - 32.0_f64.ln()).abs() < 1e-12 && (mean[0] - 1.5).abs() < 1e-12);
+/// let draws = sample(&gibbs, &vec![0; 3], &weights, 20_000, 2, &mut stream(1, "bits", 0));
+/// let share = draws.iter().filter(|x| x[0] == x[1]).count() as f64 / 20_000.0;
+/// assert!((share - 0.75).abs() < 0.02);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub struct Gibbs {
     sizes: Vec<usize>,
     factors: Vec<Factor>,

@@ -25,7 +25,7 @@ use super::super::error::ModelError;
 use super::{Criterion, Mixture, Points, Settings, fit, select};
 use crate::rng::stream;
 
-/// The number of components.
+/// The number of components, fixed or found by [`select`]; for [`Parameters`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Components {
     /// So many.
@@ -35,6 +35,9 @@ pub enum Components {
 }
 
 /// What linfa calls the parameters of an algorithm.
+///
+/// Its `Fit` copies the records (N x d) once and then is [`fit`] or [`select`], with the same random streams: equal seeds give
+/// equal mixtures. The [module](self) has an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
     /// The number of components.
@@ -56,7 +59,7 @@ impl Parameters {
     }
 }
 
-/// Why a fit through linfa has no result.
+/// Why a fit of [`Parameters`] has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum LinfaError {
     /// The model layer refuses the data or the settings.

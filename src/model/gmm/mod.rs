@@ -42,6 +42,10 @@ pub use select::{Criterion, Selected, select};
 use step::Steps;
 
 /// Shape of the covariances.
+///
+/// Free parameters of the covariances of K components of d values: `K d (d + 1) / 2`, `K d` and `d (d + 1) / 2`. The
+/// [module](self)'s M step is that of full matrices; a diagonal one keeps the diagonal of Σ_k, a tied one is the sum of
+/// all components' scatters over the sum of their weights. All are stored as d x d matrices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Covariance {
     /// One full matrix per component.
@@ -54,6 +58,10 @@ pub enum Covariance {
 }
 
 /// Normal-inverse-Wishart prior of every component, in units of the overall standard deviations.
+///
+/// In the [module](self)'s M step it adds κ rows at the overall mean, and ψ and ν to numerator and denominator of the
+/// covariance. [`Prior::default`] is negligible unless a component is empty or singular; a larger ψ bounds variances away from 0.
+/// Source: Murphy, *Machine Learning* (2012), Sec. 4.6.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Prior {
     /// κ: how many rows at the overall mean each component has seen.
@@ -87,6 +95,8 @@ impl Prior {
 }
 
 /// Settings of [`fit`].
+///
+/// The example of [`fit`] uses the default, that of [`fit_from`] other covariances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Shape of the covariances.
@@ -114,6 +124,9 @@ impl Default for Settings {
 }
 
 /// Result of [`fit`].
+///
+/// The trace has the posterior of the best start only; it never falls. Log densities are of data in their own unit: in
+/// another unit c times as fine, `log_likelihood` is `N d log c` less. The example of [`fit_from`] reads one.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The mixture of highest log posterior.
@@ -127,6 +140,9 @@ pub struct Fitted {
 }
 
 /// Fits `k` components from [`Settings::restarts`] starts.
+///
+/// Complexity: a round of EM is O(N K d²) (O(N K d) for diagonal covariances) and O(K d³) for the factors, and there are as
+/// many runs as restarts. Rows are worked on in parallel. Formulas and sources are in the [module](self).
 ///
 /// # Errors
 /// [`ModelError::TooFewRows`] for fewer rows than components, [`ModelError::AllMissing`] for a coordinate (its index)
@@ -158,8 +174,24 @@ pub fn fit<R: Rng>(
 
 /// Runs EM from a given mixture.
 ///
+/// One run, without randomness: for a start that is known, such as an earlier fit. A round costs as in [`fit`].
+///
 /// # Errors
 /// A start of another dimension or shape of covariance; a prior out of range.
+///
+/// # Examples
+/// ```
+/// use edifice::model::gmm::{Covariance, Mixture, Points, Settings, fit_from};
+/// let values: Vec<f64> = (0..40).map(|i| if i % 4 == 0 { 0.0 } else { 9.0 } + (i % 5) as f64 / 10.0).collect();
+/// let settings = Settings { covariance: Covariance::Diagonal, ..Settings::default() };
+/// let start = Mixture::new(1, Covariance::Diagonal, vec![0.5, 0.5], vec![1.0, 8.0], vec![1.0, 1.0])?;
+/// let fitted = fit_from(&Points::new(1, &values)?, &start, &settings)?;
+/// // Components keep their order; a quarter of the rows is in the first.
+/// assert!((fitted.mixture.weights()[0] - 0.25).abs() < 1e-6);
+/// assert!((fitted.mixture.mean(1)[0] - 9.2).abs() < 1e-6);
+/// assert!(fitted.trace.is_sorted());
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub fn fit_from(
     points: &Points,
     start: &Mixture,

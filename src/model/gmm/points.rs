@@ -3,6 +3,21 @@
 use super::super::error::ModelError;
 
 /// Rows of d values, with weights.
+///
+/// N x d values, row-major, borrowed and checked once, O(N d). A weight w counts a row w times, and need not be whole. NaN
+/// is a missing value in [`Points::with_missing`] and an error in [`Points::new`].
+///
+/// # Examples
+/// ```
+/// use edifice::model::ModelError;
+/// use edifice::model::gmm::Points;
+/// let values = [1.0, 2.0, 3.0, f64::NAN, 5.0, 6.0];
+/// let points = Points::with_missing(2, &values)?.weighted(&[1.0, 2.0, 0.5])?;
+/// assert_eq!((points.len(), points.dimension(), points.total()), (3, 2, 3.5));
+/// assert_eq!(points.observed(), 2.0 + 2.0 + 1.0);
+/// assert!(matches!(Points::new(2, &values), Err(ModelError::NotFinite { row: 1, .. })));
+/// # Ok::<(), ModelError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Points<'a> {
     d: usize,
