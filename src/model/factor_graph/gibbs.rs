@@ -26,7 +26,7 @@ pub struct Factor {
 /// Discrete variables under factors: Gibbs sampling, one sweep a move.
 ///
 /// `p(x; w) ∝ exp(Σ_i w[weight_i] f_i(x))` over x of n values, variable v from 0 to `sizes[v] - 1`. A sweep draws each variable
-/// given all others: O(Σ_v sizes[v] (factors around v)). [`Gibbs::exact`] is exponential in the width of the elimination order
+/// given all others: `O(Σ_v sizes[v] (factors around v))`. [`Gibbs::exact`] is exponential in the width of the elimination order
 /// instead, and feasible for trees and narrow graphs. Sources: Geman and Geman 1984; Koller and Friedman 2009, Sec. 9.3 and 12.3.
 ///
 /// # Examples
