@@ -110,10 +110,10 @@ pub fn measure(city: &City, settings: &Settings) -> Result<Measures> {
             .sum(),
         texture_bytes: (made.types.representatives.iter())
             .map(|&c| made.decomposition.components[c].texture_bytes)
-            .sum(),
+            .sum::<f64>(),
         texture_soup: (made.decomposition.components.iter())
             .map(|c| c.texture_bytes)
-            .sum(),
+            .sum::<f64>(),
         terminals: grammar.templates.len() as f64,
         non_terminals: grammar.non_terminals() as f64,
         iou: iou(city, &made)?,

@@ -118,7 +118,8 @@ impl Component {
             }
             Surface::Plain(_) => 0.0,
         };
-        self.texture_bytes = paint.iter().map(bytes).sum();
+        // The sum of nothing is -0.
+        self.texture_bytes = paint.iter().map(bytes).sum::<f64>() + 0.0;
     }
 }
 

@@ -24,6 +24,9 @@ pub const PAPER_FEATURES: [&str; 11] = [
 /// Tolerance of the simplified outline, as a share of the box's diagonal.
 const SIMPLIFY: f64 = 0.02;
 
+/// Features whose standard deviation is below this share of their mean are equal.
+const EQUAL: f64 = 1e-9;
+
 /// A table of points, row after row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
@@ -65,7 +68,8 @@ pub fn paper_features(components: &[Component], weights: &[f64; 11]) -> Points {
         let n = known().count().max(1) as f64;
         let mean = known().sum::<f64>() / n;
         let variance = known().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
-        if variance > 0.0 && weights[k] != 0.0 {
+        // Equal numbers have a variance of rounding.
+        if variance > (EQUAL * mean).powi(2) && weights[k] != 0.0 {
             columns.push((k, mean, weights[k] / variance.sqrt()));
         }
     }

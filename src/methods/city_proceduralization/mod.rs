@@ -27,7 +27,7 @@
 //! - The plan's rotation is a feature in `paper`; `best` keeps it with the instance.
 //! - The window features ([`windows`]) are read off the four sides of a component, drawn at 0.1 m (at most 256) pixels: what is
 //!   darker than Otsu's threshold is a window; areas are in three clusters, the one of most members is dominant; windows two
-//!   standard deviations off are outliers; distances below half a window are of windows in one column. Sides of which less
+//!   standard deviations and a quarter off are outliers; distances below half a window are of windows in one column. Sides of which less
 //!   than a quarter is painted are left out; a component without painted sides has the mean features, and in a city without
 //!   textures the six features are equal and fall out. A texture's bytes are shared out by the texels that components cover.
 //! - The paper places representatives without saying how their size is treated; here they are scaled to the box of

@@ -16,8 +16,9 @@ const COVERED: f64 = 0.25;
 const TYPES: usize = 3;
 /// Rounds of k-means at most.
 const ROUNDS: usize = 50;
-/// Windows whose area is so many standard deviations off that of their type are outliers.
+/// Windows whose area is so many standard deviations, and at least this share, off the mean of their type are outliers.
 const OUTLIER: f64 = 2.0;
+const OUTLIER_SHARE: f64 = 0.25;
 /// Fewer pixels are no window.
 const LEAST_AREA: usize = 4;
 
@@ -307,9 +308,9 @@ fn dominant(mut regions: Vec<Region>) -> Vec<Region> {
         .map(|(r, _)| (area(r) - centres[most]).powi(2))
         .sum::<f64>()
         / n;
-    let limit = OUTLIER * variance.sqrt();
-    let mut labels = labels.iter();
     let centre = centres[most];
+    let limit = (OUTLIER * variance.sqrt()).max(OUTLIER_SHARE * centre);
+    let mut labels = labels.iter();
     regions.retain(|r| labels.next() == Some(&most) && (area(r) - centre).abs() <= limit);
     regions
 }
