@@ -18,7 +18,7 @@ use edifice::model::hierarchy::{Constant, Settings, Sweep};
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
 use edifice::tables::Dataset;
-use edifice::tables::compare::{Contender, held_out, split};
+use edifice::tables::compare::{BACKGROUND, Contender, held_out, split};
 use edifice::tables::encoding::Encoding;
 use edifice::tables::schema::Schema;
 use rand::{Rng, RngExt};
@@ -90,6 +90,7 @@ fn compare(
         constant: Constant::Keep,
         styles: 2..=8,
         sweep: Sweep::Few,
+        background: BACKGROUND,
         ..Settings::default()
     };
     let mut tests = Vec::new();
@@ -132,11 +133,12 @@ fn compare(
                 .map(|c| (c.column.clone(), c.atoms.clone()))
                 .collect::<BTreeMap<_, _>>(),
         );
+        // After each split, so that a run that is cut short leaves what it has.
+        let written = serde_json::json!({
+            "columns": columns(&data.table, &intervals), "tests": tests, "atoms": atoms, "losses": losses,
+        });
+        std::fs::write(out, written.to_string())?;
     }
-    let written = serde_json::json!({
-        "columns": columns(&data.table, &intervals), "tests": tests, "atoms": atoms, "losses": losses,
-    });
-    std::fs::write(out, written.to_string())?;
     Ok(())
 }
 

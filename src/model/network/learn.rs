@@ -12,7 +12,7 @@ use super::evidence::Known;
 use super::expect::Problem;
 use super::{Cpd, Network};
 
-/// Settings of [`Network::fit`].
+/// Settings of [`Network::fit`] and [`Network::fit_from`]; [`Fitted`] has an example with the default ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSettings {
     /// Priors, on standardised columns.
@@ -33,7 +33,28 @@ impl Default for FitSettings {
     }
 }
 
-/// Result of [`Network::fit`].
+/// Result of [`Network::fit`]: parameters at a local maximum of `log p(data | Θ) + log p(Θ)`.
+///
+/// EM replaces the entries of a table by `(N_jk + α - 1) / Σ_k (N_jk + α - 1)`, N_jk the expected number of rows with category k
+/// in configuration j and α [`Priors::dirichlet`]; linear Gaussians by the mode of their posterior ([`super::conjugate`]);
+/// softmax weights by Newton's method (Koller and Friedman 2009, Sec. 19.2). Columns are in their own units; what is missing is
+/// summed or integrated out. Time of a round: one exact answer ([`Answer`](super::network::Answer)) for every row.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, network::{FitSettings, Network, Variable}};
+/// // Seven times yes, three times no, and three rows that nobody looked at: they do not count.
+/// let seen = (0..13).map(|i| (i < 10).then_some(i < 7));
+/// let data = Table::new().binary("garage", seen)?;
+/// let open = Network::new(vec![Variable::discrete("garage", &["no", "yes"], &[])])?;
+/// let settings = FitSettings::default();
+/// let fitted = open.fit_from(&data, &settings)?;
+/// let alpha = settings.priors.dirichlet;
+/// let yes = (7.0 + alpha - 1.0) / (10.0 + 2.0 * (alpha - 1.0));
+/// assert!((fitted.network.probabilities("garage")?[1] - yes).abs() < 1e-9);
+/// assert!(fitted.trace.windows(2).all(|w| w[1] >= w[0] - 1e-9));
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The network with learned parameters.

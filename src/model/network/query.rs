@@ -5,7 +5,26 @@ use super::super::error::ModelError;
 use super::Network;
 use super::evidence::{Asked, Evidence, Known, Question};
 
-/// Posterior of one variable.
+/// Posterior of one variable: `P(y | e) = Σ_x P(x, y, e) / P(e)`, as many numbers as it has categories, of sum 1.
+///
+/// [`Network::marginals`] gives one for every discrete variable from one pass forward and one backward over the buckets
+/// (Koller and Friedman 2009, Ch. 9 and 10): time linear in the cells of all their tables. [`Network::marginal`] is for a
+/// single variable, and leaves out more that is barren.
+///
+/// # Examples
+/// ```
+/// use edifice::model::network::{Evidence, Network, Variable};
+/// let network = Network::new(vec![
+///     Variable::table("ill", &["no", "yes"], &[], &[0.99, 0.01]),
+///     Variable::table("test", &["-", "+"], &["ill"], &[0.95, 0.05, 0.1, 0.9]),
+/// ])?;
+/// let answers = network.marginals(&Evidence::new().is("test", "+"))?;
+/// assert_eq!(answers[0].name, "ill");
+/// // Bayes' rule by hand.
+/// assert!((answers[0].probabilities[1] - 0.009 / (0.009 + 0.0495)).abs() < 1e-12);
+/// assert_eq!(answers[1].probabilities, [0.0, 1.0]);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// The variable.
@@ -15,6 +34,28 @@ pub struct Answer {
 }
 
 /// An assignment of categories to all discrete variables, with the continuous ones integrated out.
+///
+/// The most probable one, `argmax_x P(x, e)`, comes from [`Network::explain`], the best few from [`Network::explanations`]
+/// (elimination by maxima; Koller and Friedman 2009, Sec. 13.2). It need not consist of the most probable category of
+/// every variable. Time: one pass over the buckets, as for [`Answer`]; each explanation beyond the first adds at most
+/// `O(n k)` partial assignments for n variables of at most k categories.
+///
+/// # Examples
+/// ```
+/// use edifice::model::network::{Evidence, Network, Variable};
+/// let network = Network::new(vec![
+///     Variable::table("a", &["0", "1"], &[], &[0.4, 0.6]),
+///     Variable::table("b", &["0", "1"], &["a"], &[0.1, 0.9, 0.5, 0.5]),
+/// ])?;
+/// let nothing = Evidence::new();
+/// let best = network.explain(&nothing)?;
+/// // P(a = 0, b = 1) = 0.36 is most, although P(a = 1) = 0.6.
+/// assert_eq!(best.values[0].1, "0");
+/// assert!((best.log_joint - 0.36_f64.ln()).abs() < 1e-12);
+/// let all = network.explanations(&nothing, 10)?;
+/// assert!((all.iter().map(|e| e.log_joint.exp()).sum::<f64>() - 1.0).abs() < 1e-12);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// (variable, category) in order of the variables, observed ones included.

@@ -34,7 +34,22 @@ use climb::Climb;
 use constraints::Allowed;
 use families::Families;
 
-/// What is maximised.
+/// What is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
+///
+/// [`score`] computes it for a given structure, [`search`] looks for the structure of most. Of the two, BDeu is the exact
+/// log marginal likelihood under its prior; BIC approximates it for many rows.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, network::structure::{Score, score}};
+/// // Four times yes of eight: Beta(1, 1) gives 4! 4! / 9! = 1 / 630.
+/// let data = Table::new().binary("garage", (0..8).map(|i| Some(i % 2 == 0)))?;
+/// let bdeu = score(&data, &[vec![]], Score::Bdeu(2.0))?;
+/// assert!((bdeu + 630.0_f64.ln()).abs() < 1e-9);
+/// let bic = score(&data, &[vec![]], Score::Bic)?;
+/// assert!((bic - (8.0 * 0.5_f64.ln() - 0.5 * 8.0_f64.ln())).abs() < 1e-9);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Score {
     /// Log likelihood less `log N / 2` for each free parameter.
@@ -43,7 +58,27 @@ pub enum Score {
     Bdeu(f64),
 }
 
-/// Settings of [`search`].
+/// Settings of [`search`]: the score, constraints on edges, and how long to search.
+///
+/// A table has `r Π_p r_p` cells for r categories and parents of r_p categories each, so that [`Search::most_parents`] bounds the
+/// cost of a family. Constraints are names of columns; they cut down the moves, and directions that data cannot tell apart
+/// (one equivalence class) they can decide.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, network::structure::{Search, search}};
+/// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
+/// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
+/// let data = Table::new().binary("wet", wet)?.binary("rain", rain)?;
+/// let own = |name: &str| name.to_owned();
+/// let tiers = vec![vec![own("rain")], vec![own("wet")]];
+/// let found = search(&data, &Search { tiers, ..Search::default() }, 1)?;
+/// assert_eq!(found.edges, [(own("rain"), own("wet"))]);
+/// let forbidden = vec![(own("rain"), own("wet")), (own("wet"), own("rain"))];
+/// let none = search(&data, &Search { forbidden, ..Search::default() }, 1)?;
+/// assert!(none.edges.is_empty() && none.score < found.score);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
     /// What is maximised.
@@ -79,7 +114,8 @@ impl Default for Search {
     }
 }
 
-/// Result of [`search`].
+/// Result of [`search`], which has an example: the structure of highest score that was met, not with certainty the highest of
+/// all, as the problem is NP-hard (Koller and Friedman 2009, Sec. 18.4). [`score`] of its edges gives [`Found::score`] again.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The structure with tables: MAP under the prior of [`FitSettings`].
@@ -145,10 +181,27 @@ pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, Model
     })
 }
 
-/// The score of a given structure: `parents[i]` are the columns that column i depends on.
+/// The score of a given structure, nats: `parents[i]` are the columns that column i depends on. That they form no cycle is not
+/// checked: the sum over families is one of a network only then.
+///
+/// Time: `O(N Σ_i (|U_i| + 1))` for N rows and parents U_i, besides the cells of the families' tables.
 ///
 /// # Errors
 /// As [`search`]; [`ModelError::Parameter`] for parents that are no columns.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, network::structure::{Score, score}};
+/// let column = |m: usize| (0..120).map(move |i| Some(i % m == 0));
+/// let data = Table::new().binary("a", column(2))?.binary("b", column(4))?.binary("c", column(8))?;
+/// let bdeu = |parents: [Vec<usize>; 3]| score(&data, &parents, Score::Bdeu(1.0));
+/// let chain = bdeu([vec![], vec![0], vec![1]])?;
+/// let fork = bdeu([vec![1], vec![], vec![1]])?;
+/// let apart = bdeu([vec![], vec![], vec![]])?;
+/// // One equivalence class, one score; the columns are not independent.
+/// assert!((chain - fork).abs() < 1e-9 && chain > apart + 10.0);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub fn score(data: &Table, parents: &[Vec<usize>], score: Score) -> Result<f64, ModelError> {
     let mut families = Families::new(data, score)?;
     let columns = data.columns().len();
