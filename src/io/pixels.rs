@@ -63,11 +63,11 @@ pub struct Pixels {
     palette: Option<Vec<u8>>,
 }
 
-/// The columns and greys of a PNG, JPEG or WebP, row after row from the top.
+/// The columns and colours of a PNG, JPEG or WebP, row after row from the top.
 ///
 /// # Errors
 /// [`PixelError`]; an image above [`MAX_PIXELS`] is refused from its header.
-pub fn greys(bytes: &[u8]) -> Result<(usize, Vec<u8>), PixelError> {
+pub fn colours(bytes: &[u8]) -> Result<(usize, Vec<[u8; 3]>), PixelError> {
     let reader = || {
         let guessed = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
         guessed.map_err(|e| PixelError::Picture(e.into()))
@@ -77,7 +77,8 @@ pub fn greys(bytes: &[u8]) -> Result<(usize, Vec<u8>), PixelError> {
         return Err(PixelError::TooLarge { width, height });
     }
     let picture = reader()?.decode().map_err(PixelError::Picture)?;
-    Ok((width as usize, picture.into_luma8().into_raw()))
+    let rgb = picture.into_rgb8().into_raw();
+    Ok((width as usize, rgb.as_chunks().0.to_vec()))
 }
 
 /// Width and height of a PNG, from its header.

@@ -148,6 +148,7 @@ fn any(rng: &mut Stream, fine: bool) -> InstanceGrammar {
                 positions,
                 triangles,
             },
+            texture: None,
         });
     }
     let names: Vec<String> = (0..rng.random_range(1..5))

@@ -223,6 +223,7 @@ fn by_hand() -> InstanceGrammar {
         templates: vec![Template {
             symbol: "T1".to_owned(),
             mesh: block,
+            texture: None,
         }],
         rules: vec![rule("City", vec![house, half]), rule("H", two)],
     }
@@ -422,7 +423,7 @@ fn parts_that_are_not_all_of_a_building_are_not_believed() {
     let mut frame = derived.buildings[1].parts[0].frame;
     frame.size[2] *= 0.5;
     let mut building = CityBuilding::default();
-    building.append_instance(&mesh, 0, Some(frame));
+    building.append_instance(&mesh, 0, Some(frame), None);
     assert!(building.stated_parts().is_none());
     assert_eq!(building.mesh.triangles, mesh.triangles);
     let components = decompose(&derived, true).components;

@@ -1,5 +1,6 @@
 //! Cities: grammars, files and commands.
 
+mod box_textures;
 mod commands;
 mod compact;
 mod gltf;

@@ -33,7 +33,7 @@ fn facade(path: &Path, [w, h]: [u32; 2], [columns, rows]: [u32; 2]) {
 }
 
 /// Boxes with facades of kinds `a` and `b` in turn, as OBJ.
-fn boxes(folder: &Path, count: usize) -> (std::path::PathBuf, Vec<usize>) {
+pub fn boxes(folder: &Path, count: usize) -> (std::path::PathBuf, Vec<usize>) {
     facade(&folder.join("a.png"), [6, 8], [10, 5]);
     facade(&folder.join("b.png"), [24, 10], [3, 4]);
     std::fs::write(folder.join("m.mtl"), MATERIALS).unwrap();
@@ -183,7 +183,7 @@ fn named_windows_of_cityjson_are_painted() {
     let city = cityjson::parse(text.as_bytes(), "a.city.json".as_ref()).unwrap();
     let area = |grey: u8| -> f64 {
         let own = city.buildings[0].paint.iter();
-        own.filter(|p| *p.surface == Surface::Plain(grey))
+        own.filter(|p| *p.surface == Surface::Plain([grey; 3]))
             .map(|p| {
                 let [a, b, c] = p.corners;
                 ((b[0] - a[0]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[0] - a[0])).abs() / 2.0

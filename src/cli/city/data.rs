@@ -20,5 +20,7 @@ pub fn city(path: &Path) -> Result<City> {
     }
     let grammar = grammar(path)?;
     let derivation = grammar.derive().map_err(|e| Error::content(path, e))?;
-    Ok(derivation.city(&grammar))
+    let mut city = derivation.city(&grammar);
+    city::paint_parts(&mut city).map_err(|e| Error::content(path, e))?;
+    Ok(city)
 }

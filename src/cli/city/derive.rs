@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice::io::city::{cityjson, glb, grammar_file, obj};
+use edifice::io::city::{self, cityjson, glb, grammar_file, obj};
 use edifice::{Error, Result};
 
 use super::data;
@@ -13,7 +13,7 @@ use super::data;
 pub struct Args {
     /// The grammar.
     grammar: PathBuf,
-    /// The city to write: `.glb`, `.obj` or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
+    /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
     #[arg(short, long)]
     output: PathBuf,
     /// Write a glTF node for each instance, for viewers without EXT_mesh_gpu_instancing.
@@ -56,7 +56,11 @@ pub fn write(
         Some("glb") => {
             glb::to_bytes(grammar, derivation, instancing).map_err(|e| Error::content(path, e))?
         }
-        Some("obj") => obj::to_string(&derivation.city(grammar)).into_bytes(),
+        Some("obj") => {
+            let mut city = derivation.city(grammar);
+            city::paint_parts(&mut city).map_err(|e| Error::content(path, e))?;
+            return obj::write(&city, path);
+        }
         _ => cityjson::to_string(&derivation.city(grammar)).into_bytes(),
     };
     edifice::io::write_atomic(path, &bytes)

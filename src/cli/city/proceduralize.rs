@@ -51,7 +51,7 @@ enum Keep {
     All,
     /// Identifiers, no attributes.
     Ids,
-    /// Neither, and no patterns for synthesis.
+    /// Neither, and no textures, nor patterns for synthesis.
     Shape,
 }
 
@@ -67,7 +67,7 @@ pub struct Args {
     /// Number of templates, or `all`.
     #[arg(long, value_name = "K", group = "budget")]
     templates: Option<String>,
-    /// Most bytes of the grammar's file.
+    /// Most bytes of the grammar's file, without textures.
     #[arg(long, value_name = "N", group = "budget")]
     bytes: Option<usize>,
     /// Least volumetric intersection over union with the input.
@@ -140,7 +140,10 @@ pub fn run(args: &Args) -> Result<()> {
     } else {
         "--iou"
     };
-    let made = made.ok_or_else(|| Error::option(option, "no number of templates reaches it"))?;
+    let mut made =
+        made.ok_or_else(|| Error::option(option, "no number of templates reaches it"))?;
+    let textures = made.box_textures(&input);
+    city::add_textures(&mut made.grammar, &textures).map_err(Error::method)?;
     warn(&input, &made);
     let seconds = start.elapsed().as_secs_f64();
     let derivation = made.grammar.derive().map_err(Error::method)?;

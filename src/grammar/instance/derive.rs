@@ -201,11 +201,11 @@ impl InstanceDerivation {
                 });
                 buildings.len() - 1
             });
-            let template = &grammar.templates[instance.template].mesh;
-            let positions = template.positions.iter().map(|&p| instance.place(p));
+            let template = &grammar.templates[instance.template];
+            let positions = template.mesh.positions.iter().map(|&p| instance.place(p));
             let placed = TriangleMesh {
                 positions: positions.collect(),
-                triangles: template.triangles.clone(),
+                triangles: template.mesh.triangles.clone(),
             };
             let frame = OrientedBox {
                 base: instance.at,
@@ -213,7 +213,8 @@ impl InstanceDerivation {
                 angle: instance.turn.to_radians(),
             };
             let frame = Some(frame).filter(|f| f.size.iter().all(|&s| s > 0.0));
-            buildings[building].append_instance(&placed, instance.template, frame);
+            let texture = template.texture.clone();
+            buildings[building].append_instance(&placed, instance.template, frame, texture);
         }
         City {
             name: grammar.name.clone(),

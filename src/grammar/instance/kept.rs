@@ -11,7 +11,7 @@ pub enum Kept {
     All,
     /// Everything but the attributes of buildings.
     Identifiers,
-    /// What the axiom derives to, without identifiers and attributes: each part is a building of its own.
+    /// What the axiom derives to, without identifiers, attributes and textures: each part is a building of its own.
     Shape,
 }
 
@@ -22,6 +22,7 @@ impl InstanceGrammar {
         if kept == Kept::Shape {
             let used = self.reached();
             out.rules.retain(|r| used.contains(r.symbol.as_str()));
+            out.templates.iter_mut().for_each(|t| t.texture = None);
         }
         if kept != Kept::All {
             let successors = out.rules.iter_mut().flat_map(|r| &mut r.successors);

@@ -19,6 +19,8 @@ pub use error::InstanceGrammarError;
 pub use kept::Kept;
 pub use repeated::{Posed, Repeated, repeated};
 
+use std::sync::Arc;
+
 use crate::shape::triangles::TriangleMesh;
 
 /// A symbol in its place: scaled, turned about the vertical, shifted.
@@ -63,6 +65,8 @@ pub struct Template {
     pub symbol: String,
     /// The mesh.
     pub mesh: TriangleMesh,
+    /// The picture file (PNG, JPEG or WebP) of its box mapping ([`crate::shape::triangles::BoxTexture`]), if it has one.
+    pub texture: Option<Arc<[u8]>>,
 }
 
 /// One way to replace a non-terminal.

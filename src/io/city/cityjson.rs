@@ -188,7 +188,7 @@ fn greys(geometry: &Value) -> Vec<Arc<Surface>> {
         "Window" | "Door" => OPENING,
         _ => WALL,
     };
-    let surface = |name| Arc::new(Surface::Plain(grey(name)));
+    let surface = |name| Arc::new(Surface::Plain([grey(name); 3]));
     names.iter().map(surface).collect()
 }
 

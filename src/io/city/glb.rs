@@ -3,13 +3,17 @@
 //!
 //! glTF is y up: (x, y, z) is written as (x, z, -y). The 64-bit origin stands in the `extras` of the scene;
 //! identifiers of buildings in the `extras` of the asset's scene too, and `_BUILDING`, an attribute of the instances, is
-//! an index into them.
+//! an index into them. A template's texture becomes a material of the name [`BOX_MAPPED`].
 
 use serde_json::{Value, json};
 
-use crate::grammar::instance::{InstanceDerivation, InstanceGrammar, TemplateInstance};
+use super::pictures::media_type;
+use crate::grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
 use crate::io::glb_container::{TooLong, glb_container};
-use crate::shape::triangles::TriangleMesh;
+use crate::shape::triangles::{TriangleMesh, VIEWS, box_coordinates, box_view};
+
+/// Name of the materials of box-mapped templates.
+pub const BOX_MAPPED: &str = "box mapping";
 
 /// Why a city cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -42,9 +46,7 @@ pub fn to_bytes(
             continue;
         }
         let mesh = meshes.len();
-        let [positions, indices] = file.mesh(&template.mesh);
-        meshes.push(json!({ "name": template.symbol, "primitives": [
-            { "attributes": { "POSITION": positions }, "indices": indices, "material": 0 } ] }));
+        meshes.push(json!({ "name": template.symbol, "primitives": file.primitives(template) }));
         if instancing {
             roots.push(nodes.len());
             nodes.push(
@@ -73,12 +75,19 @@ pub fn to_bytes(
             "origin": grammar.origin, "reference_system": grammar.reference_system, "buildings": ids } } ],
         "nodes": nodes,
         "meshes": meshes,
-        "materials": [ { "name": "building", "pbrMetallicRoughness": {
-            "baseColorFactor": [0.75, 0.73, 0.7, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9 } } ],
+        "materials": file.materials(),
         "accessors": file.accessors,
         "bufferViews": file.views,
         "buffers": [ { "byteLength": file.binary.len() } ],
     });
+    if !file.images.is_empty() {
+        let count = file.images.len();
+        document["images"] = json!(file.images);
+        document["textures"] = (0..count)
+            .map(|i| json!({ "source": i, "sampler": 0 }))
+            .collect();
+        document["samplers"] = json!([{ "wrapS": CLAMP, "wrapT": CLAMP }]);
+    }
     if instancing {
         document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
         document["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
@@ -112,15 +121,68 @@ struct Glb {
     binary: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
+    images: Vec<Value>,
 }
 
 /// Component types of the standard.
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
+/// Targets of buffer views.
+const VERTICES: u32 = 34962;
+const INDICES: u32 = 34963;
+/// Textures end at their edges.
+const CLAMP: u32 = 33071;
 
 impl Glb {
-    /// Accessors of a mesh: positions, indices.
-    fn mesh(&mut self, mesh: &TriangleMesh) -> [usize; 2] {
+    /// A template's primitives. One without a texture is one; with a texture there is one for each side of its box, all over the
+    /// same positions, since a corner has other texture coordinates on each.
+    fn primitives(&mut self, template: &Template) -> Vec<Value> {
+        let mesh = &template.mesh;
+        let positions = self.positions(mesh);
+        let Some(texture) = &template.texture else {
+            let indices = self.indices(mesh.triangles.iter());
+            let attributes = json!({ "POSITION": positions });
+            return vec![json!({ "attributes": attributes, "indices": indices, "material": 0 })];
+        };
+        let view = self.view(texture.iter().copied(), None);
+        self.images
+            .push(json!({ "bufferView": view, "mimeType": media_type(texture) }));
+        let material = self.images.len();
+        let seen = |t: &[u32; 3]| box_view(t.map(|i| mesh.positions[i as usize]));
+        let mut out = Vec::new();
+        for view in 0..VIEWS {
+            let own: Vec<&[u32; 3]> = mesh.triangles.iter().filter(|t| seen(t) == view).collect();
+            if own.is_empty() {
+                continue;
+            }
+            // glTF's v goes downwards.
+            let coordinates = mesh.positions.iter().flat_map(|&p| {
+                let [u, v] = box_coordinates(p, view);
+                [u as f32, 1.0 - v as f32]
+            });
+            let bytes: Vec<u8> = coordinates.flat_map(f32::to_le_bytes).collect();
+            let coordinates = self.view(bytes.into_iter(), Some(VERTICES));
+            let coordinates = self.accessor(json!({ "bufferView": coordinates,
+                "componentType": FLOAT, "count": mesh.positions.len(), "type": "VEC2" }));
+            let indices = self.indices(own.into_iter());
+            let attributes = json!({ "POSITION": positions, "TEXCOORD_0": coordinates });
+            out.push(json!({ "attributes": attributes, "indices": indices, "material": material }));
+        }
+        out
+    }
+
+    /// The plain material, then one for each image.
+    fn materials(&self) -> Vec<Value> {
+        let plain = json!({ "name": "building", "pbrMetallicRoughness": {
+            "baseColorFactor": [0.75, 0.73, 0.7, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9 } });
+        let textured = (0..self.images.len()).map(|i| {
+            json!({ "name": BOX_MAPPED, "pbrMetallicRoughness": {
+                "baseColorTexture": { "index": i }, "metallicFactor": 0.0, "roughnessFactor": 0.9 } })
+        });
+        std::iter::once(plain).chain(textured).collect()
+    }
+
+    fn positions(&mut self, mesh: &TriangleMesh) -> usize {
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|&p| turned(p)).collect();
         let bound = |pick: fn(f32, f32) -> f32, start: f32| {
             let along = |k: usize| positions.iter().fold(start, |m, p| pick(m, p[k]));
@@ -132,15 +194,18 @@ impl Glb {
         );
         let view = self.view(
             positions.iter().flatten().flat_map(|v| v.to_le_bytes()),
-            Some(34962),
+            Some(VERTICES),
         );
-        let first = self.accessor(json!({ "bufferView": view, "componentType": FLOAT,
-            "count": positions.len(), "type": "VEC3", "min": low, "max": high }));
-        let indices = mesh.triangles.iter().flatten();
-        let view = self.view(indices.flat_map(|i| i.to_le_bytes()), Some(34963));
-        let second = self.accessor(json!({ "bufferView": view, "componentType": UNSIGNED_INT,
-            "count": 3 * mesh.triangles.len(), "type": "SCALAR" }));
-        [first, second]
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT,
+            "count": positions.len(), "type": "VEC3", "min": low, "max": high }))
+    }
+
+    fn indices<'a>(&mut self, triangles: impl Iterator<Item = &'a [u32; 3]>) -> usize {
+        let indices: Vec<u32> = triangles.flatten().copied().collect();
+        let bytes = indices.iter().flat_map(|i| i.to_le_bytes());
+        let view = self.view(bytes, Some(INDICES));
+        self.accessor(json!({ "bufferView": view, "componentType": UNSIGNED_INT,
+            "count": indices.len(), "type": "SCALAR" }))
     }
 
     /// The attributes of a node's instances.
@@ -164,6 +229,8 @@ impl Glb {
     }
 
     fn view(&mut self, bytes: impl Iterator<Item = u8>, target: Option<u32>) -> usize {
+        // Numbers begin at multiples of their size; a picture may end anywhere.
+        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
         let offset = self.binary.len();
         self.binary.extend(bytes);
         let mut view =

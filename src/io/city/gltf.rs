@@ -3,7 +3,7 @@
 //! A node of the scene with a mesh is a building, called by its name. Instances of `EXT_mesh_gpu_instancing` are drawn out.
 //! What Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
 //! of one building become one, which knows the instances it is put together from ([`Part`](crate::shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
-//! lines are left out. Every index and length is checked against the bytes there are.
+//! lines are left out. Textures of base colours are read as what surfaces look like. Every index and length is checked against the bytes there are.
 
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -13,14 +13,16 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::CityError;
-use super::gltf_data::{Accessor, Buffer, Buffers, View, load};
+use super::gltf_data::{self, Accessor, Buffer, Buffers, View};
+use super::gltf_mesh::{Mesh, MeshRead, Meshes};
+use super::gltf_textures::{Image, Material, Texture, looks};
 use super::gltf_transform::{
     IDENTITY, Matrix, applied, composed, determinant, product, upright_box,
 };
 use crate::io::glb_container::split;
 use crate::io::json::parse_json;
 use crate::io::read_bytes;
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh};
+use crate::shape::triangles::{City, CityBuilding, Painted};
 use crate::{Error, Result};
 
 /// Extensions that may be required.
@@ -54,6 +56,12 @@ struct Document {
     buffers: Vec<Buffer>,
     #[serde(default)]
     extensions_required: Vec<String>,
+    #[serde(default)]
+    materials: Vec<Material>,
+    #[serde(default)]
+    textures: Vec<Texture>,
+    #[serde(default)]
+    images: Vec<Image>,
 }
 
 #[derive(Deserialize)]
@@ -81,23 +89,6 @@ struct Node {
     extensions: Map<String, Value>,
     #[serde(default)]
     extras: Value,
-}
-
-#[derive(Deserialize)]
-struct Mesh {
-    primitives: Vec<Primitive>,
-}
-
-#[derive(Deserialize)]
-struct Primitive {
-    attributes: FxHashMap<String, usize>,
-    indices: Option<usize>,
-    #[serde(default = "triangles")]
-    mode: u32,
-}
-
-fn triangles() -> u32 {
-    4
 }
 
 /// Reads a file.
@@ -129,7 +120,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     }
     let mut data = Vec::with_capacity(document.buffers.len());
     for (i, buffer) in document.buffers.iter().enumerate() {
-        let bytes = load(buffer, binary, path)?;
+        let bytes = gltf_data::buffer(buffer, binary, path)?;
         if bytes.len() < buffer.byte_length {
             let text = format!("{} bytes, not {}", bytes.len(), buffer.byte_length);
             return Err(Error::input(
@@ -145,10 +136,17 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         views: &document.buffer_views,
         accessors: &document.accessors,
     };
+    let fault = |(place, error): (String, CityError)| Error::input(path, place, error);
+    let Document {
+        materials,
+        textures,
+        images,
+        ..
+    } = &document;
+    let looks = looks(materials, textures, images, &buffers, path).map_err(fault)?;
     let mut reader = Reader {
         document: &document,
-        buffers,
-        meshes: FxHashMap::default(),
+        meshes: Meshes::new(&document.meshes, looks, &buffers),
         city: City {
             name: crate::io::file_stem(path),
             ..City::default()
@@ -157,7 +155,6 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         listed: FxHashMap::default(),
         triangles: 0,
     };
-    let fault = |(place, error): (String, CityError)| Error::input(path, place, error);
     reader.scene().map_err(fault)?;
     Ok(reader.city)
 }
@@ -167,9 +164,7 @@ type Fault = (String, CityError);
 /// The city as it is read.
 struct Reader<'a> {
     document: &'a Document,
-    buffers: Buffers<'a>,
-    /// Meshes read so far, in glTF's axes.
-    meshes: FxHashMap<usize, TriangleMesh>,
+    meshes: Meshes<'a>,
     city: City,
     /// Identifiers of the buildings that instances belong to; they are the first buildings of the city.
     ids: Vec<String>,
@@ -238,7 +233,6 @@ impl Reader<'_> {
                 true => format!("node_{index}"),
                 false => node.name.clone(),
             };
-            self.mesh(mesh)?;
             let instances = node.extensions.get("EXT_mesh_gpu_instancing");
             let instances = instances.and_then(|e| e.get("attributes"));
             match instances {
@@ -269,23 +263,31 @@ impl Reader<'_> {
         extras: &Value,
     ) -> std::result::Result<(), Fault> {
         let template = mesh;
-        let mesh = &self.meshes[&template];
+        let MeshRead {
+            mesh,
+            paint,
+            texture,
+        } = self.meshes.mesh(template)?;
         self.triangles += mesh.triangles.len();
         if self.triangles > MOST_TRIANGLES {
             let text = format!("more than {MOST_TRIANGLES} triangles with all instances");
             return Err(("scene".into(), CityError::Format(text)));
         }
-        let mut moved = mesh.clone();
-        for p in &mut moved.positions {
+        let (mut moved, mut paint) = (mesh.clone(), paint.clone());
+        let painted = paint.iter_mut().flat_map(|p| &mut p.corners);
+        for p in moved.positions.iter_mut().chain(painted) {
             let [x, y, z] = applied(transform, *p);
             *p = [x, -z, y];
         }
         if determinant(transform) < 0.0 {
             moved.flip();
+            paint.iter_mut().for_each(Painted::flip);
         }
         if let Some(&at) = self.listed.get(&id) {
             let building = &mut self.city.buildings[at];
-            building.append_instance(&moved, template, upright_box(transform));
+            let frame = upright_box(transform);
+            building.append_instance(&moved, template, frame, texture.clone());
+            building.paint.append(&mut paint);
             if let Some(extras) = extras.as_object() {
                 building.attributes.extend(extras.clone());
             }
@@ -295,67 +297,10 @@ impl Reader<'_> {
             id,
             attributes: extras.as_object().cloned().unwrap_or_default(),
             mesh: moved,
+            paint,
             ..CityBuilding::default()
         });
         Ok(())
-    }
-
-    /// Reads a mesh, once.
-    fn mesh(&mut self, index: usize) -> std::result::Result<(), Fault> {
-        if self.meshes.contains_key(&index) {
-            return Ok(());
-        }
-        let place = || format!("meshes[{index}]");
-        let mesh = self.document.meshes.get(index);
-        let mesh = mesh.ok_or_else(|| (place(), CityError::Format("does not exist".into())))?;
-        let mut all = TriangleMesh::default();
-        for (i, primitive) in mesh.primitives.iter().enumerate() {
-            let part = self.primitive(primitive);
-            all.append(&part.map_err(|e| (format!("meshes[{index}].primitives[{i}]"), e))?);
-        }
-        self.meshes.insert(index, all);
-        Ok(())
-    }
-
-    fn primitive(&self, primitive: &Primitive) -> std::result::Result<TriangleMesh, CityError> {
-        let Some(&positions) = primitive.attributes.get("POSITION") else {
-            return Ok(TriangleMesh::default());
-        };
-        let numbers = self.buffers.floats(positions, 3)?;
-        let positions: Vec<[f64; 3]> = numbers
-            .chunks_exact(3)
-            .map(|p| [p[0], p[1], p[2]])
-            .collect();
-        let count = positions.len();
-        let corners: Vec<u32> = match primitive.indices {
-            Some(accessor) => self.buffers.indices(accessor)?,
-            None => (0..count as u32).collect(),
-        };
-        if let Some(&index) = corners.iter().find(|&&i| i as usize >= count) {
-            let index = u64::from(index);
-            return Err(CityError::Dangling { index, count });
-        }
-        let three = |i: usize, j: usize, k: usize| [corners[i], corners[j], corners[k]];
-        let ends = 2..corners.len();
-        let triangles = match primitive.mode {
-            4 => corners
-                .chunks_exact(3)
-                .map(|t| [t[0], t[1], t[2]])
-                .collect(),
-            // A strip turns every second triangle round.
-            5 => ends
-                .map(|k| match k % 2 {
-                    0 => three(k - 2, k - 1, k),
-                    _ => three(k - 1, k - 2, k),
-                })
-                .collect(),
-            6 => ends.map(|k| three(0, k - 1, k)).collect(),
-            _ => Vec::new(),
-        };
-        Ok(TriangleMesh {
-            positions,
-            triangles,
-        })
     }
 
     /// Transforms of a node's instances, and the building of each.
@@ -370,7 +315,7 @@ impl Reader<'_> {
             index.map(|i| i.ok_or_else(wrong)).transpose()
         };
         let read = |name: &str, width: usize| match accessor(name)? {
-            Some(accessor) => self.buffers.floats(accessor, width).map(Some),
+            Some(accessor) => self.meshes.buffers.floats(accessor, width).map(Some),
             None => Ok(None),
         };
         let (t, r, s) = (

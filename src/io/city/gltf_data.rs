@@ -81,6 +81,13 @@ impl Buffers<'_> {
         Ok(elements.into_iter().map(little).collect())
     }
 
+    /// The bytes of a view, if it and its buffer have them.
+    pub fn view(&self, index: usize) -> Option<&[u8]> {
+        let view = self.views.get(index)?;
+        let end = view.byte_offset.checked_add(view.byte_length)?;
+        self.data.get(view.buffer)?.get(view.byte_offset..end)
+    }
+
     /// The bytes of each element.
     fn elements(
         &self,
@@ -105,15 +112,13 @@ impl Buffers<'_> {
         if components != width {
             return Err(wrong(&format!("is of type {:?}", accessor.kind)));
         }
-        let view = accessor.buffer_view.and_then(|v| self.views.get(v));
-        let view = view.ok_or_else(|| wrong("has no view"))?;
-        let buffer = self
-            .data
-            .get(view.buffer)
-            .ok_or_else(|| wrong("has no buffer"))?;
-        let end = view.byte_offset.checked_add(view.byte_length);
-        let bytes = end.and_then(|end| buffer.get(view.byte_offset..end));
-        let bytes = bytes.ok_or_else(|| wrong("lies outside its buffer"))?;
+        let view = accessor
+            .buffer_view
+            .and_then(|v| Some((v, self.views.get(v)?)));
+        let (at, view) = view.ok_or_else(|| wrong("has no view"))?;
+        let bytes = self
+            .view(at)
+            .ok_or_else(|| wrong("lies outside its buffer"))?;
         let size = size_of(accessor.component_type) * width;
         let stride = view.byte_stride.unwrap_or(size).max(size);
         let needed = match accessor.count.checked_sub(1) {
@@ -158,13 +163,21 @@ fn reader(component: u32, normalized: bool) -> Option<fn(&[u8]) -> f64> {
     }
 }
 
-/// The bytes of a buffer: of the file itself, of a data URI, or of a file beside it.
-pub(super) fn load(buffer: &Buffer, binary: Option<&[u8]>, path: &Path) -> Result<Vec<u8>> {
+/// The bytes of a buffer: of the file itself, or of its URI.
+pub(super) fn buffer(buffer: &Buffer, binary: Option<&[u8]>, path: &Path) -> Result<Vec<u8>> {
     let wrong = |text: String| Error::input(path, "buffers", CityError::Format(text));
-    let Some(uri) = &buffer.uri else {
-        let bytes = binary.ok_or_else(|| wrong("a buffer has neither bytes nor a name".into()))?;
-        return Ok(bytes.to_vec());
-    };
+    match &buffer.uri {
+        Some(uri) => load(uri, path),
+        None => {
+            let missing = || wrong("a buffer has neither bytes nor a name".into());
+            Ok(binary.ok_or_else(missing)?.to_vec())
+        }
+    }
+}
+
+/// The bytes of a data URI, or of a file beside `path`.
+pub(super) fn load(uri: &str, path: &Path) -> Result<Vec<u8>> {
+    let wrong = |text: String| Error::input(path, "uri", CityError::Format(text));
     if let Some(inline) = uri.strip_prefix("data:") {
         let encoded = inline.split_once(";base64,").map(|(_, text)| text);
         let encoded = encoded.ok_or_else(|| wrong("data that is not base64".into()))?;

@@ -13,7 +13,8 @@
 //! A symbol with a rule is a non-terminal. Positions of templates are in steps of the unit box, of which x and
 //! y are then shifted by -1/2; `size` is a template's width, depth and height in metres, or one factor for a
 //! non-terminal; `turn` is in degrees, counterclockwise from above. Left out are `at` and `turn` where they are 0 and
-//! `size` where it is 1. `parts`, on an instance of a non-terminal, lists where its successors really stand
+//! `size` where it is 1. `texture`, of a template, is a picture as a data URI: its sides that look along +x, +y, -x and -y, and its
+//! top, one beside the other, each a fifth of the width. `parts`, on an instance of a non-terminal, lists where its successors really stand
 //! (`null`: absent). With several rules for a symbol a derivation takes the first one; synthesis draws
 //! by weight.
 
@@ -21,6 +22,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::pictures;
 use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
 use crate::io::json::{check_header, parse_json};
 use crate::io::{read_bytes, write_atomic};
@@ -73,6 +75,15 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<InstanceGrammar> {
                 ));
             }
         }
+        let texture = t
+            .texture
+            .as_deref()
+            .map(pictures::from_data_uri)
+            .transpose();
+        let texture = texture.map_err(|e| {
+            let place = format!("templates[{i}].texture");
+            Error::input(path, place, e)
+        })?;
         let unit = |v: f64| v / file.steps;
         let positions = t.positions.chunks_exact(3);
         let triangles = t.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]);
@@ -84,6 +95,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<InstanceGrammar> {
                     .collect(),
                 triangles: triangles.collect(),
             },
+            texture,
         });
     }
     let grammar = InstanceGrammar {
@@ -159,6 +171,7 @@ pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
             symbol: t.symbol.clone(),
             positions: positions.map(Number::near).collect(),
             triangles: t.mesh.triangles.concat(),
+            texture: t.texture.as_deref().map(pictures::data_uri),
         };
         out.push_str(if i == 0 { "\n    " } else { ",\n    " });
         out.push_str(&serde_json::to_string(&template)?);
@@ -260,6 +273,8 @@ struct FileTemplate {
     #[serde(serialize_with = "numbers")]
     positions: Vec<f64>,
     triangles: Vec<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    texture: Option<String>,
 }
 
 #[derive(Deserialize)]

@@ -3,7 +3,7 @@
 //! | extension | read | written |
 //! | --- | --- | --- |
 //! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
-//! | `.obj` | [`obj`]: an object or group is a building; materials and textures of its `.mtl` | yes, without |
+//! | `.obj` | [`obj`]: an object or group is a building; materials and textures of its `.mtl` | yes |
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
 //! | `.glb`, `.gltf` | [`gltf`]: a node is a building | `.glb`, [`glb`]: a node with instances for each template |
 //! | `.tar`, `.tar.xz` | the `.obj` files in it, with their materials and textures, as one city | no |
@@ -20,15 +20,21 @@ pub mod geojson;
 pub mod glb;
 pub mod gltf;
 mod gltf_data;
+mod gltf_mesh;
+mod gltf_textures;
 mod gltf_transform;
 pub mod grammar_file;
 pub mod grammar_json;
 mod mtl;
 pub mod npz;
 pub mod obj;
+mod obj_write;
 pub mod picture;
+mod pictures;
 pub mod tiles;
 pub mod view_json;
+
+pub use pictures::{add_textures, paint_parts};
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Materials of Wavefront OBJ: greys (`Kd`) and textures (`map_Kd`, PNG, JPEG or WebP, in the folder of the file).
+//! Materials of Wavefront OBJ: colours (`Kd`) and textures (`map_Kd`, PNG, JPEG or WebP, in the folder of the file).
 
 use std::path::Path;
 use std::sync::Arc;
@@ -6,7 +6,8 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::CityError;
-use crate::io::{pixels, read_bytes};
+use super::pictures;
+use crate::io::read_bytes;
 use crate::shape::triangles::{Surface, Texture};
 use crate::{Error, Result};
 
@@ -36,8 +37,8 @@ pub(super) fn read(path: &Path, materials: &mut Materials) -> Result<()> {
                 let shares = shares.filter(|s| s.iter().all(|v| v.is_finite()) && s.len() == 3);
                 let bad = || CityError::Format(format!("{rest:?} is not a colour"));
                 let shares = shares.ok_or_else(|| Error::input(path, place(), bad()))?;
-                let grey = 0.299 * shares[0] + 0.587 * shares[1] + 0.114 * shares[2];
-                Surface::Plain((grey.clamp(0.0, 1.0) * 255.0).round() as u8)
+                let level = |k: usize| (shares[k].clamp(0.0, 1.0) * 255.0).round() as u8;
+                Surface::Plain(std::array::from_fn(level))
             }
             "map_Kd" => {
                 // Options stand before the name, which is the last word.
@@ -67,11 +68,5 @@ fn texture(path: &Path, file: &str, place: &str) -> Result<Texture> {
         Error::input(path, place, CityError::Format(text))
     };
     let bytes = read_bytes(&beside).map_err(|e| fault(e.to_string()))?;
-    let (width, greys) = pixels::greys(&bytes).map_err(|e| fault(e.to_string()))?;
-    Ok(Texture {
-        name: file.to_owned(),
-        width,
-        greys,
-        bytes: bytes.len(),
-    })
+    pictures::decoded(file, bytes.into()).map_err(|e| fault(e.to_string()))
 }

@@ -1,8 +1,7 @@
 //! Cities as Wavefront OBJ: each object (`o`), or group (`g`) in a file without objects, is a building; z up, metres.
 //! Faces of more than three corners are cut into fans. Materials ([`super::mtl`]) and texture coordinates are read as what
-//! the surface looks like.
+//! the surface looks like; [`write`] writes them beside the file.
 
-use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,6 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::CityError;
 use super::mtl::{self, Materials};
+pub use super::obj_write::{to_string, write};
 use crate::io::read_bytes;
 use crate::shape::triangles::{City, CityBuilding, Painted, Surface, TriangleMesh};
 use crate::{Error, Result};
@@ -162,24 +162,4 @@ pub(super) fn own(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> TriangleMes
         mesh.triangles.push(t);
     }
     mesh
-}
-
-/// The text of a file: an object a building, in the input's own coordinates, to the millimetre.
-pub fn to_string(city: &City) -> String {
-    let mut out = String::from("# metres, z up\n");
-    let mut first = 1;
-    for b in &city.buildings {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "o {}", b.id.replace(['\n', '\r'], " "));
-        for p in &b.mesh.positions {
-            let [x, y, z] = [0, 1, 2].map(|k| p[k] + city.origin[k]);
-            let _ = writeln!(out, "v {x:.3} {y:.3} {z:.3}");
-        }
-        for t in &b.mesh.triangles {
-            let [i, j, k] = t.map(|i| i as usize + first);
-            let _ = writeln!(out, "f {i} {j} {k}");
-        }
-        first += b.mesh.positions.len();
-    }
-    out
 }

@@ -1,13 +1,15 @@
 //! Cut planes and components (Sec. IV.A and B).
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
 use super::windows::{WindowFeatures, window_features};
 use crate::shape::triangles::{
-    City, MeshFaults, OrientedBox, Painted, Part, SectionProfile, Surface, TriangleMesh,
-    clip_to_slabs, closing_lid, height_map, repair,
+    City, MeshFaults, OrientedBox, Painted, Part, SectionProfile, SideView, Surface, TriangleMesh,
+    clip_to_slabs, closing_lid, grey, height_map, repair,
 };
 
 /// Step of A(z), in metres.
@@ -26,6 +28,10 @@ const LEAST_HEIGHT: f64 = 2.0;
 const MOST_SAMPLES: usize = 16_000;
 /// Cells along a side of the height map.
 pub const CELLS: usize = 16;
+/// Cells along a side of the looks.
+pub const LOOKS: usize = 4;
+/// Pixels along a cell of the looks.
+const DETAIL: usize = 8;
 /// Columns per cell along a side.
 const SAMPLES: usize = 2;
 
@@ -50,8 +56,12 @@ pub struct Component {
     pub stated: Option<usize>,
     /// The window features, where its sides are painted.
     pub windows: Option<WindowFeatures>,
+    /// Greys of its four sides, 4 x 4 each, from 0 (black) to 1; empty where it shows no texture.
+    pub looks: Vec<f32>,
     /// Bytes of the textures that it shows, by texels.
     pub texture_bytes: f64,
+    /// The picture file of its box mapping, where the input says it.
+    pub texture: Option<Arc<[u8]>>,
 }
 
 /// All components of a city.
@@ -114,13 +124,30 @@ impl Component {
         let bytes = |p: &Painted| match &*p.surface {
             Surface::Texture(t) => {
                 let share = p.texels() * p.share_between(low, high);
-                share * t.bytes as f64 / t.greys.len().max(1) as f64
+                share * t.file.len() as f64 / t.colours.len().max(1) as f64
             }
             Surface::Plain(_) => 0.0,
         };
         // The sum of nothing is -0.
         self.texture_bytes = paint.iter().map(bytes).sum::<f64>() + 0.0;
+        if self.texture_bytes > 0.0 {
+            let sides = (0..4).map(|s| SideView::whole(paint, &self.frame, s, [DETAIL * LOOKS; 2]));
+            self.looks = sides.flat_map(|side| blurred(&side)).collect();
+        }
     }
+}
+
+/// The mean greys of [`LOOKS`] x [`LOOKS`] cells of a side; of one that is not painted, a middle grey.
+fn blurred(side: &SideView) -> Vec<f32> {
+    let cell = |c: usize| {
+        let (x, y) = (c % LOOKS * DETAIL, c / LOOKS * DETAIL);
+        let row = |j: usize| &side.colours[j * side.width + x..][..DETAIL];
+        let own = (y..y + DETAIL).flat_map(row).flatten();
+        let n = own.clone().count();
+        let sum: f32 = own.map(|&c| f32::from(grey(c)) / 255.0).sum();
+        if n == 0 { 0.5 } else { sum / n as f32 }
+    };
+    (0..LOOKS * LOOKS).map(cell).collect()
 }
 
 /// The components of a building of which the input says what it is put together from: nothing is cut.
@@ -137,7 +164,9 @@ fn stated_components(parts: Vec<(&Part, TriangleMesh)>, building: usize) -> Vec<
             mesh,
             stated: Some(part.template),
             windows: None,
+            looks: Vec::new(),
             texture_bytes: 0.0,
+            texture: part.texture.clone(),
         }
     };
     parts.into_iter().enumerate().map(component).collect()
@@ -180,7 +209,9 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
             symmetric: turned.is_none(),
             stated: None,
             windows: None,
+            looks: Vec::new(),
             texture_bytes: 0.0,
+            texture: None,
         };
         if turned == Some(true) {
             half_turn(&mut component);

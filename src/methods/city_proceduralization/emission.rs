@@ -9,7 +9,7 @@ use super::types::Types;
 use crate::grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
 };
-use crate::shape::triangles::{City, TriangleMesh, merge_coplanar};
+use crate::shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
 
 /// How finely numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,12 +96,8 @@ fn terminals(
     let templates = types.representatives.iter().enumerate();
     let template = |(kind, &c): (usize, &usize)| Template {
         symbol: terminal(kind),
-        // A stated template was merged when it was made.
-        mesh: template(
-            &components[c].mesh,
-            detail,
-            merge && components[c].stated.is_none(),
-        ),
+        mesh: template(&components[c], detail, merge),
+        texture: components[c].texture.clone(),
     };
     InstanceGrammar {
         name: city.name.clone(),
@@ -314,21 +310,22 @@ fn part(
     )
 }
 
-/// A representative's mesh: coplanar triangles merged, coordinates in steps of the box.
-fn template(unit: &TriangleMesh, detail: &Detail, merge: bool) -> TriangleMesh {
-    let mesh = if merge {
-        merge_coplanar(unit, detail.coplanar)
-    } else {
-        unit.clone()
+/// A representative's mesh: coplanar triangles merged, coordinates in steps of the box. Where it shows textures, its triangles
+/// follow each other side by side.
+fn template(component: &Component, detail: &Detail, merge: bool) -> TriangleMesh {
+    // A stated template was merged when it was made.
+    let mut mesh = match merge && component.stated.is_none() {
+        true => merge_coplanar(&component.mesh, detail.coplanar),
+        false => component.mesh.clone(),
     };
     let grid = |v: f64| (v * detail.box_steps).round() / detail.box_steps;
-    let snapped = mesh
-        .positions
-        .iter()
-        .map(|p| [grid(p[0] + 0.5) - 0.5, grid(p[1] + 0.5) - 0.5, grid(p[2])]);
-    TriangleMesh {
-        positions: snapped.collect(),
-        triangles: mesh.triangles,
+    for p in &mut mesh.positions {
+        *p = [grid(p[0] + 0.5) - 0.5, grid(p[1] + 0.5) - 0.5, grid(p[2])];
     }
-    .welded(0.5 / detail.box_steps)
+    if component.texture.is_some() || !component.looks.is_empty() {
+        let positions = &mesh.positions;
+        let view = |t: &[u32; 3]| box_view(t.map(|i| positions[i as usize]));
+        mesh.triangles.sort_by_key(view);
+    }
+    mesh.welded(0.5 / detail.box_steps)
 }

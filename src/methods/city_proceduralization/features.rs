@@ -134,21 +134,32 @@ const PRINCIPAL: usize = 12;
 /// The covariance is taken over at most so many components, evenly spread over them.
 const SAMPLE: usize = 20_000;
 
-/// Height maps projected on their 12 principal components.
+/// Heights and so many looks; of a component that shows no texture, a middle grey.
+fn values(component: &Component, looks: usize) -> impl Iterator<Item = f32> {
+    let none = if component.looks.is_empty() { looks } else { 0 };
+    let (heights, own) = (component.heights.iter(), component.looks.iter());
+    heights
+        .chain(own)
+        .copied()
+        .chain(std::iter::repeat_n(0.5, none))
+}
+
+/// Height maps, and looks where there are any (from 0 to 1 both: 256 shares of the height and 64 greys), projected on their 12
+/// principal components.
 pub fn geometric_features(components: &[Component]) -> Points {
-    let d = components.first().map_or(1, |c| c.heights.len());
+    let looks = components.iter().map(|c| c.looks.len()).max().unwrap_or(0);
+    let d = components.first().map_or(1, |c| c.heights.len()) + looks;
     let stride = components.len().div_ceil(SAMPLE).max(1);
     let sample: Vec<&Component> = components.iter().step_by(stride).collect();
     let n = sample.len().max(1) as f64;
     let mut mean = vec![0.0; d];
     for c in &sample {
-        for (m, &h) in mean.iter_mut().zip(&c.heights) {
+        for (m, h) in mean.iter_mut().zip(values(c, looks)) {
             *m += f64::from(h) / n;
         }
     }
-    let table = DMatrix::from_fn(d, sample.len(), |i, j| {
-        f64::from(sample[j].heights[i]) - mean[i]
-    });
+    let rows: Vec<Vec<f32>> = sample.iter().map(|c| values(c, looks).collect()).collect();
+    let table = DMatrix::from_fn(d, sample.len(), |i, j| f64::from(rows[j][i]) - mean[i]);
     let covariance = &table * table.transpose() / n;
     let eigen = SymmetricEigen::new(covariance);
     let mut order: Vec<usize> = (0..d).collect();
@@ -157,8 +168,8 @@ pub fn geometric_features(components: &[Component]) -> Points {
     let project = |c: &Component| -> Vec<f64> {
         let along = |&k: &usize| {
             let axis = eigen.eigenvectors.column(k);
-            let heights = c.heights.iter().zip(&mean).zip(axis.iter());
-            heights.map(|((&h, m), a)| (f64::from(h) - m) * a).sum()
+            let values = values(c, looks).zip(&mean).zip(axis.iter());
+            values.map(|((h, m), a)| (f64::from(h) - m) * a).sum()
         };
         order.iter().map(along).collect()
     };

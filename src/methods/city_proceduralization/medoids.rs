@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::components::CELLS;
+use super::components::{CELLS, Component};
 use super::types::Use;
 use crate::cluster::KdTree;
 
@@ -20,7 +20,23 @@ pub(super) struct Table<'a> {
     pub(super) d: usize,
     /// Volumes.
     pub(super) weights: Vec<f64>,
-    pub(super) heights: Vec<&'a [f32]>,
+    pub(super) forms: Vec<Form<'a>>,
+}
+
+/// What components are compared by, up to quarter turns.
+#[derive(Clone, Copy)]
+pub(super) struct Form<'a> {
+    heights: &'a [f32],
+    looks: &'a [f32],
+}
+
+impl<'a> Form<'a> {
+    pub(super) fn of(component: &'a Component) -> Self {
+        Self {
+            heights: &component.heights,
+            looks: &component.looks,
+        }
+    }
 }
 
 impl Table<'_> {
@@ -64,7 +80,7 @@ impl Table<'_> {
                 let mut cost = 0.0;
                 for &i in list {
                     let turned = uses[i].quarter;
-                    cost += self.weights[i] * mismatch(self.heights[m], self.heights[i], turned);
+                    cost += self.weights[i] * mismatch(self.forms[m], self.forms[i], turned);
                     if cost > best.0 {
                         break;
                     }
@@ -86,7 +102,7 @@ impl Table<'_> {
             let near = nearest.of(self.row(i)).into_iter();
             for kind in near.chain([uses[i].kind]) {
                 for quarter in 0..4 {
-                    let (medoid, own) = (self.heights[medoids[kind]], self.heights[i]);
+                    let (medoid, own) = (self.forms[medoids[kind]], self.forms[i]);
                     let cost = mismatch_below(medoid, own, quarter, best.0);
                     if cost < best.0 {
                         best = (cost, Use { kind, quarter });
@@ -142,14 +158,19 @@ impl<'a> Nearest<'a> {
     }
 }
 
+/// What differences of looks, from 0 to 1, count against shares of the volume.
+const LOOKS_WEIGHT: f64 = 0.25;
+
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched
-/// share of the box.
-pub fn mismatch(template: &[f32], component: &[f32], quarter: u8) -> f64 {
+/// share of the box; and that of looks, where both have them.
+fn mismatch(template: Form, component: Form, quarter: u8) -> f64 {
     mismatch_below(template, component, quarter, f64::INFINITY)
 }
 
 /// As [`mismatch`]; infinite as soon as it is not below `limit`.
-fn mismatch_below(template: &[f32], component: &[f32], quarter: u8, limit: f64) -> f64 {
+fn mismatch_below(template: Form, component: Form, quarter: u8, limit: f64) -> f64 {
+    let apart = looks_apart(template.looks, component.looks, quarter);
+    let (template, component, limit) = (template.heights, component.heights, limit - apart);
     let last = CELLS - 1;
     let cells = (CELLS * CELLS) as f64;
     let mut sum = 0.0f32;
@@ -168,7 +189,20 @@ fn mismatch_below(template: &[f32], component: &[f32], quarter: u8, limit: f64) 
             return f64::INFINITY;
         }
     }
-    f64::from(sum) / cells
+    f64::from(sum) / cells + apart
+}
+
+/// Weighted mean difference of looks: a template that is turned by a quarter shows on each side what it had on the one before.
+fn looks_apart(template: &[f32], component: &[f32], quarter: u8) -> f64 {
+    if template.is_empty() || component.is_empty() {
+        return 0.0;
+    }
+    let (n, side) = (component.len(), component.len() / 4);
+    let from = |i: usize| (i + (4 - usize::from(quarter)) * side) % n;
+    let sum: f32 = (0..n)
+        .map(|i| (template[from(i)] - component[i]).abs())
+        .sum();
+    LOOKS_WEIGHT * f64::from(sum) / n as f64
 }
 
 pub(super) fn square(a: &[f64], b: &[f64]) -> f64 {

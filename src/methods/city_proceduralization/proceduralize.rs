@@ -1,5 +1,7 @@
 //! The whole pipeline.
 
+use rayon::prelude::*;
+
 use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, emit, emit_tree, placed_components};
@@ -10,7 +12,7 @@ use super::type_graph::DistanceWeights;
 use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
 use crate::cluster::WardError;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
-use crate::shape::triangles::City;
+use crate::shape::triangles::{BoxTexture, City};
 
 /// How types are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +116,18 @@ pub struct Proceduralized {
     pub types: Types,
     /// What stands together.
     pub structure: Structure,
+}
+
+impl Proceduralized {
+    /// The looks of each template: those of the component that it is the shape of, where `city` is painted with pictures.
+    pub fn box_textures(&self, city: &City) -> Vec<Option<BoxTexture>> {
+        let representatives = self.types.representatives.par_iter();
+        let looks = representatives.map(|&c| {
+            let component = &self.decomposition.components[c];
+            BoxTexture::of(&city.buildings[component.building].paint, &component.frame)
+        });
+        looks.collect()
+    }
 }
 
 /// What stands together in a city.

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::components::Component;
 use super::features::{Points, paper_features};
-use super::medoids::{Table, square};
+use super::medoids::{Form, Table, square};
 use super::proceduralize::{ProceduralizeError, Representative};
 use crate::cluster::{WardTree, kmeans, lloyd, means, ward};
 use crate::rng;
@@ -133,10 +133,16 @@ pub fn stated_types(components: &[Component]) -> Option<Types> {
     })
 }
 
+/// A share in 255 steps.
+fn step_of(share: f32) -> u8 {
+    (share * 255.0).round() as u8
+}
+
 /// Steps of a box within which components are the same.
 const SAME: f64 = 65_536.0;
 
-/// A type for each distinct component: components whose triangles are the same, to 16 bits of their boxes, are of one type.
+/// A type for each distinct component: components whose triangles are the same, to 16 bits of their boxes, and
+/// whose looks are, are of one type.
 pub fn distinct_types(components: &[Component]) -> Types {
     let mut known: FxHashMap<Vec<i64>, usize> = FxHashMap::default();
     let mut types = Types {
@@ -153,7 +159,13 @@ pub fn distinct_types(components: &[Component]) -> Types {
         });
         let mut triangles: Vec<[[i64; 3]; 3]> = triangles.collect();
         triangles.sort_unstable();
-        let key = triangles.into_iter().flatten().flatten().collect();
+        let looks = c.looks.iter().map(|v| i64::from(step_of(*v)));
+        let key = triangles
+            .into_iter()
+            .flatten()
+            .flatten()
+            .chain(looks)
+            .collect();
         let kind = *known.entry(key).or_insert_with(|| {
             types.representatives.push(i);
             types.representatives.len() - 1
@@ -189,7 +201,9 @@ impl<'a> TypeTree<'a> {
             let key: Vec<u8> = c
                 .heights
                 .iter()
-                .map(|h| (h * 255.0).round() as u8)
+                .chain(&c.looks)
+                .copied()
+                .map(step_of)
                 .collect();
             let g = *known.entry(key).or_insert_with(|| {
                 distinct.push(i);
@@ -204,12 +218,12 @@ impl<'a> TypeTree<'a> {
             .flat_map(|&i| points.row(i).to_vec())
             .collect();
         let tree = ward(&rows, d, &weights)?;
-        let heights = distinct.iter().map(|&i| components[i].heights.as_slice());
+        let forms = distinct.iter().map(|&i| Form::of(&components[i]));
         let table = Table {
             rows,
             d,
             weights,
-            heights: heights.collect(),
+            forms: forms.collect(),
         };
         Ok(Self {
             distinct,

@@ -1,15 +1,13 @@
 //! The six window features of a component (Sec. IV.C): its four sides are drawn, windows are told from the wall by Otsu's
 //! threshold, opening and closing.
 
-use crate::shape::triangles::{OrientedBox, Painted, Surface};
+use crate::shape::triangles::{OrientedBox, Painted, SideView, grey, view_size};
 use crate::shape::{LabelGrid, Span, components};
 
 /// Pixels along the longer side of a picture at most.
 const MOST_PIXELS: usize = 256;
 /// Least side of a pixel, in metres.
 const PIXEL: f64 = 0.1;
-/// A triangle is seen from a side if its normal turns no more than 60 degrees away from it.
-const FACING: f64 = 0.5;
 /// Share of a side that has to be painted.
 const COVERED: f64 = 0.25;
 /// Types of windows of a side: clusters of areas.
@@ -46,46 +44,18 @@ struct Picture {
 }
 
 impl Picture {
-    /// The side that looks along +x, +y, -x or -y of the box, drawn without perspective.
+    /// The side that looks along +x, +y, -x or -y of the box.
     fn of(paint: &[Painted], frame: &OrientedBox, side: usize) -> Option<Self> {
-        let turn = frame.angle + side as f64 * std::f64::consts::FRAC_PI_2;
-        let normal = [turn.cos(), turn.sin()];
-        let right = [-normal[1], normal[0]];
-        let across = frame.size[1 - side % 2];
-        let pixel = PIXEL.max(across.max(frame.size[2]) / MOST_PIXELS as f64);
+        let [across, up] = view_size(frame, side);
+        let pixel = PIXEL.max(across.max(up) / MOST_PIXELS as f64);
         let count = |length: f64| ((length / pixel).ceil() as usize).clamp(1, MOST_PIXELS + 1);
-        let (width, height) = (count(across), count(frame.size[2]));
-        let mut greys = vec![None; width * height];
-        let mut depths = vec![f64::NEG_INFINITY; width * height];
-        for painted in paint {
-            if facing(&painted.corners, normal) < FACING {
-                continue;
-            }
-            // Pixels to the right and up, and metres towards the viewer.
-            let seen = painted.corners.map(|p| {
-                let [x, y, z] = [0, 1, 2].map(|k| p[k] - frame.base[k]);
-                let along = x * right[0] + y * right[1] + across / 2.0;
-                let depth = x * normal[0] + y * normal[1];
-                [along / pixel, z / pixel, depth]
-            });
-            cover(&seen, width, height, |at, weights| {
-                let depth: f64 = (0..3).map(|k| weights[k] * seen[k][2]).sum();
-                if depth > depths[at] {
-                    depths[at] = depth;
-                    greys[at] = Some(match &*painted.surface {
-                        Surface::Plain(grey) => *grey,
-                        Surface::Texture(texture) => texture.at([0, 1]
-                            .map(|c| (0..3).map(|k| weights[k] * painted.uv[k][c]).sum::<f64>())),
-                    });
-                }
-            });
-        }
-        let painted = greys.iter().flatten().count() as f64;
-        (painted >= COVERED * greys.len() as f64).then_some(Self {
+        let (width, height) = (count(across), count(up));
+        let view = SideView::of(paint, frame, side, [width, height], [pixel; 2]);
+        (view.painted() >= COVERED).then(|| Self {
             width,
             height,
             pixel,
-            greys,
+            greys: view.colours.iter().map(|c| c.map(grey)).collect(),
         })
     }
 
@@ -149,42 +119,6 @@ impl Picture {
             emptiness,
             intensity,
         ])
-    }
-}
-
-/// Cosine between a triangle's normal and a horizontal direction.
-fn facing([a, b, c]: &[[f64; 3]; 3], direction: [f64; 2]) -> f64 {
-    let edge = |q: &[f64; 3]| [0, 1, 2].map(|k| q[k] - a[k]);
-    let ([ux, uy, uz], [vx, vy, vz]) = (edge(b), edge(c));
-    let n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-    (n[0] * direction[0] + n[1] * direction[1]) / length.max(f64::MIN_POSITIVE)
-}
-
-/// Calls `visit` with every pixel whose middle the triangle covers, and the barycentric coordinates there.
-fn cover(t: &[[f64; 3]; 3], width: usize, height: usize, mut visit: impl FnMut(usize, [f64; 3])) {
-    let [a, b, c] = t;
-    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if area == 0.0 {
-        return;
-    }
-    let range = |k: usize, n: usize| {
-        let low = a[k].min(b[k]).min(c[k]);
-        let high = a[k].max(b[k]).max(c[k]);
-        // Conversions of floats saturate.
-        ((low - 0.5).ceil().max(0.0) as usize)..((high + 0.5).ceil().max(0.0) as usize).min(n)
-    };
-    for j in range(1, height) {
-        for i in range(0, width) {
-            let (x, y) = (i as f64 + 0.5, j as f64 + 0.5);
-            let part = |p: &[f64; 3], q: &[f64; 3]| {
-                ((p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x)) / area
-            };
-            let weights = [part(b, c), part(c, a), part(a, b)];
-            if weights.iter().all(|w| *w >= 0.0) {
-                visit(j * width + i, weights);
-            }
-        }
     }
 }
 

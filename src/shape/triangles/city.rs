@@ -1,6 +1,7 @@
 //! A city: buildings with identifiers, attributes and triangles.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::{OrientedBox, Painted, TriangleMesh};
 
@@ -32,19 +33,22 @@ pub struct Part {
     pub positions: Range<usize>,
     /// Triangles of the building's mesh that belong to it.
     pub triangles: Range<usize>,
+    /// The picture file of the template's box mapping ([`super::BoxTexture`]), if it has one.
+    pub texture: Option<Arc<[u8]>>,
 }
 
 /// How far a template may reach out of the unit box.
 const OUTSIDE: f64 = 1e-6;
 
 impl CityBuilding {
-    /// Appends an instance, `placed`, of the template with that number, which `frame` puts into its place. The part is
-    /// noted where the template lies in the unit box.
+    /// Appends an instance, `placed`, of the template with that number and texture, which `frame` puts into its place. The part
+    /// is noted where the template lies in the unit box.
     pub fn append_instance(
         &mut self,
         placed: &TriangleMesh,
         template: usize,
         frame: Option<OrientedBox>,
+        texture: Option<Arc<[u8]>>,
     ) {
         let (p, t) = (self.mesh.positions.len(), self.mesh.triangles.len());
         self.mesh.append(placed);
@@ -60,6 +64,7 @@ impl CityBuilding {
                 frame,
                 positions: p..self.mesh.positions.len(),
                 triangles: t..self.mesh.triangles.len(),
+                texture,
             });
         }
     }

@@ -6,11 +6,13 @@
 //! - [`clip_to_slabs`]: the parts of a mesh between horizontal planes.
 //! - [`section_lid`], [`closing_lid`]: a horizontal section as triangles, and what of it closes a cut.
 //! - [`Painted`]: what a triangle looks like, for what is read off facades.
+//! - [`SideView`], [`BoxTexture`]: what is seen of a box from its sides and from above; box mapping.
 //! - [`OrientedBox`]: the smallest rectangle around a plan, extruded.
 //! - [`merge_coplanar`]: the same surface with fewer triangles.
 //! - [`VolumeRaster`]: columns of solid material on a square grid; volumetric intersection over union.
 //! - [`SurfaceDistance`]: exact distances from points to triangles.
 
+mod box_texture;
 mod city;
 mod clip;
 mod coplanar;
@@ -22,8 +24,10 @@ mod painted;
 mod profile;
 mod raster;
 mod repair;
+mod side_view;
 mod triangulate;
 
+pub use box_texture::{BoxTexture, box_coordinates, box_view};
 pub use city::{City, CityBuilding, Part};
 pub use clip::clip_to_slabs;
 pub use coplanar::merge_coplanar;
@@ -31,8 +35,9 @@ pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
 pub use lid::{closing_lid, section_lid};
 pub use mesh::{Corners, TriangleMesh, plan_area};
 pub use oriented_box::{OrientedBox, convex_hull};
-pub use painted::{Painted, Surface, Texture};
+pub use painted::{Painted, Surface, Texture, grey};
 pub use profile::SectionProfile;
 pub use raster::{Overlap, VolumeRaster, height_map, solid_intervals};
 pub use repair::{MeshFaults, repair};
+pub use side_view::{SideView, TOP, VIEWS, view_size};
 pub use triangulate::polygon_triangles;

@@ -1,41 +1,47 @@
-//! What the surface of a building looks like: triangles with a texture or a plain grey.
+//! What the surface of a building looks like: triangles with a texture or a plain colour.
 
 use std::sync::Arc;
 
 /// What a triangle is painted with.
 #[derive(Debug, PartialEq)]
 pub enum Surface {
-    /// One grey, from 0 (black) to 255.
-    Plain(u8),
+    /// One colour: red, green, blue.
+    Plain([u8; 3]),
     /// A picture.
     Texture(Texture),
 }
 
-/// A picture in greys.
+/// A picture.
 #[derive(Debug, PartialEq)]
 pub struct Texture {
     /// File name.
     pub name: String,
     /// Columns.
     pub width: usize,
-    /// Greys, row after row from the top.
-    pub greys: Vec<u8>,
-    /// Bytes of the file.
-    pub bytes: usize,
+    /// Red, green, blue, row after row from the top.
+    pub colours: Vec<[u8; 3]>,
+    /// The file as it is: a PNG, JPEG or WebP.
+    pub file: Arc<[u8]>,
 }
 
 impl Texture {
     /// Rows.
     pub fn height(&self) -> usize {
-        self.greys.len() / self.width.max(1)
+        self.colours.len() / self.width.max(1)
     }
 
-    /// The grey at texture coordinates: u to the right, v upwards, 0 to 1; repeated beyond.
-    pub fn at(&self, [u, v]: [f64; 2]) -> u8 {
+    /// The colour at texture coordinates: u to the right, v upwards, 0 to 1; repeated beyond.
+    pub fn at(&self, [u, v]: [f64; 2]) -> [u8; 3] {
         let (w, h) = (self.width, self.height());
         let along = |t: f64, n: usize| ((t.rem_euclid(1.0) * n as f64) as usize).min(n - 1);
-        self.greys[along(1.0 - v, h) * w + along(u, w)]
+        self.colours[along(1.0 - v, h) * w + along(u, w)]
     }
+}
+
+/// The grey of a colour (ITU-R BT.601), 0 to 255.
+pub fn grey([r, g, b]: [u8; 3]) -> u8 {
+    let [r, g, b] = [r, g, b].map(u32::from);
+    ((299 * r + 587 * g + 114 * b + 500) / 1000) as u8
 }
 
 /// A triangle with its looks.
@@ -64,7 +70,32 @@ impl Painted {
         };
         let [a, b, c] = self.uv;
         let area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs() / 2.0;
-        area * texture.greys.len() as f64
+        area * texture.colours.len() as f64
+    }
+
+    /// Turns its front to the back.
+    pub fn flip(&mut self) {
+        self.corners.swap(1, 2);
+        self.uv.swap(1, 2);
+    }
+
+    /// Its colour where the corners have these weights.
+    pub fn colour(&self, weights: [f64; 3]) -> [u8; 3] {
+        match &*self.surface {
+            Surface::Plain(colour) => *colour,
+            Surface::Texture(texture) => {
+                texture.at([0, 1].map(|c| (0..3).map(|k| weights[k] * self.uv[k][c]).sum::<f64>()))
+            }
+        }
+    }
+
+    /// Area in square metres.
+    pub fn area(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        let edge = |q: [f64; 3]| [0, 1, 2].map(|k| q[k] - a[k]);
+        let ([ux, uy, uz], [vx, vy, vz]) = (edge(b), edge(c));
+        let n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+        n.iter().map(|v| v * v).sum::<f64>().sqrt() / 2.0
     }
 }
 
@@ -90,7 +121,7 @@ mod tests {
         let triangle = |z: [f64; 3]| Painted {
             corners: [[0.0, 0.0, z[0]], [1.0, 0.0, z[1]], [0.0, 1.0, z[2]]],
             uv: [[0.0; 2]; 3],
-            surface: Arc::new(Surface::Plain(0)),
+            surface: Arc::new(Surface::Plain([0; 3])),
         };
         // Half of the height of a triangle that stands on its base: three quarters of the area.
         assert!((triangle([0.0, 0.0, 2.0]).share_between(0.0, 1.0) - 0.75).abs() < 1e-12);
@@ -109,12 +140,12 @@ mod tests {
         let texture = Texture {
             name: String::new(),
             width: 2,
-            greys: vec![1, 2, 3, 4],
-            bytes: 4,
+            colours: [1, 2, 3, 4].map(|v| [v; 3]).to_vec(),
+            file: Arc::new([]),
         };
-        assert_eq!(texture.at([0.2, 0.8]), 1);
-        assert_eq!(texture.at([0.7, 0.2]), 4);
-        assert_eq!(texture.at([1.2, -0.2]), 1);
+        assert_eq!(texture.at([0.2, 0.8]), [1; 3]);
+        assert_eq!(texture.at([0.7, 0.2]), [4; 3]);
+        assert_eq!(texture.at([1.2, -0.2]), [1; 3]);
         assert_eq!(texture.at([1.0, 1.0]), texture.at([0.0, 0.0]));
     }
 }

@@ -6,7 +6,7 @@
 //! | 2 | version, like all whole numbers little-endian |
 //! | 4 | CRC-32 of all that follows |
 //! | 4 | bytes of the next part |
-//! | | names, identifiers, attributes and steps: JSON, deflated (RFC 1951) |
+//! | | names, identifiers, attributes, steps and textures: JSON, deflated (RFC 1951) |
 //! | to the end | templates, then rules, by a range coder with learnt probabilities |
 //!
 //! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
@@ -31,6 +31,7 @@ use self::mesh::{MeshModels, StepMesh};
 use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
 pub use self::steps::Steps;
+use super::pictures;
 use crate::file::read_bytes;
 use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
 use crate::io::write_atomic;
@@ -113,6 +114,9 @@ struct Texts {
     non_terminals: Vec<Names>,
     ids: Vec<String>,
     attributes: Vec<Attributes>,
+    /// Templates' textures as data URIs, with their templates.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    textures: Vec<(usize, String)>,
 }
 
 /// Names that are one text with consecutive numbers; without numbers one name.
@@ -145,6 +149,9 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     let mut rules = Rules::new(coder, steps, &symbols, templates, Identities::default());
     rules.code(&sorted, axiom)?;
     let (coder, identities) = rules.finish();
+    let textures = grammar.templates.iter().enumerate();
+    let textures =
+        textures.filter_map(|(i, t)| Some((i, pictures::data_uri(t.texture.as_deref()?))));
     let texts = Texts {
         name: grammar.name.clone(),
         reference_system: grammar.reference_system.clone(),
@@ -155,6 +162,7 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
         non_terminals: runs(&symbols[templates..]),
         ids: identities.texts,
         attributes: identities.attributes,
+        textures: textures.collect(),
     };
     let texts = serde_json::to_vec(&texts).map_err(|e| CompactError::Text(e.to_string()))?;
     let texts = deflated(&texts);
@@ -209,7 +217,15 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
         templates.push(Template {
             symbol: symbol.clone(),
             mesh: in_box(&mesh, steps.shape),
+            texture: None,
         });
+    }
+    for (i, uri) in &texts.textures {
+        let template = templates
+            .get_mut(*i)
+            .ok_or(CompactError::Index("texture"))?;
+        let texture = pictures::from_data_uri(uri);
+        template.texture = Some(texture.map_err(|e| CompactError::Text(e.to_string()))?);
     }
     let axiom = symbols.get(texts.axiom).cloned();
     let identities = Identities::new(texts.ids, texts.attributes);

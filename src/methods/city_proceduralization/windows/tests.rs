@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::shape::triangles::Texture;
+use crate::shape::triangles::{Surface, Texture};
 
 /// A rectangle on the side of `frame` that looks along +x, in metres from the lower left, `front` metres before the wall.
 fn quad(frame: &OrientedBox, [l, b, r, t]: [f64; 4], front: f64, grey: u8) -> [Painted; 2] {
@@ -15,7 +15,7 @@ fn quad(frame: &OrientedBox, [l, b, r, t]: [f64; 4], front: f64, grey: u8) -> [P
             frame.base[2] + z,
         ]
     };
-    let surface = Arc::new(Surface::Plain(grey));
+    let surface = Arc::new(Surface::Plain([grey; 3]));
     let [p, q, s, o] = [corner(l, b), corner(r, b), corner(r, t), corner(l, t)];
     [[p, q, s], [p, s, o]].map(|corners| Painted {
         corners,
@@ -70,7 +70,7 @@ fn a_side_that_looks_away_or_is_not_painted_says_nothing() {
     odd.push(Painted {
         corners: [[1e300; 3]; 3],
         uv: [[0.0; 2]; 3],
-        surface: Arc::new(Surface::Plain(1)),
+        surface: Arc::new(Surface::Plain([1; 3])),
     });
     assert_eq!(
         window_features(&odd, &frame()),
@@ -87,8 +87,8 @@ fn a_texture_is_the_same_as_painting() {
     let texture = Texture {
         name: "facade".into(),
         width: picture.width,
-        greys: rows.flatten().map(|g| g.unwrap_or(0)).collect(),
-        bytes: 1,
+        colours: rows.flatten().map(|g| [g.unwrap_or(0); 3]).collect(),
+        file: Arc::new([1]),
     };
     let surface = Arc::new(Surface::Texture(texture));
     let mut wall = quad(&frame, [0.0, 0.0, 14.0, 9.0], 0.0, 0);
