@@ -15,6 +15,7 @@ mod figure_8;
 mod figure_9;
 mod ingolstadt;
 mod judge;
+mod photographs;
 mod recovery;
 mod scaling;
 pub mod study;

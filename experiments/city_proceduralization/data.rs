@@ -56,6 +56,15 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     Ok(found)
 }
 
+/// The city with textures, with `--data`.
+pub fn chiba(ctx: &mut Context) -> Result<Option<City>> {
+    if ctx.budget() == crate::experiments::Budget::Smoke {
+        return Ok(None);
+    }
+    let path = ctx.real(REAL[1].1)?;
+    path.map(|path| city::read(&path)).transpose()
+}
+
 /// A result's measures.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Measures {

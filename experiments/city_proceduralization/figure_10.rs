@@ -1,16 +1,80 @@
 //! Fig. 10: how often a view is found in the city, by noise and by the number of buildings seen.
 
+use super::photographs::Streets;
 use super::{data, judge};
 use crate::experiments::Context;
+use crate::io::city;
 use crate::methods::city_proceduralization::localization::{Landmark, landmarks};
 use crate::methods::city_proceduralization::{Mode, proceduralize};
 use crate::report::{Chart, Corner, Figure, Scale, Series};
+use crate::shape::triangles::City;
 use crate::{Error, Result};
 
 /// Noise in standard deviations of the features.
 const NOISE: [f64; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
 /// Buildings in a view.
 const SEEN: [usize; 3] = [3, 6, 9];
+
+/// Photographs in a view.
+const PHOTOGRAPHS: [usize; 3] = [1, 3, 6];
+/// Noise of photographs in greys, of 255.
+const GREYS: [f64; 5] = [0.0, 5.0, 10.0, 20.0, 40.0];
+
+/// Looks rectified photographs of facades up in Chiba, whose buildings have textures: in the city, and in its grammar of level 1.
+fn photographs(ctx: &mut Context, views: usize) -> Result<()> {
+    let seed = ctx.seed();
+    let Some(city) = data::chiba(ctx)? else {
+        return Ok(());
+    };
+    let mut chart = Chart::new(
+        "photographs in Chiba",
+        Scale::new("noise, greys of 255"),
+        Scale::new("views found first"),
+    )
+    .legend(Corner::Above);
+    let streets = Streets::new(&city);
+    let grammar = derived(&city, seed)?;
+    let known = [
+        ("city", streets.facades.clone()),
+        ("grammar", streets.of(&grammar)),
+    ];
+    let units: Vec<(usize, usize)> = (0..2).flat_map(|k| PHOTOGRAPHS.map(|n| (k, n))).collect();
+    let lines: Vec<Vec<f64>> = ctx.units(
+        &units,
+        |(k, n)| format!("chiba {} {n}", known[*k].0),
+        |&(k, n)| {
+            Ok(GREYS
+                .map(|g| streets.rank_one(&known[k].1, n, g, views, seed))
+                .to_vec())
+        },
+    )?;
+    for (&(k, count), line) in units.iter().zip(&lines) {
+        for (noise, &value) in GREYS.iter().zip(line) {
+            let instance = format!("photographs_{count}/greys_{noise}");
+            ctx.observe(data::row(
+                "chiba", known[k].0, &instance, "rank_1", value, "",
+            ));
+        }
+        let points = GREYS.iter().copied().zip(line.iter().copied());
+        chart = chart.series(Series::marked(
+            format!("{count} in the {}", known[k].0),
+            points.collect(),
+        ));
+    }
+    let figure = Figure::single("localization by photographs", chart);
+    ctx.figure("figure_10_photographs", &figure)
+}
+
+fn derived(city: &City, seed: u64) -> Result<City> {
+    let settings = data::settings(Mode::Best, 1, seed);
+    let mut made = proceduralize(city, &settings).map_err(Error::method)?;
+    let textures = made.box_textures(city, 256);
+    city::add_textures(&mut made.grammar, &textures).map_err(Error::method)?;
+    let derivation = made.grammar.derive().map_err(Error::method)?;
+    let mut derived = derivation.city(&made.grammar);
+    city::paint_parts(&mut derived).map_err(Error::method)?;
+    Ok(derived)
+}
 
 /// Looks views of each city up in its grammar of level 4.
 pub fn run(ctx: &mut Context) -> Result<()> {
@@ -60,6 +124,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let figure = Figure::single(format!("localization in {name}"), chart);
         ctx.figure(&format!("figure_10{suffix}"), &figure)?;
     }
+    photographs(ctx, views)?;
     ctx.note("A view is a building and those nearest to it, in any order, each with width, depth, height and solid share; it is found when the first place sees exactly these. In the made city many places look alike, because its motifs repeat.");
     Ok(())
 }

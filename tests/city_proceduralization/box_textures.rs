@@ -16,7 +16,7 @@ fn textured(city: &City, budget: Budget) -> InstanceGrammar {
         ..Settings::default()
     };
     let mut made = proceduralize(city, &settings).unwrap();
-    let textures = made.box_textures(city);
+    let textures = made.box_textures(city, 256);
     add_textures(&mut made.grammar, &textures).unwrap();
     made.grammar
 }

@@ -1,10 +1,15 @@
 //! `edifice city locate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use edifice::Result;
 use edifice::io::city::view_json;
-use edifice::methods::city_proceduralization::localization::{Seen, landmarks, locate};
+use edifice::io::{pixels, read_bytes};
+use edifice::methods::city_proceduralization::facades::{Facade, facades, photographed};
+use edifice::methods::city_proceduralization::localization::{
+    Seen, landmarks, locate, locate_facades,
+};
+use edifice::{Error, Result};
+use rayon::prelude::*;
 
 use super::data;
 use crate::cli::print;
@@ -14,9 +19,10 @@ use crate::cli::print;
 pub struct Args {
     /// The grammar, or a city.
     grammar: PathBuf,
-    /// The view: buildings that one sees (`edifice/city-view`).
-    #[arg(long)]
-    view: PathBuf,
+    /// The view: buildings that one sees (`edifice/city-view`), or rectified photographs of the facades of neighbours, each
+    /// from edge to edge (PNG, JPEG, WebP); the city must then have textures.
+    #[arg(long, required = true, num_args = 1..)]
+    view: Vec<PathBuf>,
     /// How many places to list.
     #[arg(long, default_value_t = 5)]
     top: usize,
@@ -29,16 +35,30 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let city = data::city(&args.grammar)?;
     let (landmarks, building) = landmarks(&city);
-    let view: Vec<Seen> = view_json::read(&args.view)?
-        .into_iter()
-        .map(|b| Seen {
-            width: b.width,
-            depth: b.depth,
-            height: b.height,
-            solid: b.solid,
-        })
-        .collect();
-    for (rank, found) in locate(&landmarks, &view, args.top).iter().enumerate() {
+    let places = match &args.view[..] {
+        [view] if !is_picture(view) => {
+            let seen = view_json::read(view)?.into_iter().map(|b| Seen {
+                width: b.width,
+                depth: b.depth,
+                height: b.height,
+                solid: b.solid,
+            });
+            locate(&landmarks, &seen.collect::<Vec<_>>(), args.top)
+        }
+        views => {
+            let facades: Vec<Vec<Facade>> = building
+                .par_iter()
+                .map(|&b| facades(&city.buildings[b]))
+                .collect();
+            if facades.iter().all(Vec::is_empty) {
+                let text = "no facade shows a texture that photographs could be compared with";
+                return Err(Error::content(&args.grammar, text));
+            }
+            let view: Vec<Facade> = views.iter().map(|v| photograph(v)).collect::<Result<_>>()?;
+            locate_facades(&landmarks, &facades, &view, args.top)
+        }
+    };
+    for (rank, found) in places.iter().enumerate() {
         let id = |l: usize| city.buildings[building[l]].id.as_str();
         let near = id(found.landmark);
         let at = landmarks[found.landmark].at;
@@ -58,4 +78,16 @@ pub fn run(args: &Args) -> Result<()> {
         print::line(&text)?;
     }
     Ok(())
+}
+
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().and_then(|e| e.to_str());
+    ending.is_some_and(|e| ["png", "jpg", "jpeg", "webp"].contains(&e.to_lowercase().as_str()))
+}
+
+fn photograph(path: &Path) -> Result<Facade> {
+    let (width, colours) =
+        pixels::colours(&read_bytes(path)?).map_err(|e| Error::content(path, e))?;
+    photographed(width, &colours)
+        .ok_or_else(|| Error::content(path, "all of one grey: it shows no facade"))
 }

@@ -91,6 +91,9 @@ pub struct Args {
     /// How finely numbers are written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`, cm otherwise].
     #[arg(long, value_enum)]
     precision: Option<Steps>,
+    /// Most pixels along a side of a template's textures; 0 for no textures.
+    #[arg(long, value_name = "N", default_value_t = 128)]
+    texture_pixels: usize,
     /// What of the buildings is kept.
     #[arg(long, value_enum, default_value = "all")]
     keep: Keep,
@@ -142,8 +145,17 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let mut made =
         made.ok_or_else(|| Error::option(option, "no number of templates reaches it"))?;
-    let textures = made.box_textures(&input);
-    city::add_textures(&mut made.grammar, &textures).map_err(Error::method)?;
+    match args.texture_pixels {
+        0 => made
+            .grammar
+            .templates
+            .iter_mut()
+            .for_each(|t| t.texture = None),
+        pixels => {
+            let textures = made.box_textures(&input, pixels);
+            city::add_textures(&mut made.grammar, &textures).map_err(Error::method)?;
+        }
+    }
     warn(&input, &made);
     let seconds = start.elapsed().as_secs_f64();
     let derivation = made.grammar.derive().map_err(Error::method)?;

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use super::pictures::ending;
 use crate::Result;
 use crate::io::{file_stem, write_atomic};
-use crate::shape::triangles::{City, CityBuilding, Painted, Surface};
+use crate::shape::triangles::{City, CityBuilding, Painted, Surface, corner_bits};
 
 /// The material of what has no other.
 const PLAIN: &str = "plain";
@@ -80,13 +80,6 @@ impl Materials {
     }
 }
 
-/// A triangle's corners, bit by bit.
-type Key = [[u64; 3]; 3];
-
-fn key(corners: [[f64; 3]; 3]) -> Key {
-    corners.map(|p| p.map(f64::to_bits))
-}
-
 fn text(city: &City, library: Option<&str>, materials: &Materials) -> String {
     let mut out = String::from("# metres, z up\n");
     if let Some(library) = library {
@@ -99,14 +92,18 @@ fn text(city: &City, library: Option<&str>, materials: &Materials) -> String {
             let [x, y, z] = [0, 1, 2].map(|k| p[k] + city.origin[k]);
             let _ = writeln!(out, "v {x:.3} {y:.3} {z:.3}");
         }
-        let painted: FxHashMap<Key, &Painted> = match library {
-            Some(_) => b.paint.iter().map(|p| (key(p.corners), p)).collect(),
+        let painted: FxHashMap<[[u64; 3]; 3], &Painted> = match library {
+            Some(_) => b
+                .paint
+                .iter()
+                .map(|p| (corner_bits(p.corners), p))
+                .collect(),
             None => FxHashMap::default(),
         };
         let mut current: Option<&str> = None;
         for t in &b.mesh.triangles {
             let [i, j, k] = t.map(|i| i as usize + first);
-            let looks = painted.get(&key(corners(b, t)));
+            let looks = painted.get(&corner_bits(corners(b, t)));
             let name = looks.and_then(|p| materials.names.get(&Arc::as_ptr(&p.surface)));
             let Some((looks, name)) = looks.zip(name) else {
                 if current.take().is_some() {

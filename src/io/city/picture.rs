@@ -1,12 +1,25 @@
 //! Pictures of cities, one beside the other, from one place.
 
+use std::collections::BTreeMap;
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
 use crate::scene::render::render;
 use crate::scene::trace::framing;
 use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::shape::triangles::City;
+use crate::shape::triangles::{City, Painted, corner_bits};
 
 /// Space between pictures, in pixels.
 const GAP: usize = 8;
+
+/// Textures are drawn in about so many pieces.
+const MOST_PIECES: f64 = 600_000.0;
+/// No piece is halved below this length, in metres.
+const FINEST: f64 = 0.25;
+/// The upper bits of a colour, which tell its material.
+const COARSE: u8 = 0xf8;
+/// Index of the material of what is not painted.
+const BUILDING: usize = 0;
 
 /// From the south-west, downward; y is up.
 const VIEW: [f32; 3] = [0.35, -0.55, -0.75];
@@ -49,13 +62,20 @@ fn turned(p: [f64; 3]) -> [f32; 3] {
     [p[0] as f32, p[2] as f32, -p[1] as f32]
 }
 
-/// A mesh a building, on a ground.
-fn scene(city: &City) -> Scene {
-    let material = |name: &str, color| Material {
+fn material(name: &str, color: [u8; 3]) -> Material {
+    Material {
         name: name.to_owned(),
         color,
         roughness: 0.9,
-    };
+    }
+}
+
+/// A mesh a building, on a ground; painted surfaces in pieces of one colour each.
+fn scene(city: &City) -> Scene {
+    let paint = city.buildings.iter().flat_map(|b| &b.paint);
+    let area: f64 = paint.map(Painted::area).sum();
+    let fine = (2.0 * area / MOST_PIECES).sqrt().max(FINEST);
+    let mut colours: FxHashMap<[u8; 3], usize> = FxHashMap::default();
     let mut scene = Scene {
         materials: vec![
             material("building", [214, 208, 198]),
@@ -75,11 +95,33 @@ fn scene(city: &City) -> Scene {
                 high[k] = high[k].max(h[k]);
             }
         }
-        scene.meshes.push(Mesh {
+        let mut parts: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        let mut mesh = Mesh {
             name: b.id.clone(),
             positions: b.mesh.positions.iter().map(|&p| turned(p)).collect(),
-            parts: vec![(0, b.mesh.triangles.concat())],
-        });
+            parts: Vec::new(),
+        };
+        let painted: FxHashSet<_> = b.paint.iter().map(|p| corner_bits(p.corners)).collect();
+        for t in &b.mesh.triangles {
+            let corners = t.map(|i| b.mesh.positions[i as usize]);
+            if !painted.contains(&corner_bits(corners)) {
+                parts.entry(BUILDING).or_default().extend(t);
+            }
+        }
+        for piece in b.paint.iter().flat_map(|p| p.pieces(fine)) {
+            let colour = piece.colour([1.0 / 3.0; 3]).map(|v| v & COARSE);
+            let next = scene.materials.len();
+            let material = *colours.entry(colour).or_insert(next);
+            if material == next {
+                scene.materials.push(self::material("texture", colour));
+            }
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(piece.corners.map(turned));
+            let own = parts.entry(material).or_default();
+            own.extend([first, first + 1, first + 2]);
+        }
+        mesh.parts.extend(parts);
+        scene.meshes.push(mesh);
     }
     let margin = 50.0;
     let corner = |x: f64, y: f64| turned([x, y, low[2]]);

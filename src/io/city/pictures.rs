@@ -1,11 +1,12 @@
-//! Pictures of surfaces: textures of files, and the box mapping of templates as JPEG.
+//! Pictures of surfaces: textures of files, and the box mapping of templates.
 
 use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
-use image::{ExtendedColorType, ImageError};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat};
 use rustc_hash::FxHashMap;
 
 use super::CityError;
@@ -71,7 +72,7 @@ pub(super) fn ending(file: &[u8]) -> &'static str {
     }
 }
 
-/// Gives the templates of a grammar their pictures, as JPEG; those that have one keep it.
+/// Gives the templates of a grammar their pictures, as JPEG or PNG, whichever is smaller; those that have one keep it.
 ///
 /// # Errors
 /// Those of the encoder, which writes to memory.
@@ -81,21 +82,29 @@ pub fn add_textures(
 ) -> Result<(), ImageError> {
     for (template, texture) in grammar.templates.iter_mut().zip(textures) {
         if let (None, Some(texture)) = (&template.texture, texture) {
-            template.texture = Some(jpeg(texture)?.into());
+            let files = [
+                encoded(texture, ImageFormat::Jpeg)?,
+                encoded(texture, ImageFormat::Png)?,
+            ];
+            template.texture = files.into_iter().min_by_key(Vec::len).map(Arc::from);
         }
     }
     Ok(())
 }
 
-fn jpeg(texture: &BoxTexture) -> Result<Vec<u8>, ImageError> {
-    let mut bytes = Vec::new();
-    let height = texture.colours.len() / texture.width.max(1);
-    JpegEncoder::new_with_quality(&mut bytes, QUALITY).encode(
-        texture.colours.as_flattened(),
+fn encoded(texture: &BoxTexture, format: ImageFormat) -> Result<Vec<u8>, ImageError> {
+    let (width, height) = (
         texture.width as u32,
-        height as u32,
-        ExtendedColorType::Rgb8,
-    )?;
+        texture.colours.len() / texture.width.max(1),
+    );
+    let (mut bytes, colours) = (Vec::new(), texture.colours.as_flattened());
+    let (height, kind) = (height as u32, ExtendedColorType::Rgb8);
+    match format {
+        ImageFormat::Jpeg => JpegEncoder::new_with_quality(&mut bytes, QUALITY)
+            .encode(colours, width, height, kind)?,
+        _ => PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive)
+            .write_image(colours, width, height, kind)?,
+    }
     Ok(bytes)
 }
 

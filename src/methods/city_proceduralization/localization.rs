@@ -9,6 +9,7 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::facades::{FACADE_FEATURES, Facade};
 use crate::shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
 
 /// What is measured of a building in a view: logarithms of width, depth, height; the solid share.
@@ -21,6 +22,8 @@ const MORE: usize = 1;
 const SPREAD: f64 = 0.1;
 /// Cost of a building that is nearer than others in the view and hidden: its chance is e^-HIDDEN.
 const HIDDEN: f64 = 2.0;
+/// Standard deviations that a facade with windows and one without are apart in what only one has.
+const UNLIKE: f64 = 3.0;
 
 /// A building as it is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,7 +96,10 @@ pub fn features(seen: &Seen) -> [f64; VIEW_FEATURES] {
 
 /// Standard deviations of features over the city; 1 where all are equal.
 pub fn deviations(landmarks: &[Landmark]) -> [f64; VIEW_FEATURES] {
-    let rows: Vec<[f64; VIEW_FEATURES]> = landmarks.iter().map(|l| features(&l.seen)).collect();
+    deviations_of(landmarks.iter().map(|l| features(&l.seen)).collect())
+}
+
+fn deviations_of<const N: usize>(rows: Vec<[f64; N]>) -> [f64; N] {
     std::array::from_fn(|k| {
         let own = || rows.iter().map(|r| r[k]).filter(|v| v.is_finite());
         let n = own().count().max(1) as f64;
@@ -114,20 +120,60 @@ pub fn locate(landmarks: &[Landmark], view: &[Seen], top: usize) -> Vec<Located>
     let scale = deviations(landmarks);
     let wanted: Vec<[f64; VIEW_FEATURES]> = view.iter().map(features).collect();
     let own: Vec<[f64; VIEW_FEATURES]> = landmarks.iter().map(|l| features(&l.seen)).collect();
+    let cost = |q: usize, l: usize| {
+        let terms = (0..VIEW_FEATURES).map(|k| (wanted[q][k] - own[l][k]) / scale[k]);
+        terms.filter(|t| t.is_finite()).map(lost).sum::<f64>()
+    };
+    places(landmarks, [view.len(), VIEW_FEATURES], top, cost)
+}
+
+/// As [`locate`], from rectified photographs of facades of buildings near each other: a building costs what the facade of it does
+/// that is most like the photograph. `facades`: those of each landmark ([`super::facades::facades`]).
+pub fn locate_facades(
+    landmarks: &[Landmark],
+    facades: &[Vec<Facade>],
+    view: &[Facade],
+    top: usize,
+) -> Vec<Located> {
+    let view = &view[..view.len().min(MOST_SEEN)];
+    if view.is_empty() || landmarks.len() < view.len() {
+        return Vec::new();
+    }
+    let scale = deviations_of(facades.iter().flatten().copied().collect());
+    let apart = |a: &Facade, b: &Facade| {
+        let term = |k: usize| match (a[k].is_finite(), b[k].is_finite()) {
+            (true, true) => lost((a[k] - b[k]) / scale[k]),
+            (false, false) => 0.0,
+            _ => lost(UNLIKE),
+        };
+        (0..FACADE_FEATURES).map(term).sum::<f64>()
+    };
+    let none = FACADE_FEATURES as f64 * lost(UNLIKE);
+    let cost = |q: usize, l: usize| {
+        let sides = facades[l].iter().map(|f| apart(&view[q], f));
+        sides.fold(none, f64::min)
+    };
+    places(landmarks, [view.len(), FACADE_FEATURES], top, cost)
+}
+
+/// The `top` places at which `count` things in view, which `cost` compares with landmarks, fit best; costs are told by thing and
+/// feature.
+fn places(
+    landmarks: &[Landmark],
+    [count, features]: [usize; 2],
+    top: usize,
+    cost: impl Fn(usize, usize) -> f64 + Sync,
+) -> Vec<Located> {
     let index = Nearest::new(landmarks);
-    let shown = (view.len() + MORE).min(landmarks.len());
+    let shown = (count + MORE).min(landmarks.len());
     let mut found: Vec<Located> = (0..landmarks.len())
         .into_par_iter()
         .map(|i| {
             let near = index.nearest(landmarks, i, shown);
-            let cost = |q: usize, n: usize| {
-                let terms = (0..VIEW_FEATURES).map(|k| (wanted[q][k] - own[near[n]][k]) / scale[k]);
-                terms.filter(|t| t.is_finite()).map(lost).sum::<f64>()
-            };
-            let (cost, matched) = assign(view.len(), near.len(), cost);
+            let (cost, matched) = assign(count, near.len(), |q, n| cost(q, near[n]));
             Located {
                 landmark: i,
-                cost: cost / (view.len() * VIEW_FEATURES) as f64,
+                cost: cost / (count * features) as f64,
                 matched: matched.into_iter().map(|n| near[n]).collect(),
             }
         })

@@ -40,6 +40,7 @@
 pub mod building_types;
 pub mod components;
 pub mod emission;
+pub mod facades;
 pub mod features;
 pub mod localization;
 mod medoids;

@@ -119,12 +119,14 @@ pub struct Proceduralized {
 }
 
 impl Proceduralized {
-    /// The looks of each template: those of the component that it is the shape of, where `city` is painted with pictures.
-    pub fn box_textures(&self, city: &City) -> Vec<Option<BoxTexture>> {
+    /// The looks of each template, in at most `pixels` along a side: those of the component that it is the shape of, where
+    /// `city` is painted with pictures.
+    pub fn box_textures(&self, city: &City, pixels: usize) -> Vec<Option<BoxTexture>> {
         let representatives = self.types.representatives.par_iter();
         let looks = representatives.map(|&c| {
             let component = &self.decomposition.components[c];
-            BoxTexture::of(&city.buildings[component.building].paint, &component.frame)
+            let paint = &city.buildings[component.building].paint;
+            BoxTexture::of(paint, &component.frame, pixels)
         });
         looks.collect()
     }

@@ -33,6 +33,50 @@ pub fn window_features(paint: &[Painted], frame: &OrientedBox) -> Option<WindowF
     (!found.is_empty()).then(|| std::array::from_fn(mean))
 }
 
+/// Width and height of a side in metres, and its features; `None` where it is not painted, or of one grey.
+pub(super) fn side_features(
+    paint: &[Painted],
+    frame: &OrientedBox,
+    side: usize,
+) -> Option<([f64; 2], WindowFeatures)> {
+    let features = Picture::of(paint, frame, side)?.features()?;
+    Some((view_size(frame, side), features))
+}
+
+/// As [`side_features`], in pixels, of a picture of a side from edge to edge: colours, row after row from the top.
+pub(super) fn picture_features(
+    width: usize,
+    colours: &[[u8; 3]],
+) -> Option<([f64; 2], WindowFeatures)> {
+    let height = colours.len() / width.max(1);
+    // As many pixels as a side is drawn in: opening and closing are of pixels.
+    let pixel = (width.max(height) as f64 / MOST_PIXELS as f64).max(1.0);
+    let count = |n: usize| ((n as f64 / pixel).ceil() as usize).max(1);
+    let (columns, rows) = (count(width), count(height));
+    let mean = |c: usize| {
+        let span = |i: usize, n: usize| {
+            let edge = |i: usize| (i as f64 * pixel) as usize;
+            edge(i)..edge(i + 1).max(edge(i) + 1).min(n)
+        };
+        let (across, up) = (span(c % columns, width), span(c / columns, height));
+        let own = up.flat_map(|j| {
+            across
+                .clone()
+                .map(move |i| grey(colours[(height - 1 - j) * width + i]))
+        });
+        let (sum, n) = own.fold((0_u32, 0), |(sum, n), g| (sum + u32::from(g), n + 1));
+        (n > 0).then(|| (sum / n) as u8)
+    };
+    let picture = Picture {
+        width: columns,
+        height: rows,
+        pixel,
+        greys: (0..columns * rows).map(mean).collect(),
+    };
+    let features = picture.features()?;
+    Some(([width as f64, height as f64], features))
+}
+
 /// A side of a component in greys.
 struct Picture {
     width: usize,

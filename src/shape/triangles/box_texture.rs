@@ -6,8 +6,6 @@
 use super::side_view::{SideView, TOP, VIEWS, view_size};
 use super::{OrientedBox, Painted, Surface};
 
-/// Pixels along the longer side of a view at most.
-const MOST_PIXELS: f64 = 256.0;
 /// Share of a view that coordinates keep away from its edges: the next view begins behind them.
 const EDGE: f64 = 0.002;
 
@@ -21,10 +19,10 @@ pub struct BoxTexture {
 }
 
 impl BoxTexture {
-    /// What is seen of `paint` from around the box, as finely as its textures show it and in at most 256 pixels along a
-    /// side; `None` where nothing with a texture is seen. What is not painted gets the view's mean colour, a view without any
+    /// What is seen of `paint` from around the box, as finely as its textures show it and in at most `most` pixels along a
+    /// side of a view; `None` where nothing with a texture is seen. What is not painted gets the view's mean colour, a view without any
     /// the mean of all.
-    pub fn of(paint: &[Painted], frame: &OrientedBox) -> Option<Self> {
+    pub fn of(paint: &[Painted], frame: &OrientedBox, most: usize) -> Option<Self> {
         let (low, high) = (frame.base[2], frame.base[2] + frame.size[2]);
         let textured = |p: &&Painted| matches!(*p.surface, Surface::Texture(_));
         let own = paint.iter().filter(textured);
@@ -38,7 +36,7 @@ impl BoxTexture {
         let longest = |k: usize| (0..VIEWS).map(move |v| view_size(frame, v)[k]);
         let count = |k: usize| {
             let length = longest(k).fold(0.0, f64::max);
-            (length / texel).ceil().clamp(1.0, MOST_PIXELS) as usize
+            (length / texel).ceil().clamp(1.0, most.max(1) as f64) as usize
         };
         let (width, height) = (count(0), count(1));
         let views: Vec<SideView> = (0..VIEWS)

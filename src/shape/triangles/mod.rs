@@ -35,7 +35,7 @@ pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
 pub use lid::{closing_lid, section_lid};
 pub use mesh::{Corners, TriangleMesh, plan_area};
 pub use oriented_box::{OrientedBox, convex_hull};
-pub use painted::{Painted, Surface, Texture, grey};
+pub use painted::{Painted, Surface, Texture, corner_bits, grey};
 pub use profile::SectionProfile;
 pub use raster::{Overlap, VolumeRaster, height_map, solid_intervals};
 pub use repair::{MeshFaults, repair};

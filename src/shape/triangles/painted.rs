@@ -73,6 +73,34 @@ impl Painted {
         area * texture.colours.len() as f64
     }
 
+    /// It in pieces, whose longest edges are at most `most` metres, by halving longest edges.
+    pub fn pieces(&self, most: f64) -> Vec<Self> {
+        let mut open = vec![self.clone()];
+        let mut out = Vec::new();
+        while let Some(piece) = open.pop() {
+            let ends = |k: usize| (piece.corners[k], piece.corners[(k + 1) % 3]);
+            let length = |k: usize| {
+                let (a, b) = ends(k);
+                (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>()
+            };
+            let k = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
+            // Not so for what is not a number.
+            if !(length(k) > most * most) {
+                out.push(piece);
+                continue;
+            }
+            let (i, j) = (k, (k + 1) % 3);
+            let middle = [0, 1, 2].map(|c| (piece.corners[i][c] + piece.corners[j][c]) / 2.0);
+            let uv = [0, 1].map(|c| (piece.uv[i][c] + piece.uv[j][c]) / 2.0);
+            for replaced in [i, j] {
+                let mut half = piece.clone();
+                (half.corners[replaced], half.uv[replaced]) = (middle, uv);
+                open.push(half);
+            }
+        }
+        out
+    }
+
     /// Turns its front to the back.
     pub fn flip(&mut self) {
         self.corners.swap(1, 2);
@@ -97,6 +125,11 @@ impl Painted {
         let n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
         n.iter().map(|v| v * v).sum::<f64>().sqrt() / 2.0
     }
+}
+
+/// The corners of a triangle bit by bit: what tells a painted triangle from others of its building.
+pub fn corner_bits(corners: [[f64; 3]; 3]) -> [[u64; 3]; 3] {
+    corners.map(|p| p.map(f64::to_bits))
 }
 
 /// Share of the area of a triangle below `t`, from the heights of its corners, increasing.
@@ -133,6 +166,27 @@ mod tests {
                 .sum();
             assert!((sum - 1.0).abs() < 1e-12, "{z:?} {sum}");
         }
+    }
+
+    #[test]
+    fn pieces_are_small_and_cover_the_whole() {
+        let whole = Painted {
+            corners: [[0.0, 0.0, 0.0], [7.0, 1.0, 0.0], [2.0, 5.0, 3.0]],
+            uv: [[0.0, 0.0], [7.0, 1.0], [2.0, 5.0]],
+            surface: Arc::new(Surface::Plain([0; 3])),
+        };
+        let pieces = whole.pieces(0.7);
+        let area: f64 = pieces.iter().map(Painted::area).sum();
+        assert!((area - whole.area()).abs() < 1e-9 && pieces.len() > 80);
+        for piece in &pieces {
+            for k in 0..3 {
+                let (a, b) = (piece.corners[k], piece.corners[(k + 1) % 3]);
+                let edge: f64 = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum();
+                assert!(edge <= 0.49);
+                assert!((0..2).all(|c| (piece.uv[k][c] - a[c]).abs() < 1e-9));
+            }
+        }
+        assert_eq!(whole.pieces(10.0), [whole]);
     }
 
     #[test]
