@@ -7,4 +7,5 @@ mod gltf;
 mod grammar;
 mod interrupted;
 mod invariance;
+mod photographs;
 mod textures;
