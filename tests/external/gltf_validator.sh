@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The Khronos validator (npm `gltf-validator`) on files that the program writes: a generated house, a street of houses,
-# facades on a town, a city of instances. Exit code 1 for any error. Where node, npm or the registry is missing it says so and passes.
+# facades on a town, a city of instances, with and without textures. Exit code 1 for any error. Where node, npm or the registry is missing it says so and passes.
 #
 # usage: tests/external/gltf_validator.sh [PATH_OF_EDIFICE]
 set -euo pipefail
@@ -31,9 +31,39 @@ head -n 4 "$houses" >"$folder/few.buildings.jsonl"
 "$edifice" building build "$folder/few.csv" -o "$folder/houses" --format glb,obj --street
 "$edifice" reproduce facade_grammar --only figure_15 --budget smoke --out "$folder/reports" >/dev/null
 "$edifice" city proceduralize "$folder/houses/house_0001.obj" -o "$folder/a.city-grammar.json" --glb "$folder/city.glb"
+# With a texture on its four walls.
+base64 -d >"$folder/wall.png" <<'END'
+iVBORw0KGgoAAAANSUhEUgAAAAQAAAAECAIAAAAmkwkpAAAAFElEQVR42mM4gQQYgFgDDLBx4AAADGEeASW79/0AAAAASUVORK5CYII=
+END
+printf 'newmtl wall\nmap_Kd wall.png\n' >"$folder/wall.mtl"
+cat >"$folder/wall.obj" <<'END'
+mtllib wall.mtl
+v 0 0 0
+v 9 0 0
+v 9 6 0
+v 0 6 0
+v 0 0 4
+v 9 0 4
+v 9 6 4
+v 0 6 4
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+o house
+usemtl wall
+f 1/1 2/2 6/3 5/4
+f 2/1 3/2 7/3 6/4
+f 3/1 4/2 8/3 7/4
+f 4/1 1/2 5/3 8/4
+f 5 6 7 8
+END
+"$edifice" city proceduralize "$folder/wall.obj" -o "$folder/b.city-grammar.json" --glb "$folder/textured.glb"
+"$edifice" city derive "$folder/b.city-grammar.json" --no-instancing -o "$folder/textured_nodes.glb"
+grep -q '"texture"' "$folder/b.city-grammar.json"
 
 mapfile -t files < <(find "$folder" -name '*.glb' -not -path '*/node_modules/*' | sort)
-[ "${#files[@]}" -ge 7 ] || {
+[ "${#files[@]}" -ge 9 ] || {
     printf 'gltf_validator: only %d files were written\n' "${#files[@]}" >&2
     exit 1
 }
