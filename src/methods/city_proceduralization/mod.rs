@@ -30,6 +30,10 @@
 //!   standard deviations and a quarter off are outliers; distances below half a window are of windows in one column. Sides of which less
 //!   than a quarter is painted are left out; a component without painted sides has the mean features, and in a city without
 //!   textures the six features are equal and fall out. A texture's bytes are shared out by the texels that components cover.
+//! - A template is drawn with the looks of its representative: orthographic views of the sides and the top of its box, whatever
+//!   box it is then put into. In `best` the greys of 4 x 4 cells of each side count beside the height map.
+//! - Localization by photographs (Sec. VI) takes facades that are rectified and cut to their edges; their scale is not known, so that
+//!   lengths are compared as shares of the facade.
 //! - The paper places representatives without saying how their size is treated; here they are scaled to the box of
 //!   what they replace.
 //! - Slabs are closed at the top, because another roof may stand on them than the one that they were cut from.
