@@ -131,7 +131,7 @@ fn a_texture_that_is_no_picture_is_named() {
     let (path, _) = boxes(folder.path(), 2);
     let grammar = textured(&read(&path).unwrap(), Budget::All);
     let text = grammar_json::to_string(&grammar).unwrap();
-    let uri = "data:image/jpeg;base64,";
+    let uri = "data:image/png;base64,";
     let at = text.find(uri).unwrap() + uri.len();
     let end = at + text[at..].find('"').unwrap();
     for wrong in ["", "????", "AAAA", &text[at..at + 400]] {

@@ -134,21 +134,25 @@ const PRINCIPAL: usize = 12;
 /// The covariance is taken over at most so many components, evenly spread over them.
 const SAMPLE: usize = 20_000;
 
-/// Heights and so many looks; of a component that shows no texture, a middle grey.
+/// How far apart a component with a texture and one without are: as half of the greys of [`Component::looks`] would put them.
+const PAINTED: f32 = 4.0;
+
+/// Heights; and, where any component of the city shows a texture, so many looks and whether it does. One that shows none is of a
+/// middle grey.
 fn values(component: &Component, looks: usize) -> impl Iterator<Item = f32> {
-    let none = if component.looks.is_empty() { looks } else { 0 };
-    let (heights, own) = (component.heights.iter(), component.looks.iter());
-    heights
-        .chain(own)
-        .copied()
-        .chain(std::iter::repeat_n(0.5, none))
+    let shown = match (looks, component.looks.is_empty()) {
+        (0, _) => Vec::new(),
+        (_, true) => [vec![0.5; looks], vec![0.0]].concat(),
+        (_, false) => [&component.looks[..], &[PAINTED]].concat(),
+    };
+    component.heights.iter().copied().chain(shown)
 }
 
 /// Height maps, and looks where there are any (from 0 to 1 both: 256 shares of the height and 64 greys), projected on their 12
 /// principal components.
 pub fn geometric_features(components: &[Component]) -> Points {
     let looks = components.iter().map(|c| c.looks.len()).max().unwrap_or(0);
-    let d = components.first().map_or(1, |c| c.heights.len()) + looks;
+    let d = components.first().map_or(1, |c| values(c, looks).count());
     let stride = components.len().div_ceil(SAMPLE).max(1);
     let sample: Vec<&Component> = components.iter().step_by(stride).collect();
     let n = sample.len().max(1) as f64;

@@ -162,7 +162,7 @@ impl<'a> Nearest<'a> {
 const LOOKS_WEIGHT: f64 = 0.25;
 
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched
-/// share of the box; and that of looks, where both have them.
+/// share of the box; and that of looks.
 fn mismatch(template: Form, component: Form, quarter: u8) -> f64 {
     mismatch_below(template, component, quarter, f64::INFINITY)
 }
@@ -194,8 +194,11 @@ fn mismatch_below(template: Form, component: Form, quarter: u8, limit: f64) -> f
 
 /// Weighted mean difference of looks: a template that is turned by a quarter shows on each side what it had on the one before.
 fn looks_apart(template: &[f32], component: &[f32], quarter: u8) -> f64 {
-    if template.is_empty() || component.is_empty() {
-        return 0.0;
+    match (template.is_empty(), component.is_empty()) {
+        (true, true) => return 0.0,
+        (false, false) => {}
+        // What shows a texture is not like what shows none.
+        _ => return LOOKS_WEIGHT,
     }
     let (n, side) = (component.len(), component.len() / 4);
     let from = |i: usize| (i + (4 - usize::from(quarter)) * side) % n;
