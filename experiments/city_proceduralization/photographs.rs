@@ -58,8 +58,8 @@ impl<'a> Streets<'a> {
         self.buildings.iter().map(facades_of).collect()
     }
 
-    /// Share of `views` views, each of the `count` buildings nearest to a random one, that are found first: at a place that
-    /// sees exactly these. A photograph is of one of a building's facades, with noise of so many greys.
+    /// Share of `views` views, each of the `count` buildings nearest to a random one, of which the first place found is one of
+    /// them. A photograph is of one of a building's facades, with noise of so many greys.
     pub fn rank_one(
         &self,
         known: &[Vec<Facade>],
@@ -74,7 +74,7 @@ impl<'a> Streets<'a> {
             if taken == views {
                 break;
             }
-            let mut near = self.nearest(rng.random_range(0..self.landmarks.len()), count);
+            let near = self.nearest(rng.random_range(0..self.landmarks.len()), count);
             let view: Option<Vec<Facade>> = (near.iter())
                 .map(|&l| self.photograph(l, noise, &mut rng))
                 .collect();
@@ -82,10 +82,7 @@ impl<'a> Streets<'a> {
             let Some(view) = view else { continue };
             taken += 1;
             let found = locate_facades(&self.landmarks, known, &view, 1);
-            let mut matched = found.first().map(|f| f.matched.clone()).unwrap_or_default();
-            matched.sort_unstable();
-            near.sort_unstable();
-            right += usize::from(matched == near);
+            right += usize::from(found.first().is_some_and(|f| near.contains(&f.landmark)));
         }
         right as f64 / f64::from(taken.max(1) as u32)
     }

@@ -17,6 +17,8 @@ const ROUNDS: usize = 50;
 /// Windows whose area is so many standard deviations, and at least this share, off the mean of their type are outliers.
 const OUTLIER: f64 = 2.0;
 const OUTLIER_SHARE: f64 = 0.25;
+/// Cells along a side of a facade's greys.
+pub(super) const CELLS: usize = 4;
 /// Fewer pixels are no window.
 const LEAST_AREA: usize = 4;
 
@@ -33,21 +35,24 @@ pub fn window_features(paint: &[Painted], frame: &OrientedBox) -> Option<WindowF
     (!found.is_empty()).then(|| std::array::from_fn(mean))
 }
 
-/// Width and height of a side in metres, and its features; `None` where it is not painted, or of one grey.
-pub(super) fn side_features(
-    paint: &[Painted],
-    frame: &OrientedBox,
-    side: usize,
-) -> Option<([f64; 2], WindowFeatures)> {
-    let features = Picture::of(paint, frame, side)?.features()?;
-    Some((view_size(frame, side), features))
+/// What a picture of a facade tells.
+pub(super) struct Side {
+    /// Width and height.
+    pub size: [f64; 2],
+    /// Its window features.
+    pub windows: WindowFeatures,
+    /// Mean greys of 4 x 4 cells, from below, less that of all; 0 to 1.
+    pub cells: [f64; CELLS * CELLS],
+}
+
+/// A side of a box in metres; `None` where it is not painted, or of one grey.
+pub(super) fn side_features(paint: &[Painted], frame: &OrientedBox, side: usize) -> Option<Side> {
+    let picture = Picture::of(paint, frame, side)?;
+    picture.side(view_size(frame, side))
 }
 
 /// As [`side_features`], in pixels, of a picture of a side from edge to edge: colours, row after row from the top.
-pub(super) fn picture_features(
-    width: usize,
-    colours: &[[u8; 3]],
-) -> Option<([f64; 2], WindowFeatures)> {
+pub(super) fn picture_features(width: usize, colours: &[[u8; 3]]) -> Option<Side> {
     let height = colours.len() / width.max(1);
     // As many pixels as a side is drawn in: opening and closing are of pixels.
     let pixel = (width.max(height) as f64 / MOST_PIXELS as f64).max(1.0);
@@ -73,8 +78,7 @@ pub(super) fn picture_features(
         pixel,
         greys: (0..columns * rows).map(mean).collect(),
     };
-    let features = picture.features()?;
-    Some(([width as f64, height as f64], features))
+    picture.side([width as f64, height as f64])
 }
 
 /// A side of a component in greys.
@@ -100,6 +104,27 @@ impl Picture {
             height,
             pixel,
             greys: view.colours.iter().map(|c| c.map(grey)).collect(),
+        })
+    }
+
+    fn side(&self, size: [f64; 2]) -> Option<Side> {
+        let windows = self.features()?;
+        let mut sums = [(0.0, 0.0); CELLS * CELLS];
+        for (i, grey) in self.greys.iter().enumerate() {
+            let cell = |at: usize, n: usize| (at * CELLS / n).min(CELLS - 1);
+            let c = cell(i / self.width, self.height) * CELLS + cell(i % self.width, self.width);
+            if let Some(grey) = grey {
+                sums[c].0 += f64::from(*grey) / 255.0;
+                sums[c].1 += 1.0;
+            }
+        }
+        let (sum, n) = sums.iter().fold((0.0, 0.0), |t, s| (t.0 + s.0, t.1 + s.1));
+        let mean = sum / f64::max(n, 1.0);
+        let cells = sums.map(|(s, n)| if n > 0.0 { s / n - mean } else { 0.0 });
+        Some(Side {
+            size,
+            windows,
+            cells,
         })
     }
 
