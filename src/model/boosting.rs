@@ -1,12 +1,12 @@
 //! Probabilities from features: gradient boosting of oblivious trees with logistic loss.
 //!
 //! An oblivious tree asks one question `x[feature] > threshold` on each of its levels; the answers are the
-//! bits of a leaf's index (Prokhorenkova et al. 2018). With `F(x)` the sum of the trees' leaves,
-//! `p(y = 1 | x) = 1 / (1 + exp(-F(x)))`. Each tree is a Newton step: with gradient `g = y - p` and curvature
+//! bits of a leaf's index (Prokhorenkova et al. 2018). With `F(x)` the log odds of the mean target plus the sum of the trees'
+//! leaves, `p(y = 1 | x) = 1 / (1 + exp(-F(x)))`. Each tree is a Newton step: with gradient `g = y - p` and curvature
 //! `h = p (1 - p)`, a leaf has the value `rate * sum g / (sum h + ridge)`, and each level takes the question that
 //! gains most in `sum over leaves (sum g)^2 / (sum h + ridge)`.
 //!
-//! Features are cut at quantiles, at most [`BINS`] values each; O(rows * features * levels) a tree.
+//! Features are cut at quantiles, at most [`BINS`] values each; O(features * (rows * levels + BINS * 2^levels)) a tree.
 
 use serde::{Deserialize, Serialize};
 
@@ -48,9 +48,9 @@ struct Tree {
 
 /// A learnt function from d features to a probability, `1 / (1 + exp(-F(x)))` as in the [module](self).
 ///
-/// Features may have any units: only their order counts. Learning takes O(n d levels) a tree for n rows, and memory for
-/// n d bytes of bins; [`Boosting::probability`] is O(trees levels). Sources: Friedman 2001 for boosting, Prokhorenkova et
-/// al. 2018 for oblivious trees.
+/// Features may have any units: only their order counts. Learning takes O(d n log n) for the cuts and O(n d levels) a tree for
+/// n rows, where these are more than the leaves, and memory for n d bytes of bins; [`Boosting::probability`] is
+/// O(trees levels). Sources: Friedman 2001 for boosting, Prokhorenkova et al. 2018 for oblivious trees.
 ///
 /// # Examples
 /// Exclusive or, which no sum of functions of one feature can represent:
@@ -106,7 +106,7 @@ pub enum BoostingError {
 }
 
 impl Boosting {
-    /// Learns from rows of features and the probability of each (0 or 1 where it is known).
+    /// Learns from rows of features and the probability of each (0 or 1 where it is known), one target for each row.
     ///
     /// # Errors
     /// [`BoostingError`] for no rows, rows of different length, and values that are not finite.
@@ -150,7 +150,8 @@ impl Boosting {
         })
     }
 
-    /// Checks a boosting that was read from a file.
+    /// Checks a boosting that was read from a file: that its trees are over `features` features, have at most 15 levels, and that
+    /// all their numbers are finite.
     ///
     /// # Errors
     /// [`BoostingError::Tree`].
@@ -185,6 +186,9 @@ impl Boosting {
 
 fn check(rows: &[Vec<f64>], targets: &[f64]) -> Result<usize, BoostingError> {
     let expected = rows.first().ok_or(BoostingError::Empty)?.len();
+    if targets.len() > rows.len() {
+        return Err(BoostingError::Value { row: rows.len() });
+    }
     for (row, values) in rows.iter().enumerate() {
         let found = values.len();
         if found != expected {

@@ -1,6 +1,17 @@
 //! What can be wrong with data, a model, or a question put to it.
 
 /// One variant per way to be wrong; each names the variable, and the row where there is one.
+///
+/// Its text is a sentence for users. Rows count from 0 in the table that was given; a caller that looked at one row on its own
+/// says which it was ([`ModelError::in_row`]).
+///
+/// # Examples
+/// ```
+/// use edifice::model::{ModelError, Table};
+/// let error = Table::new().real("width", [Some(9.5), Some(f64::INFINITY)]).unwrap_err();
+/// assert_eq!(error.to_string(), "column `width`, row 1: inf is not finite (declare it missing instead)");
+/// assert!(matches!(error.in_row(7), ModelError::NotFinite { row: 7, .. }));
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// No rows, or no columns, where some are needed.
@@ -155,7 +166,8 @@ impl ModelError {
         }
     }
 
-    /// The same with `row` for the row: for a row that was looked at on its own.
+    /// The same with `row` for the row: for a row that was looked at on its own. Errors without a row stay as they are, and so
+    /// does [`ModelError::Rows`], which counts rows.
     pub fn in_row(self, row: usize) -> Self {
         match self {
             Self::NotFinite { column, value, .. } => Self::NotFinite { column, row, value },

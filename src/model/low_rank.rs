@@ -6,12 +6,14 @@
 
 use nalgebra::DMatrix;
 
-/// When [`soft_impute`] stops. Reaching either limit is no error; [`objective`] tells how good the result is.
+/// When [`soft_impute`] stops, the default after 100 steps or a change of 1e-6. Reaching either limit is no error; [`objective`]
+/// tells how good the result is. Unknown entries move by about `lambda` a step: where that is small beside the values, the
+/// default tolerance ends far too early, and the example of [`soft_impute`] sets another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Most steps.
     pub steps: usize,
-    /// Relative change of `Z` (squared Frobenius norm) below which it has converged.
+    /// Relative change `‖Z' - Z‖² / ‖Z‖²` (Frobenius norms) below which it has converged; a `‖Z‖²` below 1e-12 counts as 1e-12.
     pub tolerance: f64,
 }
 
@@ -29,7 +31,8 @@ impl Default for Limits {
 /// `known` has the value of each known entry, `None` elsewhere, `rows` times `columns` of them, row by row.
 ///
 /// Formula, method, source and cost per step are in the [module](self). Values and `lambda` have one unit; a larger
-/// `lambda` gives a smaller matrix of lower rank, the zero matrix from the largest singular value of the known entries on, the others being 0. The start is the zero matrix.
+/// `lambda` gives a smaller matrix of lower rank, the zero matrix from the largest singular value of the known entries on, the
+/// others being 0. The start is the zero matrix.
 ///
 /// # Examples
 /// Where all is known one step is the answer: singular values 3 and 1, less 1.

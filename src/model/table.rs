@@ -5,7 +5,7 @@ use super::error::ModelError;
 /// Code of a missing category.
 pub(crate) const MISSING: u32 = u32::MAX;
 
-/// One cell of a [`Table`].
+/// One cell of a [`Table`], by [`Column::cell`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
     /// Not observed.
@@ -28,7 +28,8 @@ pub(crate) enum Values {
     },
 }
 
-/// A named column.
+/// A named column of n cells: real numbers in a unit of its own, or categories. Made by [`Table`]'s methods, whose example reads
+/// some; 8 bytes a real cell, 4 a category.
 #[derive(Clone, Debug)]
 pub struct Column {
     pub(crate) name: String,
@@ -78,16 +79,26 @@ impl Column {
     }
 }
 
-/// A table of named columns with the same number of rows.
+/// A table of named columns with the same number of rows, the data of every model that has columns.
+///
+/// A missing value is one that was not observed: models sum or integrate it out, `p(x_seen) = ∫ p(x) dx_missing`, as if it were
+/// missing at random (Rubin 1976); that is not what zero or a category of its own says. Columns are found by name, O(columns);
+/// adding one is O(rows), of categories by name O(rows x categories).
 ///
 /// # Examples
 /// ```
-/// use edifice::model::Table;
+/// use edifice::model::{Cell, Table};
 /// let houses = Table::new()
 ///     .real("width", [Some(12.0), None, Some(9.5)])?
 ///     .binary("chimney", [Some(true), Some(false), None])?
 ///     .categorical("roof", &["flat", "gable", "hip"], [Some("hip"), Some("flat"), None])?;
 /// assert_eq!(houses.rows(), 3);
+/// let roof = houses.column("roof")?;
+/// assert_eq!((roof.cell(0), roof.cell(2)), (Cell::Code(2), Cell::Missing));
+/// // Evidence: of the second and the first house, no more than the chimney is known.
+/// let asked = houses.select(&[1, 0]).only(&["chimney"])?;
+/// assert_eq!(asked.column("chimney")?.cell(1), Cell::Code(1));
+/// assert_eq!(asked.column("width")?.cell(1), Cell::Missing);
 /// # Ok::<(), edifice::model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -286,13 +297,17 @@ impl Table {
     /// The columns of these names, in this order.
     ///
     /// # Errors
-    /// [`ModelError::Unknown`] for a name without a column.
+    /// [`ModelError::Unknown`] for a name without a column; [`ModelError::Duplicate`] for one that comes twice.
     pub fn in_order(&self, names: &[&str]) -> Result<Self, ModelError> {
-        let columns = names.iter().map(|name| self.column(name).cloned());
-        Ok(Self {
-            columns: columns.collect::<Result<_, _>>()?,
-            ..self.clone()
-        })
+        let mut table = Self {
+            columns: Vec::with_capacity(names.len()),
+            rows: self.rows,
+        };
+        for name in names {
+            table = table.push(name, self.column(name)?.values.clone())?;
+        }
+        table.rows = self.rows;
+        Ok(table)
     }
 
     /// The same table where every column not called one of `names` is missing in every row: what

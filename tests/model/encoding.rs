@@ -243,3 +243,58 @@ fn held_out_rows_are_the_likelier_for_it() {
     };
     assert!(mean(Contender::Extended) < mean(Contender::Ours) - 0.05);
 }
+
+/// A category that shifts a group is drawn as the style asked for has it, not as all styles together have it.
+#[test]
+fn a_style_draws_its_own_categories() {
+    let data = made(300, 3);
+    let learned = learn(&data.table, &data.groups, &extended(&settings()), 1).unwrap();
+    let model = learned.model;
+    let edges = model.lateral_edges();
+    assert!(edges.iter().any(|(from, _)| from == "roof"), "{edges:?}");
+    assert!(model.styles() > 1);
+    const DRAWS: usize = 20_000;
+    let share = |table: &Table, rows: &[usize], category: usize| {
+        let column = table.column("roof").unwrap();
+        let count = rows
+            .iter()
+            .filter(|&&r| column.cell(r) == Cell::Code(category));
+        count.count() as f64 / rows.len() as f64
+    };
+    let all = model.sample(DRAWS, &mut stream(1, "all", 0)).unwrap();
+    let every: Vec<usize> = (0..DRAWS).collect();
+    let categories = all
+        .table
+        .column("roof")
+        .unwrap()
+        .categories()
+        .unwrap()
+        .len();
+    let mut far: f64 = 0.0;
+    for style in 0..model.styles() {
+        let rows: Vec<usize> = every
+            .iter()
+            .copied()
+            .filter(|&r| all.styles[r] == style)
+            .collect();
+        if rows.len() < 500 {
+            continue;
+        }
+        let own = model
+            .sample_style(style, DRAWS, &mut stream(2, "style", style as u64))
+            .unwrap();
+        assert!(own.styles.iter().all(|&s| s == style));
+        for category in 0..categories {
+            let wanted = share(&all.table, &rows, category);
+            let found = share(&own.table, &every, category);
+            let error = (wanted * (1.0 - wanted) / rows.len() as f64).sqrt();
+            assert!(
+                (found - wanted).abs() < 5.0 * error + 0.01,
+                "{style} {category}: {found} {wanted}"
+            );
+            far = far.max((wanted - share(&all.table, &every, category)).abs());
+        }
+    }
+    // Otherwise the test could not fail.
+    assert!(far > 0.1, "styles differ by {far} only");
+}

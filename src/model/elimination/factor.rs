@@ -1,6 +1,21 @@
 //! Log-valued tables over discrete variables, and the loops over their cells.
 
-/// A function of some discrete variables; `values` are natural logarithms, the last variable fastest.
+/// A function `f(x_1, .., x_m)` of some discrete variables, f ≥ 0; `values` are natural logarithms, the last variable fastest.
+///
+/// Of variables with k_1 .. k_m categories it has `Π_i k_i` values, at `(.. (x_1 k_2 + x_2) k_3 + ..) k_m + x_m`; `-∞`
+/// stands for 0. A variable is a number, its place in `sizes`, which has the number of categories of each. Source: Koller and
+/// Friedman 2009, Sec. 4.2.
+///
+/// # Examples
+/// ```
+/// use edifice::model::elimination::Factor;
+/// let sizes = [2, 3];
+/// let f = Factor::new(vec![1, 0], [1.0_f64, 2.0, 3.0, 4.0, 5.0, 6.0].map(f64::ln).to_vec());
+/// // Variable 0 is 1 and variable 1 is 2; in the factor variable 1 comes first.
+/// assert_eq!(f.index(&[1, 2], &sizes), 2 * 2 + 1);
+/// let rest = f.reduce(&[Some(1), None], &sizes);
+/// assert_eq!(rest, Factor::new(vec![1], [2.0_f64, 4.0, 6.0].map(f64::ln).to_vec()));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factor {
     /// Its variables, each once.
@@ -10,17 +25,18 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// A factor.
+    /// A factor; that there is one value for each configuration is not checked.
     pub fn new(vars: Vec<usize>, values: Vec<f64>) -> Self {
         Self { vars, values }
     }
 
-    /// Index of an assignment (of all variables) in `values`.
+    /// Index of an assignment (of all variables) in `values`; O(m).
     pub fn index(&self, assignment: &[usize], sizes: &[usize]) -> usize {
         index(&self.vars, assignment, sizes)
     }
 
-    /// The factor with observed variables fixed.
+    /// The factor with observed variables fixed, a function of the others. `observed` has an entry for every variable of `sizes`;
+    /// O(m) for each value that is left.
     pub fn reduce(self, observed: &[Option<usize>], sizes: &[usize]) -> Self {
         if self.vars.iter().all(|&v| observed[v].is_none()) {
             return self;

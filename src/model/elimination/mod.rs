@@ -36,7 +36,16 @@ pub(crate) use factor::advance;
 pub use order::{Order, TooWide};
 pub use tree::BucketTree;
 
-/// How variables are eliminated.
+/// How variables are eliminated: by `Σ_v f` (Koller and Friedman 2009, Sec. 9.3) or by `max_v f` (Sec. 13.2), at the same cost.
+///
+/// # Examples
+/// ```
+/// use edifice::model::elimination::{BucketTree, Factor, Mode};
+/// let factor = || vec![Factor::new(vec![0, 1], [1.0_f64, 2.0, 3.0, 2.0].map(f64::ln).to_vec())];
+/// let total = |mode| Ok::<f64, edifice::model::elimination::TooWide>(BucketTree::new(factor(), &[2, 2], mode)?.total.exp());
+/// assert!((total(Mode::Sum)? - 8.0).abs() < 1e-12 && (total(Mode::Max)? - 3.0).abs() < 1e-12);
+/// # Ok::<(), edifice::model::elimination::TooWide>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Summed out.

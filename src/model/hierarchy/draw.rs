@@ -13,7 +13,37 @@ use super::schema::Rows;
 use super::structure::configuration;
 use crate::rng::categorical;
 
-/// Rows drawn from a model.
+/// Rows drawn from a model by [`Hierarchy::sample`], [`Hierarchy::sample_style`], [`Hierarchy::complete`] or
+/// [`Hierarchy::most_probable`].
+///
+/// Draws are independent: forward `s ~ P(S)`, `h ~ P(H_g | s)`, `C_g ~ N(B_ghᵀ (1, π(C_g)), Σ_gh)`; given a row, of the posterior
+/// of its hidden variables and missing values together, as exact as inference is. A draw takes the time of one inference and
+/// one density, as in [the module](super). Sources: Fan and Wonka 2016, Sec. 7 (synthesis, completion); Koller and Friedman
+/// 2009, Sec. 12.1.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Cell, Table, em::Stopping, hierarchy::{Group, Priors, fit}};
+/// use edifice::rng::stream;
+/// let width = (0..60).map(|i| Some(if i % 3 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
+/// let houses = Table::new()
+///     .real("width", width)?
+///     .binary("garage", (0..60).map(|i| Some(i % 3 > 0)))?;
+/// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
+/// let model = fit(&houses, &groups, 2, &[2], &Priors::default(), &Stopping::default(), 1)?.model;
+/// let mut rng = stream(1, "draws", 0);
+/// let draws = model.sample(500, &mut rng)?;
+/// let told = model.log_likelihood(&draws.table)?;
+/// assert!(draws.log_density.iter().zip(&told).all(|(a, b)| (a - b).abs() < 1e-9));
+/// // How wide are houses with a garage? What is given stays.
+/// let garage = Table::new().binary("garage", [Some(true)])?;
+/// let wide = model.complete(&garage, 500, &mut rng)?.table;
+/// let real = |cell: Cell| if let Cell::Real(x) = cell { x } else { f64::NAN };
+/// let mean = (0..500).map(|i| real(wide.columns()[0].cell(i))).sum::<f64>() / 500.0;
+/// assert!((mean - 12.2).abs() < 0.5);
+/// assert!((0..500).all(|i| wide.columns()[1].cell(i) == Cell::Code(1)));
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Draws {
     /// Complete rows: real columns first, then categorical ones, in the order of the groups.
@@ -73,7 +103,10 @@ impl Hierarchy {
     /// The `count` most probable of `pool` completions of the single-row table `given` (without
     /// columns: of forward samples), most probable first, leaving out any that comes closer than
     /// `apart` standard deviations (root mean square over real columns) to a better one or to a
-    /// row of `seen` with the same categories.
+    /// row of `seen` with the same categories. Fewer than `count` where the pool has no more.
+    ///
+    /// Time: `pool` draws and at most `pool (count + rows of seen)` distances. Source: Fan and Wonka 2016, Sec. 7,
+    /// *Evaluation of synthesized results*.
     ///
     /// # Errors
     /// As [`Hierarchy::complete`].
@@ -143,9 +176,16 @@ impl Hierarchy {
         let mut row = Vec::new();
         for i in 0..rows.rows {
             let mut ways: Vec<(Vec<u32>, f64)> = Vec::new();
-            problem.visit(&self.params, i, &mut scratch, |_, _, codes, weight| {
-                ways.push((codes.to_vec(), weight));
-            })?;
+            problem.visit(
+                &self.params,
+                i,
+                &mut scratch,
+                |scratch, _, codes, weight| {
+                    // P(codes | row), or P(codes, S = style | row).
+                    let share = style.map_or(1.0, |s| scratch.style[s]);
+                    ways.push((codes.to_vec(), weight * share));
+                },
+            )?;
             for _ in 0..count {
                 let weights: Vec<f64> = ways.iter().map(|w| w.1).collect();
                 let codes = &ways[categorical(&weights, rng)].0;

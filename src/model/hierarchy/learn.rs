@@ -19,7 +19,7 @@ use crate::rng::stream;
 /// where the parameters of all rows are settled.
 const SETTLED: f64 = 1e-4;
 
-/// One accepted configuration of the search.
+/// One accepted configuration of the search, for [`Learned::trace`] and [`Observer`]s.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Step {
     /// |S|.
@@ -32,7 +32,10 @@ pub struct Step {
     pub score: f64,
 }
 
-/// Result of [`learn`].
+/// Result of [`learn`], [`learn_observed`] and [`refine`]; the example of [`learn`] reads one.
+///
+/// Scores are comparable, whatever the [`Variant`], between models of the same rows and groups that standardise columns alike,
+/// as [`learn`] does and [`refine`] need not: the logarithms of the columns' deviations are not in them.
 #[derive(Clone, Debug)]
 pub struct Learned {
     /// The model of highest score.
@@ -41,7 +44,7 @@ pub struct Learned {
     pub score: f64,
     /// Its BIC score `log P(O | Θ) - k/2 log n`, nats, on standardised columns of all rows.
     pub bic: f64,
-    /// Every accepted configuration, by |S|.
+    /// Every accepted configuration, by |S|, then those of the searches above and around the best ones.
     pub trace: Vec<Step>,
     /// Whether the observer ended the search: the model is the best so far.
     pub interrupted: bool,
@@ -49,8 +52,15 @@ pub struct Learned {
 
 /// Learns structure and parameters from `data`, whose columns `groups` assign to attributes.
 ///
-/// Time per EM round is linear in rows; the same seed gives the same bytes with any number of
-/// threads.
+/// The structure G (|S|, every |H_g|, lateral edges) is the one of highest Cheeseman-Stutz score that the search of
+/// [the module](crate::model::hierarchy) meets, in nats,
+/// `log P(O* | G) + log P(O | G, Θ) - log P(O* | G, Θ)`,
+/// with Θ the parameters that EM finds and O* the rows O completed by their expected statistics, whose evidence `P(O* | G)` is a
+/// product of the closed forms of [`conjugate`](crate::model::conjugate) (Fan and Wonka 2016, Eq. 2 with a uniform P(G);
+/// Cheeseman and Stutz 1996).
+///
+/// Each value tried of |S|, of an |H_g| or of the lateral edges takes one run of EM, whose rounds are linear in rows; the same
+/// seed gives the same bytes with any number of threads.
 ///
 /// # Errors
 /// A column that is unknown, constant, all missing or of mixed kind within its group; settings out
@@ -68,6 +78,9 @@ pub struct Learned {
 /// let settings = Settings { styles: 2..=3, ..Settings::default() };
 /// let learned = learn(&houses, &groups, &settings, 1)?;
 /// assert_eq!(learned.model.styles(), 2);
+/// // All configurations score less than the model, but for what EM gained since.
+/// assert!(learned.trace.iter().all(|step| step.score < learned.score + 0.5));
+/// assert!(learned.trace.iter().any(|step| step.styles == 3) && !learned.interrupted);
 /// # Ok::<(), edifice::model::ModelError>(())
 /// ```
 pub fn learn(
@@ -83,6 +96,26 @@ pub fn learn(
 ///
 /// # Errors
 /// As [`learn`].
+///
+/// # Examples
+/// Ended at the first configuration, then gone on with:
+/// ```
+/// use std::ops::ControlFlow;
+/// use edifice::model::{Table, hierarchy::{Group, Settings, learn_observed, refine}};
+/// let width = (0..60).map(|i| Some([5.0, 12.0, 30.0][i % 3] + (i % 5) as f64 * 0.1));
+/// let houses = Table::new().real("width", width)?;
+/// let groups = [Group::new("size", &["width"])];
+/// let settings = Settings { styles: 1..=2, ..Settings::default() };
+/// let early = learn_observed(&houses, &groups, &settings, 1, &|step| match step {
+///     Some(_) => ControlFlow::Break(()),
+///     None => ControlFlow::Continue(()),
+/// })?;
+/// assert!(early.interrupted);
+/// let on = refine(&early.model, &houses, &settings, 1, &|_| ControlFlow::Continue(()))?;
+/// assert!(!on.interrupted && on.score > early.score + 1.0);
+/// assert_eq!(on.model.cardinalities(), [3]);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub fn learn_observed(
     data: &Table,
     groups: &[Group],
@@ -113,6 +146,7 @@ pub fn learn_observed(
 
 /// Goes on from a model that was learned before, from the same kind of table: its attributes, cardinalities and edges are
 /// where the search starts, and its columns stay standardised as they are. For a search that was interrupted, or new rows.
+/// Every |S| of the settings is tried above its second level; [`learn_observed`] has an example.
 ///
 /// # Errors
 /// As [`learn`]; a category that the model does not know; [`ModelError::Parameter`] for a model of another variant.
@@ -235,7 +269,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Result of [`fit`].
+/// Result of [`fit`] and [`fit_observed`]; the example of [`fit`] reads one. Scores are as in [`learn`].
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The model.
@@ -248,10 +282,26 @@ pub struct Fitted {
 
 /// One run of EM for given cardinalities (`states` per real group, in order) without lateral
 /// edges, from k-means++ clusters of at most 10,000 of the rows: for data too large to search.
-/// Time is linear in rows; besides the data themselves one standardised copy is held.
+/// Time is linear in rows ([the module](crate::model::hierarchy) has the cost of a round); besides the data themselves one
+/// standardised copy is held. EM: Fan and Wonka 2016, Sec. 5.3, *Parameter learning*; [`em`](crate::model::em).
 ///
 /// # Errors
 /// As [`learn`]; [`ModelError::Parameter`] for cardinalities that do not fit the groups.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, em::{Outcome, Stopping}, hierarchy::{Group, Priors, fit}};
+/// // Twenty narrow houses, forty wide ones.
+/// let width = (0..60).map(|i| Some(if i < 20 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
+/// let houses = Table::new().real("width", width)?;
+/// let groups = [Group::new("size", &["width"])];
+/// let fitted = fit(&houses, &groups, 1, &[2], &Priors::default(), &Stopping::default(), 1)?;
+/// assert_eq!(fitted.outcome, Outcome::Converged);
+/// let kinds = &fitted.model.state_probabilities("size")?[0];
+/// // The mode under Dirichlet(1.2, 1.2).
+/// assert!((kinds[0].min(kinds[1]) - 20.2 / 60.4).abs() < 1e-3);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 pub fn fit(
     data: &Table,
     groups: &[Group],

@@ -22,6 +22,19 @@
 //! | [`Variant::NoSecondLevel`] | Model 2, Fig. 4(b) | C_g depends on S itself |
 //! | [`Variant::Directed`] | Model 3, Fig. 4(a) | no hidden variables |
 //!
+//! [`learn`] finds structure and parameters, [`refine`] goes on from a model, [`fit`] estimates parameters alone; what comes out
+//! is a [`Hierarchy`], which answers questions about rows, draws and completes them ([`Draws`]), and can be stored.
+//!
+//! # Shapes and cost
+//! A real group of d columns with p inputs `(1, π(C_g))` has for each of its k_g states a B of p x d and a Σ of d x d; H_g has a
+//! table of k_g x |S|, a categorical column of r categories one of r x |S|. With q_g = p + d and K categorical columns, a round
+//! of EM on n complete rows takes `O(n (Σ_g k_g (q_g² + |S|) + K |S|) + Σ_g k_g q_g³)`, and a question to a model its share of
+//! the first term for each row.
+//!
+//! A row that lacks values costs more. The states of groups that missing values link are enumerated together: exactly up to
+//! 2048 assignments, of more the most probable (while structures are searched, 64). Missing categories that have children are
+//! enumerated as well; a row with more than 4096 assignments of them is refused.
+//!
 //! # Deviations and readings
 //! - Sigmoid CPDs of bits given the one discrete parent S are saturated: a table says the same.
 //! - All variables of a binary vector are independent given S.
@@ -48,8 +61,8 @@
 //!   share the intercept raise the score.
 //! - On request ([`Settings::background`]) a wide background contaminates the Gaussian of every state, so that one row of
 //!   an unforeseen kind costs a few nats.
-//! - Of more rows than [`Settings::searched`] the structure is searched on a sample of those that lack fewest values, and only the parameters are fitted to
-//!   all: the search costs hundreds of EM runs, each linear in rows.
+//! - Of more rows than [`Settings::searched`] the structure is searched on a sample of those that lack fewest values, and only
+//!   the parameters are fitted to all: the search costs hundreds of EM runs, each linear in rows.
 //! - On large tables the second level is searched for two |S| only ([`Sweep`]), since every other |S| is then tried above
 //!   the best second level anyway.
 //! - After a sweep S gets new starts from the posteriors of all H_g. At the end every |S| is also
@@ -88,7 +101,30 @@ pub use query::Hierarchy;
 pub use schema::Group;
 pub use watch::Observer;
 
-/// Which of the paper's models to learn.
+/// Which of the paper's models to learn: the table in [the module](self).
+///
+/// Without lateral edges π(C_g) is empty in Eq. 1. Without second level the sum over h is left out, and the state of every group
+/// is s. Without hidden variables, `P(x) = Π_k P(E_k | π(E_k)) Π_g N(C_g; B_gcᵀ (1, π(C_g)), Σ_gc)` with c the configuration of
+/// the group's categorical parents: its score is a sum over children, so that each edge added costs the evidence of `O(m)`
+/// families of m groups and columns, and the first `O(m²)`, each linear in rows. Sources: Fan and Wonka 2016, Fig. 4 and Sec. 7.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, hierarchy::{Group, Settings, Variant, learn}};
+/// let width = |i: usize| 6.0 + (i % 7) as f64;
+/// let houses = Table::new()
+///     .real("width", (0..70).map(|i| Some(width(i))))?
+///     .real("area", (0..70).map(|i| Some(10.0 * width(i) + (i % 3) as f64)))?
+///     .real("age", (0..70).map(|i| Some((i % 10) as f64)))?;
+/// let groups = ["width", "area", "age"].map(|name| Group::new(name, &[name]));
+/// let settings = Settings { variant: Variant::Directed, ..Settings::default() };
+/// let model = learn(&houses, &groups, &settings, 1)?.model;
+/// assert_eq!(model.styles(), 1);
+/// let edges = model.lateral_edges();
+/// assert_eq!(edges.len(), 1);
+/// assert!(edges[0].0 != "age" && edges[0].1 != "age");
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Variant {
     /// Style, second-level hidden variables, lateral edges.
@@ -103,7 +139,7 @@ pub enum Variant {
 }
 
 /// For which cardinalities of S the second level is searched from the start; every other one gets the best second level
-/// that was found, and new starts for S above it.
+/// that was found, and new starts for S above it. A choice of [`Settings::sweep`]; the paper searches each (Sec. 5.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Sweep {
     /// All (paper), unless the real columns of the rows searched have more than 10,000 values: then [`Sweep::Few`].
@@ -111,11 +147,31 @@ pub enum Sweep {
     Auto,
     /// All (paper).
     All,
-    /// Two, spread evenly in ratio; of the others only the best three are fitted to the end.
+    /// Two, spread evenly in ratio: `a (b/a)^(1/4)` and `a (b/a)^(3/4)` of a to b, rounded, so 4 and 13 of 2 to 25. Of all |S|
+    /// tried above the second level so found, only the best three are fitted to the end.
     Few,
 }
 
-/// Settings of [`learn`].
+/// Settings of [`learn`], and in part of [`fit_observed`]. The defaults are those of the paper where it has any; gains and
+/// movements are as in [`Stopping`].
+///
+/// # Examples
+/// What a background is worth on a row ten deviations away, in nats:
+/// ```
+/// use std::ops::ControlFlow;
+/// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
+/// let seen = Table::new().real("width", (0..70).map(|i| Some(10.0 + (i % 7) as f64)))?;
+/// let strange = Table::new().real("width", [Some(33.0)])?;
+/// let groups = [Group::new("size", &["width"])];
+/// let go_on = |_: Option<&_>| ControlFlow::Continue(());
+/// let told = |background: f64| -> Result<f64, ModelError> {
+///     let settings = Settings { background, ..Settings::default() };
+///     let fitted = fit_observed(&seen, &groups, 1, &[1], &settings, 1, &go_on)?;
+///     Ok(fitted.model.log_likelihood(&strange)?[0])
+/// };
+/// assert!(told(0.0)? < -45.0 && told(0.01)? > -15.0);
+/// # Ok::<(), ModelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Which model.
@@ -146,8 +202,8 @@ pub struct Settings {
     pub constant: Constant,
     /// For which cardinalities of S the second level is searched from the start.
     pub sweep: Sweep,
-    /// Most rows that the structure is searched on: of more, so many are drawn from those that lack fewest values, and the parameters of the structure found
-    /// are then fitted to all of them, until a round gains less than 1e-4 nats a row.
+    /// Most rows that the structure is searched on: of more, so many are drawn from those that lack fewest values, and the
+    /// parameters of the structure found are then fitted to all of them, until a round gains less than 1e-4 nats a row.
     pub searched: usize,
 }
 

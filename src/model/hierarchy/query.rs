@@ -11,7 +11,37 @@ use super::schema::{Rows, Schema};
 use super::structure::configuration;
 use super::wide::states;
 
-/// A learned hierarchical model.
+/// A learned hierarchical model: Eq. 1 of [the module](super) with its parameters.
+///
+/// Rows that it is asked about are a [`Table`] whose columns are found by name, in any order and in the units of the training
+/// data; what is missing or has no column is summed or integrated out. It comes from [`learn`](super::learn()) or
+/// [`fit`](super::fit()); [`Hierarchy::sample`] and [`Hierarchy::complete`] draw from it ([`Draws`](super::Draws)),
+/// [`Hierarchy::to_network`] makes it a network, for questions beyond those here. Time of a question: as in the module.
+/// Sources: Fan and Wonka 2016, Sec. 5.2; Koller and Friedman 2009, Ch. 9 and 14.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{Table, em::Stopping, hierarchy::{Group, Hierarchy, Priors, fit}};
+/// let width = (0..60).map(|i| Some(if i % 3 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
+/// let houses = Table::new()
+///     .real("width", width)?
+///     .binary("garage", (0..60).map(|i| Some(i % 3 > 0)))?;
+/// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
+/// let model = fit(&houses, &groups, 2, &[2], &Priors::default(), &Stopping::default(), 1)?.model;
+/// // Of one house no more is known than that it has a garage. Bayes' rule by hand:
+/// let garage = Table::new().binary("garage", [Some(true)])?;
+/// let (p, yes) = (model.style_probabilities(), model.category_probabilities("garage")?);
+/// let total = p[0] * yes[0][1] + p[1] * yes[1][1];
+/// assert!((model.style_posterior(&garage)?[0][0] - p[0] * yes[0][1] / total).abs() < 1e-12);
+/// assert!((model.log_likelihood(&garage)?[0] - total.ln()).abs() < 1e-12);
+/// // It is wide, then.
+/// let kinds = &model.state_posterior(&garage, "size")?[0];
+/// assert!(kinds[0].max(kinds[1]) > 0.9 && (kinds[0] + kinds[1] - 1.0).abs() < 1e-12);
+/// // Stored and read, it is the same model.
+/// let read = Hierarchy::from_json(&model.to_json()?)?;
+/// assert_eq!(read.style_posterior(&houses)?, model.style_posterior(&houses)?);
+/// # Ok::<(), edifice::model::ModelError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Hierarchy {
     pub(crate) schema: Schema,
@@ -40,7 +70,7 @@ impl Hierarchy {
         self.shape.structure.styles
     }
 
-    /// P(S = s).
+    /// P(S = s), |S| numbers of sum 1.
     pub fn style_probabilities(&self) -> &[f64] {
         &self.params.style
     }
@@ -58,7 +88,11 @@ impl Hierarchy {
             .collect()
     }
 
-    /// Number of free parameters.
+    /// Number of free parameters, as BIC counts them.
+    ///
+    /// `|S| - 1 + Σ_g k_g (p_g d_g + d_g (d_g + 1)/2) + Σ_c |S| r_c (n_c - 1)` for n_c categories given r_c configurations of a
+    /// column's other parents, and `|S| (k_g - 1)` for each H_g. Of the indicators of a categorical parent, which sum to 1, one
+    /// is not counted in p_g.
     pub fn free_parameters(&self) -> usize {
         self.shape.free_parameters()
     }
@@ -88,7 +122,7 @@ impl Hierarchy {
     }
 
     /// P(category | S = s) of a categorical column without parents other than S: one vector over
-    /// its categories per style.
+    /// its categories per style. Of a column with other parents, given the first category of each.
     ///
     /// # Errors
     /// [`ModelError::Unknown`].
@@ -147,10 +181,12 @@ impl Hierarchy {
     }
 
     /// `log p(row)` of every row, nats, in the columns' own units; missing values and columns that
-    /// `data` lacks are integrated out.
+    /// `data` lacks are integrated out. A density over the observed real values times a probability of the categories, so that
+    /// it may be positive; a row without values has 0.
     ///
     /// # Errors
-    /// An unseen category, a column of the wrong kind, or evidence of probability zero.
+    /// An unseen category, a column of the wrong kind, or evidence of probability zero; [`ModelError::Parameter`] for a row that
+    /// lacks too many categories that have children.
     pub fn log_likelihood(&self, data: &Table) -> Result<Vec<f64>, ModelError> {
         self.with(data, |problem, rows| {
             let mut scratch = Scratch::new(&self.shape);
@@ -172,7 +208,8 @@ impl Hierarchy {
             .sum()
     }
 
-    /// P(S = s | row) of every row.
+    /// P(S = s | row) of every row: rows x |S|,
+    /// `P(s | x) ∝ P(s) Π_k P(E_k | s) Π_g Σ_h P(h | s) p(C_g | h, π(C_g))` over what the row has.
     ///
     /// # Errors
     /// As [`Hierarchy::log_likelihood`].
@@ -193,7 +230,8 @@ impl Hierarchy {
         })
     }
 
-    /// P(state of `group` | row) of every row: of its hidden variable where it has one.
+    /// P(state of `group` | row) of every row, rows x k_g: of its hidden variable where it has one,
+    /// `P(h | x) = Σ_s P(s | x) P(h | s, x)`; else of S, or of the configuration of its categorical parents.
     ///
     /// # Errors
     /// [`ModelError::Unknown`], and as [`Hierarchy::log_likelihood`].

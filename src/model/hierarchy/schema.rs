@@ -4,8 +4,23 @@ use super::super::error::ModelError;
 use super::super::standardize::{Constant, moments};
 use super::super::table::{MISSING, Table, Values};
 
-/// Columns that belong together: all real (one vector-valued attribute), or all categorical (a
-/// binary vector, or a single categorical attribute).
+/// Columns that belong together: all real (one vector-valued attribute C_g, of as many coordinates as columns), or all
+/// categorical (a binary vector, or a single categorical attribute: each column is an E_k of its own).
+///
+/// The paper's mass, facade and element attributes are one group each (Fan and Wonka 2016, Sec. 4.2 and 5.2). Columns that no
+/// group names are not in the model; units may differ from column to column.
+///
+/// # Examples
+/// ```
+/// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, learn}};
+/// let houses = Table::new()
+///     .real("width", (0..20).map(|i| Some(f64::from(i % 7))))?
+///     .binary("garage", (0..20).map(|i| Some(i % 2 == 1)))?;
+/// let mixed = [Group::new("house", &["width", "garage"])];
+/// let refused = learn(&houses, &mixed, &Settings::default(), 1);
+/// assert!(matches!(refused, Err(ModelError::Kind { column, .. }) if column == "garage"));
+/// # Ok::<(), ModelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
     /// The attribute's name.

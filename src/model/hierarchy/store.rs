@@ -34,7 +34,8 @@ struct StoredLinear {
 }
 
 impl Hierarchy {
-    /// The model as JSON.
+    /// The model as JSON: names and categories, means and deviations of columns, structure, tables and regressions on
+    /// standardised columns. Numbers are written so that they are read back exactly; the example of [`Hierarchy`] does so.
     ///
     /// # Errors
     /// [`ModelError::Corrupt`] should a parameter not be finite.
@@ -57,7 +58,8 @@ impl Hierarchy {
         serde_json::to_string_pretty(&stored).map_err(|e| corrupt("the model", e.to_string()))
     }
 
-    /// A model from its JSON.
+    /// A model from its JSON. Sizes are compared with what the text holds before anything is allocated by a number in it, and
+    /// tables must sum to 1 within 1e-9.
     ///
     /// # Errors
     /// [`ModelError::Corrupt`] with the place, [`ModelError::Cycle`].

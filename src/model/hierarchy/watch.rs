@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::Step;
 
 /// Called with every accepted configuration, and with `None` before every round of EM, from any thread.
-/// [`ControlFlow::Break`] ends the search with the best configuration so far.
+/// [`ControlFlow::Break`] ends the search with the best configuration so far; the observer is not called again.
+/// [`learn_observed`](super::learn_observed) has an example.
 pub type Observer<'a> = dyn Fn(Option<&Step>) -> ControlFlow<()> + Sync + 'a;
 
 /// An observer, and whether it has ended the search.
