@@ -31,7 +31,7 @@ for city in "$@"; do
     esac
     [ -e "$city.glb" ] || venv/bin/python "$here/city.py" "$file" "$city.glb" "$city-each.glb"
     # One mesh: identities are lost.
-    for ratio in 1 0.7 0.5 0.4 0.3; do
+    for ratio in 1 0.95 0.7 0.5 0.4 0.3; do
         node_modules/.bin/gltfpack -noq -si "$ratio" -i "$city.glb" -o "$city-$ratio.glb" >>gltfpack.log
         NODE_PATH=node_modules node "$here/city.cjs" "$city-$ratio.glb" "$city-$ratio" 10,11,12,13,14,16 >"$city-$ratio.txt"
         while read -r bits bytes obj; do
@@ -45,7 +45,7 @@ for city in "$@"; do
         echo "$city,draco per mesh,$bits bits,$bytes,$(iou "$file" "$obj")"
         rm "$obj"
     done <"$city-each.txt"
-    for keep in shape ids; do
+    for keep in shape buildings ids; do
         for level in 2 3 4 5 6; do
             "$edifice" city proceduralize "$file" --level "$level" --keep "$keep" -o "$city.city-grammar.bin" 2>/dev/null >/dev/null
             echo "$city,ours ($keep),level $level,$(stat -c %s "$city.city-grammar.bin"),$(iou "$file" "$city.city-grammar.bin")"

@@ -69,8 +69,22 @@ fn a_derived_city_looks_like_the_one_it_is_made_from() {
         });
     assert!(difference(&city, &turned) > 20.0);
     // Without its picture a template shows nothing.
-    let bare = grammar.keeping(Kept::Shape);
-    assert!(derived(&bare).buildings.iter().all(|b| b.paint.is_empty()));
+    for kept in [Kept::Shape, Kept::Buildings] {
+        let bare = derived(&grammar.keeping(kept));
+        assert!(bare.buildings.iter().all(|b| b.paint.is_empty()));
+        let named = bare
+            .buildings
+            .iter()
+            .filter(|b| city.buildings.iter().any(|o| o.id == b.id));
+        assert_eq!(
+            named.count(),
+            if kept == Kept::Buildings {
+                city.buildings.len()
+            } else {
+                0
+            }
+        );
+    }
 }
 
 #[test]

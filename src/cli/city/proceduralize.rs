@@ -51,7 +51,9 @@ enum Keep {
     All,
     /// Identifiers, no attributes.
     Ids,
-    /// Neither, and no textures, nor patterns for synthesis.
+    /// Identifiers, and neither textures nor patterns for synthesis.
+    Buildings,
+    /// Neither these nor those.
     Shape,
 }
 
@@ -196,6 +198,7 @@ impl Args {
         let kept = match self.keep {
             Keep::All => return grammar_file::to_bytes(grammar, &self.output),
             Keep::Ids => Kept::Identifiers,
+            Keep::Buildings => Kept::Buildings,
             Keep::Shape => Kept::Shape,
         };
         grammar_file::to_bytes(&grammar.keeping(kept), &self.output)

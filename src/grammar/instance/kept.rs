@@ -11,6 +11,8 @@ pub enum Kept {
     All,
     /// Everything but the attributes of buildings.
     Identifiers,
+    /// What the axiom derives to, with identifiers; no attributes, textures, or rules that the axiom does not lead to.
+    Buildings,
     /// What the axiom derives to, without identifiers, attributes and textures: each part is a building of its own.
     Shape,
 }
@@ -19,7 +21,7 @@ impl InstanceGrammar {
     /// The grammar with what is kept.
     pub fn keeping(&self, kept: Kept) -> Self {
         let mut out = self.clone();
-        if kept == Kept::Shape {
+        if matches!(kept, Kept::Buildings | Kept::Shape) {
             let used = self.reached();
             out.rules.retain(|r| used.contains(r.symbol.as_str()));
             out.templates.iter_mut().for_each(|t| t.texture = None);
