@@ -15,6 +15,9 @@ use super::{Step, Variant};
 use crate::rng::stream;
 use rand::Rng;
 
+/// Nats a row by which a short run may still rise, and for which all moves are tried once more, where work is saved.
+const WORTHWHILE: f64 = 0.01;
+
 impl Search<'_> {
     /// Settles `best` and, where edges are allowed, a start that finds kinds before edges; then
     /// tries every |S| above the second level of the better one, and settles that.
@@ -76,10 +79,30 @@ impl Search<'_> {
             let before = best.score;
             best = self.revise(best)?;
             best = self.with_edges(self.grow(best, &mut Vec::new())?)?;
-            if self.watch.ended() || best.score <= before + self.settings.search.gain {
+            if self.watch.ended() || best.score <= before + self.worthwhile() {
                 return Ok(best);
             }
         }
+    }
+
+    /// The gain for which all moves are tried once more.
+    fn worthwhile(&self) -> f64 {
+        match self.few() {
+            true => WORTHWHILE * self.rows.rows as f64,
+            false => self.settings.search.gain,
+        }
+    }
+
+    /// A fit that may replace one of score `least`; where work is saved, it is given up after a short run that ends well below.
+    fn trial(&self, problem: &Problem, start: Params, least: f64) -> Result<Scored, ModelError> {
+        if !self.few() {
+            return self.fit(problem, start, &self.settings.search);
+        }
+        let short = self.fit(problem, start, &self.short())?;
+        if short.score + self.worthwhile() < least {
+            return Ok(short);
+        }
+        self.fit(problem, short.params, &self.settings.search)
     }
 
     /// Takes out edges and joins values while the score rises.
@@ -97,7 +120,7 @@ impl Search<'_> {
             for g in 0..best.shape.groups() {
                 best = self.join(best, g)?;
             }
-            if self.watch.ended() || best.score <= before + self.settings.search.gain {
+            if self.watch.ended() || best.score <= before + self.worthwhile() {
                 return Ok(best);
             }
         }
@@ -111,7 +134,7 @@ impl Search<'_> {
         structure.parents[g].retain(|&parent| parent != p);
         let problem = self.problem(structure)?;
         let start = problem.reparent(&best, &wide)?;
-        let fit = self.fit(&problem, start, &self.settings.search)?;
+        let fit = self.trial(&problem, start, best.score)?;
         let grown = self.raise(fit, g)?;
         Ok(if grown.score > best.score {
             grown
@@ -138,7 +161,7 @@ impl Search<'_> {
         let mut structure = best.shape.structure.clone();
         structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
         let problem = self.problem(structure)?;
-        self.fit(&problem, start, &self.settings.search)
+        self.trial(&problem, start, best.score)
     }
 
     /// Joins values of the hidden variable of `g` while the score rises.
@@ -150,7 +173,7 @@ impl Search<'_> {
             let Some(start) = joined(&problem, &best, g)? else {
                 break;
             };
-            match self.fit(&problem, start, &self.settings.search)? {
+            match self.trial(&problem, start, best.score)? {
                 fit if fit.score > best.score => best = fit,
                 _ => break,
             }

@@ -108,7 +108,7 @@ impl<'a> Search<'a> {
     }
 
     /// Whether work is saved, as on large tables.
-    fn few(&self) -> bool {
+    pub(super) fn few(&self) -> bool {
         match self.settings.sweep {
             Sweep::Auto => self.large(),
             Sweep::All => false,
@@ -186,7 +186,7 @@ impl<'a> Search<'a> {
     }
 
     /// When a short run of EM stops.
-    fn short(&self) -> Stopping {
+    pub(super) fn short(&self) -> Stopping {
         Stopping {
             max_rounds: SHORT,
             ..self.settings.search
