@@ -1,12 +1,12 @@
 //! Cities of the data folder as grammars (needs `EDIFICE_DATA` or `../shared/data`).
 
 use edifice::grammar::instance::Kept;
-use edifice::io::city::{compact, glb, read};
+use edifice::io::city::{add_textures, compact, glb, paint_parts, read};
 use edifice::methods::city_proceduralization::{
     Budget, Precision, Settings, decompose, proceduralize,
 };
 use edifice::rng::stream;
-use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
+use edifice::shape::triangles::{City, SideView, TriangleMesh, VolumeRaster, grey, repair};
 use rand::seq::SliceRandom;
 
 const MIDTOWN: &str = "city/nyc_midtown4500.npz";
@@ -117,4 +117,60 @@ fn windows_of_chiba_are_found_on_its_photographs() {
     let bytes: f64 = components.iter().map(|c| c.texture_bytes).sum();
     println!("median width of windows {median:.2} m, {bytes:.0} bytes of textures");
     assert!(bytes > 5e5 && bytes < 2.6e6, "{bytes}");
+}
+
+/// A template for each component: the derived city shows what the photographs show.
+#[test]
+fn derived_chiba_looks_like_chiba() {
+    const CHIBA: &str = "city/chiba_textured.tar.xz";
+    let Some(folder) = crate::common::real_data(CHIBA) else {
+        return;
+    };
+    let city = read(&folder.join(CHIBA)).unwrap();
+    let settings = Settings {
+        budget: Budget::All,
+        ..Settings::default()
+    };
+    let mut made = proceduralize(&city, &settings).unwrap();
+    let textures = made.box_textures(&city, 128);
+    add_textures(&mut made.grammar, &textures).unwrap();
+    let mut derived = made.grammar.derive().unwrap().city(&made.grammar);
+    paint_parts(&mut derived).unwrap();
+    let (mut off, mut shuffled, mut views) = (0.0, 0.0, 0.0);
+    let mut before: Option<Vec<Option<[u8; 3]>>> = None;
+    let apart = |a: &[Option<[u8; 3]>], b: &[Option<[u8; 3]>]| {
+        let both = a
+            .iter()
+            .zip(b)
+            .filter_map(|(a, b)| Some((grey((*a)?), grey((*b)?))));
+        let all: Vec<f64> = both.map(|(a, b)| f64::from(a.abs_diff(b))).collect();
+        (all.len() > 100).then(|| all.iter().sum::<f64>() / all.len() as f64)
+    };
+    for component in made
+        .decomposition
+        .components
+        .iter()
+        .filter(|c| !c.looks.is_empty())
+    {
+        let building = &city.buildings[component.building];
+        let like = derived
+            .buildings
+            .iter()
+            .find(|b| b.id == building.id)
+            .unwrap();
+        for view in 0..4 {
+            let of = |paint| SideView::whole(paint, &component.frame, view, [16; 2]).colours;
+            let (known, found) = (of(&building.paint), of(&like.paint));
+            if let Some(d) = apart(&known, &found) {
+                let other = before.as_ref().and_then(|b| apart(&known, b));
+                off += d;
+                shuffled += other.unwrap_or(d);
+                views += 1.0;
+            }
+            before = Some(found);
+        }
+    }
+    let (off, shuffled) = (off / views, shuffled / views);
+    println!("{views} sides: {off:.1} greys of 255 off, {shuffled:.1} to the side before");
+    assert!(views > 1500.0 && off < 12.0 && shuffled > 2.0 * off);
 }
