@@ -125,6 +125,6 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         ctx.figure(&format!("figure_10{suffix}"), &figure)?;
     }
     photographs(ctx, views)?;
-    ctx.note("A view is a building and those nearest to it, in any order, each with width, depth, height and solid share; it is found when the first place sees exactly these. In the made city many places look alike, because its motifs repeat.");
+    ctx.note("A view is a building and those nearest to it, in any order, each with width, depth, height and solid share; it is found when the first place sees exactly these. In the made city many places look alike, because its motifs repeat. Photographs are of facades of neighbours, found when the first place is one of them; they are the city's own textures with noise, without what a camera adds: light, trees, perspective that is left.");
     Ok(())
 }
