@@ -72,9 +72,12 @@ fn material(name: &str, color: [u8; 3]) -> Material {
 
 /// A mesh a building, on a ground; painted surfaces in pieces of one colour each.
 fn scene(city: &City) -> Scene {
-    let paint = city.buildings.iter().flat_map(|b| &b.paint);
-    let area: f64 = paint.map(Painted::area).sum();
-    let fine = (2.0 * area / MOST_PIECES).sqrt().max(FINEST);
+    let paint = || city.buildings.iter().flat_map(|b| &b.paint);
+    let area: f64 = paint().map(Painted::area).sum();
+    // Slivers are cut by their length, whatever their area.
+    let length: f64 = paint().map(Painted::longest).sum();
+    let fine = (2.0 * area / MOST_PIECES).sqrt();
+    let fine = fine.max(length / MOST_PIECES).max(FINEST);
     let mut colours: FxHashMap<[u8; 3], usize> = FxHashMap::default();
     let mut scene = Scene {
         materials: vec![

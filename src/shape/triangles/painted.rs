@@ -85,7 +85,8 @@ impl Painted {
             };
             let k = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
             // Not so for what is not a number.
-            if !(length(k) > most * most) {
+            let long = length(k) > most * most;
+            if !long {
                 out.push(piece);
                 continue;
             }
@@ -99,6 +100,16 @@ impl Painted {
             }
         }
         out
+    }
+
+    /// Length of its longest edge in metres.
+    pub fn longest(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        let length = |p: [f64; 3], q: [f64; 3]| {
+            let square = |k: usize| (p[k] - q[k]).powi(2);
+            (0..3).map(square).sum::<f64>().sqrt()
+        };
+        length(a, b).max(length(b, c)).max(length(c, a))
     }
 
     /// Turns its front to the back.
