@@ -5,7 +5,7 @@ use super::windows::{CELLS, Side, picture_features, side_features};
 use crate::shape::triangles::{CityBuilding, OrientedBox};
 
 /// Numbers of a [`Facade`] that are told by windows.
-const WINDOWS: usize = 8;
+pub(super) const WINDOWS: usize = 8;
 /// Numbers of a [`Facade`].
 pub const FACADE_FEATURES: usize = WINDOWS + CELLS * CELLS;
 

@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::facades::{FACADE_FEATURES, Facade};
+use super::facades::{FACADE_FEATURES, Facade, WINDOWS};
 use crate::shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
 
 /// What is measured of a building in a view: logarithms of width, depth, height; the solid share.
@@ -22,6 +22,8 @@ const MORE: usize = 1;
 const SPREAD: f64 = 0.1;
 /// Cost of a building that is nearer than others in the view and hidden: its chance is e^-HIDDEN.
 const HIDDEN: f64 = 2.0;
+/// Greys of a facade's cells are known so well.
+const CELL_PRECISION: f64 = 0.02;
 /// Standard deviations that a facade with windows and one without are apart in what only one has.
 const UNLIKE: f64 = 3.0;
 
@@ -139,7 +141,11 @@ pub fn locate_facades(
     if view.is_empty() || landmarks.len() < view.len() {
         return Vec::new();
     }
-    let scale = deviations_of(facades.iter().flatten().copied().collect());
+    let mut scale = deviations_of(facades.iter().flatten().copied().collect());
+    // Where all facades are alike, what drawing them in pixels changes must not decide.
+    for cell in &mut scale[WINDOWS..] {
+        *cell = cell.max(CELL_PRECISION / SPREAD);
+    }
     let apart = |a: &Facade, b: &Facade| {
         let term = |k: usize| match (a[k].is_finite(), b[k].is_finite()) {
             (true, true) => lost((a[k] - b[k]) / scale[k]),
