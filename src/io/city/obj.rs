@@ -1,6 +1,6 @@
 //! Cities as Wavefront OBJ: each object (`o`), or group (`g`) in a file without objects, is a building; z up, metres.
 //! Faces of more than three corners are cut into fans. Materials (`.mtl`) and texture coordinates are read as what
-//! the surface looks like; [`write`] writes them beside the file.
+//! the surface looks like; [`write()`] writes them beside the file.
 
 use std::path::Path;
 use std::sync::Arc;
