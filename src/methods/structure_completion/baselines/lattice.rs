@@ -7,6 +7,9 @@ use crate::methods::structure_completion::layout::{Class, Element};
 use crate::methods::structure_completion::partial::PartialLayout;
 use crate::shape::{Axis, Rect};
 
+/// Lines that are added on a side, or in a gap, at most: no facade has as many, whatever outline its file gives.
+const MOST_LINES: u16 = 500;
+
 /// Continues the columns and rows of each class that has at least two of one of them, at their median gap, to the
 /// borders; with `fill` also in gaps wide enough for further lines. Every free cell that may hold an
 /// element gets one.
@@ -39,17 +42,17 @@ fn continued(lines: &[Line], length: f64, fill: bool) -> Vec<Line> {
         return all;
     };
     let mut step = |from: &Line, direction: f64| {
-        let mut at = from.at + direction * gap;
-        while at - from.size / 2.0 >= 0.0 && at + from.size / 2.0 <= length {
-            all.push(Line { at, ..*from });
-            at += direction * gap;
-        }
+        let inside = |at: f64| at - from.size / 2.0 >= 0.0 && at + from.size / 2.0 <= length;
+        let next = |at: &f64| Some(at + direction * gap);
+        let further = std::iter::successors(next(&from.at), next).take(MOST_LINES.into());
+        let own = further.take_while(|at| inside(*at));
+        all.extend(own.map(|at| Line { at, ..*from }));
     };
     step(first, -1.0);
     step(last, 1.0);
     if fill {
         for (pair, wide) in lines.windows(2).zip(&gaps) {
-            let parts = (wide / gap).round() as usize;
+            let parts = (wide / gap).round().min(f64::from(MOST_LINES)) as usize;
             for k in 1..parts {
                 let at = pair[0].at + wide * k as f64 / parts as f64;
                 all.push(Line { at, ..pair[0] });
@@ -57,4 +60,25 @@ fn continued(lines: &[Line], length: f64, fill: bool) -> Vec<Line> {
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_beyond_all_measure_gets_no_lattice_beyond_all_measure() {
+        let window = |y: f64| Element::new(Class::Window, Rect::new(10.0, y, 20.0, 30.0));
+        let partial = |height: f64| PartialLayout {
+            width: 100.0,
+            height,
+            observed: vec![window(60.0), window(120.0)],
+            unknown: None,
+            forbidden: Vec::new(),
+        };
+        let added = |height: f64| lattice(&partial(height), true).added.len();
+        // 60 apart: 14 above, one below.
+        assert_eq!(added(1000.0), 15);
+        assert!(added(9.5e22) <= 2 * usize::from(MOST_LINES));
+    }
 }
