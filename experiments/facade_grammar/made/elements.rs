@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::draft::{Draft, Part, leaf};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// How a window is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

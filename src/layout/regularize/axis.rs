@@ -7,7 +7,7 @@ use super::equal::Cluster;
 use super::lattice::Lattice;
 use super::meeting::Groups;
 use super::strips::Strips;
-use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
+use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 
 /// How much dearer it is to change the size of an element than one of the background.
 const ELEMENT: f64 = 8.0;

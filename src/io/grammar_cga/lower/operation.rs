@@ -7,8 +7,8 @@ use super::super::note::Note;
 use super::super::reserved::is_appearance;
 use super::super::syntax::{Alternative, At, Entry, Part, Prefix, Target};
 use super::Builder;
-use crate::grammar::{Operation, Size, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Operation, Size, Successor};
+use edifice_shape::Axis;
 
 /// How far fractions may be from filling the whole.
 const FRACTION_SLACK: f64 = 1e-9;
