@@ -9,7 +9,7 @@ use super::partial::PartialLayout;
 use crate::rng::Stream;
 use crate::shape::Rect;
 
-/// What is hidden.
+/// The part of a layout that is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]

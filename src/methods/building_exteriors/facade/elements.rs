@@ -28,7 +28,7 @@ pub struct SubStyle {
     pub sill: f64,
 }
 
-/// What the facades of a house are made of.
+/// The sub-styles of windows and doors of which the facades of a house are made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Elements {
     /// Sub-styles of the windows of the house with the most similar styles.
@@ -37,7 +37,7 @@ pub struct Elements {
     pub doors: Vec<SubStyle>,
     /// Average width of wall between its elements, and between these and the ends of a piece (m).
     pub gap: f64,
-    /// The house.
+    /// Index of that house in the database.
     pub house: usize,
 }
 

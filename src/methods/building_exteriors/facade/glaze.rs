@@ -12,7 +12,7 @@ const TALLEST: f64 = 2.2;
 const NARROWEST: f64 = 0.85;
 const SLIMMEST: f64 = 0.35;
 
-/// How a strip is to be furnished.
+/// The plan by which a strip is furnished.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Plan {
     pub symmetric: bool,
@@ -152,7 +152,7 @@ fn openings(walls: &Walls, strip: &Strip, room: &Room, plan: &Plan, spacing: f64
     Vec::new()
 }
 
-/// Whether some window can stand on a piece off its middle.
+/// True if some window can stand on a piece off its middle.
 pub(super) fn holds_asymmetric(walls: &Walls, strip: &Strip, room: &Room, spacing: f64) -> bool {
     let plan = Plan {
         symmetric: false,

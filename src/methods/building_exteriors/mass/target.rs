@@ -1,4 +1,4 @@
-//! What a mass model is wanted to come to.
+//! The attributes that a mass model is to reach.
 
 use super::MASS;
 use crate::shape::{BoxStyle, Building, MassBox};

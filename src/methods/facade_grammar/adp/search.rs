@@ -18,7 +18,7 @@ use crate::optim::Step;
 use crate::optim::adp::{Adp, Approximation, Epsilon};
 use crate::shape::Facade;
 
-/// What every method starts from, and the methods.
+/// The common start of all methods: settings, facades, region types and the splitting heuristic; each method is a function of it.
 pub(in crate::methods::facade_grammar) struct Search<'a> {
     pub settings: &'a Settings,
     /// The facades before symmetry detection.

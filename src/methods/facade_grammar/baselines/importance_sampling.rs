@@ -7,7 +7,7 @@ use crate::methods::facade_grammar::rules::AddRule;
 use crate::optim::Step;
 use crate::optim::adp::{Approximation, Epsilon};
 
-/// Importance sampling learns nothing.
+/// The approximation of importance sampling: it learns nothing, so that every step explores.
 pub(crate) struct NothingKnown;
 
 impl Approximation<Inference> for NothingKnown {

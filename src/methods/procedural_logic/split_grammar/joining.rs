@@ -36,7 +36,7 @@ impl Joining {
     }
 }
 
-/// How often the rules of the binary tree call the rule of each node, regions of identical content having one rule.
+/// The number of times that the rules of the binary tree call the rule of each node, regions of identical content having one rule.
 fn calls(tree: &BinaryTree) -> Vec<usize> {
     let binary = NaryTree::unjoined(tree);
     let Classes { class, example } = classes(&binary);

@@ -30,13 +30,13 @@ impl ByPlace {
         self.elements.push(element);
     }
 
-    /// Whether the test, which only elements that meet the rectangle can pass, holds for any.
+    /// True if the test, which only elements that meet the rectangle can pass, holds for any.
     pub fn any_near(&self, rect: &Rect, test: impl Fn(&Element) -> bool) -> bool {
         let test = |k: u32| test(&self.elements[k as usize]);
         self.places.any_near(rect, test)
     }
 
-    /// Whether one of the elements excludes another one.
+    /// True if one of the elements excludes another one.
     pub fn exclude(&self, other: &Element) -> bool {
         self.any_near(&other.rect, |e| e.excludes(other))
     }

@@ -22,7 +22,7 @@ pub struct Compatibility {
     cover: Vec<u8>,
 }
 
-/// What a file holds.
+/// The content of a file: medians of sizes, and coherence sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Parts {
     /// Per class: median of sqrt(element area / facade area), and of height / width.

@@ -15,7 +15,7 @@ pub struct Line {
     pub feature: f64,
     /// The least of its values over grids, pairs or the facade.
     pub least: f64,
-    /// Where that value arises, in words.
+    /// The grid, pair or facade at which that value arises, in words.
     pub culprit: String,
 }
 
