@@ -59,7 +59,7 @@ fn one_rule_is_its_own_optimum() {
 #[test]
 fn extensions_are_operators_of_their_own() {
     let cost = |rows: &[&str]| solved(&[facade(rows)], EXTENSIONS, 1).1;
-    // a b a b a as an alternation, a b c b a mirrored about a cell, a b c c b a about a line.
+    // `ababa` as an alternation, `abcba` mirrored about a cell, `abccba` about a line.
     assert!((cost(&["ababa"]) - 2.5).abs() < 1e-9);
     assert!((cost(&["abcba"]) - 3.1).abs() < 1e-9);
     assert!((cost(&["abccba"]) - 3.1).abs() < 1e-9);
