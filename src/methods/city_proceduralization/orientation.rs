@@ -1,4 +1,4 @@
-//! Which way a component faces: of the two half turns of its box, one is canonical, so that like components, and
+//! The front of a component: of the two half turns of its box, one is canonical, so that like components, and
 //! like buildings, have like frames.
 
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -74,7 +74,7 @@ impl Task {
         }
     }
 
-    /// Which elements (by index) are hidden, and the unknown rectangles: elements whose centre is
+    /// The indices of the hidden elements, and the unknown rectangles. Hidden are elements whose centre is
     /// unknown, or a random share. At least one element is observed where any could be.
     pub fn split(
         self,

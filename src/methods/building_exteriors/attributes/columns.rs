@@ -1,6 +1,6 @@
 //! Names, units and groups of the 49 attributes.
 
-/// Which part of the hierarchical model a group belongs to (Fig. 4d).
+/// The part of the hierarchical model that a group belongs to (Fig. 4d).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
     /// Mass model attributes `M_c`: continuous.

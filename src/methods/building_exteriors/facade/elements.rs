@@ -33,7 +33,7 @@ pub struct SubStyle {
 pub struct Elements {
     /// Sub-styles of the windows of the house with the most similar styles.
     pub windows: Vec<SubStyle>,
-    /// Those of its doors.
+    /// Sub-styles of the doors of that house.
     pub doors: Vec<SubStyle>,
     /// Average width of wall between its elements, and between these and the ends of a piece (m).
     pub gap: f64,

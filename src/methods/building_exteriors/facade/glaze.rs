@@ -163,7 +163,7 @@ pub(super) fn holds_asymmetric(walls: &Walls, strip: &Strip, room: &Room, spacin
     !openings(walls, strip, room, &plan, spacing).is_empty()
 }
 
-/// Which window of the ground floor becomes the door: the middle one, or the first that has room.
+/// Index of the window of the ground floor that becomes the door: the middle one, or the first that has room.
 fn door_place(
     walls: &Walls,
     strip: &Strip,

@@ -158,7 +158,7 @@ pub(crate) fn garage_walls(building: &Building) -> Vec<(WallPiece, f64)> {
     found
 }
 
-/// Which finish a colour scheme must name.
+/// The finishes that a colour scheme must name.
 pub const FINISHES: [Finish; 9] = [
     Finish::Chimney,
     Finish::Wall,

@@ -190,7 +190,7 @@ impl Exploration {
             .collect()
     }
 
-    /// Which lines of a type cross a protected region.
+    /// The lines of a type that cross a protected region.
     pub fn blocked(&mut self, types: &mut Types, id: TypeId) -> &Blocked {
         self.blocked.mark(&self.protection, types, id);
         &self.blocked

@@ -18,7 +18,7 @@ use crate::shape::Axis;
 /// The lines of one type that cross protected regions other than itself.
 #[derive(Debug, Default)]
 pub(crate) struct Blocked {
-    /// By axis and cut.
+    /// For each axis and cut, true if the cut is blocked.
     lines: [Vec<bool>; 2],
     any: [bool; 2],
 }
@@ -102,7 +102,7 @@ pub(crate) struct FeasibleCandidates {
     positions: Vec<u32>,
     /// Sums of `exp(-H)`, up to a common factor, over the rules up to and with each.
     weights: Vec<f64>,
-    /// Those that were drawn, by position.
+    /// The rules that were drawn, by position.
     rules: RefCell<FxHashMap<usize, Rc<RuleCandidate>>>,
     /// All of them for Eq. 4, once they were asked for.
     priced: OnceCell<PricedCandidates>,
@@ -155,7 +155,7 @@ impl FeasibleCandidates {
 
 /// Numbers that a generation of the cache may hold, eight bytes each.
 const HELD: usize = 4_000_000;
-/// Of these, what a list takes beside its rules' weights, and what a rule takes, about.
+/// Numbers that a list takes beside its rules' weights, and that a rule takes, about.
 const PER_LIST: usize = 24;
 const PER_RULE: usize = 24;
 

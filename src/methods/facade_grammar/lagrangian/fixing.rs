@@ -109,7 +109,7 @@ impl Dual<'_> {
 /// Shortest paths from the start of an operator and to its end.
 #[derive(Default)]
 struct Around {
-    /// By arc of the operator.
+    /// Cost of each arc of the operator, with the parts below it.
     costs: Vec<f64>,
     before: Vec<f64>,
     after: Vec<f64>,

@@ -150,7 +150,7 @@ impl Program {
         }
     }
 
-    /// Groups the occurrences of each region type.
+    /// Finds the maximal cliques of overlapping occurrences of each region type.
     pub(super) fn fill_cliques(&mut self) {
         for region_type in &mut self.region_types {
             let region = |&occurrence: &u32| self.occurrences[occurrence as usize].region;

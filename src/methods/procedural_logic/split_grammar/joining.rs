@@ -1,4 +1,4 @@
-//! Which binary splits become one n-ary split (Eq. 9), when the grammar of one facade is written.
+//! The binary splits that become one n-ary split (Eq. 9), when the grammar of one facade is written.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::methods::procedural_logic::nary::{NaryNode, NaryTree};
 use crate::methods::procedural_logic::parse::BinaryTree;
 use crate::methods::procedural_logic::split_grammar::{Classes, classes};
 
-/// Which nested splits of one direction are joined.
+/// The set of nested splits of one direction that are joined.
 ///
 /// The text joins first and finds common rules then (Sec. 4.1); after that, the order in which lines of one direction
 /// were found is forgotten.

@@ -15,7 +15,7 @@ pub struct ByPlace {
 }
 
 impl ByPlace {
-    /// None yet, on a facade of this extent; elements of about `size`, some `most` of them.
+    /// An empty set on a facade of this extent, made for some `most` elements of about `size`.
     pub fn new(facade: [f64; 2], size: (f64, f64), most: usize) -> Self {
         Self {
             elements: Vec::new(),

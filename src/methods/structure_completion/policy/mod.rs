@@ -116,8 +116,8 @@ impl Policy {
         left
     }
 
-    /// Which of three options: the first with probability λ_i, the second with λ_j (both divided by their sum
-    /// where that is above 1), else the third.
+    /// Draws one of three options: 0 with probability λ_i, 1 with λ_j (both divided by their sum where that is
+    /// above 1), else 2.
     fn option<R: Rng>(&self, i: usize, j: usize, rng: &mut R) -> usize {
         let sum = (self.0[i] + self.0[j]).max(1.0);
         let at = rng.random::<f64>() * sum;

@@ -1,4 +1,4 @@
-//! Which element types occur together (Eq. 7 and 8).
+//! Compatibility: the element types that occur together (Eq. 7 and 8).
 //!
 //! An element type is a class, smaller or larger, and lower or taller than the median of that class in the
 //! database: 16 types. A coherence set holds the types of one facade. The smallest cover of the types

@@ -1,4 +1,4 @@
-//! Which grid, pair or side of the facade makes each term what it is.
+//! The explanation of a score: the grid, the pair or the side of the facade that makes each term what it is.
 
 use super::grid::Grid;
 use super::pair::{alignment, pattern};
