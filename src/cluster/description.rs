@@ -1,5 +1,4 @@
-//! How many clusters the points themselves ask for: the cut of a hierarchy with the shortest description
-//! (Rissanen 1978).
+//! The number of clusters by description length: the cut of a hierarchy with the shortest description (Rissanen 1978).
 //!
 //! Points are told to a precision ε, as a cluster's label, the cluster's mean, and what is left:
 //! - labels: n log2 n - Σ_c n_c log2 n_c bits;

@@ -133,7 +133,7 @@ struct Cutter<'a> {
     stamp: u64,
 }
 
-/// How bad a line is: rectangles crossed, areas crossed uncleanly, their length on the line.
+/// The cost of a line, compared in order: rectangles crossed, areas crossed uncleanly, their length on the line.
 type Badness = (usize, usize, f64);
 
 impl Cutter<'_> {

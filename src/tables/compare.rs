@@ -114,7 +114,7 @@ pub fn extended(settings: &Settings) -> Settings {
     }
 }
 
-/// How a learned model fares on unseen rows.
+/// The fit of a learned model to unseen rows.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Judged {
     /// Mean negative log-likelihood of a row, nats.

@@ -13,7 +13,7 @@ const COMPONENTS: usize = 3;
 const OFFSETS: [f64; 3] = [0.01, 0.1, 1.0];
 /// Offsets tried for shares.
 const SHARES: [f64; 2] = [0.01, 0.1];
-/// Where tails begin, in robust standard deviations.
+/// The distances from the centre at which tails begin, in robust standard deviations.
 const TAILS: [f64; 2] = [1.0, 3.0];
 
 /// The transform of `values` under which a mixture of at most four Gaussians has the least BIC, as a density of the values

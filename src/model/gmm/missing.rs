@@ -87,7 +87,7 @@ impl Marginals {
     }
 }
 
-/// How the missing coordinates follow from the observed ones under one component.
+/// The regression of the missing coordinates on the observed ones under one component.
 struct Regression {
     /// G, |m| x |o|.
     gain: Vec<f64>,

@@ -182,7 +182,7 @@ pub struct Settings {
     pub most_states: usize,
     /// Most lateral parents of one group.
     pub most_parents: usize,
-    /// Whether lateral edges may also run from categorical columns: to real groups, whose means the category shifts
+    /// True if lateral edges may also run from categorical columns: to real groups, whose means the category shifts
     /// (`N(C_g; B_ghᵀ (1, π(C_g), 1[E_k = 1], 1[E_k = 2], ..), Σ_gh)`), and to categorical columns (paper: no).
     pub category_edges: bool,
     /// ε: share of a wide background in every Gaussian of a real group, in [0, 1): `(1 - ε) N(C_g; ..) + ε N(C_g; 0, 9 I)`
@@ -198,7 +198,7 @@ pub struct Settings {
     pub search: Stopping,
     /// When EM of the final model stops.
     pub stopping: Stopping,
-    /// What to do with constant columns.
+    /// The treatment of constant columns.
     pub constant: Constant,
     /// For which cardinalities of S the second level is searched from the start.
     pub sweep: Sweep,

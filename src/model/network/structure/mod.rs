@@ -34,7 +34,7 @@ use climb::Climb;
 use constraints::Allowed;
 use families::Families;
 
-/// What is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
+/// The score that is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
 ///
 /// [`score`] computes it for a given structure, [`search`] looks for the structure of most. Of the two, BDeu is the exact
 /// log marginal likelihood under its prior; BIC approximates it for many rows.
@@ -81,7 +81,7 @@ pub enum Score {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// What is maximised.
+    /// The score that is maximised.
     pub score: Score,
     /// Most parents of one variable.
     pub most_parents: usize,
