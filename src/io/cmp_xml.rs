@@ -57,7 +57,7 @@ pub enum CmpError {
     Points {
         /// `x` or `y`.
         element: &'static str,
-        /// How often it stands there.
+        /// Number of times that it stands there.
         count: usize,
     },
     /// A coordinate is not a fraction.

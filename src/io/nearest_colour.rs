@@ -88,7 +88,7 @@ impl NearestSearch {
         label
     }
 
-    /// What was found; `None` when no colour was asked for.
+    /// The report on all colours that were looked up; `None` if there was none.
     pub fn found(&self, map: &LabelMap) -> Option<NearestColours> {
         let Furthest {
             squared,

@@ -89,7 +89,7 @@ pub fn address(picture: &Photograph) -> String {
     text
 }
 
-/// What stands before the picture in its address.
+/// The beginning of the data address, before the picture.
 fn head(format: PhotographFormat) -> &'static str {
     match format {
         PhotographFormat::Jpeg => "data:image/jpeg;base64,",

@@ -31,7 +31,7 @@ pub(super) struct Identities {
     flags: [Bit; 4],
 }
 
-/// What [`Identities::flags`] tell.
+/// The meanings of [`Identities::flags`].
 #[derive(Clone, Copy)]
 enum Flag {
     HasId,

@@ -101,7 +101,7 @@ pub fn write(grammar: &InstanceGrammar, path: &Path) -> Result<()> {
     )
 }
 
-/// What is not numbers.
+/// The texts of a file, and the few numbers that stand among them.
 #[derive(Serialize, Deserialize)]
 struct Texts {
     name: String,
