@@ -20,7 +20,7 @@ pub struct Open {
     folder: PathBuf,
     /// Name of the file it is saved as.
     file: String,
-    /// What the file held when it was read or written last; `None` before it is saved.
+    /// The content of the file when it was read or written last; `None` before it is saved.
     known: Option<Vec<u8>>,
     saved_at: u64,
     milliseconds: f64,
@@ -133,7 +133,7 @@ impl Open {
         self.file.strip_suffix(ending).unwrap_or(&self.file)
     }
 
-    /// What a list of documents says of it.
+    /// The entry of the document in a list of documents.
     pub fn summary(&self, id: &str) -> Value {
         let state = self.document.state();
         json!({

@@ -47,7 +47,7 @@ pub use server::{Running, start};
 
 use crate::Result;
 
-/// What the studio is started with.
+/// The settings that the studio is started with.
 #[derive(Debug, Clone, Default)]
 pub struct Settings {
     /// Files to open.

@@ -30,7 +30,7 @@ pub struct Args {
     /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
-    /// How to search
+    /// Method of search
     #[arg(long, value_enum, default_value = "adp")]
     method: MethodName,
     /// Iterations of the methods that repeat themselves

@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// What there is to say about a grammar.
+/// The summary of a grammar.
 struct Summary<'g> {
     cost: f64,
     operations: BTreeMap<&'static str, usize>,

@@ -3,7 +3,7 @@
 use edifice::model::hierarchy::Group;
 use edifice::model::{ModelError, Table};
 
-/// What is wrong with a piece of evidence.
+/// The defects of a piece of evidence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GivenError {
     /// Not of the form `name=value`.

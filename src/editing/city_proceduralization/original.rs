@@ -13,7 +13,7 @@ use crate::methods::city_proceduralization::{
 use crate::shape::triangles::{City, OrientedBox, TriangleMesh};
 use crate::{Error, Result};
 
-/// What [`Original::packed`] is asked for by.
+/// The name of the format of [`Original::packed`].
 pub const FORMAT: &str = "original";
 /// Corners of a packed part at most, so that an index has 16 bits.
 const CORNERS: usize = 65_535;

@@ -12,7 +12,7 @@ use crate::io::photograph;
 use crate::shape::AnnotatedFacade;
 use crate::{Error, Result};
 
-/// What is asked of a drawing without changing it.
+/// The questions to a drawing that do not change it.
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 enum Question {
