@@ -13,7 +13,7 @@ use crate::tables::compare::split;
 use crate::tables::schema::{FORMAT, Schema, VERSION};
 use crate::{Error, Result};
 
-/// What the generator knows.
+/// The generator's own knowledge of the houses, which learning does not see.
 #[derive(Deserialize)]
 pub struct Truth {
     /// Hidden style of each house.

@@ -117,7 +117,7 @@ fn run_learn(settings: &Learn, given: &Given) -> Result<Outcome> {
     Ok(found)
 }
 
-/// How a house is made of its attributes.
+/// The method that makes a house of its attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum GeneratorName {

@@ -1,4 +1,4 @@
-//! How synthesis and localization are judged: by measures of the derived triangles, not by what the methods say of
+//! The judges of synthesis and localization: measures of the derived triangles, not numbers that the methods report
 //! themselves.
 
 use std::collections::BTreeMap;
@@ -155,7 +155,7 @@ fn distance(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
 
 type Frequencies = BTreeMap<(String, String), f64>;
 
-/// How often types stand together, among some of the buildings.
+/// The share of each pair of types among all pairs that stand together, of some of the buildings.
 fn together(marks: &[Landmark], kinds: &[String], members: &[usize]) -> Frequencies {
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     let cell = |i: usize| marks[i].at.map(|v| (v / TOGETHER).floor() as i64);

@@ -1,4 +1,4 @@
-//! What is found again of a known grammar, without and with noise.
+//! The parts of a known grammar that are found again, without and with noise.
 
 use serde::{Deserialize, Serialize};
 

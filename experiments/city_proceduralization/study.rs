@@ -11,7 +11,7 @@ use crate::methods::city_proceduralization::{self as proceduralization, Budget};
 use crate::shape::triangles::City;
 use crate::{Error, Result};
 
-/// How types are found.
+/// The method that finds types.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Mode {
@@ -19,7 +19,7 @@ enum Mode {
     Paper,
 }
 
-/// What represents a type, of `paper`.
+/// The representative of a type, of `paper`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Representative {
@@ -31,9 +31,9 @@ enum Representative {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Proceduralize {
-    /// How types are found.
+    /// Method that finds types.
     mode: Mode,
-    /// What represents a type, of `paper`.
+    /// Representative of a type, of `paper`.
     representative: Representative,
     /// The number of templates is that of the components, halved so many times; 0 for one of each distinct component.
     level: u32,

@@ -7,7 +7,7 @@ use crate::experiments::{Budget, Context};
 use crate::methods::facade_grammar::Operations;
 use crate::report::{Align, Row, Table};
 
-/// What a comparison runs.
+/// The methods, operations and metrics of a comparison.
 pub struct Plan {
     /// Methods in the order of the columns.
     pub solvers: Vec<Solver>,

@@ -1,4 +1,4 @@
-//! How far from optimal: lower bounds and proofs for small facades.
+//! The distance from the optimum: lower bounds and proofs for small facades.
 
 use cpu_time::ThreadTime;
 
@@ -21,7 +21,7 @@ const FEW_NODES: u64 = 100;
 /// Facades of each real set, evenly spread, among which the smallest are taken.
 const LOOKED_AT: usize = 40;
 
-/// What is known of one facade under one set of operations.
+/// The bounds known for one facade under one set of operations.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Answer {
     terminals: usize,
@@ -40,7 +40,7 @@ struct Answer {
 }
 
 impl Answer {
-    /// How much less than `cost` a grammar may still cost, in per cent of the bound.
+    /// The most that a grammar may still cost less than `cost`, in per cent of the bound.
     fn gap(&self) -> f64 {
         100.0 * (self.cost - self.lower).max(0.0) / self.lower
     }

@@ -1,4 +1,5 @@
-//! What the text leaves open in its algorithm: facade (i) and what `best` saves, under each reading.
+//! The readings of the points that the text of the algorithm leaves open: facade (i), and the saving of `best`, under
+//! each reading.
 
 use super::data::{self, FIGURE_9, Instance};
 use super::published::Published;

@@ -1,4 +1,4 @@
-//! What real facades leave to gain: how far below `paper` any grammar could come.
+//! The room that real facades leave: the greatest saving below `paper` that any grammar could have.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,11 +34,11 @@ struct Lower {
 
 /// One facade's per cent below `paper`.
 struct Room {
-    /// What `best` saves.
+    /// The saving of `best`.
     saved: f64,
-    /// What no grammar exceeds.
+    /// The saving that no grammar exceeds.
     most: f64,
-    /// Whether `best` is proven optimal.
+    /// True if `best` is proven optimal.
     optimal: bool,
 }
 

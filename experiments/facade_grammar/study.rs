@@ -16,7 +16,7 @@ use crate::methods::facade_grammar::{
 };
 use crate::{Error, Result};
 
-/// How to search.
+/// The method of search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum MethodName {
@@ -38,7 +38,7 @@ enum Operation {
     GridSplit,
 }
 
-/// Whether important regions are protected (Sec. 4.7).
+/// The protection of important regions (Sec. 4.7).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Protection {

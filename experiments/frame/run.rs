@@ -18,7 +18,7 @@ use super::{Artefact, Experiment};
 use crate::report::{self, Page, Section};
 use crate::{Error, Result};
 
-/// What was run.
+/// The outcome of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// The report's first page.

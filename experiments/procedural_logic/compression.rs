@@ -8,7 +8,7 @@ use crate::optim::grid::points;
 use crate::report::{Figure, HeatMap};
 use crate::{Error, Result};
 
-/// What the paper says of every value of its ranges.
+/// The number of rules that the paper prints for every value of its ranges.
 const PRINTED: f64 = 68.0;
 
 /// Searches the grid for the fewest rules, on each set.

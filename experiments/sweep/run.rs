@@ -23,7 +23,7 @@ pub enum Wanted {
     MissingAndFailed,
 }
 
-/// What a run did.
+/// The counts of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ran {
     /// Tasks that were run and found something.

@@ -1,4 +1,4 @@
-//! What several tasks of one process need and is dear to make, such as a model that all arms share.
+//! Values that several tasks of one process need and that are dear to make, such as a model that all arms share.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};

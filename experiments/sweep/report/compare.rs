@@ -1,4 +1,4 @@
-//! What the results say of each arm, and of each against the reference.
+//! The results of each arm, and of each against the reference.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use crate::experiments::sweep::statistics::{
 use crate::experiments::sweep::study::{Better, Study};
 use crate::rng::stream;
 
-/// What is compared.
+/// The question of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// Metric.
@@ -77,11 +77,12 @@ pub struct Line {
 /// Everything that a report says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What is compared.
+    /// The question.
     pub question: Question,
     /// By arm.
     pub lines: Vec<Line>,
-    /// What a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the splits of it, or its parts.
+    /// The unit that a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the
+    /// splits of it, or its parts.
     pub unit: &'static str,
     /// Units that all arms have values of.
     pub common: Vec<usize>,
