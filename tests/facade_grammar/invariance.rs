@@ -1,4 +1,4 @@
-//! What a facade grammar costs does not depend on units, on orientation or on where regions are listed.
+//! The cost of a facade grammar does not depend on units, on orientation or on the order in which regions are listed.
 
 use std::path::Path;
 
@@ -163,7 +163,7 @@ fn views(facades: &[Facade], rng: &mut Stream) -> (usize, Vec<(String, Vec<Facad
     (count, views.collect())
 }
 
-/// How the cost or the proof of the other views differ.
+/// The differences in the cost or the proof of the other views, in words.
 fn differences(
     facades: &[Facade],
     operations: Operations,

@@ -8,7 +8,7 @@
 
 use super::network::Network;
 
-/// What is decided of a type.
+/// The decision on a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// Nothing.

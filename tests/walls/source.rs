@@ -66,13 +66,13 @@ impl Source {
         found
     }
 
-    /// Whether the code has this word.
+    /// True if the code has this word.
     pub fn names(&self, word: &str) -> bool {
         has_word(&self.code, word)
     }
 }
 
-/// Whether a text has a word that is no part of a longer one.
+/// True if a text has a word that is no part of a longer one.
 pub fn has_word(text: &str, word: &str) -> bool {
     let part = |c: char| c.is_alphanumeric() || c == '_';
     text.match_indices(word)
