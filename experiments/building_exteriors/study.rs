@@ -44,7 +44,7 @@ struct Learn {
     restarts: usize,
     /// Share of the houses that is learnt from.
     share: f64,
-    /// At most so many houses are learnt from; 0 for all of the share.
+    /// Most houses that are learnt from; 0 for all of the share.
     houses: usize,
     /// Seed of learning and of the shuffle; the sweep's seeds number the splits of it.
     seed: u64,

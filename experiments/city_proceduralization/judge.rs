@@ -19,7 +19,7 @@ use crate::shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples}
 const CELL: f64 = 0.5;
 /// Points on plans that tell what lies inside a shape.
 const POINTS: usize = 100_000;
-/// Buildings stand together within so many metres.
+/// Greatest distance of buildings that stand together, in metres.
 const TOGETHER: f64 = 30.0;
 
 /// Measures of a city against the one that its grammar was made from.
@@ -249,7 +249,7 @@ fn extent(marks: &[Landmark]) -> f64 {
 }
 
 /// Share of views whose place is found first. A view is a building of `truth` with those nearest to it, `seen` in all,
-/// in any order; its features carry noise of so many standard deviations. It is looked up among `known`, the same buildings
+/// in any order; its features carry `noise`, in standard deviations. It is looked up among `known`, the same buildings
 /// as the grammar gives them.
 pub fn rank_one(
     truth: &[Landmark],

@@ -122,7 +122,7 @@ fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>]
     );
 }
 
-/// Runs and notes the state every so many iterations.
+/// Runs and notes the state at regular intervals of iterations.
 fn trace(
     facade: &Facade,
     method: Method,

@@ -110,7 +110,7 @@ const NOTE: &str = "Not in the paper, which proves nothing. *cost* is that of th
     The search stops after a number of branches (fewer above 100 terminals), never by the clock. A *weak* bound only counts labels: \
     there the facade has more rules and places than are taken on.";
 
-/// Facade (i) and the shipped and real facades of at most so many terminals, the smallest first;
+/// Facade (i) and the shipped and real facades of at most `terminals` terminals, the smallest first;
 /// `real` of each real set, out of [`LOOKED_AT`].
 fn instances(ctx: &mut Context, terminals: usize, real: usize) -> Result<Vec<Instance>> {
     let small = |instance: &Instance| instance.facade.regions.len() <= terminals;

@@ -181,7 +181,7 @@ pub struct Annotations {
     balconies: BTreeMap<String, Vec<f64>>,
 }
 
-/// A running balcony ends at least so far below the window's own balcony, as a fraction of the height:
+/// Least distance of a running balcony's end below the window's own balcony, as a fraction of the height:
 /// equal numbers say that there is none, and the annotation repeats a number to about 0.001.
 const RUNNING: f64 = 0.01;
 

@@ -102,7 +102,7 @@ impl Plan {
     /// is waited for.
     ///
     /// # Errors
-    /// What reading the file says, [`Error::Content`] where there is no instance.
+    /// Those of reading the file; [`Error::Content`] if there is no instance.
     pub fn make(sweep: &Path, out: &Path, studies: &[Study]) -> Result<Self> {
         let definition = read(sweep, studies)?;
         let _lock = Lock::wait(out)?;

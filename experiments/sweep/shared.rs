@@ -12,7 +12,7 @@ pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
 const KEPT: usize = 64;
 
 impl<V> Shared<V> {
-    /// Nothing yet.
+    /// A store without any value.
     pub const fn new() -> Self {
         Self(Mutex::new(VecDeque::new()))
     }

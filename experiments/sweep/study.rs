@@ -25,7 +25,7 @@ pub enum Better {
 pub struct Outcome {
     /// Value of each metric; the same task gives the same values, so times do not belong here.
     pub metrics: BTreeMap<String, f64>,
-    /// The best value of the first metric after so many evaluations, where the method says so: `[evaluations, value]`, rising.
+    /// The best value of the first metric by evaluations, if the method reports it: `[evaluations, value]`, rising.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trace: Vec<[f64; 2]>,
     /// No value of the first metric is better, as far as it is proven.
@@ -148,7 +148,7 @@ impl Study {
     /// Runs one task.
     ///
     /// # Errors
-    /// What the method says.
+    /// Those of the method.
     pub fn run(&self, settings: &Map<String, Value>, given: &Given) -> Result<Outcome> {
         (self.run)(settings, given)
     }

@@ -93,7 +93,7 @@ impl Open {
         Ok(())
     }
 
-    /// Takes what commands came to, in so many milliseconds.
+    /// Takes the results of commands, and the milliseconds that they took.
     pub fn take(&mut self, commands: &[Value], steps: Vec<Step>, milliseconds: f64) {
         self.document.take(commands, steps);
         self.milliseconds = milliseconds;

@@ -5,7 +5,7 @@ use crate::model::ModelError;
 use crate::model::conjugate::LinearPrior;
 use crate::model::gmm::{Criterion, Points, Prior, Settings, select};
 
-/// Values that a choice is made on: of more, so many spread over the ranks.
+/// Most values that a choice is made on; of more, this number is taken, spread over the ranks.
 const LOOKED_AT: usize = 400;
 /// Components of the mixture at most.
 const COMPONENTS: usize = 3;

@@ -121,7 +121,7 @@ const FACTORS: [f64; 12] = [
     1.0 / 0.3048,
 ];
 
-/// The same layouts in other ways, each with a name. What changes sizes only comes first, so many of them.
+/// The same layouts in other ways, each with a name. Changes of size alone come first; their number is returned too.
 fn views(facades: &[Facade], rng: &mut Stream) -> (usize, Vec<(String, Vec<Facade>)>) {
     let factor = FACTORS[rng.random_range(0..FACTORS.len())];
     let random = 10f64.powf(rng.random_range(-6.0..6.0));

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::output::{self, Format};
 use crate::cli::print;
 
-/// Houses written together: at most so many are in memory.
+/// Most houses that are in memory and written together.
 const CHUNK: usize = 64;
 
 /// The folder of the houses, and their form.

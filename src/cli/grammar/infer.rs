@@ -39,7 +39,7 @@ pub struct Args {
     /// Seed of all randomness
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Operations that rules may use: split, repeat, repeat_aba, sym_split, grid_split
+    /// Operations that rules may use: `split`, `repeat`, `repeat_aba`, `sym_split`, `grid_split`
     #[arg(long, default_value_t = Operations::default(), value_name = "LIST")]
     ops: Operations,
     /// Cost of a split, and of the extensions that split once

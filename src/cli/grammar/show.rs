@@ -26,7 +26,7 @@ pub struct Args {
     /// Cost of split, and of symsplit and gridsplit
     #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().split)]
     split_cost: f64,
-    /// Cost of repeat, and of repeatABA
+    /// Cost of a repeat, and of a repeat of the form ABABA
     #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().repeat)]
     repeat_cost: f64,
     /// End with one line of JSON

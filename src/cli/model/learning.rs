@@ -29,7 +29,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 pub struct Learning {
     #[command(flatten)]
     pub search: Search,
-    /// End after so many seconds with the best model so far (as Ctrl-C does).
+    /// Seconds after which to end with the best model so far (as Ctrl-C does).
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
     /// Go on from a model that was learned before from such a table, for example one that was interrupted.

@@ -23,7 +23,7 @@ use crate::shape::Building;
 
 /// First column that is yes or no.
 pub const FIRST_FLAG: usize = 39;
-/// Draws of the model: for an answer, of which so many are built; for the ranges.
+/// Draws of the model for an answer, those of them that are built, and draws for the ranges.
 const POOL: usize = 500;
 const TRIES: usize = 4;
 const DRAWS: usize = 2000;

@@ -80,7 +80,7 @@ pub(super) fn times(operation: &Operation, index: usize, periods: usize) -> f64 
     count as f64
 }
 
-/// Sums of the absolute and of the relative sizes along an axis, in a region with so many periods.
+/// Sums of the absolute and of the relative sizes along an axis, in a region with this number of periods.
 pub(super) fn totals(operation: &Operation, axis: Axis, periods: usize) -> [f64; 2] {
     let mut sums = [0.0, 0.0];
     for (k, size) in along(operation, axis).iter().enumerate() {

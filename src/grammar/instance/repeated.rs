@@ -16,11 +16,11 @@ use rustc_hash::FxHashMap;
 
 /// A pair becomes a rule when it occurs so often: with two occurrences a rule saves nothing.
 const LEAST: usize = 3;
-/// Relative places are alike within so many metres,
+/// Greatest distance of relative places that are alike, in metres; it grows with the next constant.
 const CLOSE: f64 = 1.0;
-/// and this share of the distance,
+/// Share of the distance from the anchor that is added to it.
 const CLOSE_SHARE: f64 = 0.1;
-/// and so many degrees.
+/// Greatest difference of turns that are alike, in degrees.
 const CLOSE_TURN: f64 = 15.0;
 /// Rounds at most.
 const ROUNDS: usize = 24;

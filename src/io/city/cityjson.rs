@@ -1,9 +1,9 @@
 //! Cities as CityJSON 1.0 to 2.0 (`.city.json`) and CityJSONSeq (`.city.jsonl`): z up, metres.
 //!
-//! A first-level city object with its parts is a building. Read are MultiSurface, CompositeSurface, Solid,
-//! MultiSolid and CompositeSolid of the highest level of detail; polygons with holes are triangulated. Where
+//! A first-level city object with its parts is a building. Read are `MultiSurface`, `CompositeSurface`, `Solid`,
+//! `MultiSolid` and `CompositeSolid` of the highest level of detail; polygons with holes are triangulated. Where
 //! surfaces are named (semantics) and windows among them, they are painted: openings dark, all else light.
-//! Written is CityJSON 2.0 with a MultiSurface of triangles for each building.
+//! Written is CityJSON 2.0 with a `MultiSurface` of triangles for each building.
 
 use std::path::Path;
 use std::sync::Arc;

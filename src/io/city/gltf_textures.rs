@@ -44,7 +44,7 @@ struct Extensions {
     transform: Option<Transform>,
 }
 
-/// KHR_texture_transform.
+/// The extension `KHR_texture_transform`.
 #[derive(Clone, Copy, Deserialize)]
 pub(super) struct Transform {
     #[serde(default)]

@@ -12,7 +12,7 @@ use crate::shape::triangles::{City, Painted, corner_bits};
 /// Space between pictures, in pixels.
 const GAP: usize = 8;
 
-/// Textures are drawn in about so many pieces.
+/// Approximate number of pieces in which textures are drawn.
 const MOST_PIECES: f64 = 600_000.0;
 /// No piece is halved below this length, in metres.
 const FINEST: f64 = 0.25;

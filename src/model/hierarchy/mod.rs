@@ -156,7 +156,7 @@ pub enum Sweep {
 /// movements are as in [`Stopping`].
 ///
 /// # Examples
-/// What a background is worth on a row ten deviations away, in nats:
+/// The gain of a background on a row ten deviations away, in nats:
 /// ```
 /// use std::ops::ControlFlow;
 /// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
@@ -202,7 +202,7 @@ pub struct Settings {
     pub constant: Constant,
     /// For which cardinalities of S the second level is searched from the start.
     pub sweep: Sweep,
-    /// Most rows that the structure is searched on: of more, so many are drawn from those that lack fewest values, and the
+    /// Most rows that the structure is searched on: of more, this number is drawn from those that lack fewest values, and the
     /// parameters of the structure found are then fitted to all of them, until a round gains less than 1e-4 nats a row.
     pub searched: usize,
 }

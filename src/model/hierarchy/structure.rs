@@ -6,7 +6,7 @@ use super::super::graph::{order, reaches};
 /// The variable that selects one of the linear Gaussians of a group of real columns.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Selector {
-    /// The group's own second-level hidden variable, with so many values.
+    /// The group's own second-level hidden variable, with its number of values.
     Hidden(usize),
     /// The style S itself.
     Style,

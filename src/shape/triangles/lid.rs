@@ -11,7 +11,7 @@ use super::{Corners, TriangleMesh};
 const LEAST_AREA: f64 = 1e-4;
 /// Ends of segments closer than this meet, in metres.
 const WELD: f64 = 1e-3;
-/// A section may differ so much from A(z), as a share.
+/// Greatest difference of a section from A(z), as a share of A(z).
 const CLOSE: f64 = 0.01;
 /// Faces closer to the plane than this lie in it, in metres.
 const LEVEL: f64 = 1e-5;

@@ -1,7 +1,7 @@
 //! Structure search: the graph of a discrete network from complete rows.
 //!
 //! A structure's score is a sum over families, a variable X_i with parents U_i, r_i categories and q_i configurations of
-//! the parents; N_ijk rows have category k in configuration j:
+//! the parents; `N_ijk` rows have category k in configuration j:
 //!
 //! ```text
 //! BIC   Σ_i [ Σ_jk N_ijk log(N_ijk / N_ij) - (r_i - 1) q_i / 2 log N ]                              (Schwarz 1978)
@@ -54,7 +54,7 @@ use families::Families;
 pub enum Score {
     /// Log likelihood less `log N / 2` for each free parameter.
     Bic,
-    /// Log marginal likelihood under Dirichlet priors worth so many rows in all (equivalent sample size).
+    /// Log marginal likelihood under Dirichlet priors with this equivalent sample size, in rows.
     Bdeu(f64),
 }
 
