@@ -97,12 +97,12 @@ impl Measure {
     }
 }
 
-/// Which layouts a mean is over.
+/// The layouts that a mean is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layouts {
-    /// Those designed for the reference's kind.
+    /// Layouts designed for the reference's kind.
     Own,
-    /// All that have a reference of the kind.
+    /// All layouts that have a reference of the kind.
     All,
 }
 

@@ -27,7 +27,7 @@ struct Answer {
     terminals: usize,
     /// Cost of the grammar that the best configuration finds.
     cost: f64,
-    /// No grammar costs less.
+    /// Lower bound: no grammar costs less.
     lower: f64,
     /// Cost of the best grammar known after branch and bound.
     upper: f64,

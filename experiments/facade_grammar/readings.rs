@@ -206,7 +206,7 @@ fn categories(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| name.to_string()).collect()
 }
 
-/// By how much `best` is cheaper, facade by facade, on each set of the others.
+/// The saving of `best`, facade by facade, on each set of the others.
 fn savings(ctx: &mut Context, found: &Found, names: &[&str], many: u64) -> Bars {
     let mut sets: Vec<&str> = found.instances.iter().map(|i| i.dataset).collect();
     sets.dedup();

@@ -32,7 +32,7 @@ struct Lower {
     weak: bool,
 }
 
-/// One facade's per cent below `paper`.
+/// The savings on one facade, in per cent of the cost of `paper`.
 struct Room {
     /// The saving of `best`.
     saved: f64,

@@ -82,7 +82,7 @@ pub struct Comparison {
     pub quantity: String,
     /// The paper's number as printed.
     pub printed: String,
-    /// Ours.
+    /// The number that this run found.
     pub ours: String,
 }
 

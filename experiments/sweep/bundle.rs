@@ -44,7 +44,7 @@ enum BundleError {
 pub struct Verified {
     /// Tasks that were run again.
     pub rerun: usize,
-    /// Those that found something else: arm, instance, seed.
+    /// Tasks that found something else: arm, instance, seed.
     pub different: Vec<String>,
 }
 

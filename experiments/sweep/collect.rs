@@ -32,7 +32,7 @@ pub struct ArmState {
 /// State of a sweep.
 #[derive(Debug)]
 pub struct State {
-    /// By arm.
+    /// The state of each arm.
     pub arms: Vec<ArmState>,
     /// First message of each kind of failure, and how often it occurred.
     pub failures: BTreeMap<String, usize>,

@@ -110,7 +110,7 @@ pub struct Damaged {
 /// Everything that is known of a sweep's tasks, by key; of several entries of a task a success counts, of several such the first.
 #[derive(Debug, Default)]
 pub struct Known {
-    /// By key.
+    /// Entries by key.
     pub entries: HashMap<String, Entry>,
     /// Lines that could not be read.
     pub damaged: Vec<Damaged>,
@@ -121,11 +121,11 @@ pub struct Known {
 /// The part of the outcomes that is kept in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
-    /// That there is one.
+    /// Only the presence of an outcome.
     Presence,
     /// Metrics and bounds.
     Metrics,
-    /// Everything.
+    /// All outcomes, with traces.
     All,
 }
 

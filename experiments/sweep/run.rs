@@ -14,12 +14,12 @@ use crate::experiments::frame::Progress;
 use crate::rng::stream;
 use crate::{Error, Result};
 
-/// Which tasks of a shard to run.
+/// The tasks of a shard that are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wanted {
-    /// Those without a result.
+    /// Tasks without a result.
     Missing,
-    /// Those without a result, and those that failed.
+    /// Tasks without a result, and those that failed.
     MissingAndFailed,
 }
 

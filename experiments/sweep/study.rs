@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::{Error, Result};
 
-/// Which values of a metric are better.
+/// The values of a metric that are better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Better {

@@ -8,7 +8,7 @@ use super::{EDITORS, State, open};
 use crate::experiments::shipped_bytes;
 use crate::{Error, Result};
 
-/// Something to begin with.
+/// A document to begin with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Example {
     /// The name that it is asked for by.

@@ -45,7 +45,7 @@ pub fn steps(state: &Arc<dyn State>, commands: &[Value], work: &Work) -> Result<
 /// An entry of the log.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Logged {
-    /// In words.
+    /// The edit, in words.
     pub said: String,
     /// The commands, without the files that they hold.
     pub commands: Vec<Value>,

@@ -169,7 +169,7 @@ pub enum CommandError {
     /// A document has no such format.
     #[error("this document cannot be written as {0:?}")]
     Format(String),
-    /// Nothing was asked for.
+    /// The list of commands is empty.
     #[error("nothing to edit")]
     Nothing,
     /// The work was stopped.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 /// A word of a command line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Word {
-    /// As it is.
+    /// A text that stands for itself.
     Text(String),
     /// The file of the state before.
     Input,

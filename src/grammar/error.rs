@@ -92,7 +92,7 @@ pub enum GrammarError {
         rule: usize,
         /// Its left-hand side.
         symbol: String,
-        /// Which list, for example `cells[2]`.
+        /// The list, for example `cells[2]`.
         place: String,
         /// Entries found.
         found: usize,

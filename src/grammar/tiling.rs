@@ -23,7 +23,7 @@ pub enum Difference {
         label: String,
         /// Its rectangle.
         rect: Rect,
-        /// Which layout has it.
+        /// True if the first layout has it, false if the second.
         in_first: bool,
     },
 }

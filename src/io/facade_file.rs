@@ -27,7 +27,7 @@ pub struct ReadOptions {
     /// True if a colour of an image that the label map does not name takes the label of the nearest colour; otherwise
     /// it is an error. JPEG images are read only so.
     pub nearest_colour: bool,
-    /// Which image of a COCO file is meant, where it has several.
+    /// The image of a COCO file that is meant, if it has several.
     pub image: Option<String>,
     /// Width and height of a CMP facade, in pixels, when no PNG of its name stands beside the XML.
     pub size: Option<(f64, f64)>,

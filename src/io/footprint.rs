@@ -59,9 +59,9 @@ pub enum FootprintError {
     /// A plan that is too small or too large for a house.
     #[error("the footprint is {width:.1} m x {depth:.1} m, expected 4 to 60 m")]
     Size {
-        /// Along the longest edge.
+        /// Extent along the longest edge, in metres.
         width: f64,
-        /// Across.
+        /// Extent across it, in metres.
         depth: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! Which colour or number of an image stands for which label.
+//! The labels that colours or numbers of an image stand for.
 
 use std::fmt;
 use std::path::Path;

@@ -28,7 +28,7 @@ pub enum ReadPhotographError {
     /// Its header cannot be read.
     #[error("the picture cannot be read: {0}")]
     Picture(#[from] image::ImageError),
-    /// It is too large.
+    /// The picture is too large.
     #[error(transparent)]
     Large(#[from] PhotographError),
 }

@@ -76,7 +76,7 @@ pub struct Boosting {
 /// Why a [`Boosting`] cannot be learnt, or read: the first three from [`Boosting::learn`], the last from [`Boosting::check`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BoostingError {
-    /// No row at all.
+    /// There is no row.
     #[error("no rows to learn from")]
     Empty,
     /// A row of another length than the first.

@@ -41,7 +41,7 @@ impl Particles {
         }
     }
 
-    /// One of no states, with nothing missing.
+    /// One particle that has no states yet and no missing value.
     pub fn start() -> Self {
         Self {
             log_densities: vec![0.0],

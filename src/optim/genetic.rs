@@ -96,7 +96,7 @@ pub enum GeneticError {
     /// A setting is out of its range.
     #[error("genetic algorithm: {setting} is {value}, expected {expected}")]
     Setting {
-        /// Which one.
+        /// Name of the setting.
         setting: &'static str,
         /// Its value.
         value: f64,

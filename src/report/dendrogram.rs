@@ -17,9 +17,9 @@ const ABOVE_AND_BELOW: f64 = 80.0;
 /// One merge: clusters below the number of leaves are leaves, `leaves + k` is the k-th merge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Merge {
-    /// One cluster.
+    /// One of the two clusters.
     pub left: usize,
-    /// The other.
+    /// The other of the two clusters.
     pub right: usize,
     /// Distance at which they meet.
     pub height: f64,

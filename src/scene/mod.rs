@@ -95,7 +95,7 @@ impl Group {
     }
 }
 
-/// Everything there is to show.
+/// All that a picture shows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     /// Surfaces.

@@ -244,7 +244,7 @@ fn less(a: Badness, b: Badness) -> bool {
         .is_lt()
 }
 
-/// Which areas one line crosses and runs along.
+/// The areas that one line crosses, and those that it runs along.
 struct Marks {
     stamp: u32,
     crossed_at: Vec<u32>,

@@ -143,7 +143,7 @@ impl Open {
         })
     }
 
-    /// All of it.
+    /// The whole document, as a page gets it.
     ///
     /// # Errors
     /// As [`State::view`].

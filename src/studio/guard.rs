@@ -1,4 +1,4 @@
-//! Who may ask: looked at before a request is routed.
+//! The check of every request before it is routed.
 //!
 //! A page of another site can make a browser send requests here, and by a name that is bound to 127.0.0.1 (rebinding) even
 //! read the answers. So: the `Host` must be one of two names with this port, an `Origin` one of two, `Sec-Fetch-Site` this

@@ -19,7 +19,7 @@ pub struct Job {
     place: Mutex<Place>,
 }
 
-/// Which document a job is for, and how it ended.
+/// The document of a job, and the job's end.
 struct Place {
     document: Option<String>,
     end: Option<(End, f64)>,

@@ -16,9 +16,9 @@ pub const BACKGROUND: f64 = 0.002;
 pub enum Contender {
     /// The hierarchical model with lateral edges.
     Ours,
-    /// Without lateral edges.
+    /// The hierarchical model without lateral edges.
     Model1,
-    /// Without the second hidden level (Fig. 4b).
+    /// The hierarchical model without the second hidden level (Fig. 4b).
     Model2,
     /// A directed model without hidden variables (Fig. 4a).
     Model3,

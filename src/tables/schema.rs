@@ -1,4 +1,4 @@
-//! Which columns of a table are which attributes: `*.schema.json`.
+//! The columns of each attribute of a table: `*.schema.json`.
 //!
 //! ```json
 //! { "format": "edifice/attributes", "version": 1,

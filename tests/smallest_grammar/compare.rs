@@ -16,7 +16,7 @@ use super::search::{Limits, smallest};
 /// Differences of costs that are noise.
 const NOISE: f64 = 1e-6;
 
-/// Some layouts, what rules may be and what they cost.
+/// The layouts, operations and costs of a case.
 pub struct Case {
     /// The layouts.
     pub facades: Vec<Content>,

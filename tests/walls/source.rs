@@ -13,7 +13,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// From the path below the root and the whole text.
+    /// A source from its path below the root and the whole text.
     pub fn new(place: &str, text: &str) -> Self {
         let inside = place.strip_prefix("src/").unwrap_or(place);
         let mut module: Vec<String> = inside

@@ -20,7 +20,7 @@ pub enum Rhythm {
 }
 
 impl Rhythm {
-    /// Which kind stands at place `i` of `n`, from 0 for A.
+    /// The kind that stands at place `i` of `n`, from 0 for A.
     pub fn kind(self, i: usize, n: usize) -> usize {
         let last = n - 1;
         match self {

@@ -69,7 +69,7 @@ enum Seeds {
 pub struct ReportOptions {
     /// Metric; the study's first unless given.
     pub metric: Option<String>,
-    /// Which values are better.
+    /// The values that are better.
     pub better: Option<Better>,
     /// Name of the arm that the others are compared with; the first unless given.
     pub reference: Option<String>,

@@ -15,7 +15,7 @@ use crate::rng::stream;
 pub struct Question {
     /// Metric.
     pub metric: String,
-    /// Which values are better.
+    /// The values that are better.
     pub better: Better,
     /// Index of the arm that the others are compared with.
     pub reference: usize,
@@ -55,7 +55,7 @@ impl Question {
 /// Values of the metric: `[arm][unit]`, by seed.
 pub type Values = Vec<Vec<BTreeMap<u64, f64>>>;
 
-/// One arm.
+/// The results of one arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     /// Mean over the units that all arms have.
@@ -79,7 +79,7 @@ pub struct Line {
 pub struct Comparison {
     /// The question.
     pub question: Question,
-    /// By arm.
+    /// The results, one line for each arm.
     pub lines: Vec<Line>,
     /// The unit that a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the
     /// splits of it, or its parts.

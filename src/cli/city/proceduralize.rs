@@ -53,7 +53,7 @@ enum Keep {
     Ids,
     /// Identifiers, and neither textures nor patterns for synthesis.
     Buildings,
-    /// Neither these nor those.
+    /// No attributes, identifiers, textures or patterns for synthesis.
     Shape,
 }
 

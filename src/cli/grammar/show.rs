@@ -154,7 +154,7 @@ impl<'g> Summary<'g> {
     }
 }
 
-/// Without the dust of adding tenths.
+/// The cost, rounded to nine decimals: sums of tenths without their errors.
 fn tidy(cost: f64) -> f64 {
     (cost * 1e9).round() / 1e9
 }

@@ -43,7 +43,7 @@ pub enum GivenError {
         name: String,
         /// The text found.
         text: String,
-        /// Those it has.
+        /// The categories of the column.
         categories: Vec<String>,
     },
     /// The model layer refuses the evidence.

@@ -80,7 +80,7 @@ impl Original {
         parts.concat()
     }
 
-    /// By how much the volume of each building differs from that in another city, as a share of its own; by identifier.
+    /// The difference of each building's volume from that in another city, as a share of its own; by identifier.
     pub fn volume_errors(&self, derived: &City) -> rustc_hash::FxHashMap<String, f64> {
         let volumes = |city: &City| -> rustc_hash::FxHashMap<String, f64> {
             let one = |b: &crate::shape::triangles::CityBuilding| {

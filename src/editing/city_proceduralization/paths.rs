@@ -1,4 +1,4 @@
-//! Which rules a building comes from.
+//! The rules that lead to a building.
 
 use rustc_hash::FxHashMap;
 

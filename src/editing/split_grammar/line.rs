@@ -30,7 +30,7 @@ pub(super) fn along(operation: &Operation, axis: Axis) -> Vec<Size> {
     }
 }
 
-/// The same, to be changed.
+/// The sizes that an operation writes along an axis, to be changed.
 pub(super) fn along_mut(operation: &mut Operation, axis: Axis) -> Vec<&mut Size> {
     match operation {
         Operation::Split {
@@ -102,7 +102,7 @@ pub(super) fn repeats(operation: &Operation) -> bool {
 pub(super) struct Line<'g> {
     rule: usize,
     place: Place,
-    /// Along which axis it lies.
+    /// The axis along which it lies.
     pub(super) axis: Axis,
     pub(super) operation: &'g mut Operation,
 }

@@ -18,7 +18,8 @@ pub(super) struct Laid {
     pub rule: usize,
     /// Length of the region.
     pub extent: f64,
-    /// By how much the region grows with the facade, while all repeats around it keep their numbers of periods.
+    /// The growth of the region for a growth of 1 of the facade, while all repeats around it keep their numbers of
+    /// periods.
     pub growth: f64,
     /// Periods of a repeat; 1 of other rules.
     pub periods: usize,

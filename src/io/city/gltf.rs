@@ -168,7 +168,7 @@ struct Reader<'a> {
     city: City,
     /// Identifiers of the buildings that instances belong to; they are the first buildings of the city.
     ids: Vec<String>,
-    /// Which building of the city has the identifier.
+    /// Index of the building of the city, by identifier.
     listed: FxHashMap<String, usize>,
     triangles: usize,
 }

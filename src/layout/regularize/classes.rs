@@ -1,4 +1,4 @@
-//! Which sizes are equal before regularization, and so stay equal.
+//! The sizes that are equal before regularization, and so stay equal.
 
 use std::collections::BTreeMap;
 

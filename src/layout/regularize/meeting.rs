@@ -1,4 +1,4 @@
-//! Which lines along one axis become one.
+//! The choice of the lines along one axis that become one.
 
 use super::axis::Axis;
 use super::equal::Cluster;

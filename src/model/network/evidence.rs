@@ -97,7 +97,7 @@ pub(crate) struct Linked {
 /// The target of a question, besides the evidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Asked {
-    /// Nothing: the evidence alone.
+    /// No variable: the evidence alone.
     Evidence,
     /// One variable.
     Variable(usize),

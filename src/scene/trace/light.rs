@@ -27,7 +27,7 @@ pub(super) struct Seen {
     pub point: V,
     pub normal: V,
     pub colour: V,
-    /// Along the ray; infinite for the sky.
+    /// Distance along the ray; infinite for the sky.
     pub distance: f32,
     pub ray: V,
     pub ground: bool,

@@ -127,7 +127,7 @@ impl Tree {
         self.meet(from, ray, f32::INFINITY, false)
     }
 
-    /// The same within a distance.
+    /// The first triangle that a ray meets from its front, within a distance.
     pub fn nearest_within(&self, from: V, ray: V, most: f32) -> Option<Hit> {
         self.meet(from, ray, most, false)
     }

@@ -1,4 +1,4 @@
-//! Who placements are: identifiers and attributes.
+//! Identities of placements: identifiers and attributes.
 //!
 //! Identifiers that end in digits, like those before them, are told by the difference of their numbers; others, and
 //! attributes, stand in lists, in the order in which they are met.

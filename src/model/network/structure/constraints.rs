@@ -1,4 +1,4 @@
-//! Which edges a structure may, must and must not have.
+//! The edges that a structure may, must and must not have.
 
 use super::super::super::error::ModelError;
 use super::super::super::graph::order;
