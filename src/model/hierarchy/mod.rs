@@ -145,7 +145,7 @@ pub enum Sweep {
     /// All (paper), unless the real columns of the rows searched have more than 10,000 values: then [`Sweep::Few`].
     #[default]
     Auto,
-    /// All edges (paper).
+    /// All cardinalities (paper).
     All,
     /// Two, spread evenly in ratio: `a (b/a)^(1/4)` and `a (b/a)^(3/4)` of a to b, rounded, so 4 and 13 of 2 to 25. Of all |S|
     /// tried above the second level so found, only the best three are fitted to the end.
