@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use super::averages::mean_and_error;
 use super::data::measure;
 use super::generation::{Unit, answer, rows_of};
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::building_json;
-use crate::methods::building_exteriors::house::Database;
-use crate::model::hierarchy::{Constant, Settings};
-use crate::tables::Dataset;
-use crate::tables::compare::{Contender, held_out, split};
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::Database;
+use edifice_io::building_json;
+use edifice_model::hierarchy::{Constant, Settings};
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{Contender, held_out, split};
 
 /// A model of Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

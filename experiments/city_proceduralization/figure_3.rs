@@ -1,12 +1,12 @@
 //! Fig. 3: buildings taken apart into their components.
 
 use super::{data, exhibits};
-use crate::experiments::Context;
-use crate::io::city::picture::side_by_side;
-use crate::methods::city_proceduralization::{Component, decompose};
-use crate::report::{Align, Table};
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{Component, decompose};
+use edifice_io::city::picture::side_by_side;
+use edifice_report::{Align, Table};
+use edifice_shape::triangles::TriangleMesh;
 
 /// Most components of a building that is shown.
 const MOST: usize = 6;

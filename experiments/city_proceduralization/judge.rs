@@ -7,13 +7,13 @@ use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::grammar::instance::InstanceGrammar;
-use crate::methods::city_proceduralization::localization::{
+use edifice_base::rng::stream;
+use edifice_city_proceduralization::localization::{
     Landmark, Seen, deviations, features, landmarks, locate,
 };
-use crate::methods::city_proceduralization::synthesis::Shape;
-use crate::rng::stream;
-use crate::shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples};
+use edifice_city_proceduralization::synthesis::Shape;
+use edifice_grammar::instance::InstanceGrammar;
+use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples};
 
 /// Cells in which plans are measured, in metres.
 const CELL: f64 = 0.5;
@@ -226,7 +226,7 @@ fn plan_areas(city: &City, shape: Option<&Shape>) -> Plans {
 fn flattened(mesh: &TriangleMesh) -> TriangleMesh {
     let mut out = TriangleMesh::default();
     for t in mesh.corners() {
-        if crate::shape::triangles::plan_area(&t) > 0.0 {
+        if edifice_shape::triangles::plan_area(&t) > 0.0 {
             out.push(t.map(|p| [p[0], p[1], 1.0]));
         }
     }

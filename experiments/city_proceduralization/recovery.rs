@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::{data, synthetic};
-use crate::cluster::adjusted_rand_index;
-use crate::experiments::Context;
-use crate::grammar::instance::Repeated;
-use crate::methods::city_proceduralization::{
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{
     Budget, Component, Mode, Settings, Structure, decompose, from_components,
 };
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use edifice_cluster::adjusted_rand_index;
+use edifice_grammar::instance::Repeated;
+use edifice_report::{Align, Table};
 
 #[derive(Serialize, Deserialize)]
 struct Found {

@@ -5,11 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use super::data::{self, Measures};
 use super::synthetic;
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::{city, json, read_bytes};
-use crate::methods::city_proceduralization::{self as proceduralization, Budget};
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization as proceduralization;
+use edifice_city_proceduralization::Budget;
+use edifice_io::{city, json, read_bytes};
+use edifice_shape::triangles::City;
 
 /// The method that finds types.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

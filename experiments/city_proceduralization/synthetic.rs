@@ -8,8 +8,8 @@
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::rng::stream;
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
+use edifice_base::rng::stream;
+use edifice_shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
 
 /// Types of buildings.
 pub const TYPES: usize = 48;

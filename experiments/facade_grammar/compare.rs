@@ -2,10 +2,10 @@
 
 use super::data::{self, Instance};
 use super::runs::{Answer, Question, Solver, least, mean, solve};
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::facade_grammar::Operations;
-use crate::report::{Align, Row, Table};
+use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_facade_grammar::Operations;
+use edifice_report::{Align, Row, Table};
 
 /// The methods, operations and metrics of a comparison.
 pub struct Plan {

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::data::{self, Instance};
 use super::runs::{Question, Solver, mean, solve};
 use super::{BEST, iterations};
-use crate::experiments::Context;
-use crate::grammar::{Costs, Grammar, derivation};
-use crate::report::{Align, Row, Table};
-use crate::rng::stream;
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_grammar::{Costs, Grammar, derivation};
+use edifice_report::{Align, Row, Table};
+use edifice_shape::Facade;
 
 /// Facades in a set.
 const SIZES: [usize; 4] = [2, 3, 4, 5];

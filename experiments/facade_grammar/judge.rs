@@ -3,10 +3,10 @@
 use super::likeness::{Likeness, likeness};
 use super::references::{self, Judged};
 use super::runs::{Question, mean, solve};
-use crate::Result;
-use crate::experiments::Context;
-use crate::grammar::Costs;
-use crate::report::{Align, Bars, Figure, Row, Scale, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_grammar::Costs;
+use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// A row of a table: a name, and what to run.
 pub type Case = (String, Question);

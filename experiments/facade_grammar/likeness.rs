@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
-use crate::grammar::{Grammar, derivation};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::{Grammar, derivation};
 
 /// Precision, recall and F-score.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ pub fn likeness(grammar: &Grammar, reference: &Grammar) -> Result<Likeness> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::grammar_cga::from_str;
+    use edifice_io::grammar_cga::from_str;
 
     #[test]
     fn shares_of_common_regions() {

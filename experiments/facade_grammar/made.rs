@@ -22,9 +22,9 @@ mod elements;
 pub mod references;
 mod theme;
 
-use crate::grammar::{Grammar, GrammarError, derive};
-use crate::rng::{Stream, stream};
-use crate::shape::Facade;
+use edifice_base::rng::{Stream, stream};
+use edifice_grammar::{Grammar, GrammarError, derive};
+use edifice_shape::Facade;
 
 use composition::compose;
 use draft::Draft;

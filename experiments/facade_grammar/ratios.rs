@@ -4,9 +4,9 @@ use super::compare::Comparison;
 use super::published::Published;
 use super::runs::Solver;
 use super::{BEST, PAPER};
-use crate::experiments::Context;
-use crate::methods::facade_grammar::Method;
-use crate::report::{Align, Row, Table};
+use crate::Context;
+use edifice_facade_grammar::Method;
+use edifice_report::{Align, Row, Table};
 
 /// Sets the ratio of average costs of each method to both configurations of ADP beside the ratio
 /// of the paper's printed averages. `(name, random)`; random methods have `many` iterations.

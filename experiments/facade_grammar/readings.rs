@@ -5,10 +5,10 @@ use super::data::{self, FIGURE_9, Instance};
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, least, mean, solve};
 use super::{BEST, PAPER, iterations};
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::facade_grammar::{Exploit, Method, Protect, Readings};
-use crate::report::{Align, Bars, Figure, Row, Scale, Table};
+use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_facade_grammar::{Exploit, Method, Protect, Readings};
+use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// Facades of each real set, evenly spread.
 const LOOKED_AT: usize = 40;

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::{data, projection};
-use crate::experiments::Context;
-use crate::io::{LabelMap, label_image};
-use crate::layout::regularize::regularize_grid;
-use crate::report::{Align, Row, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_io::{LabelMap, label_image};
+use edifice_layout::regularize::regularize_grid;
+use edifice_report::{Align, Row, Table};
 
 /// The effect of regularization on one facade.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::compare::Comparison;
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER};
-use crate::experiments::Context;
-use crate::methods::facade_grammar::{BoundLimits, Settings, lower_bound};
-use crate::report::{Align, Row, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{BoundLimits, Settings, lower_bound};
+use edifice_report::{Align, Row, Table};
 
 /// Saving that the table asks about, in per cent.
 const ASKED: f64 = 5.0;

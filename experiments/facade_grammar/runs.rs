@@ -4,11 +4,11 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::peers;
-use crate::grammar::{Costs, Grammar, evaluate};
-use crate::methods::facade_grammar::{Method, Operations, Readings, Settings, infer};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::peers;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Method, Operations, Readings, Settings, infer};
+use edifice_grammar::{Costs, Grammar, evaluate};
+use edifice_shape::Facade;
 
 /// A method with its number of iterations.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,6 @@
 //! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
 
 mod context;
-pub mod datasets;
 mod document;
 mod journal;
 pub(super) mod lock;
@@ -24,7 +23,7 @@ pub struct Artefact {
     /// Its subject, in a line.
     pub title: &'static str,
     /// Makes it.
-    pub run: fn(&mut Context) -> crate::Result<()>,
+    pub run: fn(&mut Context) -> edifice_base::Result<()>,
 }
 
 /// One paper's experiments.

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// Provenance of the artefacts of one paper, `OUT/<paper>/run.json`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -99,7 +99,7 @@ impl Run {
     pub fn write(&self, path: &Path) -> Result<()> {
         let mut bytes = serde_json::to_vec_pretty(self).map_err(Error::method)?;
         bytes.push(b'\n');
-        crate::file::write_atomic(path, &bytes)
+        edifice_base::file::write_atomic(path, &bytes)
     }
 }
 

@@ -6,10 +6,10 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::sweep::{Better, Given, Outcome, Study};
-use crate::model::gmm::{self, Criterion, Mixture, Points, select};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::gmm::{self, Criterion, Mixture, Points, select};
 
 /// The criterion that the number of components minimizes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -137,7 +137,7 @@ fn loss(mixture: &Mixture, rows: &[&Vec<f64>]) -> Option<f64> {
 
 /// The rows of a CSV file with a header.
 fn read(path: &Path) -> Result<Vec<Vec<f64>>> {
-    let table = crate::io::building_csv::read(path)?;
+    let table = edifice_io::building_csv::read(path)?;
     let number = |(row, cell): (usize, &String)| {
         cell.trim().parse::<f64>().map_err(|_| {
             let place = format!("row {}", row + 1);

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 
-use crate::experiments::sweep::{Outcome, Shared};
-use crate::io::{json, read_bytes};
-use crate::{Error, Result};
+use crate::sweep::{Outcome, Shared};
+use edifice_base::{Error, Result};
+use edifice_io::{json, read_bytes};
 
 /// A problem.
 #[derive(Debug, Clone, Deserialize)]

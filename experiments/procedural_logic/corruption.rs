@@ -13,7 +13,7 @@
 
 use rand::{Rng, RngExt};
 
-use crate::shape::{LabelGrid, Span, components};
+use edifice_shape::{LabelGrid, Span, components};
 
 /// Label of windows.
 const WINDOW: &str = "window";

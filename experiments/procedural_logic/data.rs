@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::gold::{Annotations, Architecture};
 use super::{outline, shipped};
-use crate::experiments::{Budget, Context, layouts};
-use crate::io::{ReadOptions, read_label_grid};
-use crate::shape::{Facade, LabelGrid};
-use crate::{Error, Result};
+use crate::{Budget, Context, layouts};
+use edifice_base::{Error, Result};
+use edifice_io::{ReadOptions, read_label_grid};
+use edifice_shape::{Facade, LabelGrid};
 
 /// Sizes at which each shipped house stands: as shipped, and others.
 const SIZES: u64 = 5;

@@ -21,8 +21,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::shape::LabelGrid;
-use crate::{Error, Result, file};
+use edifice_base::{Error, Result, file};
+use edifice_shape::LabelGrid;
 
 /// The meaning of "door placement".
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,9 +9,9 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::experiments::layouts::FIGURE_9;
-use crate::rng::stream;
-use crate::shape::{Facade, GridError, LabelGrid, Region};
+use crate::layouts::FIGURE_9;
+use edifice_base::rng::stream;
+use edifice_shape::{Facade, GridError, LabelGrid, Region};
 
 /// Families of small buildings, with facade (i).
 const HOUSES: [&str; 5] = ["cottage", "shophouse", "terrace", "townhouse", FIGURE_9];

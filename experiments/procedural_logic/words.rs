@@ -1,7 +1,7 @@
 //! Starting rules in words: floors, columns, running balconies, shops.
 
-use crate::methods::procedural_logic::{Alphabet, Call, RuleSet};
-use crate::shape::Axis;
+use edifice_procedural_logic::{Alphabet, Call, RuleSet};
+use edifice_shape::Axis;
 
 /// The structure of a facade, read from the parts of a starting rule from the bottom up.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -7,16 +7,16 @@ use super::data::{self, Item};
 use super::plausibility::statistics;
 use super::results::{Answer, OTHER_SETS, Results};
 use super::{folds, row};
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::structure_completion::best::modes;
-use crate::methods::structure_completion::completion::Completion;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::measure::{agreement, area_iou};
-use crate::methods::structure_completion::method::{self, Method};
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::task::Task;
-use crate::rng::stream;
+use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_structure_completion::best::modes;
+use edifice_structure_completion::completion::Completion;
+use edifice_structure_completion::layout::{Class, Element};
+use edifice_structure_completion::measure::{agreement, area_iou};
+use edifice_structure_completion::method::{self, Method};
+use edifice_structure_completion::model::Model;
+use edifice_structure_completion::task::Task;
 
 /// Folds of the cross-validation.
 const FOLDS: usize = 5;

@@ -14,8 +14,8 @@ use super::journal::{Keep, read_all};
 use super::plan::{Head, PLAN, Plan, Task, program};
 use super::run::entry;
 use super::study::Study;
-use crate::experiments::frame::provenance::{self, Machine};
-use crate::{Error, Result, file};
+use crate::frame::provenance::{self, Machine};
+use edifice_base::{Error, Result, file};
 
 /// The contents of a bundle.
 #[derive(Debug, Serialize, Deserialize)]

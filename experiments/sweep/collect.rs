@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::journal::{Damaged, Entry, Keep, Known, read_all};
 use super::plan::Plan;
 use super::study::Outcome;
-use crate::{Error, Result, file};
+use edifice_base::{Error, Result, file};
 
 /// Name of the table of results in a sweep's folder.
 pub const RESULTS: &str = "results.csv";

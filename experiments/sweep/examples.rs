@@ -3,7 +3,7 @@
 use include_dir::{Dir, include_dir};
 
 /// `experiments/sweeps/` of the checkout that the program was built from.
-static SWEEPS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/experiments/sweeps");
+static SWEEPS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/sweeps");
 
 /// A sweep file that ships.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::study::Study;
-use crate::experiments::frame::{datasets, provenance};
-use crate::{Error, Result};
+use crate::frame::provenance;
+use edifice_base::{Error, Result};
+use edifice_datasets as datasets;
 
 /// Folder of unpacked data sets in a sweep's folder.
 const DATA: &str = "data";

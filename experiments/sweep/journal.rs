@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::program;
 use super::study::Outcome;
-use crate::experiments::frame::lock;
-use crate::{Error, Result};
+use crate::frame::lock;
+use edifice_base::{Error, Result};
 
 /// Folder of the journals in a sweep's folder.
 const FOLDER: &str = "journal";

@@ -10,9 +10,9 @@ use sha2::{Digest, Sha256};
 use super::definition::{Arm, ReportOptions, TaskOptions, arms, read};
 use super::instances::{Instance, files};
 use super::study::Study;
-use crate::experiments::frame::lock::Lock;
-use crate::experiments::frame::provenance;
-use crate::{Error, Result, file};
+use crate::frame::lock::Lock;
+use crate::frame::provenance;
+use edifice_base::{Error, Result, file};
 
 /// Name of the plan in a sweep's folder.
 pub const PLAN: &str = "plan.jsonl";

@@ -10,9 +10,9 @@ use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task, program};
 use super::study::{Given, Study};
-use crate::experiments::frame::Progress;
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::frame::Progress;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
 
 /// The tasks of a shard that are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::Result;
+use edifice_base::Result;
 
 /// The last values made, by key. A value depends on its key alone, so that results do not depend on which task made it.
 pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);

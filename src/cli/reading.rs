@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::Result;
-use edifice::io::{self, LabelMap, ReadOptions, Source};
+use edifice_base::Result;
+use edifice_io as io;
+use edifice_io::{LabelMap, ReadOptions, Source};
 
 use super::print;
 

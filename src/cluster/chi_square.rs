@@ -62,7 +62,7 @@ impl<K: Ord + Clone + Debug> Histogram<K> {
 ///
 /// # Examples
 /// ```
-/// use edifice::cluster::{Histogram, chi_square};
+/// use edifice_cluster::{Histogram, chi_square};
 /// let a = Histogram::count(["wall", "wall", "door"]);
 /// let b = Histogram::count(["wall", "window"]);
 /// assert_eq!(chi_square(&a, &b), 0.5 * (1.0 / 3.0 + 1.0 + 1.0));

@@ -95,8 +95,8 @@ fn log2_det(scatter: &DMatrix<f64>, n: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cluster::ward;
-    use crate::rng::stream;
+    use crate::ward;
+    use edifice_base::rng::stream;
     use rand::RngExt;
     use rand_distr::{Distribution, StandardNormal};
 

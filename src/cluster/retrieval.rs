@@ -145,7 +145,7 @@ fn matches(ranked: &[(f64, bool)], ranks: usize, ties: Ties) -> Vec<f64> {
 ///
 /// # Examples
 /// ```
-/// assert_eq!(edifice::cluster::purity(&[0, 0, 1, 1], &['a', 'a', 'a', 'b']), 0.75);
+/// assert_eq!(edifice_cluster::purity(&[0, 0, 1, 1], &['a', 'a', 'a', 'b']), 0.75);
 /// ```
 pub fn purity<C: Ord>(clusters: &[usize], classes: &[C]) -> f64 {
     let mut counts: BTreeMap<usize, BTreeMap<&C, usize>> = BTreeMap::new();
@@ -164,7 +164,7 @@ pub fn purity<C: Ord>(clusters: &[usize], classes: &[C]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
     use rand::RngExt;
     use rand::seq::SliceRandom;
 

@@ -19,17 +19,17 @@ pub use wish::{WishError, Wishes, given, ranges, wished};
 use super::examples::{Example, Source};
 use super::work::Work;
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
-use crate::experiments::shipped_bytes;
-use crate::io::{building_json, gltf, scene_svg, surface_obj};
-use crate::methods::building_exteriors::design::{Edit, EditError, edited, suggested, variants};
-use crate::methods::building_exteriors::house::{
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::design::{Edit, EditError, edited, suggested, variants};
+use edifice_building_exteriors::house::{
     Database, GenerateError, Generated, HouseReport, Joining, Model, Options, model,
 };
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::model::hierarchy::Hierarchy;
-use crate::rng::stream;
-use crate::shape::Building;
-use crate::{Error, Result};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_datasets::shipped_bytes;
+use edifice_io::{building_json, gltf, scene_svg, surface_obj};
+use edifice_model::hierarchy::Hierarchy;
+use edifice_shape::Building;
 
 /// The name of the shipped houses in the program; that of the model learned from them follows.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";

@@ -21,10 +21,10 @@ use super::examples::{Example, Source};
 use super::script::{Shell, Word};
 use super::work::Work;
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
-use crate::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use crate::io::city::{self, cityjson, glb, grammar_json, obj};
-use crate::methods::city_proceduralization::synthesis::{Shape, synthesize};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::synthesis::{Shape, synthesize};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
+use edifice_io::city::{self, cityjson, glb, grammar_json, obj};
 
 const ENDING: &str = ".city-grammar.json";
 const FORMATS: &[&str] = &["glb", "obj", "city.json"];
@@ -70,7 +70,7 @@ pub enum FillError {
     Full,
     /// The grammar.
     #[error(transparent)]
-    Grammar(#[from] crate::grammar::instance::InstanceGrammarError),
+    Grammar(#[from] edifice_grammar::instance::InstanceGrammarError),
 }
 
 /// A new city of a grammar's buildings in a shape of rings in metres.

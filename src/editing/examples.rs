@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::work::Work;
 use super::{EDITORS, State, open};
-use crate::experiments::shipped_bytes;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_datasets::shipped_bytes;
 
 /// A document to begin with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::script::{Shell, script};
 use super::work::Work;
 use super::{CommandError, State, Step};
-use crate::Result;
+use edifice_base::Result;
 
 /// Commands that were done at once, and are undone at once.
 struct Entry {

@@ -39,7 +39,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 use examples::Example;
 use script::Shell;
 use work::{Stopped, Work};

@@ -24,7 +24,7 @@ use super::resize::size_independent;
 use super::{
     Derivation, Grammar, GrammarError, Operation, Rule, Size, Start, Successor, derivation,
 };
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Parts less similar than this do not play the same role.
 pub const LEAST_SIMILARITY: f64 = 0.3;

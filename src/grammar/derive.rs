@@ -7,7 +7,7 @@ pub(super) use super::place::Fit;
 use super::place::place;
 use super::table::Table;
 use super::{Grammar, GrammarError};
-use crate::shape::{Facade, Rect, Region};
+use edifice_shape::{Facade, Rect, Region};
 
 /// A derivation of more regions than this, terminals and non-terminals, is refused: a grammar of a
 /// few lines can describe more regions than there is memory.
@@ -50,8 +50,8 @@ pub struct Derivation {
 ///
 /// # Examples
 /// ```
-/// use edifice::grammar::{Grammar, Operation, Rule, Start, Successor, derive};
-/// use edifice::shape::Axis;
+/// use edifice_grammar::{Grammar, Operation, Rule, Start, Successor, derive};
+/// use edifice_shape::Axis;
 /// let grammar = Grammar {
 ///     unit: "m".into(),
 ///     starts: vec![Start { name: "row".into(), symbol: "Row".into(), width: 12.0, height: 3.0 }],
@@ -67,7 +67,7 @@ pub struct Derivation {
 /// let facade = derive(&grammar, 0)?;
 /// assert_eq!(facade.regions.len(), 8);
 /// assert_eq!(facade.regions[7].rect.right(), 12.0);
-/// # Ok::<(), edifice::grammar::GrammarError>(())
+/// # Ok::<(), edifice_grammar::GrammarError>(())
 /// ```
 pub fn derive(grammar: &Grammar, start_index: usize) -> Result<Facade, GrammarError> {
     derivation(grammar, start_index).map(|d| d.facade)

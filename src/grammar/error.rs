@@ -1,6 +1,6 @@
 //! Ways for a grammar to be wrong.
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Why a grammar is not valid, or cannot be derived. Rules are named by their index in
 /// [`Grammar::rules`](super::Grammar::rules), as in the path `rules[3]` of a grammar file.

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::check::TOLERANCE;
 use super::tiling::{Difference, tiling_difference};
 use super::{Costs, Grammar, GrammarError, derivation};
-use crate::shape::Facade;
+use edifice_shape::Facade;
 
 /// The cost of a grammar that explains its input.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use super::check::TOLERANCE;
 use super::derive::REGION_LIMIT;
 use super::{Grammar, GrammarError, Operation, Rule, Size, summable};
-use crate::shape::{Axis, Rect};
+use edifice_shape::{Axis, Rect};
 
 /// Absolute sizes keep what is written while they leave the relative ones beside them this share of the region, or
 /// of what is written for them if that is less. Else all sizes of the rule, relative ones as they are written, divide the

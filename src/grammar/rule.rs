@@ -1,6 +1,6 @@
 //! The nouns of split grammars.
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// A size along the split axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

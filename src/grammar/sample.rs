@@ -7,7 +7,7 @@ use super::check::check_structure;
 use super::derive::{Fit, walk};
 use super::table::Table;
 use super::{Derivation, Grammar, GrammarError, Operation, summable};
-use crate::rng::categorical;
+use edifice_base::rng::categorical;
 
 /// Derives a grammar in a region of `width` x `height`, in the grammar's unit.
 ///

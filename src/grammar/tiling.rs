@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::check::TOLERANCE;
-use crate::shape::{Facade, Rect, Region};
+use edifice_shape::{Facade, Rect, Region};
 
 /// The first difference of two layouts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

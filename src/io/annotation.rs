@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::shape::{Rect, Region};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Rect, Region};
 
 /// A box in an image: edges in pixels, from the left and from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,8 +13,8 @@ use quick_xml::events::Event;
 
 use super::label_map::CMP;
 use super::{file_stem, read_bytes};
-use crate::shape::{Facade, LabelGrid, Rect, Region};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Facade, LabelGrid, Rect, Region};
 
 /// Labels in the order in which they are painted, later over earlier; `background` lies below all
 /// (`label_names.txt` of the database: descending third column).

@@ -11,9 +11,9 @@ use super::pixels::JPEG_MAGIC;
 use super::{
     LabelMap, cmp_xml, coco, draw, facade_json, json, label_image, label_text, labelme, pixels,
 };
-use crate::file::write_atomic;
-use crate::shape::{Facade, LabelGrid, decompose};
-use crate::{Error, Result};
+use edifice_base::file::write_atomic;
+use edifice_base::{Error, Result};
+use edifice_shape::{Facade, LabelGrid, Labelled, decompose};
 
 /// Longer side of CMP facades whose image is missing, in units.
 const CMP_SIDE: f64 = 1000.0;
@@ -42,6 +42,20 @@ pub enum Source {
     Picture(LabelGrid),
     /// Overlapping rectangles of CMP, with the width and height of their image.
     Cmp(cmp_xml::CmpFacade, f64, f64),
+}
+
+impl Source {
+    /// The facade in one of its two forms; the rectangles of CMP are a layout.
+    ///
+    /// # Errors
+    /// As [`cmp_xml::CmpFacade::layout`].
+    pub fn labelled(self) -> Result<Labelled> {
+        Ok(match self {
+            Source::Layout(facade) => Labelled::Layout(facade),
+            Source::Picture(grid) => Labelled::Picture(grid),
+            Source::Cmp(cmp, width, height) => Labelled::Layout(cmp.layout(width, height)?),
+        })
+    }
 }
 
 /// A file of a kind that is not read.

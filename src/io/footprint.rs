@@ -11,8 +11,8 @@ use serde_json::Value;
 
 use super::json::parse_json;
 use super::read_bytes;
-use crate::shape::{PlanUnion, Rect};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{PlanUnion, Rect};
 
 /// Why a polygon is no footprint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// A text as JSON.
 pub(super) fn quoted(text: &str) -> String {

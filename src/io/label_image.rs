@@ -10,8 +10,8 @@ use super::label_map::{ECP, Key, LabelMap};
 use super::nearest_colour::{NearestColours, NearestSearch};
 use super::pixels::{JPEG_MAGIC, Pixels};
 use super::{file_stem, read_bytes};
-use crate::shape::LabelGrid;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::LabelGrid;
 
 /// A pixel that the label map does not name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -8,7 +8,7 @@ use serde::de::{self, MapAccess, Visitor};
 
 use super::json::parse_json;
 use super::read_bytes;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// Colours of the ECP and Graz facade databases.
 pub const ECP: [(&str, [u8; 3]); 9] = [

@@ -8,8 +8,8 @@ use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, ImageReader};
 
 use super::read_bytes;
-use crate::shape::{Photograph, PhotographError, PhotographFormat};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Photograph, PhotographError, PhotographFormat};
 
 /// Why a text or a file is no photograph.
 #[derive(Debug, thiserror::Error)]

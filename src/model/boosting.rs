@@ -55,7 +55,7 @@ struct Tree {
 /// # Examples
 /// Exclusive or, which no sum of functions of one feature can represent:
 /// ```
-/// use edifice::model::boosting::{Boosting, BoostingError, Settings};
+/// use edifice_model::boosting::{Boosting, BoostingError, Settings};
 /// let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]].repeat(50);
 /// let rows: Vec<Vec<f64>> = corners.into_iter().map(Vec::from).collect();
 /// let targets: Vec<f64> = rows.iter().map(|x| if x[0] == x[1] { 0.0 } else { 1.0 }).collect();
@@ -297,7 +297,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     #[test]
     fn recovers_the_probabilities_of_a_known_function() {

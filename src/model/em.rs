@@ -20,8 +20,8 @@ use super::error::ModelError;
 /// The share w of the first of two known densities, from their values at each row; the likelihood
 /// `(1 + 2w) (2 - w)` has its maximum at 3/4:
 /// ```
-/// use edifice::model::ModelError;
-/// use edifice::model::em::{Em, Outcome, Stopping, run};
+/// use edifice_model::ModelError;
+/// use edifice_model::em::{Em, Outcome, Stopping, run};
 /// struct Share(Vec<[f64; 2]>);
 /// impl Em for Share {
 ///     type Model = f64;

@@ -7,7 +7,7 @@
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{ModelError, Table};
+/// use edifice_model::{ModelError, Table};
 /// let error = Table::new().real("width", [Some(9.5), Some(f64::INFINITY)]).unwrap_err();
 /// assert_eq!(error.to_string(), "column `width`, row 1: inf is not finite (declare it missing instead)");
 /// assert!(matches!(error.in_row(7), ModelError::NotFinite { row: 7, .. }));

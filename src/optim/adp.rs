@@ -19,7 +19,7 @@
 //!
 //! # Examples
 //! ```
-//! use edifice::optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
+//! use edifice_optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
 //! use rand::{Rng, RngExt};
 //!
 //! /// Climb to step 10, one or three steps at a time; odd steps cost twice.
@@ -62,7 +62,7 @@ use argmin::core::{Error as ArgminError, KV, Problem, Solver, State, Termination
 use rand::{Rng, RngExt};
 
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// A finite decision process with additive costs.
 ///
@@ -74,7 +74,7 @@ use crate::rng::{Stream, stream};
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::adp::Process;
+/// use edifice_optim::adp::Process;
 /// /// Pay 6 with coins of 1, 3 and 4, each of cost 1.
 /// struct Change;
 /// impl Process for Change {
@@ -156,7 +156,7 @@ impl<P: Process, V: Approximation<P>> Approximation<P> for &mut V {
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::adp::Epsilon;
+/// use edifice_optim::adp::Epsilon;
 /// let falling = Epsilon { start: 0.9, end: 0.1 };
 /// // Of 5 iterations the middle one has the geometric mean of both ends.
 /// for (n, expected) in [(0, 0.9), (2, 0.3), (4, 0.1)] {

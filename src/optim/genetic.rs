@@ -26,7 +26,7 @@ use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// The population's problem: the first genomes, their crossing and change, and their cost.
 ///
@@ -159,8 +159,8 @@ impl Settings {
 /// # Examples
 /// All bits of a word of 16 to 1, by one-point crossover and flips of single bits:
 /// ```
-/// use edifice::optim::Outcome;
-/// use edifice::optim::genetic::{Breed, Genetic, Settings};
+/// use edifice_optim::Outcome;
+/// use edifice_optim::genetic::{Breed, Genetic, Settings};
 /// use rand::{Rng, RngExt};
 /// struct Ones;
 /// impl Breed for Ones {
@@ -178,7 +178,7 @@ impl Settings {
 /// assert_eq!((run.best, run.outcome), (u16::MAX, Outcome::TargetReached));
 /// assert!(run.trace.windows(2).all(|w| w[1].cost <= w[0].cost));
 /// assert!(population.len() == 40 && population.is_sorted_by(|a, b| a.1 <= b.1));
-/// # Ok::<(), edifice::optim::genetic::GeneticError>(())
+/// # Ok::<(), edifice_optim::genetic::GeneticError>(())
 /// ```
 #[derive(Debug)]
 pub struct Genetic<G> {

@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 /// # Examples
 /// P has the rows (2, 1) and (1, 2), q is (-3, -3); the minimum is where `P x = -q`, at (1, 1):
 /// ```
-/// use edifice::optim::qp::{QpError, QpOptions, QuadraticProgram, solve};
+/// use edifice_optim::qp::{QpError, QpOptions, QuadraticProgram, solve};
 /// let mut program = QuadraticProgram::new(2);
 /// program.quadratic = vec![(0, 0, 2.0), (0, 1, 1.0), (1, 1, 2.0)];
 /// program.linear = vec![-3.0, -3.0];

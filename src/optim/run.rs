@@ -15,7 +15,7 @@ use argmin::core::{
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::{Outcome, grid};
+/// use edifice_optim::{Outcome, grid};
 /// let run = grid::minimize(&[vec![3.0, 1.0, 2.0]], |x| Ok::<_, String>((x[0] - 1.2).powi(2)))?;
 /// assert_eq!(run.best, [1.0]);
 /// assert_eq!(run.outcome, Outcome::Converged);

@@ -12,7 +12,7 @@ use plotters::style::{FontStyle, FontTransform, register_font};
 use super::colour::Colour;
 use super::drawing::{Anchor, Drawing, Mark, Text};
 use super::indexed;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 const SVG_SCALE: f64 = 8.0;
 const PNG_SCALE: f64 = 2.0;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// One observation.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -78,7 +78,7 @@ pub fn csv_bytes(rows: &[Row]) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`csv_bytes`], and [`Error::Io`] when the file cannot be written.
 pub fn write_rows(path: &Path, rows: &[Row]) -> Result<()> {
-    crate::file::write_atomic(path, &csv_bytes(rows)?)
+    edifice_base::file::write_atomic(path, &csv_bytes(rows)?)
 }
 
 #[cfg(test)]

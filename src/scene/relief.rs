@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::{Material, Mesh};
-use crate::shape::{Facade, Rect};
+use crate::{Material, Mesh};
+use edifice_shape::{Facade, Rect};
 
 /// The look of a label: its name without number, colour, roughness, distance from the wall in metres (outwards
 /// positive).

@@ -294,7 +294,7 @@ impl Marks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::splittable;
+    use crate::splittable;
     use proptest::prelude::*;
 
     /// A grid of unit cells from a picture, the top row first, one letter a label.

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::jobs::Job;
-use crate::editing::history::{Document, steps};
-use crate::editing::work::Work;
-use crate::editing::{self, State, Step};
-use crate::file::write_atomic;
-use crate::{Error, Result, io};
+use edifice_base::file::write_atomic;
+use edifice_base::{Error, Result};
+use edifice_editing as editing;
+use edifice_editing::history::{Document, steps};
+use edifice_editing::work::Work;
+use edifice_editing::{State, Step};
+use edifice_io as io;
 
 /// An open document.
 pub struct Open {

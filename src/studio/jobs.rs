@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::editing::work::Work;
+use edifice_editing::work::Work;
 
 /// Ended jobs that are remembered.
 const REMEMBERED: usize = 100;

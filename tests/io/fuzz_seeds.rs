@@ -11,8 +11,8 @@ use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
 use edifice::methods::structure_completion::model::Model as CompletionModel;
 use edifice::model::network::Network;
-use edifice::tables::schema::Schema;
-use edifice::tables::table_model::TableModel;
+use edifice::model::tables::schema::Schema;
+use edifice::model::tables::table_model::TableModel;
 
 /// True if the reader of that name takes the bytes.
 fn read(reader: &str, bytes: &[u8]) -> bool {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use edifice::experiments::facade_grammar::data;
+use edifice_experiments::facade_grammar::data;
 
 #[test]
 fn shipped_facades_are_the_generators_byte_for_byte() {

@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use edifice::editing::city_proceduralization::fill;
-use edifice::experiments::shipped_bytes;
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{grammar_json, obj};
 use edifice::methods::city_proceduralization::synthesis::Shape;
-use edifice::studio::Settings;
+use edifice_datasets::shipped_bytes;
+use edifice_editing::city_proceduralization::fill;
+use edifice_studio::Settings;
 use serde_json::{Value, json};
 
 use crate::client::Api;

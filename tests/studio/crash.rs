@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use edifice::editing;
-use edifice::editing::work::Work;
 use edifice::rng::stream;
+use edifice_editing as editing;
+use edifice_editing::work::Work;
 use rand::RngExt;
 
 /// A studio in a process of its own.

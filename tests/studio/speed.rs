@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use edifice::editing::examples::example;
-use edifice::editing::history::Document;
-use edifice::editing::work::Work;
 use edifice::rng::stream;
+use edifice_editing::examples::example;
+use edifice_editing::history::Document;
+use edifice_editing::work::Work;
 use rand::RngExt;
 use serde_json::{Value, json};
 

@@ -7,7 +7,7 @@
 use rand::{Rng, RngExt};
 
 use super::plan::Site;
-use crate::shape::{Rect, Side};
+use edifice_shape::{Rect, Side};
 
 /// The form of a plan, seen from above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

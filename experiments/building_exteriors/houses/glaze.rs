@@ -2,7 +2,7 @@
 
 use super::storeys::millimetres;
 use super::strips::{NARROWEST, Strip, Use};
-use crate::shape::{ElementStyle, FacadeElement, FacadePiece};
+use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 
 /// Usual distance between windows (m).
 const SPACING: f64 = 2.4;

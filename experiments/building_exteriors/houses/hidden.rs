@@ -1,7 +1,7 @@
 //! The test for roofs that hide windows or doors.
 
-use crate::methods::building_exteriors::house::walls::{WallPiece, walls_of_pieces};
-use crate::shape::{
+use edifice_building_exteriors::house::walls::{WallPiece, walls_of_pieces};
+use edifice_shape::{
     BoxStyle, Building, ElementStyle, FacadePiece, MassBox, Ridge, RoofStyle, Side,
 };
 

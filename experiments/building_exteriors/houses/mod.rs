@@ -27,10 +27,10 @@ pub use wild::wild;
 
 use rayon::prelude::*;
 
-use crate::methods::building_exteriors::attributes::facade_attributes;
-use crate::methods::building_exteriors::mass::is_sound;
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building};
+use edifice_base::rng::stream;
+use edifice_building_exteriors::attributes::facade_attributes;
+use edifice_building_exteriors::mass::is_sound;
+use edifice_shape::{BoxStyle, Building};
 
 /// Number of hidden styles.
 pub const STYLES: usize = styles::STYLES.len();

@@ -19,7 +19,7 @@ use super::draw::{Numbers, Part};
 use super::families::Family;
 use super::storeys::{self, millimetres};
 use super::styles::{Kinds, Place};
-use crate::shape::{BoxStyle, MassBox, PlanUnion, Rect};
+use edifice_shape::{BoxStyle, MassBox, PlanUnion, Rect};
 
 pub(super) struct Plan {
     pub floor_height: f64,

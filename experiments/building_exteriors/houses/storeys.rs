@@ -5,8 +5,8 @@ use rand::{Rng, RngExt};
 use super::draw::Numbers;
 use super::plan::{PARTS, Site};
 use super::styles::Kinds;
-use crate::methods::building_exteriors::house::roofs::largest_rectangles;
-use crate::shape::{BoxStyle, MassBox, PlanUnion, Rect, Ridge, Roof, RoofStyle};
+use edifice_building_exteriors::house::roofs::largest_rectangles;
+use edifice_shape::{BoxStyle, MassBox, PlanUnion, Rect, Ridge, Roof, RoofStyle};
 
 /// Least extent of an upper floor (m).
 const LEAST: f64 = 3.0;

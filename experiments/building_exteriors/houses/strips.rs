@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use super::storeys::millimetres;
-use crate::shape::{BoxStyle, ElementStyle, MassBox, PlanEdge, PlanUnion, Rect, Side};
+use edifice_shape::{BoxStyle, ElementStyle, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// Narrowest strip with windows, and narrowest that can be seen to be asymmetric (m).
 pub(super) const NARROWEST: f64 = 1.2;

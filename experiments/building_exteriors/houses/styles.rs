@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use crate::shape::{ElementStyle, RoofStyle, Special};
+use edifice_shape::{ElementStyle, RoofStyle, Special};
 
 /// Kinds of the attributes of one house, and its elements.
 #[derive(Debug, Clone)]

@@ -4,9 +4,9 @@
 
 use rand::{Rng, RngExt};
 
-use crate::methods::building_exteriors::mass::is_sound;
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, MassBox, PlanUnion, Ridge, Roof, RoofStyle, visibility};
+use edifice_base::rng::stream;
+use edifice_building_exteriors::mass::is_sound;
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Ridge, Roof, RoofStyle, visibility};
 
 /// Wild house number `index` of the set with this seed.
 pub fn wild(seed: u64, index: u64) -> Building {

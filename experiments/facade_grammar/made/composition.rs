@@ -5,7 +5,7 @@ use rand::RngExt;
 use super::draft::{Draft, Part, leaf};
 use super::elements::{Break, Style, door, dormer, pilaster, shop};
 use super::theme::{Attic, Body, Ground, Theme};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// The content of one column of one floor: the kind of window, and a break of the rhythm.
 type Cell = (usize, Option<Break>);

@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::{Grammar, Operation, Rule, Start, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, Operation, Rule, Start, Successor};
+use edifice_shape::Axis;
 
 /// A symbol with its size in centimetres.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

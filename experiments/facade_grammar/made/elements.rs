@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::draft::{Draft, Part, leaf};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// The division of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -27,9 +27,9 @@
 mod plan;
 mod write;
 
-use crate::grammar::{Grammar, GrammarError, derive};
-use crate::rng::stream;
-use crate::shape::Facade;
+use edifice_base::rng::stream;
+use edifice_grammar::{Grammar, GrammarError, derive};
+use edifice_shape::Facade;
 
 use plan::Plan;
 

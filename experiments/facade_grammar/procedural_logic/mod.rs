@@ -7,10 +7,10 @@ use super::data::{self, FIGURE_9, Instance};
 use super::iterations;
 use super::published::Published;
 use super::runs::mean;
-use crate::experiments::{Artefact, Budget, Context};
-use crate::methods::procedural_logic::Parameters;
-use crate::report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
-use crate::{Error, Result};
+use crate::{Artefact, Budget, Context};
+use edifice_base::{Error, Result};
+use edifice_procedural_logic::Parameters;
+use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// The artefact.
 pub const RANGES: Artefact = Artefact {

@@ -5,13 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::super::BEST;
 use super::super::likeness::likeness;
 use super::super::runs::{Question, Solver, mean, solve};
-use crate::grammar::{Costs, evaluate};
-use crate::methods::facade_grammar::{Method, Operations};
-use crate::methods::procedural_logic::{
-    Joining, Parameters, baseline_grammar_joining, search_axes,
-};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Method, Operations};
+use edifice_grammar::{Costs, evaluate};
+use edifice_procedural_logic::{Joining, Parameters, baseline_grammar_joining, search_axes};
+use edifice_shape::Facade;
 
 /// The ways in which binary splits become n-ary, with their names in tables; that of Table 2 first.
 pub const JOININGS: [(&str, Joining); 3] = [

@@ -9,8 +9,8 @@ use toml::Spanned;
 
 use super::file::{Definition, Lists, Settings};
 use super::place::suggestion;
-use crate::experiments::sweep::study::Study;
-use crate::{Error, Result};
+use crate::sweep::study::Study;
+use edifice_base::{Error, Result};
 
 /// A configuration that is compared with others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

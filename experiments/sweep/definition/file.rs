@@ -8,8 +8,8 @@ use toml::Spanned;
 
 use super::place::{place, suggestion};
 use super::task::TaskOptions;
-use crate::experiments::sweep::study::{Better, Study};
-use crate::{Error, Result};
+use crate::sweep::study::{Better, Study};
+use edifice_base::{Error, Result};
 
 /// Settings by name, each with its place in the file.
 pub(super) type Settings = BTreeMap<Spanned<String>, Spanned<toml::Value>>;

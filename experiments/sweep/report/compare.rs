@@ -2,13 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::experiments::sweep::collect::Record;
-use crate::experiments::sweep::plan::Plan;
-use crate::experiments::sweep::statistics::{
-    Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank,
-};
-use crate::experiments::sweep::study::{Better, Study};
-use crate::rng::stream;
+use crate::sweep::collect::Record;
+use crate::sweep::plan::Plan;
+use crate::sweep::statistics::{Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank};
+use crate::sweep::study::{Better, Study};
+use edifice_base::rng::stream;
 
 /// The question of a comparison.
 #[derive(Debug, Clone, PartialEq)]

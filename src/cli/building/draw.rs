@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::is_file_name;
-use edifice::io::building_json;
-use edifice::methods::building_exteriors::attributes::COLUMNS;
-use edifice::methods::building_exteriors::design::{completions, observed};
-use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::model::{Cell, Table};
-use edifice::rng::stream;
-use edifice::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::design::{completions, observed};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_editing::building_exteriors::is_file_name;
+use edifice_io::building_json;
+use edifice_model::{Cell, Table};
 
 use super::data::{self, Input};
 use super::produce::Making;
-use crate::cli::model::data::csv_lines;
-use crate::cli::model::given::evidence;
-use crate::cli::print;
+use crate::model::data::csv_lines;
+use crate::model::given::evidence;
+use crate::print;
 
 /// Samples among which the most probable are sought.
 const POOL: usize = 2000;

@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{gltf, write_atomic};
-use edifice::methods::building_exteriors::attributes::COLUMNS;
-use edifice::methods::building_exteriors::house::{
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::house::{
     Database, Generated, HouseReport, Joining, Method, Options, generate,
 };
-use edifice::methods::building_exteriors::mass::contradiction::check_given;
-use edifice::methods::building_exteriors::mass::footprint::reconcile;
-use edifice::rng::stream;
-use edifice::shape::Building;
-use edifice::{Error, Result};
+use edifice_building_exteriors::mass::contradiction::check_given;
+use edifice_building_exteriors::mass::footprint::reconcile;
+use edifice_io::{gltf, write_atomic};
+use edifice_shape::Building;
 use rayon::prelude::*;
 
 use super::output::{self, Format};
-use crate::cli::print;
+use crate::print;
 
 /// Most houses that are in memory and written together.
 const CHUNK: usize = 64;
@@ -155,8 +155,7 @@ pub fn produce(
         }
     }
     output::folder(&output.output)?;
-    let mut street: Vec<(Building, edifice::methods::building_exteriors::house::Model)> =
-        Vec::new();
+    let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
     let (mut done, mut near) = (0, 0);
     for chunk in orders.chunks(CHUNK) {
         let made: Vec<Result<Option<(Generated, f64)>>> = chunk

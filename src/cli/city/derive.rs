@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice::io::city::{self, cityjson, glb, grammar_file, obj};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
+use edifice_io::city::{self, cityjson, glb, grammar_file, obj};
 
 use super::data;
 
@@ -63,5 +63,5 @@ pub fn write(
         }
         _ => cityjson::to_string(&derivation.city(grammar)).into_bytes(),
     };
-    edifice::io::write_atomic(path, &bytes)
+    edifice_io::write_atomic(path, &bytes)
 }

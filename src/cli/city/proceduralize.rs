@@ -4,17 +4,17 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use edifice::grammar::instance::{InstanceGrammar, Kept};
-use edifice::io::city::{self, glb, grammar_file};
-use edifice::methods::city_proceduralization::{
-    self as method, Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative,
-    Settings,
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization as method;
+use edifice_city_proceduralization::{
+    Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
 };
-use edifice::shape::triangles::MeshFaults;
-use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
-use edifice::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, Kept};
+use edifice_io::city::{self, glb, grammar_file};
+use edifice_shape::triangles::MeshFaults;
+use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
 
-use crate::cli::print;
+use crate::print;
 
 /// Cells of the raster that judges the result, in metres.
 const RESOLUTION: f64 = 1.0;
@@ -165,10 +165,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(path) = &args.glb {
         let bytes = glb::to_bytes(&made.grammar, &derivation, true);
         let bytes = bytes.map_err(|e| Error::content(path, e))?;
-        edifice::io::write_atomic(path, &bytes)?;
+        edifice_io::write_atomic(path, &bytes)?;
     }
     let bytes = args.bytes_of(&made.grammar)?;
-    edifice::io::write_atomic(&args.output, &bytes)?;
+    edifice_io::write_atomic(&args.output, &bytes)?;
     let bytes = bytes.len();
     print::message("measuring");
     let iou = iou(&input, &made.grammar).map_err(|e| failure(e, args))?;
@@ -292,7 +292,7 @@ fn read(paths: &[PathBuf]) -> Result<City> {
 }
 
 /// Volumetric intersection over union of the derived triangles with the input's.
-fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice::error::Cause> {
+fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice_base::error::Cause> {
     let derived = grammar.derive()?.city(grammar);
     let repaired: Vec<TriangleMesh> = input.buildings.iter().map(|b| repair(&b.mesh).0).collect();
     let first: Vec<&TriangleMesh> = repaired.iter().collect();
@@ -302,7 +302,7 @@ fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice::error::C
         .iou())
 }
 
-fn failure(error: edifice::error::Cause, args: &Args) -> Error {
+fn failure(error: edifice_base::error::Cause, args: &Args) -> Error {
     match args.input.first() {
         Some(path) => Error::content(path, error),
         None => Error::method(error),

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use edifice::io::{facade_json, write_atomic};
-use edifice::methods::structure_completion::task::Task;
-use edifice::shape::{AnnotatedFacade, Facade, Rect};
-use edifice::{Error, Result, rng};
+use edifice_base::{Error, Result, rng};
+use edifice_io::{facade_json, write_atomic};
+use edifice_shape::{AnnotatedFacade, Facade, Rect};
+use edifice_structure_completion::task::Task;
 
 use super::input;
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade hide`.
 #[derive(clap::Args)]

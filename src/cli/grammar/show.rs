@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use edifice::grammar::{Costs, Grammar, check, derive, listing};
-use edifice::io::read_grammar;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::{Costs, Grammar, check, derive, listing};
+use edifice_io::read_grammar;
 
-use crate::cli::print;
+use crate::print;
 
 /// Options of `edifice grammar show`.
 #[derive(clap::Args)]
@@ -79,7 +79,7 @@ impl<'g> Summary<'g> {
     fn new(
         grammar: &'g Grammar,
         costs: &Costs,
-    ) -> std::result::Result<Self, edifice::grammar::GrammarError> {
+    ) -> std::result::Result<Self, edifice_grammar::GrammarError> {
         let defined: BTreeSet<&str> = grammar.rules.iter().map(|r| r.symbol.as_str()).collect();
         let written = grammar.rules.iter().flat_map(|r| r.operation.symbols());
         let starts = grammar.starts.iter().map(|s| s.symbol.as_str());

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use edifice::model::ModelError;
-use edifice::model::network::{Evidence, Network};
+use edifice_model::ModelError;
+use edifice_model::network::{Evidence, Network};
 
 /// Width of a box, and the gaps between boxes, in pixels.
 const WIDTH: f64 = 168.0;

@@ -7,16 +7,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use edifice::model::em::Outcome;
-use edifice::model::hierarchy::{
+use edifice_base::{Error, Result};
+use edifice_model::em::Outcome;
+use edifice_model::hierarchy::{
     Hierarchy, Learned, Settings, Step, fit_observed, learn_observed, refine,
 };
-use edifice::model::{ModelError, Table};
-use edifice::tables::Dataset;
-use edifice::{Error, Result};
+use edifice_model::tables::Dataset;
+use edifice_model::{ModelError, Table};
 
 use super::search::{Search, warnings};
-use crate::cli::print;
+use crate::print;
 
 /// Time between two lines of progress.
 const TELL: Duration = Duration::from_secs(10);

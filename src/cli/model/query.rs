@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use edifice::model::ModelError;
-use edifice::model::network::{Answer, Estimate, Evidence, Network};
-use edifice::rng::stream;
-use edifice::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::ModelError;
+use edifice_model::network::{Answer, Estimate, Evidence, Network};
 
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]

@@ -1,8 +1,8 @@
 //! Options of learning a hierarchical model, and what to warn of.
 
-use edifice::Error;
-use edifice::model::hierarchy::{Constant, Settings, Variant};
-use edifice::model::{Cell, Table};
+use edifice_base::Error;
+use edifice_model::hierarchy::{Constant, Settings, Variant};
+use edifice_model::{Cell, Table};
 
 /// The options of learning.
 #[derive(clap::Args)]
@@ -37,7 +37,7 @@ pub struct Search {
 
 impl Search {
     /// The settings of the model layer; `background` is the share that is meant where none is given.
-    pub fn settings(&self, background: f64) -> edifice::Result<Settings> {
+    pub fn settings(&self, background: f64) -> edifice_base::Result<Settings> {
         let background = self.background.unwrap_or(background);
         if !(0.0..1.0).contains(&background) {
             return Err(Error::option(

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use edifice::model::network::structure::{Score, Search, search};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_model::network::structure::{Score, Search, search};
 
 use super::data::TableInput;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]

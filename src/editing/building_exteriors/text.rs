@@ -1,9 +1,9 @@
 //! Edits of houses as text: on the command line and in commands.
 
 use super::super::{CommandError, numbers, written};
-use crate::Result;
-use crate::methods::building_exteriors::design::Edit;
-use crate::shape::BoxStyle;
+use edifice_base::Result;
+use edifice_building_exteriors::design::Edit;
+use edifice_shape::BoxStyle;
 
 /// `STYLE@X,Y,W,D,H`: a new box.
 ///

@@ -5,21 +5,17 @@ use std::sync::OnceLock;
 use super::super::CommandError;
 use super::super::work::{Stopped, Work};
 use super::shipped_model;
-use crate::Result;
-use crate::methods::building_exteriors::attributes::{
-    AttributeError, AttributeRow, COLUMNS, attributes,
-};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::design::wanted_rows;
-use crate::methods::building_exteriors::house::{
-    Database, GenerateError, Generated, Options, generate,
-};
-use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
-use crate::methods::building_exteriors::mass::target::PARTS;
-use crate::model::ModelError;
-use crate::model::hierarchy::Hierarchy;
-use crate::rng::stream;
-use crate::shape::Building;
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_building_exteriors::attributes::{AttributeError, AttributeRow, COLUMNS, attributes};
+use edifice_building_exteriors::data::table;
+use edifice_building_exteriors::design::wanted_rows;
+use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
+use edifice_building_exteriors::mass::contradiction::{Contradiction, check_given};
+use edifice_building_exteriors::mass::target::PARTS;
+use edifice_model::ModelError;
+use edifice_model::hierarchy::Hierarchy;
+use edifice_shape::Building;
 
 /// First column that is yes or no.
 pub const FIRST_FLAG: usize = 39;
@@ -211,7 +207,7 @@ pub fn ranges() -> Result<&'static [[f64; 2]; 49]> {
     }
     let model = &shipped_model()?.model;
     let draws = model.sample(DRAWS, &mut stream(0, "building/ranges", 0));
-    let rows = wanted_rows(&draws.map_err(crate::Error::method)?.table);
+    let rows = wanted_rows(&draws.map_err(edifice_base::Error::method)?.table);
     let between = |c: usize| {
         let mut values: Vec<f64> = rows.iter().map(|r| r[c]).collect();
         values.sort_by(f64::total_cmp);

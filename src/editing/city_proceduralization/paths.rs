@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::instance::{InstanceGrammar, Placement};
+use edifice_grammar::instance::{InstanceGrammar, Placement};
 
 /// A rule that was applied, and which of its successors was followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -88,8 +88,8 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::experiments::shipped_bytes;
-    use crate::io::city::grammar_json;
+    use edifice_datasets::shipped_bytes;
+    use edifice_io::city::grammar_json;
 
     #[test]
     fn the_walk_is_that_of_the_derivation() {

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use super::super::{CommandError, parse};
 use super::City;
 use super::paths::paths;
-use crate::methods::city_proceduralization::localization::{Seen, landmarks, locate};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::localization::{Seen, landmarks, locate};
 
 /// Places that are listed.
 const TOP: usize = 5;

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::paths::paths;
 use super::{City, Made};
-use crate::Result;
+use edifice_base::Result;
 
 /// Everything there is to show: lengths in metres to the centimetre, corners of templates in thousandths of their box.
 pub fn view(city: &City) -> Result<Value> {

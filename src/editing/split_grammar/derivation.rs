@@ -1,9 +1,9 @@
 //! A facade of a grammar, at its own or another size.
 
-use crate::grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
-use crate::layout::resize::{AlignError, align};
-use crate::rng;
-use crate::shape::Facade;
+use edifice_base::rng;
+use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
+use edifice_layout::resize::{AlignError, align};
+use edifice_shape::Facade;
 
 /// The wanted derivation.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use super::floors;
 use super::line::{Line, unfit};
 use super::text::Place;
-use crate::grammar::{Grammar, GrammarError, Operation, Successor, check, size_independent};
+use edifice_grammar::{Grammar, GrammarError, Operation, Successor, check, size_independent};
 
 /// One edit. Rules are counted from 0 in the order of the file; PART is a [`Place`] in one: a part, or a column or row of a grid.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::edits::GrammarEditError;
 use super::text::Place;
-use crate::grammar::{Grammar, Operation, Size, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, Operation, Size, Successor};
+use edifice_shape::Axis;
 
 /// The sizes that an operation writes along an axis; none where it does not split along it.
 pub(super) fn along(operation: &Operation, axis: Axis) -> Vec<Size> {

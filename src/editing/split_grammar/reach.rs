@@ -1,9 +1,9 @@
 //! The region of a rule that floors and columns are put into, and what is around it.
 
 use super::line::{along, index_along, repeats, totals};
-use crate::grammar::{Derivation, Grammar, GrammarError, Operation, Size, derive_at, laid_out};
-use crate::rng;
-use crate::shape::{Axis, Rect};
+use edifice_base::rng;
+use edifice_grammar::{Derivation, Grammar, GrammarError, Operation, Size, derive_at, laid_out};
+use edifice_shape::{Axis, Rect};
 
 /// Growths that differ by less of the larger one are the same.
 const SAME: f64 = 1e-6;

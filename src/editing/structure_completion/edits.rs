@@ -1,8 +1,8 @@
 //! Edits of a layout of elements, as text and as values.
 
 use super::super::{CommandError, numbers};
-use crate::Result;
-use crate::shape::{AnnotatedFacade, AnnotationError, Facade, LayoutError, Note, Rect, Region};
+use edifice_base::Result;
+use edifice_shape::{AnnotatedFacade, AnnotationError, Facade, LayoutError, Note, Rect, Region};
 
 /// One edit. Elements are named by their id, or by `#K`, their place in the file from 0.
 #[derive(Debug, Clone, PartialEq)]

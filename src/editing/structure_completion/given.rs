@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use crate::methods::structure_completion::completion::Completion;
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::shape::{AnnotatedFacade, Facade, Note, Rect, Region, is_background};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{AnnotatedFacade, Facade, Note, Rect, Region, is_background};
+use edifice_structure_completion::completion::Completion;
+use edifice_structure_completion::layout::{Class, Element, Layout};
+use edifice_structure_completion::partial::PartialLayout;
 
 /// The wishes for a completion, beside the layout.
 pub struct Wanted<'a> {

@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 use super::super::script::{Shell, Word};
 use super::super::{Step, parse};
 use super::{ENDING, Sketch};
-use crate::io::photograph;
-use crate::shape::AnnotatedFacade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::photograph;
+use edifice_shape::AnnotatedFacade;
 
 /// The questions to a drawing that do not change it.
 #[derive(Deserialize)]

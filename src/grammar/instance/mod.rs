@@ -21,7 +21,7 @@ pub use repeated::{Posed, Repeated, repeated};
 
 use std::sync::Arc;
 
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// A symbol in its place: scaled, turned about the vertical, shifted.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +65,7 @@ pub struct Template {
     pub symbol: String,
     /// The mesh.
     pub mesh: TriangleMesh,
-    /// The picture file (PNG, JPEG or WebP) of its box mapping ([`crate::shape::triangles::BoxTexture`]), if it has one.
+    /// The picture file (PNG, JPEG or WebP) of its box mapping ([`edifice_shape::triangles::BoxTexture`]), if it has one.
     pub texture: Option<Arc<[u8]>>,
 }
 

@@ -13,12 +13,12 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::CityError;
-use crate::io::json::parse_json;
-use crate::io::read_bytes;
-use crate::shape::triangles::{
+use crate::json::parse_json;
+use crate::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{
     City, CityBuilding, Painted, Surface, TriangleMesh, polygon_triangles,
 };
-use crate::{Error, Result};
 
 #[derive(Deserialize)]
 struct Document {
@@ -53,14 +53,14 @@ pub fn read(path: &Path) -> Result<City> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
-    let sequence = crate::io::packed::extension(path) == "jsonl";
+    let sequence = crate::packed::extension(path) == "jsonl";
     let mut parts: Vec<&[u8]> = match sequence {
         true => bytes.split(|&b| b == b'\n').collect(),
         false => vec![bytes],
     };
     parts.retain(|line| !line.trim_ascii().is_empty());
     let mut city = City {
-        name: crate::io::file_stem(path),
+        name: crate::file_stem(path),
         ..City::default()
     };
     let mut transform = Transform {

@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::CityError;
-use crate::io::read_bytes;
-use crate::{Error, Result};
+use crate::read_bytes;
+use edifice_base::{Error, Result};
 
 /// Bytes.
 #[derive(Deserialize)]

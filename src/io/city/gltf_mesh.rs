@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::CityError;
 use super::gltf_data::Buffers;
 use super::gltf_textures::Looks;
-use crate::shape::triangles::{Painted, Surface, TriangleMesh};
+use edifice_shape::triangles::{Painted, Surface, TriangleMesh};
 
 /// A mesh as the file says it.
 #[derive(Deserialize)]

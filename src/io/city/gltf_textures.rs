@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::gltf_data::{Buffers, load};
 use super::pictures::decoded;
 use super::{CityError, glb::BOX_MAPPED};
-use crate::shape::triangles::Surface;
+use edifice_shape::triangles::Surface;
 
 /// A material.
 #[derive(Deserialize)]

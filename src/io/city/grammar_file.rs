@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use super::{compact, grammar_json};
-use crate::grammar::instance::InstanceGrammar;
-use crate::io::write_atomic;
-use crate::{Error, Result};
+use crate::write_atomic;
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::InstanceGrammar;
 
 /// True if a file's name says that it holds a grammar.
 pub fn is_grammar(path: &Path) -> bool {

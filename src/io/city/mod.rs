@@ -39,8 +39,8 @@ pub use pictures::{add_textures, paint_parts};
 use std::path::Path;
 
 use super::packed;
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::City;
 
 /// Coordinates beyond this are no metres.
 const FARTHEST: f64 = 1e8;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::scene::render::render;
-use crate::scene::trace::framing;
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::shape::triangles::{City, Painted, corner_bits};
+use edifice_scene::render::render;
+use edifice_scene::trace::framing;
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
+use edifice_shape::triangles::{City, Painted, corner_bits};
 
 /// Space between pictures, in pixels.
 const GAP: usize = 8;

@@ -8,7 +8,7 @@
 use serde_json::{Value, json};
 
 use super::glb::{self, GlbError};
-use crate::grammar::instance::{InstanceDerivation, InstanceGrammar};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 
 /// Instances in a tile at most.
 pub const MOST_INSTANCES: usize = 4000;

@@ -12,9 +12,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::CityError;
-use crate::io::json::{check_header, parse_json};
-use crate::io::read_bytes;
-use crate::{Error, Result};
+use crate::json::{check_header, parse_json};
+use crate::read_bytes;
+use edifice_base::{Error, Result};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-view";

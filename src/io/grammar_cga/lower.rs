@@ -13,8 +13,8 @@ use super::error::Fault;
 use super::note::Note;
 use super::reserved::is_leaf_operation;
 use super::syntax::{At, CgaRule, Chance, Item, Target};
-use crate::grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
+use edifice_shape::Axis;
 use natural::natural_extent;
 use value::{DRAWS, Draw};
 

@@ -2,7 +2,7 @@
 
 use chumsky::span::SimpleSpan;
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Something with its place in the text.
 pub(super) type At<T> = (T, SimpleSpan);

@@ -6,10 +6,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::names::{SizeKey, constants, identifiers};
 use super::reserved;
-use crate::grammar::{Grammar, Operation, Rule, Size, Successor, size_independent};
-use crate::io::json::quoted;
-use crate::io::palette::Palette;
-use crate::shape::Axis;
+use crate::json::quoted;
+use crate::palette::Palette;
+use edifice_grammar::{Grammar, Operation, Rule, Size, Successor, size_independent};
+use edifice_shape::Axis;
 
 /// The version of CGA that the text keeps to: every word of it is known since then.
 const VERSION: &str = "2019.0";

@@ -9,7 +9,7 @@ use super::lattice::Lattice;
 use super::projection::Limits;
 use super::resized;
 use super::strips::{Run, Strips};
-use crate::shape::{
+use edifice_shape::{
     Component, Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose,
     is_background,
 };

@@ -7,7 +7,7 @@ use super::equal::Cluster;
 use super::lattice::Lattice;
 use super::meeting::Groups;
 use super::strips::Strips;
-use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
+use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 
 /// Cost of a change to the size of an element, relative to that of one of the background.
 const ELEMENT: f64 = 8.0;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::shape::Span;
+use edifice_shape::Span;
 
 /// Sizes along one axis that are equal, and stay so.
 #[derive(Debug, Clone, PartialEq)]

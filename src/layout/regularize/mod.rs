@@ -56,8 +56,8 @@ mod strips;
 
 use std::collections::BTreeMap;
 
-use crate::optim::qp::QpError;
-use crate::shape::{Facade, GridError, LabelGrid, LayoutError};
+use edifice_optim::qp::QpError;
+use edifice_shape::{Facade, GridError, LabelGrid, LayoutError};
 
 use areas::Areas;
 use layouts::{Picture, Tiling};

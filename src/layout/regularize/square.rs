@@ -1,6 +1,6 @@
 //! Areas that are rectangles but for small nicks become rectangles.
 
-use crate::shape::{LabelGrid, Span, components, is_background};
+use edifice_shape::{LabelGrid, Span, components, is_background};
 
 /// The result of squaring.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

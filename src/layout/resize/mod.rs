@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::Derivation;
-use crate::layout::regularize::{RegularizeError, align_resized};
-use crate::shape::{Axis, Facade, Rect, is_background};
+use crate::regularize::{RegularizeError, align_resized};
+use edifice_grammar::Derivation;
+use edifice_shape::{Axis, Facade, Rect, is_background};
 
 /// The longest way that an edge may move so that equal terminals stay equal, as a share of the facade's longer side.
 pub const ALIGN_REACH: f64 = 0.25;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::model::hierarchy::Hierarchy;
+use edifice_model::hierarchy::Hierarchy;
 
 /// Width of the drawing on a page: the narrower side of A4 landscape's print area, 280 mm, at 96 dpi.
 const PAGE: f64 = 1058.0;

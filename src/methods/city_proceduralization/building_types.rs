@@ -17,7 +17,7 @@ use super::components::Component;
 use super::features::Points;
 use super::orientation::is_symmetric;
 use super::proceduralize::ProceduralizeError;
-use crate::cluster::{shortest_description, ward};
+use edifice_cluster::{shortest_description, ward};
 
 /// Differences of features below this are no differences: half a per cent of a length.
 const PRECISION: f64 = 0.005;

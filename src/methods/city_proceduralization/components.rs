@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
 use super::windows::{WindowFeatures, window_features};
-use crate::shape::triangles::{
+use edifice_shape::triangles::{
     City, MeshFaults, OrientedBox, Painted, Part, SectionProfile, SideView, Surface, TriangleMesh,
     clip_to_slabs, closing_lid, grey, height_map, repair,
 };

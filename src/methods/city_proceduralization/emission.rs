@@ -6,10 +6,10 @@ use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::parse_tree::ParseTree;
 use super::types::Types;
-use crate::grammar::instance::{
+use edifice_grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
 };
-use crate::shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
+use edifice_shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
 
 /// How finely numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::components::Component;
-use crate::shape::triangles::convex_hull;
+use edifice_shape::triangles::convex_hull;
 
 /// Names of the eleven features of the paper, in order; the names that weights are given by.
 pub const PAPER_FEATURES: [&str; 11] = [

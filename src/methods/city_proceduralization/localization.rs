@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::facades::{FACADE_FEATURES, Facade, WINDOWS};
-use crate::shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
+use edifice_shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
 
 /// What is measured of a building in a view: logarithms of width, depth, height; the solid share.
 pub const VIEW_FEATURES: usize = 4;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::components::{CELLS, Component};
 use super::types::Use;
-use crate::cluster::KdTree;
+use edifice_cluster::KdTree;
 
 /// Rounds of medoids.
 const ROUNDS: usize = 3;

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::type_graph::{
     DistanceWeights, NEIGHBOUR, NodeInstance, TypeEdge, neighbours, type_graph,
 };
-use crate::cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
-use crate::grammar::instance::{InstanceRule, Placement};
+use edifice_cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Levels at most: the tolerance is doubled at each.
 const MOST_LEVELS: usize = 16;

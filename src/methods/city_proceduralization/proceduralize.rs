@@ -10,9 +10,9 @@ use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
 use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
-use crate::cluster::WardError;
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
-use crate::shape::triangles::{BoxTexture, City};
+use edifice_cluster::WardError;
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
+use edifice_shape::triangles::{BoxTexture, City};
 
 /// How types are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

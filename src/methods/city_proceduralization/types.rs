@@ -8,8 +8,8 @@ use super::components::Component;
 use super::features::{Points, paper_features};
 use super::medoids::{Form, Table, square};
 use super::proceduralize::{ProceduralizeError, Representative};
-use crate::cluster::{WardTree, kmeans, lloyd, means, ward};
-use crate::rng;
+use edifice_base::rng;
+use edifice_cluster::{WardTree, kmeans, lloyd, means, ward};
 
 /// A type's use for a component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

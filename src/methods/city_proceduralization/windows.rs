@@ -1,8 +1,8 @@
 //! The six window features of a component (Sec. IV.C): its four sides are drawn, windows are told from the wall by Otsu's
 //! threshold, opening and closing.
 
-use crate::shape::triangles::{OrientedBox, Painted, SideView, grey, view_size};
-use crate::shape::{LabelGrid, Span, components};
+use edifice_shape::triangles::{OrientedBox, Painted, SideView, grey, view_size};
+use edifice_shape::{LabelGrid, Span, components};
 
 /// Pixels along the longer side of a picture at most.
 const MOST_PIXELS: usize = 256;

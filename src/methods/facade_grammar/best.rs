@@ -9,11 +9,11 @@ use super::bound::{labels_once, saved_by_grids};
 use super::infer::{InferError, Settings};
 use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
 use super::rules::RulePricer;
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::optim::Step;
-use crate::optim::adp::Epsilon;
-use crate::optim::annealing::{Annealing, Cooling};
-use crate::shape::Facade;
+use crate::rules::AddRule;
+use edifice_optim::Step;
+use edifice_optim::adp::Epsilon;
+use edifice_optim::annealing::{Annealing, Cooling};
+use edifice_shape::Facade;
 
 /// Rules found, and a bound below which no grammar costs.
 type Found = (Vec<AddRule>, f64);

@@ -8,8 +8,8 @@ use super::infer::{InferError, Method, Settings, infer};
 use super::lagrangian::{BoundLimits, Incumbent, Program, solve};
 use super::operations::Operations;
 use super::regions::Types;
-use crate::grammar::Costs;
-use crate::shape::Facade;
+use edifice_grammar::Costs;
+use edifice_shape::Facade;
 
 /// What is known of the least cost of a facade's grammars.
 #[derive(Debug, Clone, Copy, PartialEq)]

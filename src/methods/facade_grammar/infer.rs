@@ -12,11 +12,11 @@ use super::adp::search::Search;
 use super::best::further_steps;
 use super::lagrangian::NOISE;
 use super::operations::Operations;
-use crate::grammar::{CostError, Costs, Grammar};
-use crate::optim::Step;
-use crate::optim::adp::AdpError;
-use crate::optim::annealing::AnnealingError;
-use crate::shape::{Facade, LayoutError, splittable};
+use edifice_grammar::{CostError, Costs, Grammar};
+use edifice_optim::Step;
+use edifice_optim::adp::AdpError;
+use edifice_optim::annealing::AnnealingError;
+use edifice_shape::{Facade, LayoutError, splittable};
 
 /// How to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -88,7 +88,7 @@ impl Default for Settings {
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// The grammar; its cost is for [`crate::grammar`] to say.
+    /// The grammar; its cost is for [`edifice_grammar`] to say.
     pub grammar: Grammar,
     /// Iterations that the method was given; [`Method::AdpBest`] stops sooner once its grammar is proven optimal.
     pub iterations: u64,

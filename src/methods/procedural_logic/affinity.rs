@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::canvas::{Canvas, View};
 use super::parameters::Facing;
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Sums of Eq. 8 over a set of facades: `sums[d][l][l']`, square matrices over the labels.
 ///

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parse::{BinaryNode, BinaryTree};
 use super::rules::{Call, RuleSet};
-use crate::cluster::{Histogram, chi_square};
+use edifice_cluster::{Histogram, chi_square};
 
 /// An element of the powerset of operations and labels: bit 0 the split along x, bit 1 the split
 /// along y, bit `2 + l` label `l`; without trailing zero words.

@@ -11,7 +11,7 @@ use super::nary::NaryTree;
 use super::parameters::{ParameterError, Parameters};
 use super::parse::{BinaryTree, NoSplit, parse};
 use super::rules::{Instance, InstanceError};
-use crate::shape::{Facade, GridError, LabelGrid};
+use edifice_shape::{Facade, GridError, LabelGrid};
 
 /// Most labels that a model is fitted to: affinities take the square of their number.
 const MOST_LABELS: usize = 4096;

@@ -8,7 +8,7 @@ use super::inference::Inference;
 use super::model::{Known, Model};
 use super::parameters::{ParameterError, Parameters};
 use super::rules::{Call, Instance, InstanceError, ParametricRule, RuleSet};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Name of the format.
 pub const MODEL_FORMAT: &str = "edifice/logic-model";

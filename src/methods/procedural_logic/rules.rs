@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::nary::{NaryNode, NaryTree};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// What a rule calls for one of its parts.
 #[derive(

@@ -8,9 +8,9 @@ use super::layout::lines::{Line, lines, median};
 use super::layout::{Class, Layout};
 use super::model_file::ModelFileError;
 use super::policy::PaperModel;
-use crate::model::ModelError;
-use crate::model::boosting::{Boosting, BoostingError};
-use crate::shape::{Axis, Rect};
+use edifice_model::ModelError;
+use edifice_model::boosting::{Boosting, BoostingError};
+use edifice_shape::{Axis, Rect};
 
 /// A whole layout of the database, with its lattice.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,7 +145,5 @@ impl Model {
 /// # Errors
 /// [`ModelFileError`]; a test keeps it readable.
 pub fn shipped_model() -> Result<Model, ModelFileError> {
-    Model::from_json(include_str!(
-        "../../../datasets/structure_completion/default.completion.json"
-    ))
+    Model::from_json(edifice_datasets::DEFAULT_COMPLETION_MODEL)
 }

@@ -2,7 +2,7 @@
 
 use super::layout::places::Places;
 use super::layout::{Class, Element};
-use crate::shape::Rect;
+use edifice_shape::Rect;
 
 /// The input of a completion.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::layout::{Element, Layout};
 use super::partial::PartialLayout;
-use crate::rng::Stream;
-use crate::shape::Rect;
+use edifice_base::rng::Stream;
+use edifice_shape::Rect;
 
 /// What is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Task {
     /// A random 20 % of the elements are observed; nothing is known of the rest of the facade.

@@ -12,14 +12,14 @@ use super::LogDensity;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{LogDensity, ScalarMixture, Typical};
+/// use edifice_model::density::{LogDensity, ScalarMixture, Typical};
 /// let standard = ScalarMixture::new(vec![1.0], vec![0.0], vec![1.0])?;
 /// let rows = [[-1.0], [0.0], [0.5], [1.0]];
 /// // The least quarter of the log densities is that of the rows at -1 and 1.
 /// let typical = Typical::new(standard, rows.iter().map(|row| (&row[..], 1.0)), 0.25);
 /// assert_eq!((typical.relative(&[0.2]), typical.relative(&[-0.9])), (0.0, 0.0));
 /// assert!((typical.relative(&[2.0]) + 1.5).abs() < 1e-12); // -2² / 2 + 1² / 2
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Typical<D> {

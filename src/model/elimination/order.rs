@@ -41,7 +41,7 @@ pub struct TooWide {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::elimination::Order;
+/// use edifice_model::elimination::Order;
 /// // A chain is eliminated from its ends, with tables of two variables.
 /// let chain: Vec<[usize; 2]> = (0..99).map(|i| [i, i + 1]).collect();
 /// let order = Order::new(chain.iter().map(|c| &c[..]), &[10; 100]);

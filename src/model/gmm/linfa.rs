@@ -2,7 +2,7 @@
 //! Feature `linfa`.
 //!
 //! ```
-//! use edifice::model::gmm::linfa::{LinfaError, Parameters};
+//! use edifice_model::gmm::linfa::{LinfaError, Parameters};
 //! use linfa::DatasetBase;
 //! use linfa::traits::{Fit, Predict};
 //! use ndarray::Array2;
@@ -23,7 +23,7 @@ use ndarray::{Array1, ArrayBase, Data, Ix2};
 
 use super::super::error::ModelError;
 use super::{Criterion, Mixture, Points, Settings, fit, select};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// The number of components, fixed or found by [`select`]; for [`Parameters`].
 #[derive(Clone, Copy, Debug, PartialEq)]

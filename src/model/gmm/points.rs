@@ -9,8 +9,8 @@ use super::super::error::ModelError;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::ModelError;
-/// use edifice::model::gmm::Points;
+/// use edifice_model::ModelError;
+/// use edifice_model::gmm::Points;
 /// let values = [1.0, 2.0, 3.0, f64::NAN, 5.0, 6.0];
 /// let points = Points::with_missing(2, &values)?.weighted(&[1.0, 2.0, 0.5])?;
 /// assert_eq!((points.len(), points.dimension(), points.total()), (3, 2, 3.5));

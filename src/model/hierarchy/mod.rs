@@ -110,7 +110,7 @@ pub use watch::Observer;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, hierarchy::{Group, Settings, Variant, learn}};
+/// use edifice_model::{Table, hierarchy::{Group, Settings, Variant, learn}};
 /// let width = |i: usize| 6.0 + (i % 7) as f64;
 /// let houses = Table::new()
 ///     .real("width", (0..70).map(|i| Some(width(i))))?
@@ -123,7 +123,7 @@ pub use watch::Observer;
 /// let edges = model.lateral_edges();
 /// assert_eq!(edges.len(), 1);
 /// assert!(edges[0].0 != "age" && edges[0].1 != "age");
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Variant {
@@ -159,7 +159,7 @@ pub enum Sweep {
 /// The gain of a background on a row ten deviations away, in nats:
 /// ```
 /// use std::ops::ControlFlow;
-/// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
+/// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
 /// let seen = Table::new().real("width", (0..70).map(|i| Some(10.0 + (i % 7) as f64)))?;
 /// let strange = Table::new().real("width", [Some(33.0)])?;
 /// let groups = [Group::new("size", &["width"])];

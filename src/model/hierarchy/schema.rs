@@ -12,7 +12,7 @@ use super::super::table::{MISSING, Table, Values};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, learn}};
+/// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, learn}};
 /// let houses = Table::new()
 ///     .real("width", (0..20).map(|i| Some(f64::from(i % 7))))?
 ///     .binary("garage", (0..20).map(|i| Some(i % 2 == 1)))?;

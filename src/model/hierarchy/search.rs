@@ -18,7 +18,7 @@ use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::wide::{Wide, states, wide};
 use super::{Settings, Step, Sweep, Variant};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// Values of real columns up to which all |S| are searched from the start.
 const SMALL: usize = 10_000;

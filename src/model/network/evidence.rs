@@ -16,13 +16,13 @@ use super::{Cpd, Network};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{ModelError, network::{Evidence, Network, Variable}};
+/// use edifice_model::{ModelError, network::{Evidence, Network, Variable}};
 /// let network = Network::new(vec![Variable::table("rain", &["no", "yes"], &[], &[0.8, 0.2])])?;
 /// let forecast = Evidence::new().likely("rain", &[1.0, 4.0]);
 /// assert!((network.marginal(&forecast, "rain")?[1] - 0.5).abs() < 1e-12);
 /// let both = Evidence::new().is("rain", "no").is("rain", "yes");
 /// assert!(matches!(network.marginal(&both, "rain"), Err(ModelError::Contradiction { .. })));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {

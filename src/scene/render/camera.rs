@@ -1,6 +1,6 @@
 //! The camera that a scene is seen from.
 
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
 
 /// Nothing nearer than this is seen, in metres.
 const NEAR: f32 = 0.5;

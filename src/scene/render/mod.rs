@@ -9,8 +9,8 @@ pub use camera::Camera;
 
 use rayon::prelude::*;
 
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
-use crate::scene::{Group, Instance, Mesh, Scene};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::{Group, Instance, Mesh, Scene};
 use camera::View;
 use depth::DepthBuffer;
 

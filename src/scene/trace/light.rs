@@ -1,8 +1,8 @@
 //! The nearest surface on a ray, and the light that comes back along it.
 
 use super::tree::Tree;
-use crate::scene::Scene;
-use crate::scene::vectors::{V, add, cross, dot, times, unit};
+use crate::Scene;
+use crate::vectors::{V, add, cross, dot, times, unit};
 
 /// Direction towards the sun.
 const SUN: V = [-0.46, 0.68, 0.57];

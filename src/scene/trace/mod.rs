@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::Scene;
 use super::render::{Camera, Picture};
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
 use light::{Seen, World, encoded};
 
 /// Rays along each axis of a pixel on an edge.

@@ -1,6 +1,6 @@
 //! Triangles in a tree of boxes, split where the surface area heuristic (MacDonald and Booth 1990) is least.
 
-use crate::scene::vectors::{V, cross, dot, sub, unit};
+use crate::vectors::{V, cross, dot, sub, unit};
 
 /// Triangles in a leaf at most, and places for a split along an axis.
 const LEAF: usize = 4;

@@ -1,6 +1,6 @@
 //! The lines of one axis: candidates, and the cheapest choice among them.
 
-use crate::shape::{Axis, LabelGrid};
+use crate::{Axis, LabelGrid};
 
 /// Most candidate lines of an axis.
 const MOST_CANDIDATES: usize = 120;

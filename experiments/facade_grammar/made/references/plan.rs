@@ -3,9 +3,9 @@
 use rand::RngExt;
 
 use super::Kind;
-use crate::experiments::facade_grammar::made::elements::{Break, Glazing, Style};
-use crate::experiments::facade_grammar::made::theme::Rhythm;
-use crate::rng::Stream;
+use crate::facade_grammar::made::elements::{Break, Glazing, Style};
+use crate::facade_grammar::made::theme::Rhythm;
+use edifice_base::rng::Stream;
 
 /// A tile's content.
 #[derive(Debug, Clone, Copy)]

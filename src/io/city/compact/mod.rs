@@ -32,11 +32,11 @@ use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
 pub use self::steps::Steps;
 use super::pictures;
-use crate::file::read_bytes;
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
-use crate::io::write_atomic;
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use crate::write_atomic;
+use edifice_base::file::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
+use edifice_shape::triangles::TriangleMesh;
 
 /// The first bytes of a file.
 const MAGIC: [u8; 4] = *b"EdCG";

@@ -10,7 +10,7 @@ use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
 use super::steps::in_steps;
 use super::{CompactError, Steps};
-use crate::grammar::instance::{InstanceRule, Placement};
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Most placements of a file.
 const MOST_PLACEMENTS: u64 = 8_000_000;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CompactError;
-use crate::grammar::instance::{InstanceGrammar, Placement};
+use edifice_grammar::instance::{InstanceGrammar, Placement};
 
 /// Numbers of steps in a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,8 +7,8 @@ use super::super::note::Note;
 use super::super::reserved::is_appearance;
 use super::super::syntax::{Alternative, At, Entry, Part, Prefix, Target};
 use super::Builder;
-use crate::grammar::{Operation, Size, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Operation, Size, Successor};
+use edifice_shape::Axis;
 
 /// The greatest difference of a sum of fractions from the whole.
 const FRACTION_SLACK: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! Facade attributes `F_c` (Appendix A.2): window-to-wall ratio, symmetry and alignment, each of
 //! the front, back, left and right side.
 
-use crate::shape::{Building, FacadeElement, FacadePiece, Side};
+use edifice_shape::{Building, FacadeElement, FacadePiece, Side};
 
 /// Offsets up to this share of a floor height count as none.
 const TOLERANCE: f64 = 0.02;

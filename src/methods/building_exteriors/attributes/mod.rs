@@ -45,7 +45,7 @@ mod mass;
 
 pub use columns::{COLUMNS, GROUPS, Group, Level};
 
-use crate::shape::{Building, ElementStyle, RoofStyle, Special};
+use edifice_shape::{Building, ElementStyle, RoofStyle, Special};
 
 /// The attributes of one building, in the order of [`COLUMNS`]; `None` is missing.
 pub type AttributeRow = Vec<Option<f64>>;

@@ -4,9 +4,9 @@
 use rand::Rng;
 
 use super::styles::WINDOWS;
-use crate::cluster::kmeans;
-use crate::methods::building_exteriors::house::Database;
-use crate::shape::{ElementStyle, FacadeElement};
+use crate::house::Database;
+use edifice_cluster::kmeans;
+use edifice_shape::{ElementStyle, FacadeElement};
 
 /// Sub-styles of each style (Sec. 6.2).
 const SUB_STYLES: usize = 5;

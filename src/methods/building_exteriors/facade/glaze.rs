@@ -1,7 +1,7 @@
 //! Windows on the strips of one side, at one scale that gives the wanted window-to-wall ratio.
 
 use super::room::{CLEAR, EYE, Room, Strip, Walls};
-use crate::shape::{ElementStyle, FacadeElement, FacadePiece};
+use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 
 /// Width and height of a window at scale 1 and of a door (m).
 const WINDOW: [f64; 2] = [1.1, 1.3];

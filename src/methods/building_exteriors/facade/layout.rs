@@ -4,9 +4,9 @@ use super::cut::{Candidate, Choice, NARROWEST, choices};
 use super::glaze::{Plan, glaze, holds_asymmetric, millimetres};
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
-use crate::methods::building_exteriors::attributes::facade_attributes;
-use crate::shape::solid::Faces;
-use crate::shape::{BoxStyle, Building, ElementStyle, FacadePiece, Side};
+use crate::attributes::facade_attributes;
+use edifice_shape::solid::Faces;
+use edifice_shape::{BoxStyle, Building, ElementStyle, FacadePiece, Side};
 
 /// What the facades are wanted to come to.
 #[derive(Debug, Clone, PartialEq)]

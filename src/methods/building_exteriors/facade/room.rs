@@ -1,9 +1,9 @@
 //! What a wall leaves free for windows.
 
-use crate::methods::building_exteriors::house::model::garage_opening;
-use crate::methods::building_exteriors::house::walls::{WallPiece, wall_pieces};
-use crate::shape::solid::{Faces, Wall};
-use crate::shape::{Building, FacadePiece, Side};
+use crate::house::model::garage_opening;
+use crate::house::walls::{WallPiece, wall_pieces};
+use edifice_shape::solid::{Faces, Wall};
+use edifice_shape::{Building, FacadePiece, Side};
 
 /// Clear wall between a window and a corner, and over and under it (m).
 pub(super) const CLEAR: f64 = 0.13;

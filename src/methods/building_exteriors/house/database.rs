@@ -2,10 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::methods::building_exteriors::attributes::{
-    AttributeError, AttributeRow, COLUMNS, attributes,
-};
-use crate::shape::Building;
+use crate::attributes::{AttributeError, AttributeRow, COLUMNS, attributes};
+use edifice_shape::Building;
 
 /// Houses with their attributes.
 #[derive(Debug, Clone)]

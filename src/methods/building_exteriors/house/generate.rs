@@ -8,21 +8,17 @@ use super::model::{Model, furnished};
 use super::roof_styles::roof;
 use super::roofs::Joining;
 use super::solids::prisms;
-use crate::methods::building_exteriors::attributes::{AttributeError, attributes};
-use crate::methods::building_exteriors::facade::{
-    FacadeTarget, Facades, FixedPiece, breed, elements, furnish,
-};
-use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
-use crate::methods::building_exteriors::mass::footprint::{DECIDED, PlanError, reconcile, stand};
-use crate::methods::building_exteriors::mass::repair::{Change, changes, repair};
-use crate::methods::building_exteriors::mass::{
-    MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations,
-};
-use crate::optim::annealing::AnnealingError;
-use crate::optim::genetic::{GeneticError, Settings};
-use crate::shape::solid::{Faces, SurfaceError, faces};
-use crate::shape::{Building, MassBox, Rect, Special};
+use crate::attributes::{AttributeError, attributes};
+use crate::facade::{FacadeTarget, Facades, FixedPiece, breed, elements, furnish};
+use crate::mass::anneal::{AnnealSettings, anneal};
+use crate::mass::contradiction::{Contradiction, check_given};
+use crate::mass::footprint::{DECIDED, PlanError, reconcile, stand};
+use crate::mass::repair::{Change, changes, repair};
+use crate::mass::{MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations};
+use edifice_optim::annealing::AnnealingError;
+use edifice_optim::genetic::{GeneticError, Settings};
+use edifice_shape::solid::{Faces, SurfaceError, faces};
+use edifice_shape::{Building, MassBox, Rect, Special};
 
 /// Continuous columns: mass and facades.
 const NUMBERS: usize = 39;

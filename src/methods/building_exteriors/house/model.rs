@@ -4,10 +4,10 @@ use super::roofs::Joining;
 use super::solids::prisms;
 use super::walls::{WallPiece, wall_pieces, walls_of_pieces};
 use super::windows::{bare, cased, garage_door};
-use crate::shape::solid::{
+use edifice_shape::solid::{
     Faces, Finish, Opening, Prism, Report, Span, Surface, SurfaceError, Wall, faces, integral,
 };
-use crate::shape::{BoxStyle, Building, ElementStyle, Side};
+use edifice_shape::{BoxStyle, Building, ElementStyle, Side};
 
 /// A house one could print.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Houses as scenes: colours by pre-designed templates (Sec. 6), one mesh a house.
 
 use super::model::FINISHES;
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::shape::solid::{Finish, Surface};
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
+use edifice_shape::solid::{Finish, Surface};
 
 /// Colours of wall, roof, trim, door; the rest is the same for all.
 const TEMPLATES: [[[u8; 3]; 4]; 8] = [

@@ -1,9 +1,9 @@
 //! A building as a union of prisms: walls up to the roof planes, eaves, open porches, chimney and tower.
 
 use super::roofs::{Joining, Roofed, merged, plan_units, planes};
-use crate::shape::solid::exact::{Line, Plane, UNIT, units};
-use crate::shape::solid::{Finish, Prism};
-use crate::shape::{BoxStyle, Building, MassBox, RoofStyle, Special};
+use edifice_shape::solid::exact::{Line, Plane, UNIT, units};
+use edifice_shape::solid::{Finish, Prism};
+use edifice_shape::{BoxStyle, Building, MassBox, RoofStyle, Special};
 
 /// How far sloped roofs reach over the walls, and flat ones (m).
 const EAVES: f64 = 0.35;

@@ -1,7 +1,7 @@
 //! The walls of a building: where its facade pieces are.
 
-use crate::shape::solid;
-use crate::shape::{BoxStyle, Building, FacadePiece, MassBox, PlanEdge, PlanUnion, Rect, Side};
+use edifice_shape::solid;
+use edifice_shape::{BoxStyle, Building, FacadePiece, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// The wall of one floor between two corners of the outline of any floor, on one side.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Windows, doors and garage doors as panels set into walls.
 
-use crate::shape::ElementStyle;
-use crate::shape::solid::{Finish, Panel, Span};
+use edifice_shape::ElementStyle;
+use edifice_shape::solid::{Finish, Panel, Span};
 
 /// How far a frame stands before the wall, a pane and a door behind it (m).
 const CASING: f64 = 0.035;

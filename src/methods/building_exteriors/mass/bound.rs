@@ -2,7 +2,7 @@
 
 use super::repair::LEAST_FLOOR;
 use super::target::PARTS;
-use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::attributes::COLUMNS;
 
 /// Columns of a row, and its numbers; the flags of styles follow.
 const N: usize = COLUMNS.len();

@@ -1,7 +1,7 @@
 //! Given attributes that no house can have together, each with the columns and the bound.
 
 use super::target::{PARTS, part};
-use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::attributes::COLUMNS;
 
 /// Columns of a row.
 const N: usize = COLUMNS.len();

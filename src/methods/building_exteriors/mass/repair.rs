@@ -2,7 +2,7 @@
 
 use super::contradiction::least_boundary;
 use super::target::{FLOOR_SHARE, PARTS, floors, part};
-use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::attributes::COLUMNS;
 
 /// Columns of a row.
 const N: usize = COLUMNS.len();
@@ -195,7 +195,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     /// Any finite row is repaired to a finite one, and what was given stays: also heights that no storey has.
     #[test]

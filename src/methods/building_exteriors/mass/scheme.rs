@@ -1,7 +1,7 @@
 //! Boxes whose edges lie on named lines, some of them free.
 
 use super::target::{MassTarget, PARTS, bounds, part_of};
-use crate::shape::{BoxStyle, Building, MassBox, Ridge, Roof, RoofStyle};
+use edifice_shape::{BoxStyle, Building, MassBox, Ridge, Roof, RoofStyle};
 
 /// A line across one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

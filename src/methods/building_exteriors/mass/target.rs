@@ -1,7 +1,7 @@
 //! What a mass model is wanted to come to.
 
 use super::MASS;
-use crate::shape::{BoxStyle, Building, MassBox};
+use edifice_shape::{BoxStyle, Building, MassBox};
 
 /// Columns of garage, front porch and back porch.
 pub const PARTS: [(&str, usize, BoxStyle); 3] = [

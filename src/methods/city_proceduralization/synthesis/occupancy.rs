@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Shape, rotated};
-use crate::shape::triangles::{TriangleMesh, plan_area};
+use edifice_shape::triangles::{TriangleMesh, plan_area};
 
 /// Side of a cell, in metres.
 const CELL: f64 = 1.0;

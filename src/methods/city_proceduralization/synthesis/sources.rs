@@ -2,10 +2,10 @@
 
 use super::super::localization::{Landmark, landmark};
 use super::occupancy::{Footprint, footprint, open_ground};
-use crate::grammar::instance::{
+use edifice_grammar::instance::{
     InstanceGrammar, InstanceGrammarError, Placement, TemplateInstance,
 };
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// Neighbours of a building are no farther from it, in metres,
 const REACH: f64 = 80.0;

@@ -2,10 +2,10 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Strips, TypeId};
-use crate::methods::facade_grammar::rules::Arrangement;
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Strips, TypeId};
+use crate::rules::Arrangement;
+use edifice_shape::Axis;
 
 /// A rule that seems reasonable: its lines are indices into the cuts, ends included.
 #[derive(Debug)]

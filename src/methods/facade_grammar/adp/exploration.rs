@@ -17,12 +17,12 @@ use super::feasible_candidates::{Blocked, FeasibleCache, FeasibleCandidates};
 use super::priced_candidates::{PricedCandidates, append_needs};
 use super::protection::{Protection, contains};
 use super::symmetry::Repeated;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Region, Strips, TypeId, Types, ends};
-use crate::methods::facade_grammar::rules::grid;
-use crate::methods::facade_grammar::rules::{Arrangement, RuleCandidate, operation_cost};
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Region, Strips, TypeId, Types, ends};
+use crate::rules::grid;
+use crate::rules::{Arrangement, RuleCandidate, operation_cost};
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 /// Weights of the two parts of Eq. 5.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,9 +11,9 @@ use rustc_hash::FxHashMap;
 
 use super::priced_candidates::PricedCandidates;
 use super::protection::Protection;
-use crate::methods::facade_grammar::regions::{TypeId, Types, ends};
-use crate::methods::facade_grammar::rules::RuleCandidate;
-use crate::shape::Axis;
+use crate::regions::{TypeId, Types, ends};
+use crate::rules::RuleCandidate;
+use edifice_shape::Axis;
 
 /// The lines of one type that cross protected regions other than itself.
 #[derive(Debug, Default)]

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::methods::facade_grammar::regions::TypeId;
+use crate::regions::TypeId;
 
 /// Rules for one type. Of rules with the same cost and needs, only the first.
 #[derive(Debug)]

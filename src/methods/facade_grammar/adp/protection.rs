@@ -7,7 +7,7 @@ use rand::{Rng, RngExt};
 use rand_distr::{Distribution, Exp1};
 
 use super::symmetry::Repeated;
-use crate::methods::facade_grammar::regions::Region;
+use crate::regions::Region;
 
 /// The repeated regions of a layout, and those that the present walk protects.
 #[derive(Debug)]
@@ -188,7 +188,7 @@ mod tests {
     use rand::SeedableRng;
 
     use super::*;
-    use crate::rng::Stream;
+    use edifice_base::rng::Stream;
 
     fn region(x0: u16, x1: u16) -> Region {
         Region {

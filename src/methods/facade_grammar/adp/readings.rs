@@ -58,7 +58,7 @@ impl Protect {
     pub const DRAWS: usize = 8;
 
     /// The same for methods that learn nothing from walk to walk.
-    pub(in crate::methods::facade_grammar) fn anew(self) -> Self {
+    pub(crate) fn anew(self) -> Self {
         match self {
             Protect::Run => Protect::Walk { draws: Self::DRAWS },
             other => other,

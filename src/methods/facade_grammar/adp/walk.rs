@@ -12,11 +12,11 @@ use rand::Rng;
 use super::exploration::Exploration;
 use super::readings::Protect;
 use super::value_estimates::ValueEstimates;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::regions::{TypeId, Types};
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::methods::facade_grammar::rules::RulePricer;
-use crate::optim::adp::{Approximation, Heuristic, Process};
+use crate::regions::{TypeId, Types};
+use crate::rules::AddRule;
+use crate::rules::RulePricer;
+use edifice_grammar::Costs;
+use edifice_optim::adp::{Approximation, Heuristic, Process};
 
 /// Types are interned while the search discovers them, by every part of the solver.
 pub(crate) type SharedTypes = Rc<RefCell<Types>>;

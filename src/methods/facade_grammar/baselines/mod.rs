@@ -33,8 +33,8 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashSet;
 
-use crate::methods::facade_grammar::regions::{TypeId, Types};
-use crate::methods::facade_grammar::rules::{AddRule, RuleCandidate};
+use crate::regions::{TypeId, Types};
+use crate::rules::{AddRule, RuleCandidate};
 
 /// Chooses a rule for every type that the facades need.
 fn top_down(

@@ -20,11 +20,11 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rayon::prelude::*;
 
-use crate::grammar::{Grammar, GrammarError, Sampler, scaled, size_independent};
-use crate::rng::{Stream, stream};
-use crate::scene::relief::{material, relief};
-use crate::scene::{Instance, Material, Scene};
-use crate::shape::Facade;
+use edifice_base::rng::{Stream, stream};
+use edifice_grammar::{Grammar, GrammarError, Sampler, scaled, size_independent};
+use edifice_scene::relief::{material, relief};
+use edifice_scene::{Instance, Material, Scene};
+use edifice_shape::Facade;
 
 /// What to build.
 #[derive(Debug, Clone, Copy, PartialEq)]

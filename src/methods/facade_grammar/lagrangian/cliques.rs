@@ -1,6 +1,6 @@
 //! Maximal cliques of overlapping occurrences.
 
-use crate::methods::facade_grammar::regions::Region;
+use crate::regions::Region;
 
 /// The largest groups of regions that multiplier a corner of one of them, each by its indices.
 pub(super) fn cliques(regions: &[Region]) -> Vec<Vec<u32>> {

@@ -3,11 +3,11 @@
 use super::derivation::{Paths, Prices, Rule};
 use super::program::Program;
 use super::region_type::Written;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::infer::Pulse;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::AddRule;
+use crate::infer::Pulse;
+use crate::operations::Operations;
+use crate::regions::Types;
+use crate::rules::AddRule;
+use edifice_grammar::Costs;
 
 /// Noise of sums of costs, which are 0 or between [`Costs::LEAST`] and [`Costs::GREATEST`].
 pub(crate) const NOISE: f64 = 1e-7;

@@ -5,10 +5,10 @@ use rustc_hash::FxHashMap;
 use super::cliques::cliques;
 use super::region_type::RegionType;
 use super::rules::region_type_of;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Region, TypeId, Types, part};
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Region, TypeId, Types, part};
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 /// What stands for the occurrence of a terminal until all occurrences are known.
 const TERMINAL: u32 = u32::MAX;

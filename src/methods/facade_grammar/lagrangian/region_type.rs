@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::rc::Rc;
 
-use crate::methods::facade_grammar::regions::{Region, Types};
-use crate::methods::facade_grammar::rules::{AddRule, Arrangement, RuleCandidate};
-use crate::shape::Axis;
+use crate::regions::{Region, Types};
+use crate::rules::{AddRule, Arrangement, RuleCandidate};
+use edifice_shape::Axis;
 
 /// A non-terminal type, and all rules that it can have. Each rule is a path: its *items* are
 /// the arcs of the path and, behind them, the operation.

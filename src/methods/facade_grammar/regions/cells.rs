@@ -2,7 +2,7 @@
 
 use super::types::part;
 use super::{Region, TypeId, Types};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Rectangles that a region may have between its full lines for grids of it to be looked for: about
 /// ten lines each way. A larger grid hardly ever pays: each of its cells is a successor.

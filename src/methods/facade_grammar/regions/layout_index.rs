@@ -9,7 +9,7 @@
 //!   `sum_t h(label, w, h) P^(x_t - x_0) Q^(y_t - y_0) mod 2^61 - 1`.
 
 use super::lengths::{Lines, minus};
-use crate::shape::{Axis, Facade};
+use edifice_shape::{Axis, Facade};
 
 /// Modulus of the content hash, the Mersenne prime `2^61 - 1`.
 const MODULUS: u64 = (1 << 61) - 1;

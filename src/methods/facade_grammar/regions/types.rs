@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::lengths::{lines, minus};
 use super::{Cells, LayoutIndex, Offsets, Region, Strips};
-use crate::shape::{Axis, Facade, LayoutError};
+use edifice_shape::{Axis, Facade, LayoutError};
 
 /// Index of a region type. Types below [`Types::label_count`] are the terminal labels.
 pub(crate) type TypeId = u32;

@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use crate::grammar::Costs;
-use crate::shape::Axis;
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
-use crate::methods::facade_grammar::regions::{Strips, TypeId};
+use crate::regions::{Strips, TypeId};
 
 /// How a rule arranges its successors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

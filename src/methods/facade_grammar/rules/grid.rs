@@ -7,8 +7,8 @@
 
 use super::candidate::{Arrangement, RuleCandidate};
 use super::pricer::trace;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::regions::{Cells, TypeId};
+use crate::regions::{Cells, TypeId};
+use edifice_grammar::Costs;
 
 /// The rule that cuts at `columns` and `rows`, indices into the cuts along x and y, ends included;
 /// its successors stand row by row, bottom to top.

@@ -1,7 +1,7 @@
 //! A facade as the parser sees it: an irregular grid of labelled assets.
 
-use crate::methods::procedural_logic::alphabet::Alphabet;
-use crate::shape::{Axis, Facade, LabelGrid, LayoutError};
+use crate::alphabet::Alphabet;
+use edifice_shape::{Axis, Facade, LabelGrid, LayoutError};
 
 /// Labelled cells between sorted coordinates; an edge runs wherever two neighbouring cells belong
 /// to different assets.
@@ -110,7 +110,7 @@ impl Canvas {
     }
 
     /// The facade seen along `axis`.
-    pub(in crate::methods::procedural_logic) fn view(&self, axis: Axis) -> View<'_> {
+    pub(crate) fn view(&self, axis: Axis) -> View<'_> {
         let columns = self.columns();
         match axis {
             Axis::X => View {
@@ -134,7 +134,7 @@ impl Canvas {
 /// A canvas seen along one axis: `k` counts the cells along the axis, so that lines run between
 /// `k - 1` and `k`, and `t` counts the cells along a line.
 #[derive(Clone, Copy)]
-pub(in crate::methods::procedural_logic) struct View<'a> {
+pub(crate) struct View<'a> {
     canvas: &'a Canvas,
     /// Coordinates of the lines.
     pub cuts: &'a [f64],

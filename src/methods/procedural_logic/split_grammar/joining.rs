@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::methods::procedural_logic::nary::{NaryNode, NaryTree};
-use crate::methods::procedural_logic::parse::BinaryTree;
-use crate::methods::procedural_logic::split_grammar::{Classes, classes};
+use crate::nary::{NaryNode, NaryTree};
+use crate::parse::BinaryTree;
+use crate::split_grammar::{Classes, classes};
 
 /// Which nested splits of one direction are joined.
 ///
@@ -24,7 +24,7 @@ pub enum Joining {
 
 impl Joining {
     /// The n-ary tree of a binary one.
-    pub(in crate::methods::procedural_logic) fn apply(self, tree: &BinaryTree) -> NaryTree {
+    pub(crate) fn apply(self, tree: &BinaryTree) -> NaryTree {
         match self {
             Joining::All => NaryTree::from_binary(tree),
             Joining::UsedOnce => {

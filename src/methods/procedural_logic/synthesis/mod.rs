@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::methods::procedural_logic::model::{Known, Model};
-use crate::methods::procedural_logic::rules::{Call, Instance, InstanceError};
+use crate::model::{Known, Model};
+use crate::rules::{Call, Instance, InstanceError};
 use similar::Structure;
 
 /// Facades of similar structure that a starting rule of one facade borrows from, at most.

@@ -3,9 +3,9 @@
 use std::cell::Cell;
 use std::ops::Deref;
 
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::layout::places::Places;
-use crate::shape::Rect;
+use crate::layout::Element;
+use crate::layout::places::Places;
+use edifice_shape::Rect;
 
 /// Elements of a facade by place.
 #[derive(Debug, Clone)]
@@ -72,8 +72,8 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::methods::structure_completion::layout::Class;
-    use crate::rng::stream;
+    use crate::layout::Class;
+    use edifice_base::rng::stream;
 
     /// Random elements, some beyond the outline, against a look at all of them.
     #[test]
@@ -85,7 +85,7 @@ mod tests {
             let mut all = ByPlace::new(facade, sizes[case as usize % 4], 20);
             let mut element = || {
                 let class = Class::ALL[rng.random_range(0..Class::ALL.len())];
-                let side = |rng: &mut crate::rng::Stream, k: usize| {
+                let side = |rng: &mut edifice_base::rng::Stream, k: usize| {
                     facade[k] * rng.random_range(-0.1..1.1)
                 };
                 let (x, y) = (side(&mut rng, 0), side(&mut rng, 1));

@@ -4,9 +4,9 @@ use rand::{Rng, RngExt};
 
 use super::by_place::ByPlace;
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::layout::lines::{Line, median};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Rect;
+use crate::layout::lines::{Line, median};
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
 
 /// Share of cells of a line that hold a window, before any is seen.
 const OCCUPANCY: f64 = 0.9;

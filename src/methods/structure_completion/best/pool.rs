@@ -9,13 +9,13 @@ use super::fill::{fill, lines_at};
 use super::scene::Scene;
 use super::symmetry;
 use super::transfer;
-use crate::methods::structure_completion::baselines::lattice;
-use crate::methods::structure_completion::completion::Reason;
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::model::{Example, Model};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::rng::Stream;
-use crate::shape::Axis;
+use crate::baselines::lattice;
+use crate::completion::Reason;
+use crate::layout::Element;
+use crate::model::{Example, Model};
+use crate::partial::PartialLayout;
+use edifice_base::rng::Stream;
+use edifice_shape::Axis;
 
 /// Draws of each kind.
 pub const DRAWS: usize = 16;

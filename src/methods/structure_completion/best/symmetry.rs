@@ -7,8 +7,8 @@
 use super::by_place::ByPlace;
 use super::density::Spacing;
 use super::scene::Scene;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::{Axis, Rect};
+use crate::layout::{Class, Element};
+use edifice_shape::{Axis, Rect};
 
 /// Largest offset of an axis from the middle, as a share of the width.
 const REACH: f64 = 0.08;

@@ -7,7 +7,7 @@ pub mod scope;
 
 use serde::{Deserialize, Serialize};
 
-use crate::shape::Rect;
+use edifice_shape::{Facade, LayoutError, Rect, Region};
 
 /// Label of an element that takes part in completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -100,6 +100,19 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// The layout as a facade of element regions, in pixels.
+    ///
+    /// # Errors
+    /// [`LayoutError`] when the outline has no area or an element leaves it.
+    pub fn facade(&self) -> Result<Facade, LayoutError> {
+        let regions = self.elements.iter().map(|e| Region {
+            label: e.class.name().to_string(),
+            rect: e.rect,
+        });
+        let (width, height) = (self.width, self.height);
+        Facade::new(self.name.clone(), "px", width, height, regions.collect())
+    }
+
     /// The elements of a class.
     pub fn of(&self, class: Class) -> impl Iterator<Item = &Element> {
         self.elements.iter().filter(move |e| e.class == class)

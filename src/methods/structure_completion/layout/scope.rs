@@ -2,7 +2,7 @@
 
 use super::lines::lines;
 use super::{Class, Layout};
-use crate::shape::{Axis, Rect};
+use edifice_shape::{Axis, Rect};
 
 /// Whether a layout has at least 8 windows, occupies at least half of the cells of its lattice, and at
 /// least 70 % of its windows have another one in their row and in their column.

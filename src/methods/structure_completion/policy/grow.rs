@@ -7,8 +7,8 @@ use super::growing::{Growing, most};
 use super::scene::{Extent, Item, Scene};
 use super::tried::{Step, Tried};
 use super::{Direction, FAILURES, Policy};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Rect;
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
 
 /// How far an element is snapped, relative to its size.
 const SNAP: f64 = 0.3;

@@ -3,7 +3,7 @@
 use rand::{Rng, RngExt};
 
 use super::scene::{Extent, Item, Scene};
-use crate::methods::structure_completion::layout::Element;
+use crate::layout::Element;
 
 use super::super::layout::places::Places;
 

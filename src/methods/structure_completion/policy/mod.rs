@@ -50,7 +50,7 @@ use super::completion::{Completed, Completion, Reason};
 use super::layout::Element;
 use super::model::Model;
 use super::partial::PartialLayout;
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// Consecutive failed actions that end a candidate.
 pub const FAILURES: usize = 40;

@@ -3,9 +3,9 @@
 use rand::Rng;
 
 use super::{Policy, Scene, grow};
-use crate::methods::structure_completion::layout::Element;
-use crate::optim::genetic::{Breed, Genetic, GeneticError, Settings};
-use crate::rng::{Stream, stream};
+use crate::layout::Element;
+use edifice_base::rng::{Stream, stream};
+use edifice_optim::genetic::{Breed, Genetic, GeneticError, Settings};
 
 /// How many candidates are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,9 +4,9 @@ use rand::{Rng, RngExt};
 
 use super::growing::Growing;
 use super::model::{Exemplar, PaperModel};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::methods::structure_completion::score::{TERMS, grids};
+use crate::layout::{Class, Element};
+use crate::partial::PartialLayout;
+use crate::score::{TERMS, grids};
 
 /// Bounding box of a grid as it grows.
 #[derive(Debug, Clone, Copy, PartialEq)]

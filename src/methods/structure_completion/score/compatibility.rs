@@ -9,8 +9,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::grid::Grid;
-use crate::methods::structure_completion::layout::Class;
-use crate::model::ModelError;
+use crate::layout::Class;
+use edifice_model::ModelError;
 
 const TYPES: usize = 16;
 

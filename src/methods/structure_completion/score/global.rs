@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::grid::Grid;
-use crate::methods::structure_completion::layout::Class;
+use crate::layout::Class;
 
 /// Area of the union of the grids' bounding boxes over the area of the facade.
 pub fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {

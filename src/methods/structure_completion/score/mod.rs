@@ -52,7 +52,7 @@ use self::compatibility::Compatibility;
 use self::grid::{Grid, clusters};
 use self::pair::Pattern;
 use super::layout::{Class, Element};
-use crate::model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
+use edifice_model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
 pub use explain::Line;
 pub use learn::{Sites, State, learn_weights};
 pub use state::{Change, Scored};
@@ -63,7 +63,7 @@ pub const LEAST: f64 = -30.0;
 
 /// The scoring functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
     /// Element aspect ratio (Eq. 1).

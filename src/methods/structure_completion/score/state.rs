@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::grid::{Grid, clusters};
 use super::{Evaluation, ScoreModel, TERMS, dot};
-use crate::methods::structure_completion::layout::{Class, Element};
+use crate::layout::{Class, Element};
 
 /// A change of one element.
 #[derive(Debug, Clone, Copy, PartialEq)]

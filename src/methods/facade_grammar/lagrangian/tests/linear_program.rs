@@ -1,8 +1,8 @@
 //! The linear program whose dual the multipliers climb, solved by Clarabel.
 
 use super::super::Program;
-use crate::optim::Outcome;
-use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve};
+use edifice_optim::Outcome;
+use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 
 /// Its optimum. Variables: how much each occurrence uses each item, then how much each type has it. What enters a
 /// occurrence leaves it by its operators, each operator's arcs are a flow, and a type has what the occurrences of any clique use.

@@ -1,11 +1,11 @@
 mod linear_program;
 
 use super::*;
-use crate::grammar::{Costs, evaluate};
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::extract;
-use crate::shape::{Facade, Rect, Region};
+use crate::operations::Operations;
+use crate::regions::Types;
+use crate::rules::extract;
+use edifice_grammar::{Costs, evaluate};
+use edifice_shape::{Facade, Rect, Region};
 
 /// A facade of unit cells, one character a cell, rows from bottom to top.
 fn facade(rows: &[&str]) -> Facade {

@@ -17,9 +17,9 @@ use serde::{Deserialize, Serialize};
 use super::Dataset;
 use super::marginal::choose;
 use super::transform::{Bounds, Tails, Transform};
-use crate::model::conjugate::LinearPrior;
-use crate::model::hierarchy::Group;
-use crate::model::{Cell, Column, ModelError, Table};
+use crate::conjugate::LinearPrior;
+use crate::hierarchy::Group;
+use crate::{Cell, Column, ModelError, Table};
 
 /// Share of a column's known cells from which a value is an atom.
 pub const ATOM: f64 = 0.05;
@@ -60,14 +60,14 @@ impl Encoding {
     ///
     /// # Examples
     /// ```
-    /// use edifice::model::{Table, hierarchy::{Group, Priors}};
-    /// use edifice::tables::{Dataset, encoding::Encoding};
+    /// use edifice_model::{Table, hierarchy::{Group, Priors}};
+    /// use edifice_model::tables::{Dataset, encoding::Encoding};
     /// let area = (0..40).map(|i| Some(if i % 2 == 0 { 0.0 } else { 20.0 + i as f64 }));
     /// let table = Table::new().real("garage", area)?;
     /// let data = Dataset { table, groups: vec![Group::new("garage", &["garage"])] };
     /// let encoding = Encoding::learn(&data, &Priors::default().linear, 1)?;
     /// assert_eq!(encoding.columns()[0].atoms, [0.0]);
-    /// # Ok::<(), edifice::model::ModelError>(())
+    /// # Ok::<(), edifice_model::ModelError>(())
     /// ```
     pub fn learn(data: &Dataset, prior: &LinearPrior, seed: u64) -> Result<Self, ModelError> {
         let table = &data.table;

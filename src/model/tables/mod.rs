@@ -9,7 +9,7 @@
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
 //! | [`compare`] | held-out likelihoods of models on the same splits |
 //!
-//! Texts become numbers and categories here; the models themselves are in [`crate::model`].
+//! Texts become numbers and categories here; the models themselves are in [`crate`].
 
 pub mod compare;
 pub mod encoding;
@@ -20,8 +20,8 @@ pub mod schema;
 pub mod table_model;
 pub mod transform;
 
-use crate::model::hierarchy::Group;
-use crate::model::{ModelError, Table};
+use crate::hierarchy::Group;
+use crate::{ModelError, Table};
 
 /// A table and its attributes.
 #[derive(Debug, Clone)]

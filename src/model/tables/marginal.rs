@@ -1,9 +1,9 @@
 //! The transform of one column, chosen by the score of a small mixture.
 
 use super::transform::{Bounds, Tails, Transform};
-use crate::model::ModelError;
-use crate::model::conjugate::LinearPrior;
-use crate::model::gmm::{Criterion, Points, Prior, Settings, select};
+use crate::ModelError;
+use crate::conjugate::LinearPrior;
+use crate::gmm::{Criterion, Points, Prior, Settings, select};
 
 /// Most values that a choice is made on; of more, this number is taken, spread over the ranks.
 const LOOKED_AT: usize = 400;

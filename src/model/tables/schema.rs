@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Dataset;
-use crate::model::hierarchy::Group;
-use crate::model::{ModelError, Table};
+use crate::hierarchy::Group;
+use crate::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/attributes";

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::encoding::Encoding;
 use super::schema::Schema;
-use crate::model::hierarchy::Hierarchy;
-use crate::model::{ModelError, Table};
+use crate::hierarchy::Hierarchy;
+use crate::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/table_model";

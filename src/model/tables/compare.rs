@@ -4,8 +4,8 @@
 use super::Dataset;
 use super::encoding::Encoding;
 use super::mixture::Baseline;
-use crate::model::ModelError;
-use crate::model::hierarchy::{Settings, Variant, learn};
+use crate::ModelError;
+use crate::hierarchy::{Settings, Variant, learn};
 
 /// Share of the background in comparisons ([`Settings::background`], of the mixture likewise): with none, a single row of an
 /// unforeseen kind decides a mean over hundreds.
@@ -166,7 +166,7 @@ pub fn judge(
 pub fn split(rows: usize, share: f64, seed: u64, index: u64) -> (Vec<usize>, Vec<usize>) {
     use rand::seq::SliceRandom;
     let mut order: Vec<usize> = (0..rows).collect();
-    order.shuffle(&mut crate::rng::stream(
+    order.shuffle(&mut edifice_base::rng::stream(
         seed,
         "building_exteriors/split",
         index,
