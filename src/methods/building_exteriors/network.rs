@@ -36,7 +36,7 @@ pub fn svg(model: &Hierarchy, discrete: &[String]) -> String {
     picture.svg()
 }
 
-/// What is drawn.
+/// The nodes and edges of the drawing.
 struct Picture<'m> {
     styles: usize,
     /// Groups of attributes below hidden variables, and the cardinality of each.

@@ -37,7 +37,7 @@ pub struct BuildingTypes {
     pub order: Vec<usize>,
     /// Number of types.
     pub count: usize,
-    /// Whether half a turn does not change a building of a type, for each type: what most of its buildings say.
+    /// For each type, true if half a turn does not change its buildings; most of its buildings decide.
     pub symmetric: Vec<bool>,
 }
 

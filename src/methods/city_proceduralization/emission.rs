@@ -11,7 +11,7 @@ use edifice_grammar::instance::{
 };
 use edifice_shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
 
-/// How finely numbers are written.
+/// The precision in which the numbers of a grammar are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Detail {
     /// Steps of lengths in a metre.

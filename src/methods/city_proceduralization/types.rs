@@ -177,7 +177,7 @@ pub fn distinct_types(components: &[Component]) -> Types {
 
 /// Ward's hierarchy of the geometric features of components, weighted by volume, equal components joined first.
 pub struct TypeTree<'a> {
-    /// Distinct components: indices.
+    /// Indices of the distinct components.
     distinct: Vec<usize>,
     /// The distinct component that each is equal to.
     group: Vec<usize>,

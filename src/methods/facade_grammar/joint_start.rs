@@ -1,4 +1,4 @@
-//! Where a joint search starts: the union of the cheapest grammars of each facade alone.
+//! The start of a joint search: the union of the cheapest grammars of each facade alone.
 //!
 //! The union has the rules of all separate grammars, of each region type one, the cheapest; types that occur in several
 //! facades share it. Then every type takes the cheapest rule over the types of the union
@@ -146,7 +146,7 @@ fn translated(
     }
 }
 
-/// Whether rules over the strips of a region in one search hold in another: what is equal there is equal here.
+/// True if rules over the strips of a region in one search hold in another: strips that are equal in the old are equal in the new.
 fn alike(old: &Strips, new: &Strips) -> bool {
     let mut equal: FxHashMap<TypeId, TypeId> = FxHashMap::default();
     let pairs = || old.all().iter().zip(new.all());

@@ -80,7 +80,7 @@ impl Affinity {
         }
     }
 
-    /// Whether the matrices are square, over at most `labels` labels, of finite numbers from zero.
+    /// True if the matrices are square, over at most `labels` labels, of finite numbers from zero.
     pub(super) fn is_sound(&self, labels: usize) -> bool {
         let sound = |sums: &Vec<f64>| {
             self.labels.checked_mul(self.labels) == Some(sums.len())

@@ -130,7 +130,7 @@ impl Model {
         Ok(tree.layout(&self.alphabet, &known.name, &known.unit))
     }
 
-    /// What the distances compare, for every facade that the model knows.
+    /// The profile of every facade that the model knows, for the distances between facades.
     ///
     /// The label image of each is painted from its parameters and parsed again, which is exact.
     ///

@@ -47,7 +47,7 @@ impl Method {
         Method::Nearest,
     ];
 
-    /// Whether it searches for seconds rather than milliseconds.
+    /// True if it searches for seconds rather than milliseconds.
     pub fn is_slow(self) -> bool {
         matches!(self, Method::Paper | Method::Annealing)
     }

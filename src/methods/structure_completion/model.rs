@@ -1,4 +1,4 @@
-//! What is learnt from a database of whole layouts.
+//! The model that is learnt from a database of whole layouts.
 
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ impl Example {
 /// A learnt model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    /// The database.
+    /// The layouts of the database.
     pub examples: Vec<Example>,
     /// Columns from left to right.
     pub columns: Spacing,
@@ -53,7 +53,7 @@ pub struct Model {
     pub rows: Spacing,
     /// Probability that a candidate element is true, given its features; `None` before it is learnt.
     pub elements: Option<Boosting>,
-    /// What the paper's own method learns; `None` before it is learnt.
+    /// The model of the paper's own method; `None` before it is learnt.
     pub paper: Option<PaperModel>,
 }
 
@@ -63,10 +63,10 @@ pub enum TrainError {
     /// No layout has a window.
     #[error("none of the layouts has a window: nothing to learn from")]
     Empty,
-    /// The element probabilities.
+    /// The element probabilities cannot be learnt.
     #[error("element probabilities: {0}")]
     Elements(#[from] BoostingError),
-    /// The scoring functions, their weights or the policies.
+    /// The scoring functions, their weights or the policies cannot be learnt.
     #[error("scoring functions: {0}")]
     Score(#[from] ModelError),
 }

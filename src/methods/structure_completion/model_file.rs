@@ -17,11 +17,11 @@ pub enum ModelFileError {
     /// Another format or version.
     #[error("{key} is {found}, expected {expected}")]
     Header {
-        /// `format` or `version`.
+        /// The key: `format` or `version`.
         key: &'static str,
-        /// What the file says.
+        /// The value in the file.
         found: String,
-        /// What it should say.
+        /// The value that is expected.
         expected: String,
     },
     /// A number of a layout that cannot be.

@@ -1,4 +1,4 @@
-//! What a partial house tells of its attributes.
+//! The attributes that are known from a partial house.
 
 use crate::attributes::{AttributeError, AttributeRow, COLUMNS, GROUPS, attributes};
 use crate::mass::target::PARTS;

@@ -232,7 +232,7 @@ impl House<'_> {
 impl Breed for House<'_> {
     type Genome = Vec<Gene>;
 
-    /// Eq. 4.
+    /// The energy of a layout (Eq. 4).
     fn cost(&mut self, genome: &Vec<Gene>) -> f64 {
         self.evaluations += 1;
         let pieces = self.pieces(genome);

@@ -1,4 +1,4 @@
-//! What a wall leaves free for windows.
+//! The free places of walls, in which windows can stand.
 
 use crate::house::model::garage_opening;
 use crate::house::walls::{WallPiece, wall_pieces};
@@ -48,7 +48,7 @@ impl Strip {
 pub(super) struct Walls<'a> {
     pub shell: &'a Faces,
     pub floor_height: f64,
-    /// By side.
+    /// The strips of each side.
     pub strips: [Vec<Strip>; 4],
 }
 

@@ -1,4 +1,4 @@
-//! Which window style goes where.
+//! The styles of windows that a facade is to have, the main one first.
 
 use edifice_shape::ElementStyle;
 

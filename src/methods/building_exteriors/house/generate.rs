@@ -31,7 +31,7 @@ const ROUNDS: usize = 2;
 /// Generations of the genetic algorithm; the paper prints none.
 const GENERATIONS: u64 = 200;
 
-/// How mass models and facades are found.
+/// The method of finding mass models and facades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -42,7 +42,7 @@ pub enum Method {
     Paper,
 }
 
-/// What stays as it is, to the bit.
+/// The parts of a house that stay as they are, to the bit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Frozen {
     /// Boxes with their roofs.
@@ -53,22 +53,22 @@ pub struct Frozen {
     pub corner: Option<[f64; 2]>,
 }
 
-/// How to generate.
+/// Options of generation.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Limits of the search for mass models.
     pub search: Search,
-    /// How roofs are joined.
+    /// The way in which roofs are joined.
     pub joining: Joining,
-    /// Whether no strip of a facade may be cut in two.
+    /// True if no strip of a facade may be cut in two.
     pub no_cuts: bool,
-    /// How mass models and facades are found.
+    /// The method of finding mass models and facades.
     pub method: Method,
     /// Annealing of method `paper`.
     pub annealing: AnnealSettings,
     /// Generations of method `paper`.
     pub generations: u64,
-    /// What stays as it is; roofs and facades keep clear of it.
+    /// The parts that stay as they are; roofs and facades keep clear of them.
     pub frozen: Frozen,
     /// The ground plan, rectangles from the origin on, that the house has to cover exactly.
     pub footprint: Option<Vec<Rect>>,
@@ -122,7 +122,7 @@ pub struct Generated {
     pub building: Building,
     /// Its surface.
     pub model: Model,
-    /// How it came about.
+    /// The attributes wanted, repaired and reached.
     pub report: HouseReport,
 }
 
@@ -145,17 +145,17 @@ pub struct HouseReport {
     pub mean_z: f64,
     /// The same largest distance, from the repaired row.
     pub repaired_z: f64,
-    /// Whether all ten styles are as wanted.
+    /// True if all ten styles are as wanted.
     pub styles: bool,
     /// Name of the house of the database whose boxes it has; none for a random arrangement.
     pub donor: Option<String>,
-    /// How often attributes were measured.
+    /// Number of times that attributes were measured.
     pub evaluations: u64,
     /// Triangles of the surface.
     pub triangles: usize,
     /// Connected parts of the surface: 1.
     pub shells: usize,
-    /// Enclosed volume.
+    /// Enclosed volume in cubic metres.
     pub volume: f64,
     /// Windows and doors that no wall has room for: 0.
     pub unplaced: usize,
@@ -224,7 +224,7 @@ pub fn generate(
     best.build()
 }
 
-/// What a mass model is to become.
+/// The attributes that a mass model is to reach.
 #[derive(Debug, Clone)]
 pub struct Wish<'a> {
     /// Name of the house.
@@ -233,7 +233,7 @@ pub struct Wish<'a> {
     pub wanted: &'a [f64; 49],
     /// The columns to reach: those asked for, with repairs.
     pub row: &'a [f64; 49],
-    /// The repairs.
+    /// The sampled values that were moved.
     pub repaired: Vec<Change>,
 }
 

@@ -3,7 +3,7 @@
 use edifice_shape::solid::exact::{Plane, SLOPES, units};
 use edifice_shape::{Building, MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 
-/// How roofs are joined.
+/// The way in which roofs are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Joining {

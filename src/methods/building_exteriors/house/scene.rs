@@ -70,9 +70,9 @@ pub struct Placed<'a> {
     pub name: &'a str,
     /// Its surface.
     pub surface: &'a Surface,
-    /// Where the origin of its coordinates comes to lie, x to the right, y away from the street (m).
+    /// Position of the origin of its coordinates, x to the right, y away from the street (m).
     pub at: [f64; 2],
-    /// Which colour template.
+    /// Index of the colour template.
     pub colours: usize,
 }
 

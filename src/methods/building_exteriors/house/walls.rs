@@ -10,11 +10,11 @@ pub struct WallPiece {
     pub side: Side,
     /// Its coordinate across: y for front and back, x for left and right.
     pub at: f64,
-    /// Where it starts along the side.
+    /// Its start along the side, in metres.
     pub start: f64,
-    /// Where it ends.
+    /// Its end along the side, in metres.
     pub end: f64,
-    /// Its floor.
+    /// Index of its floor, 0 for the ground floor.
     pub floor: usize,
 }
 

@@ -127,7 +127,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Eq. 3.
+    /// The energy of an arrangement of boxes (Eq. 3).
     fn energy(&self, boxes: &[MassBox]) -> f64 {
         if boxes.is_empty() {
             return LARGE;

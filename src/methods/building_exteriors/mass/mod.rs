@@ -49,7 +49,7 @@ pub const MASS: usize = 27;
 /// Least thickness of the plan of any floor in metres (Sec. 6.1).
 pub const THINNEST: f64 = 0.5;
 
-/// Whether boxes are connected without courtyards, nowhere too thin, on every floor, and garage and porches
+/// True if the boxes are connected without courtyards, nowhere too thin, on every floor, and garage and porches
 /// do not overlap each other.
 pub fn is_sound(building: &Building) -> bool {
     let ground = PlanUnion::new(&building.floor_plan(0)).soundness();

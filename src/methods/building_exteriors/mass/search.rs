@@ -42,7 +42,7 @@ pub struct MassModel {
     pub building: Building,
     /// Largest distance from the wanted columns in standard deviations.
     pub max_z: f64,
-    /// How often attributes were measured.
+    /// Number of times that attributes were measured.
     pub evaluations: u64,
     /// House of the database whose boxes it has; `None` for a random arrangement.
     pub donor: Option<usize>,
@@ -52,7 +52,7 @@ pub struct MassModel {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("no connected mass model without courtyards was found in {evaluations} evaluations")]
 pub struct MassError {
-    /// How often attributes were measured.
+    /// Number of times that attributes were measured.
     pub evaluations: u64,
 }
 

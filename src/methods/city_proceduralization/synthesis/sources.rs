@@ -18,7 +18,7 @@ pub(super) const HEIGHTS: usize = 2;
 
 /// A building of the grammar's city, to be copied.
 pub(super) struct Source {
-    /// What stands under the axiom: one symbol, or the templates of a building.
+    /// The placements under the axiom: one symbol, or the templates of a building.
     pub(super) placed: Vec<Placement>,
     pub(super) kind: usize,
     /// Class of plan area and height.

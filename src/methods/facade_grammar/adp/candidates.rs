@@ -141,7 +141,7 @@ impl Candidate {
 /// The lines of a type that no protected region blocks.
 #[derive(Debug)]
 pub(crate) struct OpenLines {
-    /// How many open lines come before each cut, and what they cost together.
+    /// Number of open lines before each cut, and the sum of their costs.
     before: Vec<(usize, f64)>,
 }
 

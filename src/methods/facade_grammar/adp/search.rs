@@ -18,7 +18,7 @@ use edifice_optim::Step;
 use edifice_optim::adp::{Adp, Approximation, Epsilon};
 use edifice_shape::Facade;
 
-/// What every method starts from, and the methods.
+/// The common start of all methods: settings, facades, region types and the splitting heuristic; each method is a function of it.
 pub(crate) struct Search<'a> {
     pub settings: &'a Settings,
     /// The facades before symmetry detection.

@@ -16,7 +16,7 @@ pub(crate) struct ValueEstimates {
     waiting: Vec<u32>,
 }
 
-/// No step.
+/// The entry of a type that has no rule in the walk.
 const NONE: u32 = u32::MAX;
 
 impl ValueEstimates {

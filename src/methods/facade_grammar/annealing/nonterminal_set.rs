@@ -310,7 +310,7 @@ impl NonterminalSet {
         true
     }
 
-    /// NonterminalSet that no rule names leave, and so may those that only they named.
+    /// Takes out the members that no rule names, and then those that only they named.
     pub(super) fn drop_orphans(&mut self) {
         while let Some(id) = self.orphans.pop() {
             if self.uses[id as usize] == 0 && self.rules[id as usize].is_some() && !self.is_root(id)

@@ -7,7 +7,7 @@ use crate::rules::AddRule;
 use edifice_optim::Step;
 use edifice_optim::adp::{Approximation, Epsilon};
 
-/// Importance sampling learns nothing.
+/// The approximation of importance sampling: it learns nothing, so that every step explores.
 pub(crate) struct NothingKnown;
 
 impl Approximation<Inference> for NothingKnown {

@@ -19,7 +19,7 @@ pub(crate) struct Incumbent {
     pub pulse: Option<Pulse>,
     /// Its rules; none when only the cost is known.
     rules: Vec<Written>,
-    /// What all costs are multiples of.
+    /// A number of which all costs of grammars are multiples; `None` where there is none.
     granularity: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ impl Incumbent {
             .map_or(bound, |q| ((bound - NOISE) / q).ceil() * q)
     }
 
-    /// Whether a bound shows that no grammar is cheaper.
+    /// True if a lower bound shows that no grammar is cheaper than the incumbent.
     pub fn is_optimal(&self, bound: f64) -> bool {
         self.round_up(bound) >= self.cost - NOISE
     }

@@ -16,7 +16,7 @@ pub(crate) struct Cells {
     types: Vec<TypeId>,
 }
 
-/// Place of the interval from `a` to `b` among all.
+/// Index of the interval from `a` to `b` among all.
 fn place((a, b): (u16, u16)) -> usize {
     let (a, b) = (usize::from(a), usize::from(b));
     b * (b - 1) / 2 + a
@@ -62,7 +62,7 @@ impl Cells {
         self.types[place(x) * (up * (up + 1) / 2) + place(y)]
     }
 
-    /// All types.
+    /// Types of all rectangles.
     pub fn all(&self) -> &[TypeId] {
         &self.types
     }

@@ -43,8 +43,8 @@ impl RulePricer {
         }
     }
 
-    /// The cheapest rule for a type, `None` when every way meets an infinite price. `prices` is
-    /// indexed by type; types beyond its end cost `unknown(type)`.
+    /// The cheapest rule for a type, with its cost; `None` when every rule has an infinite price. `price` gives the price of each
+    /// type that a rule names.
     pub fn cheapest(
         &mut self,
         types: &mut Types,

@@ -18,7 +18,7 @@ pub struct Canvas {
     assets: Vec<u32>,
     /// Label of each asset, a number of the alphabet.
     labels: Vec<u32>,
-    /// Whether the assets are rectangles that no line may cut.
+    /// True if the assets are rectangles that no line may cut.
     rigid: bool,
 }
 
@@ -99,7 +99,7 @@ impl Canvas {
         self.ys[self.rows()] - self.ys[0]
     }
 
-    /// Whether no line may cut an asset.
+    /// True if no line may cut an asset.
     pub fn is_rigid(&self) -> bool {
         self.rigid
     }

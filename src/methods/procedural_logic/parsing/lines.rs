@@ -11,7 +11,7 @@ struct Terms {
     span: usize,
     /// Cells on which the line is an edge.
     edges: Vec<u32>,
-    /// Their length.
+    /// Length of the edge cells, in the unit of the canvas.
     length: Vec<f64>,
     /// Affinity times length.
     affinity: Vec<f64>,
@@ -21,7 +21,7 @@ struct Terms {
     cuts: Vec<u32>,
 }
 
-/// How much a line may cut.
+/// The condition on the perpendicular edges that a line may cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Rule {
     /// Condition b of Sec. 3.3: no perpendicular edge passes through.
@@ -50,7 +50,7 @@ pub(crate) struct Proposal {
     pub line: usize,
     /// `f(p)`, Eq. 3.
     pub energy: f64,
-    /// Perpendicular edges cut.
+    /// Number of perpendicular edges that the line cuts.
     pub cuts: u32,
 }
 
@@ -67,7 +67,7 @@ impl<'a> Lines<'a> {
         Self { canvas, terms }
     }
 
-    /// Whether some edge lies inside the scope.
+    /// True if some edge lies inside the scope.
     pub fn has_edge(&self, scope: &Scope) -> bool {
         Axis::BOTH.into_iter().any(|axis| {
             let (start, end) = scope.range[axis as usize];

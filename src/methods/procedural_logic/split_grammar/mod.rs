@@ -10,7 +10,7 @@ use crate::nary::{NaryNode, NaryTree};
 use edifice_grammar::{Grammar, Operation, Rule, Start, Successor};
 use edifice_shape::Axis;
 
-/// What a region holds: its label; or its split, its extent across the split, and its parts with
+/// The content of a region: its label; or its split, its extent across the split, and its parts with
 /// their sizes, in units of the tolerance.
 #[derive(PartialEq, Eq, Hash)]
 enum Content {

@@ -10,7 +10,7 @@
 use crate::nary::{NaryNode, NaryTree};
 use crate::rules::{Call, Instance, InstanceError, RuleSet};
 
-/// What it counts in an alignment that two parts call the same rule, or insert the same labels.
+/// Gain of an alignment for two parts that call the same rule, and for two that insert the same labels.
 const SAME_RULE: u32 = 3;
 const SAME_LABELS: u32 = 1;
 

@@ -15,7 +15,7 @@ pub struct ByPlace {
 }
 
 impl ByPlace {
-    /// None yet, on a facade of this extent; elements of about `size`, some `most` of them.
+    /// An empty set on a facade of this extent, made for some `most` elements of about `size`.
     pub fn new(facade: [f64; 2], size: (f64, f64), most: usize) -> Self {
         Self {
             elements: Vec::new(),
@@ -30,13 +30,13 @@ impl ByPlace {
         self.elements.push(element);
     }
 
-    /// Whether the test, which only elements that meet the rectangle can pass, holds for any.
+    /// True if the test, which only elements that meet the rectangle can pass, holds for any.
     pub fn any_near(&self, rect: &Rect, test: impl Fn(&Element) -> bool) -> bool {
         let test = |k: u32| test(&self.elements[k as usize]);
         self.places.any_near(rect, test)
     }
 
-    /// Whether one of the elements excludes another one.
+    /// True if one of the elements excludes another one.
     pub fn exclude(&self, other: &Element) -> bool {
         self.any_near(&other.rect, |e| e.excludes(other))
     }

@@ -190,7 +190,7 @@ fn support_of(
     support
 }
 
-/// Whether two choices show much the same: nine tenths of each have a like one in the other.
+/// True if two choices show much the same: nine tenths of each have a like one in the other.
 fn alike(candidates: &Candidates, a: &[usize], b: &[usize]) -> bool {
     let covered = |a: &[usize], b: &[usize]| {
         let like = |&&c: &&usize| {

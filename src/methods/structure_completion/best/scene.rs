@@ -1,4 +1,4 @@
-//! What a partial layout says of its lattice: lines of its windows, how much of them is seen, typical sizes.
+//! The lattice of a partial layout: lines of its windows, the share of them that is seen, typical sizes.
 
 use super::by_place::ByPlace;
 use crate::layout::lines::{Line, lines, median};
@@ -12,7 +12,7 @@ const OCCUPANCY: f64 = 0.9;
 /// A partial layout with the lattice of its elements.
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
-    /// The input.
+    /// The partial layout to complete.
     pub partial: &'a PartialLayout,
     /// Observed elements, and those that are taken as observed (mirrored ones).
     pub elements: ByPlace,

@@ -18,7 +18,7 @@ pub struct Below {
     pub weight: f64,
 }
 
-/// What is compared between the surroundings of two rows.
+/// The features by which the surroundings of two rows are compared.
 struct Style {
     balconies: f64,
     wide: f64,

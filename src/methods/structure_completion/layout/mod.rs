@@ -51,7 +51,7 @@ impl Class {
         })
     }
 
-    /// Whether elements of the two classes may overlap: only a balcony with something else.
+    /// True if elements of the two classes may overlap: only a balcony with something else.
     pub fn may_overlap(self, other: Self) -> bool {
         (self == Class::Balcony) != (other == Class::Balcony)
     }
@@ -60,7 +60,7 @@ impl Class {
 /// An element: a class and its bounding box.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Element {
-    /// Its label.
+    /// Class of the element.
     pub class: Class,
     /// Its place, in the unit of the layout.
     pub rect: Rect,
@@ -72,7 +72,7 @@ impl Element {
         Self { class, rect }
     }
 
-    /// Whether two elements exclude each other: their common area is above a tenth of the smaller
+    /// True if two elements exclude each other: their common area is above a tenth of the smaller
     /// one, and their classes may not overlap.
     pub fn excludes(&self, other: &Element) -> bool {
         let (a, b) = (&self.rect, &other.rect);

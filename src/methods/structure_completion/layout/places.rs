@@ -64,7 +64,7 @@ impl Places {
         }
     }
 
-    /// Whether the test holds for an item that may meet the rectangle; one item may be tested several times.
+    /// True if the test holds for an item that may meet the rectangle; one item may be tested several times.
     pub fn any_near(&self, rect: &Rect, test: impl Fn(u32) -> bool) -> bool {
         let [across, up] = spans(rect);
         let columns = self.cell_of(0, across.0)..=self.cell_of(0, across.1);

@@ -117,7 +117,7 @@ impl Growing {
         self.groups[item.grid as usize].include(number, &self.items);
     }
 
-    /// Whether an element may be added.
+    /// True if an element may be added.
     pub(super) fn fits(&self, scene: &Scene, element: &Element) -> bool {
         let excluded = |i: u32| self.items[i as usize].element.excludes(element);
         scene.open.allows(element) && !self.places.any_near(&element.rect, excluded)

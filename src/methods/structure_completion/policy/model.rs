@@ -1,4 +1,4 @@
-//! What the paper's method learns from a database: densities, weights, policies, labels and spacings.
+//! The model that the paper's method learns from a database: densities, weights, policies, labels and spacings.
 
 use rand::RngExt;
 use rand::seq::SliceRandom;

@@ -1,4 +1,4 @@
-//! What a facade is as a whole (Sec. 4.3): coverage, symmetry, door position.
+//! Global features of a facade (Sec. 4.3): coverage, symmetry, door position.
 
 use std::sync::Arc;
 

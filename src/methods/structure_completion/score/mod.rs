@@ -14,7 +14,7 @@
 //! ```
 //!
 //! # Deviations and readings
-//! - Equations 1 to 11 define ten functions; two are called f_gc. Coverage is `gv` here and has its own weight.
+//! - Equations 1 to 11 define ten functions; two are called `f_gc`. Coverage is `gv` here and has its own weight.
 //! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is taken relative to
 //!   that of a typical value of the database (the median, [`Training::typical`]), and is at most 0 and at
 //!   least [`LEAST`]: no function pays for grids that are more regular than real ones.
