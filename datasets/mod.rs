@@ -77,7 +77,7 @@ pub fn unpack(name: &str, folder: &Path) -> Result<PathBuf> {
     Ok(place)
 }
 
-/// Whether a shipped folder stands below `folder` with all its files and no others.
+/// True if a shipped folder stands below `folder` with all its files and no others.
 fn is_whole(name: &str, folder: &Path) -> bool {
     let within = format!("{name}/");
     let mut wanted = 0;

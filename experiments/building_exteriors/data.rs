@@ -13,7 +13,7 @@ use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 use edifice_model::{Cell, Table};
 use edifice_shape::Building;
 
-/// What the generator knows.
+/// The generator's own knowledge of the houses, which learning does not see.
 #[derive(Deserialize)]
 pub struct Truth {
     /// Hidden style of each house.

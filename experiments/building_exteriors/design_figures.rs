@@ -41,7 +41,8 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
     })
 }
 
-/// What a photograph from the front shows: the boxes whose walls face the street, and the facade pieces on them.
+/// The part of a house that a photograph from the front shows: the boxes whose walls face the street, and the facade
+/// pieces on them.
 fn seen_from_the_street(house: &Building) -> Building {
     let walls = walls_of_pieces(house);
     let front = house.facades.iter().zip(&walls);

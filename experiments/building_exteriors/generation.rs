@@ -37,7 +37,7 @@ pub(super) struct Unit {
     pub wanted: Vec<f64>,
 }
 
-/// What came of it.
+/// The result of one generation.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Answer {
     /// Mass columns from those wanted.

@@ -1,4 +1,4 @@
-//! How long mass models, roofs, facades and whole houses take (Sec. 7: 12 minutes and 1 minute).
+//! Processor seconds of mass models, roofs, facades and whole houses (Sec. 7: 12 minutes and 1 minute).
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! How long the whole structure search takes (Sec. 7: 40 minutes for 200 buildings).
+//! Seconds of the whole structure search (Sec. 7: 40 minutes for 200 buildings).
 
 use super::{data, settings};
 use crate::Context;

@@ -44,7 +44,7 @@ struct Learn {
     restarts: usize,
     /// Share of the houses that is learnt from.
     share: f64,
-    /// At most so many houses are learnt from; 0 for all of the share.
+    /// Most houses that are learnt from; 0 for all of the share.
     houses: usize,
     /// Seed of learning and of the shuffle; the sweep's seeds number the splits of it.
     seed: u64,
@@ -117,7 +117,7 @@ fn run_learn(settings: &Learn, given: &Given) -> Result<Outcome> {
     Ok(found)
 }
 
-/// How a house is made of its attributes.
+/// The method that makes a house of its attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum GeneratorName {

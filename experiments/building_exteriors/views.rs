@@ -9,7 +9,7 @@ use edifice_scene::render::Picture;
 use edifice_scene::trace::{framing, trace};
 use edifice_shape::{BoxStyle, Building, MassBox, Rect};
 
-/// From where a house is seen.
+/// Directions of the views of a house.
 pub const FRONT: [f32; 3] = [0.45, -0.42, -0.9];
 pub const RIGHT: [f32; 3] = [-0.95, -0.42, -0.35];
 pub const BACK: [f32; 3] = [-0.45, -0.42, 0.9];

@@ -1,4 +1,4 @@
-//! How synthesis and localization are judged: by measures of the derived triangles, not by what the methods say of
+//! The judges of synthesis and localization: measures of the derived triangles, not numbers that the methods report
 //! themselves.
 
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples
 const CELL: f64 = 0.5;
 /// Points on plans that tell what lies inside a shape.
 const POINTS: usize = 100_000;
-/// Buildings stand together within so many metres.
+/// Greatest distance of buildings that stand together, in metres.
 const TOGETHER: f64 = 30.0;
 
 /// Measures of a city against the one that its grammar was made from.
@@ -155,7 +155,7 @@ fn distance(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
 
 type Frequencies = BTreeMap<(String, String), f64>;
 
-/// How often types stand together, among some of the buildings.
+/// The share of each pair of types among all pairs that stand together, of some of the buildings.
 fn together(marks: &[Landmark], kinds: &[String], members: &[usize]) -> Frequencies {
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     let cell = |i: usize| marks[i].at.map(|v| (v / TOGETHER).floor() as i64);
@@ -249,7 +249,7 @@ fn extent(marks: &[Landmark]) -> f64 {
 }
 
 /// Share of views whose place is found first. A view is a building of `truth` with those nearest to it, `seen` in all,
-/// in any order; its features carry noise of so many standard deviations. It is looked up among `known`, the same buildings
+/// in any order; its features carry `noise`, in standard deviations. It is looked up among `known`, the same buildings
 /// as the grammar gives them.
 pub fn rank_one(
     truth: &[Landmark],

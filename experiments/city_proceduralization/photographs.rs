@@ -59,7 +59,7 @@ impl<'a> Streets<'a> {
     }
 
     /// Share of `views` views, each of the `count` buildings nearest to a random one, of which the first place found is one of
-    /// them. A photograph is of one of a building's facades, with noise of so many greys.
+    /// them. A photograph is of one of a building's facades, with `noise` in greys.
     pub fn rank_one(
         &self,
         known: &[Vec<Facade>],

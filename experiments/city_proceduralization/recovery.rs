@@ -1,4 +1,4 @@
-//! What is found again of a known grammar, without and with noise.
+//! The parts of a known grammar that are found again, without and with noise.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ struct Found {
 
 /// Noise in per cent.
 const NOISE: [u32; 3] = [0, 1, 3];
-/// A cut found is right within so many metres.
+/// Greatest distance, in metres, at which a cut found is right.
 const CLOSE: f64 = 0.3;
 
 /// Runs both modes at each noise.

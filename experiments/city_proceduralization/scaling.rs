@@ -94,7 +94,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.figure("scaling", &Figure::single("seconds by buildings", chart))
 }
 
-/// What a city took.
+/// The size of a city, and the time and memory that it took.
 struct Found {
     buildings: usize,
     components: usize,

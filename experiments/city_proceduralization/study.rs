@@ -12,7 +12,7 @@ use edifice_city_proceduralization::Budget;
 use edifice_io::{city, json, read_bytes};
 use edifice_shape::triangles::City;
 
-/// How types are found.
+/// The method that finds types.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Mode {
@@ -20,7 +20,7 @@ enum Mode {
     Paper,
 }
 
-/// What represents a type, of `paper`.
+/// The representative of a type, of `paper`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Representative {
@@ -32,9 +32,9 @@ enum Representative {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Proceduralize {
-    /// How types are found.
+    /// Method that finds types.
     mode: Mode,
-    /// What represents a type, of `paper`.
+    /// Representative of a type, of `paper`.
     representative: Representative,
     /// The number of templates is that of the components, halved so many times; 0 for one of each distinct component.
     level: u32,

@@ -20,7 +20,7 @@ const MEMBERS: usize = TYPES / MOTIFS;
 /// Side of a motif's plot, in metres.
 const PLOT: f64 = 150.0;
 
-/// What is known of a building.
+/// The known truth about a building.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// Its type.

@@ -6,7 +6,7 @@ use edifice_base::Result;
 use edifice_city_proceduralization::{Detection, Mode};
 use edifice_report::{Align, Table};
 
-/// Levels: the components' number is halved so many times.
+/// Levels: numbers of halvings of the components' number.
 const LEVELS: [u32; 5] = [0, 1, 2, 3, 4];
 
 /// Cities of more buildings are large: of their levels only some are run.

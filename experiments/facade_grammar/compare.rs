@@ -7,7 +7,7 @@ use edifice_base::Result;
 use edifice_facade_grammar::Operations;
 use edifice_report::{Align, Row, Table};
 
-/// What a comparison runs.
+/// The methods, operations and metrics of a comparison.
 pub struct Plan {
     /// Methods in the order of the columns.
     pub solvers: Vec<Solver>,

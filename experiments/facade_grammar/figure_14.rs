@@ -95,7 +95,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// How the first and the last part of a run compare.
+/// Sets the first part of a run beside the last.
 fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>], few: u64) {
     let of = |method: Method, pick: &dyn Fn(&Vec<Point>) -> Option<f64>| -> f64 {
         let mine = units
@@ -122,7 +122,7 @@ fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>]
     );
 }
 
-/// Runs and notes the state every so many iterations.
+/// Runs and notes the state at regular intervals of iterations.
 fn trace(
     facade: &Facade,
     method: Method,

@@ -21,7 +21,7 @@ const SIZES: [usize; 4] = [2, 3, 4, 5];
 /// Lengths within this part of the longer side are equal.
 const NOISE: f64 = 1e-7;
 
-/// What is found for one set of facades.
+/// The costs found for one set of facades.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Answer {
     /// Sum of the costs of the separate grammars.
@@ -148,7 +148,7 @@ fn names(facades: &[Facade]) -> String {
     names.join("+")
 }
 
-/// How much less `cost` is than `sum`, in per cent.
+/// The saving of `cost` against `sum`, in per cent.
 fn saving(sum: f64, cost: f64) -> f64 {
     100.0 * (1.0 - cost / sum)
 }
@@ -171,7 +171,7 @@ fn compare(facades: &[Facade], question: Question) -> Result<Answer> {
     })
 }
 
-/// What a non-terminal region contains: labels, offsets and sizes, in order.
+/// The content of a non-terminal region: labels, offsets and sizes, in order.
 type Contents = Vec<(String, [i64; 4])>;
 
 /// Cost of the union of deterministic grammars: of each region, whatever its symbol, the cheapest rule that one of them

@@ -20,7 +20,7 @@ enum Source {
     Picture(PathBuf),
 }
 
-/// What one tolerance did to one layout.
+/// The effect of one tolerance on one layout.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Effect {
     /// Distinct sizes of the regions, summed over labels.

@@ -1,4 +1,4 @@
-//! How much more than approximate dynamic programming the other methods cost.
+//! The costs of the other methods, relative to approximate dynamic programming.
 
 use super::compare::Comparison;
 use super::published::Published;
@@ -48,7 +48,7 @@ pub fn compare(
     }
 }
 
-/// How often the best configuration is lowest, on each data set.
+/// Counts the facades on which the best configuration is lowest, for each data set.
 pub fn wins(ctx: &mut Context, found: &Comparison, many: u64) {
     let name = Solver::Infer(BEST, many).name();
     let Some(best) = found.column(&name) else {

@@ -1,4 +1,5 @@
-//! What the text leaves open in its algorithm: facade (i) and what `best` saves, under each reading.
+//! The readings of the points that the text of the algorithm leaves open: facade (i), and the saving of `best`, under
+//! each reading.
 
 use super::data::{self, FIGURE_9, Instance};
 use super::published::Published;
@@ -205,7 +206,7 @@ fn categories(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| name.to_string()).collect()
 }
 
-/// By how much `best` is cheaper, facade by facade, on each set of the others.
+/// The saving of `best`, facade by facade, on each set of the others.
 fn savings(ctx: &mut Context, found: &Found, names: &[&str], many: u64) -> Bars {
     let mut sets: Vec<&str> = found.instances.iter().map(|i| i.dataset).collect();
     sets.dedup();

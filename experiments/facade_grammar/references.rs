@@ -62,7 +62,7 @@ pub fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
     Ok(all)
 }
 
-/// What the pages say of the references.
+/// The paragraph on the references for the pages.
 pub const NOTE: &str = "**References.** The paper compares with grammars of four experts and three other people. Without people, the \
     references are of several kinds, none of which any method sees. *shipped*: the grammars that the 34 shipped layouts were \
     derived from, mostly all floors of a wing at once and then all elements of a floor at once. *printed*: the grammar that the paper \

@@ -11,7 +11,7 @@ use edifice_io::{LabelMap, label_image};
 use edifice_layout::regularize::regularize_grid;
 use edifice_report::{Align, Row, Table};
 
-/// What regularization did to one facade.
+/// The effect of regularization on one facade.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Effect {
     lines: (usize, usize),
@@ -20,8 +20,8 @@ struct Effect {
     seconds: f64,
 }
 
-/// What regularization keeps on every set; then distinct sizes of windows and cut lines before and after,
-/// by tolerance, on the ECP labels.
+/// The properties that regularization keeps, on every set; then distinct sizes of windows and cut lines before and
+/// after, by tolerance, on the ECP labels.
 pub fn run(ctx: &mut Context) -> Result<()> {
     projection::table(ctx)?;
     let Some(folder) = ctx.real("facades/ecp2011/labels")? else {

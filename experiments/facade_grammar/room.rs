@@ -1,4 +1,4 @@
-//! What real facades leave to gain: how far below `paper` any grammar could come.
+//! The room that real facades leave: the greatest saving below `paper` that any grammar could have.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,13 +32,13 @@ struct Lower {
     weak: bool,
 }
 
-/// One facade's per cent below `paper`.
+/// The savings on one facade, in per cent of the cost of `paper`.
 struct Room {
-    /// What `best` saves.
+    /// The saving of `best`.
     saved: f64,
-    /// What no grammar exceeds.
+    /// The saving that no grammar exceeds.
     most: f64,
-    /// Whether `best` is proven optimal.
+    /// True if `best` is proven optimal.
     optimal: bool,
 }
 

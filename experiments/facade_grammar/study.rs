@@ -15,7 +15,7 @@ use edifice_facade_grammar::{Exploit, Method, Operations, Protect, Readings, inf
 use edifice_grammar::{Costs, Grammar, evaluate};
 use edifice_io::{ReadOptions, read_facade, read_grammar};
 
-/// How to search.
+/// The method of search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum MethodName {
@@ -37,7 +37,7 @@ enum Operation {
     GridSplit,
 }
 
-/// Whether important regions are protected (Sec. 4.7).
+/// The protection of important regions (Sec. 4.7).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Protection {

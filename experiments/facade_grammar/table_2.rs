@@ -56,7 +56,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// Where PL and BGL print one number, and why.
+/// Notes the facades on which PL and BGL print one number, and the reason.
 fn coincidence(ctx: &mut Context, found: &Comparison) {
     let (Some(pl), Some(bgl)) = (found.column(AUTOMATIC[0]), found.column(AUTOMATIC[1])) else {
         return;

@@ -50,7 +50,7 @@ fn beside(ctx: &mut Context, scores: &Scores, solvers: &[Solver]) -> Result<()> 
     Ok(())
 }
 
-/// Which of the paper's statements hold for references of which kind.
+/// Notes the paper's statements that hold, for references of each kind.
 fn follows(ctx: &mut Context, scores: &Scores, solvers: &[Solver]) {
     let kinds = references::kinds();
     let automatic: Vec<usize> = (0..solvers.len())

@@ -68,7 +68,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// Which of the paper's statements hold for references of which kind.
+/// Notes the paper's statements that hold, for references of each kind.
 fn follows(ctx: &mut Context, scores: &Scores) {
     let kinds = references::kinds();
     let count = models().len();

@@ -1,4 +1,4 @@
-//! What an artefact's function is given.
+//! The context that an artefact's function is given.
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// How much to run.
+    /// The budget of the run.
     pub fn budget(&self) -> Budget {
         self.options.budget
     }

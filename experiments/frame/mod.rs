@@ -20,7 +20,7 @@ pub(super) use run::{SWEEPS, write_index};
 pub struct Artefact {
     /// Name of its files: `table_1`, `figure_14`.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// Its subject, in a line.
     pub title: &'static str,
     /// Makes it.
     pub run: fn(&mut Context) -> edifice_base::Result<()>,

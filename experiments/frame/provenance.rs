@@ -1,4 +1,4 @@
-//! Where a result comes from: `run.json`.
+//! The provenance of a result: `run.json`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,10 +21,10 @@ pub struct Run {
     pub order: Vec<String>,
 }
 
-/// How an artefact was made.
+/// The way in which an artefact was made.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Made {
-    /// What it shows.
+    /// Its subject.
     pub title: String,
     /// The command.
     pub command: String,
@@ -59,7 +59,7 @@ pub struct Machine {
     pub threads: usize,
     /// Operating system and processor family.
     pub system: String,
-    /// Whether the build is optimized.
+    /// True if the build is optimized.
     pub optimized: bool,
 }
 
@@ -78,11 +78,11 @@ impl Machine {
 /// A quantity, what the paper printed, what this run found.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Comparison {
-    /// What is compared.
+    /// Name of the quantity.
     pub quantity: String,
     /// The paper's number as printed.
     pub printed: String,
-    /// Ours.
+    /// The number that this run found.
     pub ours: String,
 }
 

@@ -19,7 +19,7 @@ use edifice_base::{Error, Result};
 use edifice_report as report;
 use edifice_report::{Page, Section};
 
-/// What was run.
+/// The outcome of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// The report's first page.

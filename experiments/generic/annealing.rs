@@ -65,7 +65,7 @@ fn run(settings: &Settings, given: &Given) -> Result<Outcome> {
     Ok(found)
 }
 
-/// What is packed; a move packs an item or takes one out, and makes room by taking out others by chance.
+/// The items that are packed; a move packs an item or takes one out, and makes room by taking out others by chance.
 struct Packing<'a> {
     problem: &'a Knapsack,
     packed: Vec<bool>,

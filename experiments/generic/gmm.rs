@@ -11,7 +11,7 @@ use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_model::gmm::{self, Criterion, Mixture, Points, select};
 
-/// What the number of components minimizes.
+/// The criterion that the number of components minimizes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum CriterionName {
@@ -32,7 +32,7 @@ enum Covariance {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Settings {
-    /// What the number of components minimizes.
+    /// Criterion that the number of components minimizes.
     criterion: CriterionName,
     /// Shape of the covariances: full, diagonal, or one for all components.
     covariance: Covariance,
@@ -63,7 +63,7 @@ pub fn study() -> Study {
     Study::new("model/gmm", about, "model", METRICS, run)
 }
 
-/// What is wrong with a table or a setting.
+/// The errors of a table or a setting.
 #[derive(Debug, thiserror::Error)]
 enum GmmError {
     #[error("`{0}` is no number")]

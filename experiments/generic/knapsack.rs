@@ -28,7 +28,7 @@ pub struct Knapsack {
 
 const FORMAT: &str = "edifice/knapsack";
 
-/// What is wrong with a problem or a solution.
+/// The errors of a problem or a solution.
 #[derive(Debug, thiserror::Error)]
 enum KnapsackError {
     #[error("there are no items")]
@@ -74,7 +74,7 @@ impl Solved {
         })
     }
 
-    /// What is known of a solution, computed from the problem alone.
+    /// The outcome of a solution, computed from the problem alone.
     ///
     /// # Errors
     /// [`Error::Method`] for one that does not fit.

@@ -51,7 +51,7 @@ pub fn study() -> Study {
     Study::new("model/network", about, "model", METRICS, run)
 }
 
-/// What is wrong with a setting.
+/// The errors of a setting.
 #[derive(Debug, thiserror::Error)]
 enum NetworkError {
     #[error("missing is {0}, expected 0 to less than 1")]

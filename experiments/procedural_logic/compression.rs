@@ -8,7 +8,7 @@ use edifice_optim::grid::points;
 use edifice_procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
 use edifice_report::{Figure, HeatMap};
 
-/// What the paper says of every value of its ranges.
+/// The number of rules that the paper prints for every value of its ranges.
 const PRINTED: f64 = 68.0;
 
 /// Searches the grid for the fewest rules, on each set.

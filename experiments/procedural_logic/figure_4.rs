@@ -316,7 +316,7 @@ fn describe(a: &Architecture) -> String {
     )
 }
 
-/// Where two architectures differ.
+/// The differences of two architectures, in words.
 fn difference(own: &Architecture, other: &Architecture) -> String {
     let mut parts = Vec::new();
     if own.floors != other.floors {

@@ -96,7 +96,7 @@ struct Unit<'a> {
     seed: u64,
 }
 
-/// What is measured.
+/// The measured numbers.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Outcome {
     /// Rules at the parameters of Sec. 5.3.

@@ -1,4 +1,4 @@
-//! What the text leaves open: rules and retrieval under each reading.
+//! The readings of the points that the text leaves open: rules and retrieval under each.
 
 use super::data::sources;
 use super::figure_4::retrieve;

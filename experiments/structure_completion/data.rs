@@ -15,7 +15,7 @@ pub struct Item {
     pub dataset: &'static str,
     /// Its elements.
     pub layout: Layout,
-    /// Whether it has a lattice of windows, and is one facade.
+    /// True if it has a lattice of windows, and is one facade.
     pub in_scope: bool,
 }
 

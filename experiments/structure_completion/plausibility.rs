@@ -1,4 +1,5 @@
-//! How well a classifier tells completions from true facades, by statistics that no method optimizes.
+//! The skill of a classifier that tells completions from true facades (area under its curve, 0.5 for chance), by
+//! statistics that no method optimizes.
 
 use rand::seq::SliceRandom;
 

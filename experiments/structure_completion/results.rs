@@ -15,7 +15,7 @@ use edifice_structure_completion::task::Task;
 /// The default method, learnt from the other data sets only.
 pub const OTHER_SETS: &str = "best_other_sets";
 
-/// What one facade, task and seed gives.
+/// The values of one facade, task and seed.
 #[derive(Serialize, Deserialize)]
 pub struct Answer {
     /// Method, metric, value.

@@ -23,7 +23,7 @@ use edifice_structure_completion::task::Task;
 struct Complete {
     /// Method of completion.
     method: Method,
-    /// What is hidden.
+    /// Part that is hidden.
     task: Task,
     /// Scoring functions whose weight is set to 0, of `paper`.
     left_out: Vec<Term>,

@@ -20,7 +20,7 @@ const SIZES: [usize; 2] = [100, 300];
 /// Candidates of which Eq. 20's completion is the best.
 const CANDIDATES: usize = 20;
 
-/// How negatives are made.
+/// The ways in which negatives are made.
 const SAMPLERS: [&str; 3] = [
     "block resampled",
     "Eq. 20, best of 20",

@@ -15,7 +15,7 @@ pub struct Example {
 }
 
 impl Example {
-    /// What it shows: the first line of its comment.
+    /// Its subject: the first line of its comment.
     pub fn about(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.trim_start_matches('#').trim()

@@ -20,13 +20,13 @@ const DATA: &str = "data";
 pub struct Instance {
     /// Its file name up to the first dot, with the folder where two have one name.
     pub name: String,
-    /// Where it is; relative paths are relative to the sweep's folder.
+    /// Its path; relative paths are relative to the sweep's folder.
     pub path: PathBuf,
     /// SHA-256 of its bytes and of those of the files that belong to it.
     pub digest: String,
 }
 
-/// What is wrong with a pattern.
+/// The faults of a pattern.
 #[derive(Debug, thiserror::Error)]
 enum InstanceError {
     #[error(

@@ -1,4 +1,4 @@
-//! What several tasks of one process need and is dear to make, such as a model that all arms share.
+//! Values that several tasks of one process need and that are dear to make, such as a model that all arms share.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -12,7 +12,7 @@ pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
 const KEPT: usize = 64;
 
 impl<V> Shared<V> {
-    /// Nothing yet.
+    /// A store without any value.
     pub const fn new() -> Self {
         Self(Mutex::new(VecDeque::new()))
     }

@@ -1,4 +1,4 @@
-//! What every crate of Edifice shares: errors with their place, seeded random streams, whole files.
+//! The parts that every crate of Edifice shares: errors with their place, seeded random streams, whole files.
 
 pub mod error;
 pub mod file;

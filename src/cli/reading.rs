@@ -1,4 +1,4 @@
-//! How facades are read, for every command that reads them.
+//! The reading of facades, for every command that reads them.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use super::print;
 /// Options of reading.
 #[derive(clap::Args)]
 pub struct Reading {
-    /// What the colours or numbers of label images and text matrices stand for, as JSON
+    /// Meaning of the colours or numbers of label images and text matrices, as JSON
     #[arg(long, value_name = "FILE")]
     label_map: Option<PathBuf>,
     /// Read a colour that the label map does not name as the nearest one (blended colours, JPEG)

@@ -46,7 +46,7 @@ pub enum Command {
     Verify(Verify),
 }
 
-/// What all commands are told.
+/// The options of all commands.
 #[derive(Args)]
 pub struct Common {
     /// Sweep file

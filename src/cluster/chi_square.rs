@@ -10,7 +10,7 @@ pub struct Histogram<K> {
 }
 
 impl<K: Ord + Clone + Debug> Histogram<K> {
-    /// How often each key occurs.
+    /// Counts the occurrences of each key.
     pub fn count(keys: impl IntoIterator<Item = K>) -> Self {
         let mut bins: BTreeMap<K, f64> = BTreeMap::new();
         for key in keys {

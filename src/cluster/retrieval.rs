@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-/// Whether the query itself stands among the items to be ranked.
+/// The part of the query itself among the items to be ranked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Query {
     /// Ranked are all other items.
@@ -22,19 +22,19 @@ pub enum Ties {
     Against,
 }
 
-/// What happens to a query without any relevant item.
+/// The treatment of a query without any relevant item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unmatched {
-    /// It is no query.
+    /// It does not count as a query.
     LeftOut,
     /// It counts as never found.
     Missed,
 }
 
-/// How a cumulative match characteristic is taken.
+/// The conventions of a cumulative match characteristic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Protocol {
-    /// Whether the query is ranked too.
+    /// The part of the query itself in the ranking.
     pub query: Query,
     /// The order of equal distances.
     pub ties: Ties,

@@ -31,7 +31,7 @@ use edifice_io::{building_json, gltf, scene_svg, surface_obj};
 use edifice_model::hierarchy::Hierarchy;
 use edifice_shape::Building;
 
-/// What the shipped houses and the model learned from them are called in the program.
+/// The name of the shipped houses in the program; that of the model learned from them follows.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";
 const MODEL: &str = "building_exteriors/default.houses.json";
 const ENDING: &str = ".building.json";
@@ -70,7 +70,7 @@ fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
     })
 }
 
-/// Whether a house's name can name its files.
+/// True if a house's name can name its files.
 pub fn is_file_name(name: &str) -> bool {
     let usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     !name.is_empty() && name.len() <= 100 && name.chars().all(usual)
@@ -146,13 +146,13 @@ pub struct House {
     building: Building,
     /// Its surface.
     model: Model,
-    /// How it came about; none for a house that was opened.
+    /// The report on its making; `None` for a house that was opened.
     report: Option<HouseReport>,
     /// Boxes that the last edit touched: they stay where the user put them.
     locked: Vec<bool>,
     answers: Vec<Generated>,
     chosen: Option<usize>,
-    /// What was wished last.
+    /// The wishes of the last edit.
     wishes: Vec<String>,
     style: Option<usize>,
     keep: bool,

@@ -302,7 +302,7 @@ impl State for Editing {
     }
 }
 
-/// Without the dust of adding tenths.
+/// The cost, rounded to nine decimals: sums of tenths without their errors.
 fn tidy(cost: f64) -> f64 {
     (cost * 1e9).round() / 1e9
 }

@@ -123,11 +123,11 @@ pub fn shipped_model() -> Result<&'static Model> {
 
 /// Completions of a layout.
 pub struct Answers {
-    /// What was completed.
+    /// The input that was completed.
     pub given: Given,
     /// The completions, the best first.
     pub completions: Vec<Completion>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

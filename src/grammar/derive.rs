@@ -18,7 +18,7 @@ pub const REGION_LIMIT: usize = 5_000_000;
 pub struct NonTerminal {
     /// Index of the rule that split it; its symbol is that rule's left-hand side.
     pub rule: usize,
-    /// Where it is, in the facade's coordinates.
+    /// Its place, in the facade's coordinates.
     pub rect: Rect,
     /// Number of regions around it: 0 for the whole facade.
     pub depth: usize,
@@ -32,8 +32,8 @@ pub struct Derivation {
     pub facade: Facade,
     /// The non-terminal regions, depth first, each before what is inside it.
     pub non_terminals: Vec<NonTerminal>,
-    /// Where the grammar writes each terminal region: the rule and the place in its right-hand side;
-    /// `None` for a facade that is one terminal.
+    /// The origin of each terminal region: the rule that writes it, and the place in the rule's right-hand side; `None`
+    /// for a facade that is one terminal.
     pub origins: Vec<Option<(usize, usize)>>,
     /// Rules whose absolute sizes left too little for the relative ones and shrank, by their index: the
     /// least factor. Empty when all absolute sizes are as written.

@@ -1,4 +1,4 @@
-//! Where the successors of a rule go in its rectangle.
+//! The places of a rule's successors in its rectangle.
 
 use super::check::TOLERANCE;
 use super::derive::REGION_LIMIT;
@@ -10,7 +10,7 @@ use edifice_shape::{Axis, Rect};
 /// region in proportion, so that parts of parts of parts never vanish.
 pub const LEAST_SHARE: f64 = 0.5;
 
-/// What happens where absolute sizes leave nothing for the relative ones.
+/// The treatment of regions in which absolute sizes leave nothing for the relative ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fit {
     /// The grammar is wrong.
@@ -129,7 +129,7 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// How many periods of `sizes` fit beside `fixed` (the closing A of `repeat_aba`).
+    /// The number of periods of `sizes` that fit beside `fixed` (the closing A of `repeat_aba`).
     fn periods(&self, sizes: &[Size], fixed: &[Size], least: u32) -> Result<usize, GrammarError> {
         let period: f64 = sizes.iter().map(|s| s.value()).sum();
         let room = self.extent - fixed.iter().map(|s| s.value()).sum::<f64>();

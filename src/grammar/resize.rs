@@ -56,7 +56,7 @@ pub fn size_independent(grammar: &Grammar) -> Grammar {
     out
 }
 
-/// Whether the first and last of a list of parts touch.
+/// The ends of a list of parts: `Cyclic` if the first and the last touch.
 #[derive(PartialEq)]
 enum Ends {
     Open,

@@ -1,4 +1,4 @@
-//! What files of annotation tools have in common: boxes in image coordinates, y down.
+//! The common parts of the files of annotation tools: boxes in image coordinates, y down.
 
 use std::path::Path;
 

@@ -57,7 +57,7 @@ pub enum CmpError {
     Points {
         /// `x` or `y`.
         element: &'static str,
-        /// How often it stands there.
+        /// Number of times that it stands there.
         count: usize,
     },
     /// A coordinate is not a fraction.
@@ -71,7 +71,7 @@ pub enum CmpError {
     /// The label is missing or not one of the database.
     #[error("<labelname> is {0:?}, expected one of the labels of CMP")]
     Label(String),
-    /// No object at all.
+    /// The file has no object.
     #[error("no <object> in the file")]
     Empty,
 }

@@ -35,7 +35,7 @@ pub enum GltfError {
         what: &'static str,
         /// The index.
         index: usize,
-        /// How many there are.
+        /// Number of them in the scene.
         count: usize,
     },
     /// A position is not finite.

@@ -1,4 +1,4 @@
-//! What all JSON formats share: errors that name the place, and the keys `format` and `version`.
+//! The common parts of all JSON formats: errors that name the place, and the keys `format` and `version`.
 
 use std::path::Path;
 

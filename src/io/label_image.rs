@@ -21,7 +21,7 @@ pub struct UnknownPixel {
     pub column: usize,
     /// Row from the top, from 0.
     pub row: usize,
-    /// What it says.
+    /// Its colour or number.
     pub key: Key,
 }
 
@@ -105,7 +105,7 @@ impl UnknownPixel {
     }
 }
 
-/// What to take for a pixel, at a column and row, that the map does not name: a label, or an error.
+/// Called for a pixel, at a column and row, that the map does not name: gives its label, or `None` for an error.
 type Otherwise<'o> = &'o mut dyn FnMut((usize, usize), Key) -> Option<u16>;
 
 /// The merged grid of labels of an image.

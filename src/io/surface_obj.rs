@@ -29,7 +29,7 @@ pub fn to_text(surface: &Surface, name: &str) -> String {
     text
 }
 
-/// What is wrong with a line.
+/// The defects of a line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ObjError {
     /// Not a finite number.

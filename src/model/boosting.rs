@@ -76,7 +76,7 @@ pub struct Boosting {
 /// Why a [`Boosting`] cannot be learnt, or read: the first three from [`Boosting::learn`], the last from [`Boosting::check`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BoostingError {
-    /// No row at all.
+    /// There is no row.
     #[error("no rows to learn from")]
     Empty,
     /// A row of another length than the first.
@@ -268,7 +268,7 @@ fn grow(
     (tree, leaf_of)
 }
 
-/// What each cut of a feature gains over all leaves, beyond no cut.
+/// The gain of each cut of a feature, summed over all leaves, relative to no cut.
 fn gains(sums: &[(f64, f64)], cuts: usize, ridge: f64) -> Vec<f64> {
     let value = |g: f64, h: f64| g * g / (h + ridge);
     let mut gains = vec![0.0; cuts];

@@ -54,7 +54,7 @@ where
     F: Fn(&X) -> Vec<f64> + Sync,
     S: Fn(&mut X, &[f64], &mut Stream) + Sync,
 {
-    /// A model of so many weights, its features and its sampler, which gets a state and the weights.
+    /// A model from its number of weights, its features and its sampler, which gets a state and the weights.
     pub fn new(weights: usize, features: F, sampler: S) -> Self {
         Self {
             weights,

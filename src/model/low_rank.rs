@@ -35,7 +35,7 @@ impl Default for Limits {
 /// others being 0. The start is the zero matrix.
 ///
 /// # Examples
-/// Where all is known one step is the answer: singular values 3 and 1, less 1.
+/// If all is known, one step is the answer: singular values 3 and 1, less 1.
 /// ```
 /// use edifice_model::low_rank::{Limits, objective, soft_impute};
 /// let known = [Some(3.0), Some(0.0), Some(0.0), Some(1.0)];

@@ -46,7 +46,7 @@ use edifice_base::rng::{Stream, stream};
 /// assert_eq!((walk.solution(), walk.cost()), (0, 3.0));
 /// ```
 pub trait Landscape {
-    /// What to remember of the best solution.
+    /// The record that is kept of the best solution.
     type Solution: Clone;
 
     /// Cost of the solution as it stands.
@@ -131,15 +131,15 @@ pub struct Annealing {
     rng: Stream,
 }
 
-/// What goes wrong in a run: temperatures in [`Annealing::new`], anything else in [`Annealing::run`].
+/// The errors of a run: temperatures in [`Annealing::new`], anything else in [`Annealing::run`].
 #[derive(Debug, thiserror::Error)]
 pub enum AnnealingError {
     /// Temperatures must be positive numbers, the first at least the last.
     #[error("annealing temperatures {start} to {end} are not positive and falling")]
     Temperatures {
-        /// First.
+        /// The first temperature.
         start: f64,
-        /// Last.
+        /// The last temperature.
         end: f64,
     },
     /// argmin failed.

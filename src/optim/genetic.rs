@@ -28,7 +28,7 @@ use rand::{Rng, RngExt};
 use super::run::{Run, Search, Step, execute};
 use edifice_base::rng::{Stream, stream};
 
-/// What is bred: how genomes begin, cross, change, and what they cost.
+/// The population's problem: the first genomes, their crossing and change, and their cost.
 ///
 /// Costs have any unit, as only their order counts; the [module](self) says how often each function is called. Most of
 /// the time is usually spent in [`Breed::costs`], the only function that may compute in parallel: the others draw
@@ -90,13 +90,13 @@ impl Default for Settings {
 /// Genomes with their costs, from the best to the worst.
 pub type Population<G> = Vec<(G, f64)>;
 
-/// What goes wrong in a run: settings in [`Genetic::new`], anything else in [`Genetic::run`].
+/// The errors of a run: settings in [`Genetic::new`], anything else in [`Genetic::run`].
 #[derive(Debug, thiserror::Error)]
 pub enum GeneticError {
     /// A setting is out of its range.
     #[error("genetic algorithm: {setting} is {value}, expected {expected}")]
     Setting {
-        /// Which one.
+        /// Name of the setting.
         setting: &'static str,
         /// Its value.
         value: f64,

@@ -105,7 +105,7 @@ fn sum(residuals: &[f64]) -> f64 {
 struct LevenbergMarquardt {
     limits: Limits,
     damping: f64,
-    /// At the present point.
+    /// The residuals at the present point.
     residuals: Vec<f64>,
     stuck: bool,
 }

@@ -49,7 +49,7 @@ pub enum ProjectionError {
     /// A list has not one number for each variable.
     #[error("{what} has {found} numbers, expected {expected}")]
     Dimension {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -59,7 +59,7 @@ pub enum ProjectionError {
     /// A number is NaN or infinite where it must not be, or a weight is not positive.
     #[error("{what}[{index}] is {value}")]
     Number {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Variable.
         index: usize,

@@ -71,7 +71,7 @@ pub enum QpError {
     /// A list has not one number for each variable.
     #[error("{what} has {found} numbers, expected {expected}")]
     Dimension {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -81,9 +81,9 @@ pub enum QpError {
     /// A term names a variable that does not exist.
     #[error("{what}[{row}] names variable {index}, there are {count}")]
     Index {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Which of its rows or entries.
+        /// Index of the row or entry of the list.
         row: usize,
         /// The index named.
         index: usize,
@@ -93,9 +93,9 @@ pub enum QpError {
     /// A number is NaN or infinite where it must not be.
     #[error("{what}[{row}] has the number {value}")]
     Number {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Which of its rows or entries.
+        /// Index of the row or entry of the list.
         row: usize,
         /// The number.
         value: f64,

@@ -1,4 +1,4 @@
-//! What every optimizer returns, and the one way in which argmin runs them.
+//! The result of every optimizer, and the one way in which argmin runs them.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -79,12 +79,12 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether the solution is optimal to some tolerance.
+    /// True if the solution is optimal to some tolerance.
     pub fn is_solved(self) -> bool {
         matches!(self, Self::Converged | Self::AlmostConverged)
     }
 
-    /// What argmin tells of the end of a run.
+    /// The outcome that argmin's status of termination means.
     fn of(status: &TerminationStatus) -> Self {
         let TerminationStatus::Terminated(reason) = status else {
             return Self::Stalled;

@@ -82,7 +82,7 @@ impl Figure {
         self
     }
 
-    /// What the figure shows, for readers who cannot see it.
+    /// The caption, for readers who cannot see the figure.
     pub fn caption(&self) -> &str {
         &self.caption
     }

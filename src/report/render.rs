@@ -19,7 +19,7 @@ const PNG_SCALE: f64 = 2.0;
 const PNG_SAMPLES: u32 = 2;
 const FAMILY: &str = "sans-serif";
 
-/// What plotters says when it cannot draw.
+/// The message of plotters when it cannot draw.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot draw: {0}")]
 struct CannotDraw(String);

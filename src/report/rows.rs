@@ -13,11 +13,11 @@ pub struct Row {
     pub dataset: String,
     /// Method, with its configuration.
     pub method: String,
-    /// What it was run on: facade, split, rank, ...
+    /// The input of the run: facade, split, rank, ...
     pub instance: String,
     /// Seed; empty for what has none (deterministic methods, means over seeds).
     pub seed: Option<u64>,
-    /// What was measured.
+    /// The measured quantity.
     pub metric: String,
     /// The number.
     pub value: f64,

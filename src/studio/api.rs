@@ -25,7 +25,7 @@ use edifice_editing::work::Stopped;
 /// Work that takes longer than this is a job.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// What answers a request: its status, and what is wrong.
+/// The refusal of a request: its status, and the reason.
 struct Refusal(StatusCode, String);
 
 impl IntoResponse for Refusal {

@@ -22,7 +22,7 @@ pub struct Open {
     folder: PathBuf,
     /// Name of the file it is saved as.
     file: String,
-    /// What the file held when it was read or written last; `None` before it is saved.
+    /// The content of the file when it was read or written last; `None` before it is saved.
     known: Option<Vec<u8>>,
     saved_at: u64,
     milliseconds: f64,
@@ -95,7 +95,7 @@ impl Open {
         Ok(())
     }
 
-    /// Takes what commands came to, in so many milliseconds.
+    /// Takes the results of commands, and the milliseconds that they took.
     pub fn take(&mut self, commands: &[Value], steps: Vec<Step>, milliseconds: f64) {
         self.document.take(commands, steps);
         self.milliseconds = milliseconds;
@@ -135,7 +135,7 @@ impl Open {
         self.file.strip_suffix(ending).unwrap_or(&self.file)
     }
 
-    /// What a list of documents says of it.
+    /// The entry of the document in a list of documents.
     pub fn summary(&self, id: &str) -> Value {
         let state = self.document.state();
         json!({
@@ -145,7 +145,7 @@ impl Open {
         })
     }
 
-    /// All of it.
+    /// The whole document, as a page gets it.
     ///
     /// # Errors
     /// As [`State::view`].

@@ -47,7 +47,7 @@ pub use server::{Running, start};
 
 use edifice_base::Result;
 
-/// What the studio is started with.
+/// The settings that the studio is started with.
 #[derive(Debug, Clone, Default)]
 pub struct Settings {
     /// Files to open.

@@ -36,7 +36,7 @@ fn house(index: u64) -> Building {
     building
 }
 
-/// What is wrong with the house of this number.
+/// The fault of the house of this number; `None` for a sound one.
 fn fault(index: u64) -> Option<String> {
     let building = house(index);
     let joining = [Joining::Boxes, Joining::Merged][(index % 2) as usize];

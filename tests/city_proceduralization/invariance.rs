@@ -1,4 +1,4 @@
-//! What a city's grammar must not depend on: the order of buildings, threads.
+//! The grammar of a city does not depend on the order of buildings or on threads.
 
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{compact, grammar_json};

@@ -1,4 +1,4 @@
-//! What fuzzing has found worth keeping (`fuzz/seeds/`) goes through the readers in the ordinary tests.
+//! The files that fuzzing found worth keeping (`fuzz/seeds/`) go through the readers in the ordinary tests.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use edifice::model::network::Network;
 use edifice::model::tables::schema::Schema;
 use edifice::model::tables::table_model::TableModel;
 
-/// Whether the reader of that name takes the bytes.
+/// True if the reader of that name takes the bytes.
 fn read(reader: &str, bytes: &[u8]) -> bool {
     let path = Path::new("seed");
     let text = std::str::from_utf8(bytes).ok();

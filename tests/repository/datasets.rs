@@ -1,4 +1,4 @@
-//! What ships in `datasets/` is what the project's own commands make.
+//! The files in `datasets/` are those that the project's own commands make.
 
 use std::path::Path;
 

@@ -183,9 +183,16 @@ fn without_links(paragraph: &str) -> String {
         rest = target.split_once(')').map_or("", |(_, behind)| behind);
     }
     kept.push_str(rest);
-    let words = kept.split_whitespace();
-    let prose = words.filter(|word| !word.contains("://") && !word.contains("]:"));
-    prose.collect::<Vec<_>>().join(" ")
+    let mut prose = Vec::new();
+    let mut words = kept.split_whitespace();
+    while let Some(word) = words.next() {
+        if word.ends_with("]:") {
+            words.next();
+        } else if !word.contains("://") {
+            prose.push(word);
+        }
+    }
+    prose.join(" ")
 }
 
 /// Everything wrong with a paragraph of prose, in words.
@@ -361,6 +368,7 @@ fn code_is_no_prose() {
         "/// The [`RegionType`] of `item_costs`, see [the type](super::RegionType).\n",
         "/// An example:\n/// ```\n/// let item_costs = RegionType::new();\n/// ```\n",
         "/// See <https://example.org/RegionType/item_costs>.\n",
+        "/// See [`Size`].\n///\n/// [`Size`]: item_costs::Size\n",
         "let text = \"// RegionType\"; let raw = r#\"\n// RegionType \"\n\"#; let quote = '\"'; // A quote.\n",
         "fn f<'a>(x: &'a str) -> char { '\\'' } // A glTF file of `w_ij`, and w_ij itself.\n",
     ] {

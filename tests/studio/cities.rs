@@ -15,7 +15,7 @@ use crate::client::Api;
 
 const TOWN: &str = "city_proceduralization/town.city-grammar.json";
 
-/// A made city of at least so many buildings: copies of the shipped town in rows.
+/// A made city of at least `least` buildings: copies of the shipped town in rows.
 fn made(least: usize) -> InstanceGrammar {
     let path = Path::new(TOWN);
     let mut grammar =

@@ -25,7 +25,7 @@ impl Api {
         }
     }
 
-    /// What its requests run in.
+    /// The runtime of its requests.
     pub fn runtime(&self) -> &tokio::runtime::Runtime {
         self.runtime.as_ref().expect("until it is dropped")
     }

@@ -86,7 +86,7 @@ impl Drop for Process {
     }
 }
 
-/// A layout of so many elements that its file takes a while to write.
+/// A layout of `count` elements: its file takes a while to write.
 fn large(folder: &Path, count: usize) -> PathBuf {
     let region = |k: usize| {
         let (x, y) = (k % 100, k / 100);

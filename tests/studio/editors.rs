@@ -1,5 +1,5 @@
-//! What designers ask of the editors: wishes, floors and columns, joint grammars, three dimensions; each with a script that
-//! gives the same bytes.
+//! The editors on the wishes of designers: attributes, floors and columns, joint grammars, three dimensions; each with
+//! a script that gives the same bytes.
 
 use std::path::Path;
 use std::process::Command;

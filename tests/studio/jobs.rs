@@ -43,7 +43,7 @@ fn long() -> (Api, Value) {
     (api, json!([{"do": "merge", "facades": [facade]}]))
 }
 
-/// What work said last that was stopped as soon as it said something.
+/// The last progress of work that was stopped as soon as it told any.
 fn stopped_at_once(method: impl FnOnce(&Work) + Send + 'static) -> Told {
     let work = Work::default();
     let own = work.clone();

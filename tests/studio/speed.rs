@@ -1,4 +1,4 @@
-//! How long edits take on the server: `cargo test --release --test studio speed -- --ignored --nocapture`.
+//! Seconds of edits on the server: `cargo test --release --test studio speed -- --ignored --nocapture`.
 
 use std::time::Instant;
 

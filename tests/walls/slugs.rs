@@ -32,7 +32,7 @@ fn is_registry(place: &str) -> bool {
     REGISTRIES.contains(&place) || slugs().iter().any(artefacts)
 }
 
-/// Whether a file goes with the method.
+/// True if a file goes with the method.
 fn is_own(slug: &str, place: &str) -> bool {
     let named = place.split(['/', '.']).any(|part| {
         part == slug
@@ -126,7 +126,7 @@ fn the_library_compiles_without_each_method() {
     }
 }
 
-/// Whether a target of the manifest is one of the method's.
+/// True if a target of the manifest is one of the method's.
 fn names_own(slug: &str, target: &str) -> bool {
     let stem = |path: &str| Path::new(path).file_stem()?.to_str().map(str::to_owned);
     let programs = OWN

@@ -10,7 +10,7 @@ use edifice_shape::Axis;
 pub struct Part {
     /// Terminal label or non-terminal symbol.
     pub symbol: String,
-    /// Whether it has no rule.
+    /// True if it has no rule.
     pub terminal: bool,
     /// Extent along x.
     pub width: u32,
@@ -37,7 +37,7 @@ impl Part {
     }
 }
 
-/// What makes two parts the same: operation, and the parts inside.
+/// The properties in which equal parts agree: operation, and the parts inside.
 type Content = (bool, Axis, Vec<Part>, u32);
 
 /// The rules so far.

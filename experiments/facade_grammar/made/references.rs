@@ -33,7 +33,7 @@ use edifice_shape::Facade;
 
 use plan::Plan;
 
-/// How a reference splits a facade, and what its own layouts look like.
+/// The way in which a reference splits a facade, and the form of its own layouts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Floors, then tiles.

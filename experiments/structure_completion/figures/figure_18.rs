@@ -33,8 +33,8 @@ fn title(left_out: usize) -> String {
     }
 }
 
-/// What decides which part of a layout is hidden: the same in these figures and in sweeps, whatever other facades are
-/// completed.
+/// The random numbers that decide which part of a layout is hidden: the same in these figures and in sweeps, whatever
+/// other facades are completed.
 pub fn drawn(layout: &Layout, seed: u64) -> Stream {
     stream(seed, &format!("figure 18, {}", layout.name), 0)
 }

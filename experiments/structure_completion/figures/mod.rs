@@ -32,7 +32,7 @@ pub fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
     Ok(items)
 }
 
-/// Whether a facade has at least eight windows and at most 90 elements.
+/// True if a facade has at least eight windows and at most 90 elements.
 pub fn in_size(item: &Item) -> bool {
     item.layout.count(Class::Window) >= 8 && ELEMENTS.contains(&item.layout.elements.len())
 }

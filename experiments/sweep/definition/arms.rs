@@ -21,7 +21,7 @@ pub struct Arm {
     pub settings: Map<String, Value>,
 }
 
-/// What is wrong with the arms.
+/// The faults of the arms.
 #[derive(Debug, thiserror::Error)]
 enum ArmError {
     #[error("the sweep has no arm: write [[arm]] or [[grid]], and leave some of them in")]

@@ -153,7 +153,7 @@ pub fn anytime(
 /// Points of an anytime curve.
 const POINTS: usize = 80;
 
-/// Shares of runs that reached each target after so many evaluations; none without traces.
+/// Shares of runs that reached each target, by evaluations; none without traces.
 pub fn targets(
     plan: &Plan,
     study: &Study,

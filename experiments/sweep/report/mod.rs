@@ -119,7 +119,7 @@ fn check(plan: &Plan, out: &Path, records: &[Record], allow_missing: bool) -> Re
     ))
 }
 
-/// What was compared, in a sentence.
+/// The comparison, in a sentence.
 fn summary(plan: &Plan, comparison: &Comparison) -> String {
     let head = &plan.head;
     let seeds = plan.tasks.len() / (head.arms.len() * head.instances.len()).max(1);

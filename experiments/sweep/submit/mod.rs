@@ -13,7 +13,7 @@ use edifice_base::Result;
 pub use slurm::{ArrayLimit, array_limit, scripts};
 pub use snakemake::snakefile;
 
-/// How a plan is cut into jobs.
+/// The packing of a plan into jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packing {
     /// Tasks that have no result yet.

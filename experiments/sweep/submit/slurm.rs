@@ -11,7 +11,7 @@ use crate::sweep::plan::Plan;
 pub struct ArrayLimit {
     /// `MaxArraySize`: indices stay below it.
     pub size: usize,
-    /// Whether `scontrol` said so; else it is Slurm's default.
+    /// True if `scontrol` said so; otherwise it is Slurm's default.
     pub asked: bool,
 }
 

@@ -117,7 +117,7 @@ fn orders(table: &TextTable, path: &Path, given: bool) -> Result<Vec<Order>> {
 /// Draws a batch of samples at each call.
 type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
 
-/// Where the samples of `generate` come from, and what is given.
+/// The source of the samples of `generate`, and the values that are given.
 fn sampler<'a>(
     args: &'a GenerateArgs,
     file: &'a ModelFile,

@@ -98,7 +98,7 @@ fn tell(name: &str, faults: &[String], json: bool) -> Result<()> {
         .try_for_each(|fault| print::line(&format!("{name}: {fault}")))
 }
 
-/// What is wrong with a house.
+/// The faults of a house, one sentence each; none for a sound one.
 fn faults(building: &Building, roof: RoofOption) -> Vec<String> {
     let mut faults = Vec::new();
     if !edifice_building_exteriors::mass::is_sound(building) {

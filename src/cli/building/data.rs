@@ -10,7 +10,7 @@ use edifice_io::{building_csv, building_json, json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 
-/// Where houses come from.
+/// The source of houses.
 #[derive(clap::Args)]
 pub struct Input {
     /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`.

@@ -25,7 +25,7 @@ const COMPLETED: usize = 5;
 /// Root mean square distance, in standard deviations, below which two houses are the same.
 const APART: f64 = 0.05;
 
-/// What to draw.
+/// The number of houses to draw, and the choice among them.
 #[derive(clap::Args)]
 pub struct Draw {
     /// Houses to draw [default: 10; completed houses: 5]
@@ -40,7 +40,7 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// What to draw.
+    /// Options of drawing from their values.
     pub fn new(count: usize, most_probable: bool, seed: u64) -> Self {
         Self {
             count: Some(count),

@@ -14,7 +14,7 @@ use crate::print;
 pub struct Args {
     #[command(flatten)]
     input: Input,
-    /// Where the model goes (`*.houses.json`).
+    /// File of the model (`*.houses.json`).
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]

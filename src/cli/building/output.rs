@@ -12,7 +12,7 @@ use edifice_scene::Scene;
 use edifice_scene::trace::{framing, trace};
 use edifice_shape::Building;
 
-/// What the shipped database is called in the program.
+/// The name of the shipped database in the program.
 const SHIPPED: &str = "building_exteriors/houses.buildings.jsonl";
 /// Pixels of a picture.
 const PICTURE: [usize; 2] = [800, 500];

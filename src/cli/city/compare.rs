@@ -20,7 +20,7 @@ const SAMPLES: usize = 20_000;
 pub struct Args {
     /// A city or a grammar.
     first: PathBuf,
-    /// Another.
+    /// Another city or grammar.
     second: PathBuf,
     /// Cells of the raster, in metres.
     #[arg(long, default_value_t = 0.5)]

@@ -16,7 +16,7 @@ pub struct Args {
     /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
     #[arg(short, long)]
     output: PathBuf,
-    /// Write a glTF node for each instance, for viewers without EXT_mesh_gpu_instancing.
+    /// Write a glTF node for each instance, for viewers without `EXT_mesh_gpu_instancing`.
     #[arg(long)]
     no_instancing: bool,
 }

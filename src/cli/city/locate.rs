@@ -21,7 +21,7 @@ pub struct Args {
     /// from edge to edge (PNG, JPEG, WebP); the city must then have textures.
     #[arg(long, required = true, num_args = 1..)]
     view: Vec<PathBuf>,
-    /// How many places to list.
+    /// Number of places to list.
     #[arg(long, default_value_t = 5)]
     top: usize,
     /// Print a line of JSON for each place instead of text.

@@ -53,7 +53,7 @@ enum Keep {
     Ids,
     /// Identifiers, and neither textures nor patterns for synthesis.
     Buildings,
-    /// Neither these nor those.
+    /// No attributes, identifiers, textures or patterns for synthesis.
     Shape,
 }
 
@@ -63,7 +63,7 @@ pub struct Args {
     /// Cities; buildings of several files are put together.
     #[arg(required = true)]
     input: Vec<PathBuf>,
-    /// How types are found.
+    /// Method that finds types.
     #[arg(long, value_enum, default_value = "best")]
     mode: Mode,
     /// Number of templates, or `all`.
@@ -81,7 +81,7 @@ pub struct Args {
     /// Weights of the paper's features, `F=W,...`; others are 1.
     #[arg(long, value_name = "F=W,...")]
     weights: Option<String>,
-    /// How communities are found, with `--mode paper`.
+    /// Method that finds communities, with `--mode paper`.
     #[arg(long, value_enum, default_value = "girvan-newman")]
     communities: Communities,
     /// With `--mode paper`, represent a type by its member of fewest polygons.
@@ -90,13 +90,14 @@ pub struct Args {
     /// Seed of k-means.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How finely numbers are written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`, cm otherwise].
+    /// Step of the numbers written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`,
+    /// cm otherwise].
     #[arg(long, value_enum)]
     precision: Option<Steps>,
     /// Most pixels along a side of a template's textures; 0 for no textures.
     #[arg(long, value_name = "N", default_value_t = 128)]
     texture_pixels: usize,
-    /// What of the buildings is kept.
+    /// Part of the buildings that is kept.
     #[arg(long, value_enum, default_value = "all")]
     keep: Keep,
     /// The grammar to write: text (`*.city-grammar.json`, also with `.gz`), or few bytes (`*.city-grammar.bin`).
@@ -311,7 +312,7 @@ fn failure(error: edifice_base::error::Cause, args: &Args) -> Error {
 /// Buildings named in a warning.
 const NAMED: usize = 3;
 
-/// Whether a mesh has a fault.
+/// A test of a mesh for a fault: true if it has it.
 type HasFault = fn(&MeshFaults) -> bool;
 
 /// Tells what is wrong with the meshes.

@@ -30,7 +30,7 @@ pub struct Args {
     /// Model of `facade train`; the default one was learnt from the shipped layouts
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
-    /// How to complete
+    /// Method of completion
     #[arg(long, default_value = "best", value_parser = Method::ALL.map(Method::option))]
     method: String,
     /// Number of different completions

@@ -16,7 +16,7 @@ use crate::reading::Reading;
 pub struct Args {
     /// Whole facade: any format that `facade convert` reads
     input: PathBuf,
-    /// What is hidden: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
+    /// The part to hide: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
     /// corner of 0.6 x 0.6 (corner36), the lowest 40 % (bottom40)
     #[arg(long, value_parser = Task::ALL.map(Task::name))]
     task: String,

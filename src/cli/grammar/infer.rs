@@ -28,7 +28,7 @@ pub struct Args {
     /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
-    /// How to search
+    /// Method of search
     #[arg(long, value_enum, default_value = "adp")]
     method: MethodName,
     /// Iterations of the methods that repeat themselves
@@ -37,7 +37,7 @@ pub struct Args {
     /// Seed of all randomness
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Operations that rules may use: split, repeat, repeat_aba, sym_split, grid_split
+    /// Operations that rules may use: `split`, `repeat`, `repeat_aba`, `sym_split`, `grid_split`
     #[arg(long, default_value_t = Operations::default(), value_name = "LIST")]
     ops: Operations,
     /// Cost of a split, and of the extensions that split once

@@ -26,7 +26,7 @@ pub struct Args {
     /// Cost of split, and of symsplit and gridsplit
     #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().split)]
     split_cost: f64,
-    /// Cost of repeat, and of repeatABA
+    /// Cost of a repeat, and of a repeat of the form ABABA
     #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().repeat)]
     repeat_cost: f64,
     /// End with one line of JSON
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// What there is to say about a grammar.
+/// The summary of a grammar.
 struct Summary<'g> {
     cost: f64,
     operations: BTreeMap<&'static str, usize>,
@@ -154,7 +154,7 @@ impl<'g> Summary<'g> {
     }
 }
 
-/// Without the dust of adding tenths.
+/// The cost, rounded to nine decimals: sums of tenths without their errors.
 fn tidy(cost: f64) -> f64 {
     (cost * 1e9).round() / 1e9
 }

@@ -117,7 +117,7 @@ fn rank(args: &Args, model: &Model, distances: &DMatrix<f64>, query: usize) -> R
     print::line(&format!("{name}: {text}"))
 }
 
-/// Whether two distances are equal up to rounding.
+/// True if two distances are equal up to rounding.
 fn equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.max(b)
 }

@@ -52,7 +52,7 @@ impl Facades {
         }
     }
 
-    /// Whether the facades are cleaned.
+    /// True if the facades are cleaned.
     pub fn is_clean(&self) -> bool {
         self.clean.is_some()
     }
@@ -140,7 +140,7 @@ impl Energy {
         })
     }
 
-    /// Whether any parameter is given.
+    /// True if any parameter is given.
     pub fn is_given(&self) -> bool {
         self.alpha.is_some() || self.parental_bias.is_some() || self.horizontal_bias.is_some()
     }

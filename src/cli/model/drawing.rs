@@ -25,7 +25,7 @@ struct Box {
     name: String,
     /// Category and probability.
     bars: Vec<(String, f64)>,
-    /// Whether it is given.
+    /// True if it is given.
     given: bool,
     parents: Vec<usize>,
     /// Corner at the upper left.
@@ -185,7 +185,7 @@ fn draw(boxes: &[Box], (width, height): (f64, f64)) -> String {
     out + "</svg>\n"
 }
 
-/// What fits of a name, for markup.
+/// The part of a name that fits, for markup.
 fn text(name: &str) -> String {
     let mut shown: String = name.chars().take(FIT).collect();
     if name.chars().count() > FIT {

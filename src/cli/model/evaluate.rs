@@ -20,7 +20,7 @@ pub struct Args {
     splits: Splits,
 }
 
-/// Which models, on which splits.
+/// The models and the splits of an evaluation.
 #[derive(clap::Args)]
 pub struct Splits {
     /// Random splits.

@@ -4,7 +4,7 @@ use edifice_base::Error;
 use edifice_model::hierarchy::{Constant, Settings, Variant};
 use edifice_model::{Cell, Table};
 
-/// How to learn.
+/// The options of learning.
 #[derive(clap::Args)]
 pub struct Search {
     /// Fewest styles tried.
@@ -79,7 +79,7 @@ impl Search {
     }
 }
 
-/// What was learned all the same, but says little: constant columns, fewer rows than parameters.
+/// Warnings of parts of the data that were learned but say little: constant columns, fewer rows than parameters.
 pub fn warnings(table: &Table, parameters: usize) -> Vec<String> {
     let mut warnings = Vec::new();
     for column in table.columns() {

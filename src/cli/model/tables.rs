@@ -22,7 +22,7 @@ use crate::print;
 pub struct LearnArgs {
     #[command(flatten)]
     input: TableInput,
-    /// Where the model goes (`*.table-model.json`).
+    /// File of the model (`*.table-model.json`).
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]
@@ -204,7 +204,7 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
     Ok(())
 }
 
-/// How `model show` shows a model of a table.
+/// The display of a model of a table by `model show`.
 pub const TABLE_MODEL: Shown = Shown {
     format: FORMAT,
     show,

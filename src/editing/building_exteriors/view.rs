@@ -1,4 +1,4 @@
-//! What a page shows of a house.
+//! The view of a house, as a page shows it.
 
 use serde_json::{Value, json};
 

@@ -19,21 +19,21 @@ use edifice_shape::Building;
 
 /// First column that is yes or no.
 pub const FIRST_FLAG: usize = 39;
-/// Draws of the model: for an answer, of which so many are built; for the ranges.
+/// Draws of the model for an answer, those of them that are built, and draws for the ranges.
 const POOL: usize = 500;
 const TRIES: usize = 4;
 const DRAWS: usize = 2000;
 /// A house within this distance of its row (standard deviations) is near enough.
 const NEAR: f64 = 0.05;
 
-/// What is wished of a house.
+/// The wishes for a house.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wishes {
     /// Columns that must have these values.
     pub given: AttributeRow,
     /// A style of the model, from 1.
     pub style: Option<usize>,
-    /// Whether all other columns stay as they are; else they are the model's.
+    /// True if all other columns stay as they are; otherwise they are the model's.
     pub keep: bool,
 }
 
@@ -45,7 +45,7 @@ pub enum WishError {
     Style {
         /// The style, from 1.
         wanted: usize,
-        /// How many there are.
+        /// Number of styles.
         count: usize,
     },
     /// Two wishes that no house can have together.

@@ -13,7 +13,7 @@ use edifice_city_proceduralization::{
 use edifice_grammar::instance::InstanceGrammar;
 use edifice_shape::triangles::{City, OrientedBox, TriangleMesh};
 
-/// What [`Original::packed`] is asked for by.
+/// The name of the format of [`Original::packed`].
 pub const FORMAT: &str = "original";
 /// Corners of a packed part at most, so that an index has 16 bits.
 const CORNERS: usize = 65_535;
@@ -80,7 +80,7 @@ impl Original {
         parts.concat()
     }
 
-    /// By how much the volume of each building differs from that in another city, as a share of its own; by identifier.
+    /// The difference of each building's volume from that in another city, as a share of its own; by identifier.
     pub fn volume_errors(&self, derived: &City) -> rustc_hash::FxHashMap<String, f64> {
         let volumes = |city: &City| -> rustc_hash::FxHashMap<String, f64> {
             let one = |b: &edifice_shape::triangles::CityBuilding| {

@@ -1,4 +1,4 @@
-//! Which rules a building comes from.
+//! The rules that lead to a building.
 
 use rustc_hash::FxHashMap;
 
@@ -13,7 +13,7 @@ pub struct Turn {
     pub part: usize,
 }
 
-/// Where the buildings and the placed templates of a derivation come from.
+/// The origins of the buildings and the placed templates of a derivation.
 #[derive(Debug, Clone, Default)]
 pub struct Paths {
     /// Of each placed template, in the order of the derivation: rules applied, one inside another.

@@ -1,4 +1,4 @@
-//! What a page shows of a city: templates once, and where they stand.
+//! The view of a city, as a page shows it: templates once, and the places of their instances.
 
 use serde_json::{Value, json};
 

@@ -49,7 +49,7 @@ pub enum GrammarEditError {
         rule: usize,
         /// The part.
         part: Place,
-        /// How many there are.
+        /// Number of such parts.
         count: usize,
     },
     /// The rule's operation has nothing of this kind.
@@ -59,7 +59,7 @@ pub enum GrammarEditError {
         rule: usize,
         /// Name of its operation.
         operation: &'static str,
-        /// What can be done.
+        /// The edits that are possible.
         hint: &'static str,
     },
     /// A size leaves nothing for the part itself or for the others.
@@ -71,7 +71,7 @@ pub enum GrammarEditError {
         part: Place,
         /// The size asked for.
         size: f64,
-        /// What there is.
+        /// The length that is there.
         room: f64,
     },
     /// The regions of a rule are as long in every facade.

@@ -36,7 +36,7 @@ pub enum FacadeEditError {
     NoUnknown {
         /// Its index.
         index: usize,
-        /// How many there are.
+        /// Number of unknown rectangles.
         count: usize,
     },
     /// A rectangle without a size.
@@ -50,7 +50,7 @@ pub enum FacadeEditError {
     Annotation(#[from] AnnotationError),
 }
 
-/// What an element is called in edits.
+/// The name of an element in edits.
 pub fn reference(note: &Note, index: usize) -> String {
     note.id.clone().unwrap_or_else(|| format!("#{index}"))
 }

@@ -12,7 +12,7 @@ use edifice_base::{Error, Result};
 use edifice_io::photograph;
 use edifice_shape::AnnotatedFacade;
 
-/// What is asked of a drawing without changing it.
+/// The questions to a drawing that do not change it.
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 enum Question {

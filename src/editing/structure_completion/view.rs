@@ -1,4 +1,4 @@
-//! What a page shows of a facade that is being completed.
+//! The view of a facade that is being completed, as a page shows it.
 
 use serde_json::{Value, json};
 

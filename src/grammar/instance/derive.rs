@@ -25,7 +25,7 @@ pub struct TemplateInstance {
 }
 
 impl TemplateInstance {
-    /// Where a point of the template goes.
+    /// The place of a point of the template.
     pub fn place(&self, p: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = [0, 1, 2].map(|i| p[i] * self.size[i]);
         let (sin, cos) = self.turn.to_radians().sin_cos();

@@ -1,9 +1,9 @@
 //! Cities as CityJSON 1.0 to 2.0 (`.city.json`) and CityJSONSeq (`.city.jsonl`): z up, metres.
 //!
-//! A first-level city object with its parts is a building. Read are MultiSurface, CompositeSurface, Solid,
-//! MultiSolid and CompositeSolid of the highest level of detail; polygons with holes are triangulated. Where
+//! A first-level city object with its parts is a building. Read are `MultiSurface`, `CompositeSurface`, `Solid`,
+//! `MultiSolid` and `CompositeSolid` of the highest level of detail; polygons with holes are triangulated. Where
 //! surfaces are named (semantics) and windows among them, they are painted: openings dark, all else light.
-//! Written is CityJSON 2.0 with a MultiSurface of triangles for each building.
+//! Written is CityJSON 2.0 with a `MultiSurface` of triangles for each building.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -195,7 +195,7 @@ fn greys(geometry: &Value) -> Vec<Arc<Surface>> {
 /// An object as it is drawn.
 struct Drawing<'a> {
     vertices: &'a [[f64; 3]],
-    /// What surfaces of each kind look like.
+    /// The paint of the surfaces of each kind.
     kinds: Vec<Arc<Surface>>,
     mesh: TriangleMesh,
     paint: Vec<Painted>,
@@ -286,7 +286,7 @@ pub fn to_string(city: &City) -> String {
     document.to_string()
 }
 
-/// Where the standard's names of reference systems begin.
+/// The beginning of the standard's names of reference systems.
 const OPEN_GIS: &str = "https://www.opengis.net/def/crs/";
 
 /// A reference system as CityJSON 2.0 names it: `EPSG:7415` is `https://www.opengis.net/def/crs/EPSG/0/7415`. The standard

@@ -1,4 +1,4 @@
-//! Shapes on the ground as GeoJSON: Polygon or MultiPolygon, as geometry, feature or collection, in metres.
+//! Shapes on the ground as GeoJSON: `Polygon` or `MultiPolygon`, as geometry, feature or collection, in metres.
 
 use std::path::Path;
 

@@ -21,7 +21,7 @@ pub enum GlbError {
     /// Nothing to draw: glTF forbids empty meshes and accessors.
     #[error("no triangles to write")]
     Empty,
-    /// The format cannot say so many bytes.
+    /// The file would have more bytes than the format can say.
     #[error(transparent)]
     TooLong(#[from] TooLong),
 }

@@ -1,9 +1,9 @@
 //! Cities as glTF 2.0: `.glb`, and `.gltf` with buffers inside it or beside it.
 //!
 //! A node of the scene with a mesh is a building, called by its name. Instances of `EXT_mesh_gpu_instancing` are drawn out.
-//! What Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
+//! A file that Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
 //! of one building become one, which knows the instances it is put together from ([`Part`](edifice_shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
-//! lines are left out. Textures of base colours are read as what surfaces look like. Every index and length is checked against the bytes there are.
+//! lines are left out. Textures of base colours are read as the paint of the surfaces. Every index and length is checked against the bytes there are.
 
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -168,7 +168,7 @@ struct Reader<'a> {
     city: City,
     /// Identifiers of the buildings that instances belong to; they are the first buildings of the city.
     ids: Vec<String>,
-    /// Which building of the city has the identifier.
+    /// Index of the building of the city, by identifier.
     listed: FxHashMap<String, usize>,
     triangles: usize,
 }

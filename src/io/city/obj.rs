@@ -136,7 +136,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     })
 }
 
-/// Where an index of OBJ leads to among `count`; negative ones count from the last so far.
+/// The position, among `count`, that an index of OBJ names; negative ones count from the last so far.
 fn place(index: i64, count: usize) -> std::result::Result<usize, CityError> {
     let at = match index < 0 {
         true => index.checked_add_unsigned(count as u64),

@@ -1,4 +1,4 @@
-//! What one sees of a city, as JSON: format `edifice/city-view`, version 1.
+//! The view that somebody has of a city, as JSON: format `edifice/city-view`, version 1.
 //!
 //! ```json
 //! { "format": "edifice/city-view", "version": 1, "unit": "m", "buildings": [

@@ -82,13 +82,13 @@ struct Builder<'a> {
     /// Symbols whose rule only says how they look, and where it is written.
     leaves: FxHashMap<String, SimpleSpan>,
     rules: Vec<Rule>,
-    /// Where each rule is written.
+    /// The place of each rule in the text.
     places: Vec<SimpleSpan>,
     /// `//@ sizes absolute`.
     sizes_absolute: bool,
-    /// Whether floating sizes of the alternative at hand are absolute.
+    /// True if floating sizes of the alternative at hand are absolute.
     floats_absolute: bool,
-    /// What `rand` gives in the alternative at hand.
+    /// The values of `rand` in the alternative at hand.
     draw: Draw,
 }
 

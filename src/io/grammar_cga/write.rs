@@ -105,7 +105,7 @@ fn leaves<'g>(grammar: &'g Grammar, defined: &FxHashSet<&str>) -> Vec<&'g str> {
     leaves
 }
 
-/// Whether some size of an operation is a weight, so that it fills any space.
+/// True if some size of an operation is a weight, so that it fills any space.
 fn has_weights(operation: &Operation) -> bool {
     let weight = |size: &Size| matches!(size, Size::Relative(_));
     match operation {

@@ -1,4 +1,4 @@
-//! How many sizes occur.
+//! Numbers of distinct sizes.
 
 use std::collections::{BTreeMap, BTreeSet};
 

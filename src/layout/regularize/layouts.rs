@@ -160,7 +160,7 @@ impl Layout for Tiling {
     }
 }
 
-/// Whether there are no more sizes than before.
+/// True if there are no more sizes than before.
 fn none_more(before: &BTreeMap<String, usize>, after: &BTreeMap<String, usize>) -> bool {
     after.values().sum::<usize>() <= before.values().sum()
 }

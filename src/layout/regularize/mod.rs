@@ -91,7 +91,7 @@ pub enum RegularizeError {
     Qp(#[from] QpError),
 }
 
-/// What regularization did.
+/// The changes that regularization made.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Longest way that any edge moved, in the unit of the layout.

@@ -2,7 +2,7 @@
 
 use edifice_shape::{LabelGrid, Span, components, is_background};
 
-/// What squaring did.
+/// The result of squaring.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Nicks {
     /// Areas that became rectangles.

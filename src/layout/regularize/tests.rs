@@ -164,7 +164,7 @@ fn sizes_of(facade: &Facade) -> usize {
     counts::of_regions(facade).values().sum()
 }
 
-/// Whether regions that had one label and one size still have one size.
+/// True if regions that had one label and one size still have one size.
 fn stays_equal(before: &Facade, after: &Facade) -> bool {
     let same = 1e-7 * before.width.max(before.height);
     let equal = |f: &Facade, i: usize, j: usize| {

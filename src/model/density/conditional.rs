@@ -25,9 +25,9 @@ use crate::ModelError;
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditional<D> {
-    /// Where a range ends and the next begins, ascending.
+    /// The bounds between neighbouring ranges of g, ascending.
     edges: Vec<f64>,
-    /// One more than edges.
+    /// The density of each range; one more than edges.
     parts: Vec<D>,
 }
 
@@ -74,7 +74,7 @@ impl<D: LogDensity> Conditional<D> {
         &self.parts[range.min(self.parts.len() - 1)]
     }
 
-    /// Whether there is a density for each range.
+    /// True if there is a density for each range and the bounds are finite and ascending.
     pub fn is_whole(&self) -> bool {
         self.parts.len() == self.edges.len() + 1
             && self.edges.iter().all(|e| e.is_finite())

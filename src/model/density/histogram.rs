@@ -7,7 +7,7 @@ use crate::ModelError;
 
 /// Most bins of all dimensions together.
 const MOST_BINS: usize = 1 << 16;
-/// How many rows a uniform prior over the box is worth.
+/// Weight of the uniform prior over the box, in rows.
 const PRIOR_ROWS: f64 = 0.5;
 
 /// A density over a box, constant in each of its equal bins. Values outside have the density of the

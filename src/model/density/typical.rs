@@ -7,7 +7,7 @@ use super::LogDensity;
 /// A density p and a level: [`LogDensity::relative`] is `min(0, log p(x) - level)`, so that all x with at
 /// least the typical density are equally good.
 ///
-/// Where a maximum is sharp, [`LogDensity::relative`] of the density itself punishes all values but the modal one; here only
+/// At a sharp maximum, [`LogDensity::relative`] of the density itself punishes all values but the modal one; here only
 /// values rarer than most of the data lose. Learning is n densities and a sort, O(n log n).
 ///
 /// # Examples
@@ -49,7 +49,7 @@ impl<D: LogDensity> Typical<D> {
         Self { density, level }
     }
 
-    /// Whether the level is a number.
+    /// True if the level is finite.
     pub fn is_whole(&self) -> bool {
         self.level.is_finite()
     }

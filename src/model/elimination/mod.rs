@@ -36,7 +36,8 @@ pub(crate) use factor::advance;
 pub use order::{Order, TooWide};
 pub use tree::BucketTree;
 
-/// How variables are eliminated: by `Σ_v f` (Koller and Friedman 2009, Sec. 9.3) or by `max_v f` (Sec. 13.2), at the same cost.
+/// The operation that eliminates a variable: `Σ_v f` (Koller and Friedman 2009, Sec. 9.3) or `max_v f` (Sec. 13.2), at
+/// the same cost.
 ///
 /// # Examples
 /// ```

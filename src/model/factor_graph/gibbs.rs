@@ -62,7 +62,7 @@ pub struct Gibbs {
 const TABULATED: usize = 1 << 12;
 
 impl Gibbs {
-    /// Variables with so many values each, and their factors.
+    /// A sampler of variables, given the number of values of each, and their factors.
     ///
     /// # Errors
     /// [`ModelError::Parameter`] for a factor on a variable that is not there, or that it names twice, or a variable

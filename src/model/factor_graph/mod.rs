@@ -121,7 +121,7 @@ pub struct Settings {
     pub rounds: usize,
     /// Moves of each chain in a round.
     pub moves: usize,
-    /// Whether chains go on from round to round (persistent) or restart at the data.
+    /// True if chains go on from round to round (persistent), false if they restart at the data.
     pub persistent: bool,
     /// First step size.
     pub rate: f64,
@@ -129,7 +129,8 @@ pub struct Settings {
     pub decay: f64,
     /// λ of the penalty `λ/2 |w|²` per example.
     pub penalty: f64,
-    /// Whether steps are Newton's, with the information that the chains give of the weights.
+    /// True if steps are Newton's, with the information that the chains give of the weights; false for plain gradient
+    /// steps.
     pub newton: bool,
 }
 

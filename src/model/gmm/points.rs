@@ -23,7 +23,7 @@ pub struct Points<'a> {
     d: usize,
     values: &'a [f64],
     weights: Option<&'a [f64]>,
-    /// Whether any value is missing.
+    /// True if any value is missing.
     incomplete: bool,
 }
 
@@ -109,7 +109,7 @@ impl<'a> Points<'a> {
         self.values.len() / self.d
     }
 
-    /// Never: points are checked at the door.
+    /// Always false: points are checked when they are made.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -132,7 +132,7 @@ impl<'a> Points<'a> {
         self.weights.map_or(1.0, |w| w[i])
     }
 
-    /// Whether row `i` lacks a value.
+    /// True if row `i` lacks a value.
     pub(crate) fn lacks(&self, i: usize) -> bool {
         self.incomplete && self.row(i).iter().any(|v| v.is_nan())
     }

@@ -6,7 +6,7 @@ use super::super::error::ModelError;
 use super::{Fitted, Points, Settings, fit};
 use edifice_base::rng::stream;
 
-/// What the number of components minimises.
+/// The criterion that the number of components minimises, in nats.
 ///
 /// L is the likelihood, P the number of free parameters ([`Mixture::free_parameters`](super::Mixture::free_parameters)), N the sum of
 /// weights and d the dimension; where values are missing, `N d` is the number of those that are observed. Without

@@ -46,7 +46,7 @@ pub struct Learned {
     pub bic: f64,
     /// Every accepted configuration, by |S|, then those of the searches above and around the best ones.
     pub trace: Vec<Step>,
-    /// Whether the observer ended the search: the model is the best so far.
+    /// True if the observer ended the search: the model is the best so far.
     pub interrupted: bool,
 }
 
@@ -197,7 +197,7 @@ struct Work<'a> {
     schema: &'a Schema,
     settings: &'a Settings,
     rows: Rows,
-    /// `None`: all of them.
+    /// The rows of the search; `None` for all rows.
     sample: Option<Rows>,
 }
 

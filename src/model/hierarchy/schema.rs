@@ -149,7 +149,8 @@ impl Schema {
         self.codes.iter().map(|c| c.categories.len()).collect()
     }
 
-    /// Where the indicators of each categorical column start in a row of real columns and indicators, and its length.
+    /// The index at which the indicators of each categorical column start in a row of real columns and indicators, and
+    /// its length at the end.
     pub fn indicators(&self) -> Vec<usize> {
         let mut starts = vec![self.reals.len()];
         for (i, size) in self.sizes().into_iter().enumerate() {

@@ -72,7 +72,7 @@ pub struct Loopy {
     pub answers: Vec<Answer>,
     /// Rounds made.
     pub rounds: usize,
-    /// Whether no message moved by more than the tolerance in the last round.
+    /// True if no message moved by more than the tolerance in the last round.
     pub converged: bool,
 }
 
@@ -303,7 +303,7 @@ impl<'a> Messages<'a> {
         }
     }
 
-    /// What all factors but one say of a variable.
+    /// The sum of the log messages to a variable from all factors but one.
     fn without(&self, v: usize, factor: usize) -> Vec<f64> {
         let mut sum = vec![0.0; self.sizes[v]];
         for &(f, place) in self.around[v].iter().filter(|(f, _)| *f != factor) {

@@ -35,7 +35,7 @@ impl Default for FitSettings {
 
 /// Result of [`Network::fit`]: parameters at a local maximum of `log p(data | Θ) + log p(Θ)`.
 ///
-/// EM replaces the entries of a table by `(N_jk + α - 1) / Σ_k (N_jk + α - 1)`, N_jk the expected number of rows with category k
+/// EM replaces the entries of a table by `(N_jk + α - 1) / Σ_k (N_jk + α - 1)`, `N_jk` the expected number of rows with category k
 /// in configuration j and α [`Priors::dirichlet`]; linear Gaussians by the mode of their posterior ([`conjugate`](crate::conjugate));
 /// softmax weights by Newton's method (Koller and Friedman 2009, Sec. 19.2). Columns are in their own units; what is missing is
 /// summed or integrated out. Time of a round: one exact answer ([`Answer`](super::Answer)) for every row.

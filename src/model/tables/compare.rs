@@ -16,9 +16,9 @@ pub const BACKGROUND: f64 = 0.002;
 pub enum Contender {
     /// The hierarchical model with lateral edges.
     Ours,
-    /// Without lateral edges.
+    /// The hierarchical model without lateral edges.
     Model1,
-    /// Without the second hidden level (Fig. 4b).
+    /// The hierarchical model without the second hidden level (Fig. 4b).
     Model2,
     /// A directed model without hidden variables (Fig. 4a).
     Model3,
@@ -114,7 +114,7 @@ pub fn extended(settings: &Settings) -> Settings {
     }
 }
 
-/// How a learned model fares on unseen rows.
+/// The fit of a learned model to unseen rows.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Judged {
     /// Mean negative log-likelihood of a row, nats.

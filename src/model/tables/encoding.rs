@@ -30,7 +30,7 @@ const NEIGHBOURS: usize = 5;
 /// The category of cells that are at no atom.
 const OTHER: &str = "other";
 
-/// How a real column enters a model.
+/// The form in which a real column enters a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Encoded {
@@ -44,7 +44,7 @@ pub struct Encoded {
     pub transform: Transform,
 }
 
-/// How the real columns of a table enter a model.
+/// The form in which the real columns of a table enter a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Encoding {
     columns: Vec<Encoded>,
@@ -301,9 +301,9 @@ fn atoms(values: &[f64]) -> Vec<f64> {
     atoms
 }
 
-/// Whether value `at` (of ascending values with their counts, n in all) is more frequent than the values around it explain,
-/// by the score: with e expected from the density of its neighbours, a Poisson count of c gains `c log(c / e) - (c - e)`
-/// nats, to be more than log n. Values that are equal only since they were rounded do not stand out.
+/// True if value `at` (of ascending values with their counts, n in all) is more frequent than the values around it
+/// explain, by the score: with e expected from the density of its neighbours, a Poisson count of c gains
+/// `c log(c / e) - (c - e)` nats, to be more than log n. Values that are equal only since they were rounded do not stand out.
 fn stands_out(counted: &[(f64, f64)], at: usize, n: f64) -> bool {
     let mut gaps: Vec<f64> = counted.windows(2).map(|w| w[1].0 - w[0].0).collect();
     gaps.sort_by(f64::total_cmp);

@@ -28,7 +28,7 @@ use crate::{ModelError, Table};
 pub struct Dataset {
     /// One thing (a house, say) a row.
     pub table: Table,
-    /// Which columns belong together.
+    /// The groups of columns that belong together.
     pub groups: Vec<Group>,
 }
 

@@ -1,4 +1,4 @@
-//! What stands where: tiles in rows and columns, in the rhythms of a kind.
+//! The plan of a reference: tiles in rows and columns, in the rhythms of a kind.
 
 use rand::RngExt;
 

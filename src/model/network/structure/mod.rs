@@ -1,7 +1,7 @@
 //! Structure search: the graph of a discrete network from complete rows.
 //!
 //! A structure's score is a sum over families, a variable X_i with parents U_i, r_i categories and q_i configurations of
-//! the parents; N_ijk rows have category k in configuration j:
+//! the parents; `N_ijk` rows have category k in configuration j:
 //!
 //! ```text
 //! BIC   Σ_i [ Σ_jk N_ijk log(N_ijk / N_ij) - (r_i - 1) q_i / 2 log N ]                              (Schwarz 1978)
@@ -34,7 +34,7 @@ use constraints::Allowed;
 use edifice_base::rng::stream;
 use families::Families;
 
-/// What is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
+/// The score that is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
 ///
 /// [`score`] computes it for a given structure, [`search`] looks for the structure of most. Of the two, BDeu is the exact
 /// log marginal likelihood under its prior; BIC approximates it for many rows.
@@ -54,7 +54,7 @@ use families::Families;
 pub enum Score {
     /// Log likelihood less `log N / 2` for each free parameter.
     Bic,
-    /// Log marginal likelihood under Dirichlet priors worth so many rows in all (equivalent sample size).
+    /// Log marginal likelihood under Dirichlet priors with this equivalent sample size, in rows.
     Bdeu(f64),
 }
 
@@ -81,7 +81,7 @@ pub enum Score {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// What is maximised.
+    /// The score that is maximised.
     pub score: Score,
     /// Most parents of one variable.
     pub most_parents: usize,
