@@ -27,6 +27,7 @@ mod room;
 mod runs;
 mod speed;
 pub mod study;
+mod trial;
 mod table_1;
 mod table_2;
 mod table_3;
