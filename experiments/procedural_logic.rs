@@ -17,7 +17,7 @@ mod readings;
 mod retrieval_search;
 pub mod shipped;
 pub mod study;
-mod trial;
+pub mod trial;
 pub mod trivial;
 pub mod words;
 

@@ -19,7 +19,7 @@ use edifice_io::{ReadOptions, facade_json, grammar_cga, read_bytes, read_facade,
 use edifice_shape::Facade;
 
 /// Grammar inference on one facade.
-pub struct Inference;
+pub(super) struct Inference;
 
 /// Why a grammar is no answer.
 #[derive(Debug, thiserror::Error)]

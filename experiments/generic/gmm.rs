@@ -34,7 +34,7 @@ enum Covariance {
 /// Settings of the mixture.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+struct Settings {
     /// Criterion that the number of components minimizes.
     criterion: CriterionName,
     /// Shape of the covariances: full, diagonal, or one for all components.
@@ -78,7 +78,7 @@ enum GmmError {
 }
 
 /// Densities of tables of numbers.
-pub struct Density;
+struct Density;
 
 impl Trial for Density {
     type Settings = Settings;

@@ -23,16 +23,16 @@ use edifice_procedural_logic::Model;
 use edifice_shape::LabelGrid;
 
 /// Retrieval of facades without architectural change.
-pub struct Ranking;
+pub(super) struct Ranking;
 
 /// All facades, and which of them are queries.
-pub struct Question {
+pub(super) struct Question {
     facades: Arc<Facades>,
     queries: Vec<usize>,
 }
 
 /// Facades at all sizes; those of one file stand apart by the number of files.
-pub struct Facades {
+pub(super) struct Facades {
     grids: Vec<LabelGrid>,
     architecture: Vec<Architecture>,
     key: String,
@@ -283,6 +283,21 @@ impl Trial for Ranking {
         }
         Ok(distances)
     }
+}
+
+/// Judges a ranking of facades, each of which is a query, by their architecture.
+///
+/// # Errors
+/// Why the file is no ranking of these facades.
+pub fn evaluate(grids: Vec<LabelGrid>, ranking: &Path) -> Result<BTreeMap<String, f64>> {
+    let queries = (0..grids.len()).collect();
+    let facades = Arc::new(at_all_sizes(grids, 1, String::new()));
+    let question = Question {
+        facades: Arc::clone(&facades),
+        queries,
+    };
+    let distances = Ranking::read(&question, ranking)?;
+    Ranking::judge(&Retrieval::default(), &question, &facades, &distances)
 }
 
 /// The names of all facades, which are distinct.

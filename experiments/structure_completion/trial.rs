@@ -25,10 +25,10 @@ use edifice_structure_completion::partial::PartialLayout;
 use edifice_structure_completion::policy::{Budget, PaperModel};
 
 /// Completion of one facade by what others teach.
-pub struct Completion;
+pub(super) struct Completion;
 
 /// A partial layout, and whole ones.
-pub struct Question {
+pub(super) struct Question {
     name: String,
     partial: PartialLayout,
     layouts: Arc<Vec<Layout>>,

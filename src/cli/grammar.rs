@@ -2,6 +2,7 @@
 
 mod derive;
 mod edit;
+mod evaluate;
 mod infer;
 mod merge;
 mod show;
@@ -20,6 +21,8 @@ pub enum Command {
     Edit(edit::Args),
     /// Merge the facades of a grammar and further ones into one joint grammar.
     Merge(merge::Args),
+    /// Judge a grammar: does it derive the facades, at which cost, how far from a proven bound.
+    Evaluate(evaluate::Args),
     /// Show the rules of a grammar, what it costs and what it derives.
     Show(show::Args),
 }
@@ -31,6 +34,7 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Derive(args) => derive::run(&args),
         Command::Edit(args) => edit::run(&args),
         Command::Merge(args) => merge::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
         Command::Show(args) => show::run(&args),
     }
 }
