@@ -1,5 +1,6 @@
 //! Sweeps: definition, runs, refusals, reports.
 
+mod commands;
 mod papers;
 mod refusals;
 mod robust;
