@@ -27,12 +27,12 @@ mod room;
 mod runs;
 mod speed;
 pub mod study;
-mod trial;
 mod table_1;
 mod table_2;
 mod table_3;
 mod table_4;
 mod table_5;
+mod trial;
 
 use super::{Artefact, Budget, Experiment, picture};
 use edifice_facade_grammar::Method;

@@ -100,7 +100,11 @@ impl Args {
         Ok(Options {
             only: self.only,
             data,
-            own: self.dataset.iter().map(|text| Own::parse(text)).collect::<Result<_>>()?,
+            own: self
+                .dataset
+                .iter()
+                .map(|text| Own::parse(text))
+                .collect::<Result<_>>()?,
             seed: self.seed,
             budget: self.budget,
             out: self.out,

@@ -39,9 +39,9 @@ impl Own {
     /// [`Error::Option`] for a name that is none or taken and a pattern that matches nothing; those of reading the label map.
     pub fn parse(text: &str) -> Result<Self> {
         let wrong = |message: String| Error::option("--dataset", message);
-        let (name, rest) = text.split_once('=').ok_or_else(|| {
-            wrong(format!("{text:?} is not NAME=GLOB or NAME=GLOB:MAP.json"))
-        })?;
+        let (name, rest) = text
+            .split_once('=')
+            .ok_or_else(|| wrong(format!("{text:?} is not NAME=GLOB or NAME=GLOB:MAP.json")))?;
         let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         if name.is_empty() || !name.chars().all(plain) {
             return Err(wrong(format!(

@@ -207,7 +207,9 @@ pub fn write<'a>(
         let cells = row.iter().map(f64::to_string);
         writer.write_record(cells).map_err(Error::method)?;
     }
-    let bytes = writer.into_inner().map_err(|e| Error::method(e.to_string()))?;
+    let bytes = writer
+        .into_inner()
+        .map_err(|e| Error::method(e.to_string()))?;
     edifice_io::write_atomic(path, &bytes)
 }
 

@@ -85,7 +85,10 @@ pub fn retrieval() -> Study {
     let (name, data) = ("procedural_logic/retrieval", "facade_grammar");
     Study::trial::<Ranking>(name, about, data, METRICS)
         .learning()
-        .made_of(&["edifice-procedural-logic", "edifice-io"], "procedural_logic")
+        .made_of(
+            &["edifice-procedural-logic", "edifice-io"],
+            "procedural_logic",
+        )
         .asking(&["sizes"])
 }
 

@@ -184,7 +184,9 @@ impl Trial for Ranking {
                 .write_record([names[*query]])
                 .map_err(Error::method)?;
         }
-        let bytes = writer.into_inner().map_err(|e| Error::method(e.to_string()))?;
+        let bytes = writer
+            .into_inner()
+            .map_err(|e| Error::method(e.to_string()))?;
         write_atomic(&input, &bytes)?;
         let learn = Some(learn);
         Ok(Posed { input, learn })
@@ -234,7 +236,9 @@ impl Trial for Ranking {
                 writer.write_record(record).map_err(Error::method)?;
             }
         }
-        let bytes = writer.into_inner().map_err(|e| Error::method(e.to_string()))?;
+        let bytes = writer
+            .into_inner()
+            .map_err(|e| Error::method(e.to_string()))?;
         write_atomic(path, &bytes)
     }
 

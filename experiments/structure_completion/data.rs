@@ -29,7 +29,11 @@ pub fn items(ctx: &mut Context) -> Result<Vec<Item>> {
         ("cmp", "facades/cmp", ".xml"),
     ] {
         if let Some(folder) = ctx.real(folder)? {
-            items.extend(read(dataset, &layouts::files(&folder, ending)?, &ReadOptions::default())?);
+            items.extend(read(
+                dataset,
+                &layouts::files(&folder, ending)?,
+                &ReadOptions::default(),
+            )?);
         }
     }
     for set in ctx.own()? {

@@ -229,7 +229,12 @@ impl Trial for Completion {
         for observed in &partial.observed {
             let same = |e: &Element| {
                 let (a, b) = (e.rect, observed.rect);
-                let pairs = [(a.x, b.x), (a.y, b.y), (a.width, b.width), (a.height, b.height)];
+                let pairs = [
+                    (a.x, b.x),
+                    (a.y, b.y),
+                    (a.width, b.width),
+                    (a.height, b.height),
+                ];
                 e.class == observed.class && pairs.iter().all(|(a, b)| (a - b).abs() <= slack)
             };
             let Some(at) = added.iter().position(same) else {
@@ -269,7 +274,10 @@ fn write_partial(question: &Question, added: &[Element], path: &Path) -> Result<
         unknown: partial.unknown.clone(),
         photograph: None,
     };
-    write_atomic(path, facade_json::annotated_to_string(&annotated).as_bytes())
+    write_atomic(
+        path,
+        facade_json::annotated_to_string(&annotated).as_bytes(),
+    )
 }
 
 /// A layout with its annotations.

@@ -42,7 +42,9 @@ pub fn refuse(plan: &Plan, records: &mut [Record]) {
     for record in records.iter() {
         let bound = record.outcome.as_ref().and_then(|o| o.bound);
         if let Some(bound) = bound.filter(|bound| bound.is_finite()) {
-            let best = proven.entry(question(record)).or_insert((bound, record.arm));
+            let best = proven
+                .entry(question(record))
+                .or_insert((bound, record.arm));
             if passes(best.0, bound) {
                 *best = (bound, record.arm);
             }

@@ -141,7 +141,7 @@ pub fn verify(
     let mut bytes = 0u64;
     for index in 0..archive.len() {
         let inside = archive.by_index(index).map_err(|e| not(&e))?;
-        let name = inside.name().to_owned();
+        let name = inside.name().map_err(|e| not(&e))?.into_owned();
         let wrong = |error| Err(Error::content(bundle, error));
         if inside.enclosed_name().is_none() || name.split(['/', '\\']).any(|part| part == "..") {
             return wrong(BundleError::LeadsOut(name));
@@ -181,7 +181,11 @@ pub fn verify(
         }
     }
     for (index, arm) in plan.head.arms.iter_mut().enumerate() {
-        for needed in arm.command.iter_mut().flat_map(|command| &mut command.files) {
+        for needed in arm
+            .command
+            .iter_mut()
+            .flat_map(|command| &mut command.files)
+        {
             let place = folder.join(format!("files/{index}"));
             needed.path = place.join(Path::new(&needed.name).file_name().unwrap_or_default());
         }

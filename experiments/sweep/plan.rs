@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use super::definition::{Arm, Definition, ReportOptions, TaskOptions, arms, read};
 use super::command::Command;
+use super::definition::{Arm, Definition, ReportOptions, TaskOptions, arms, read};
 use super::instances::{Instance, files};
 use super::study::{Better, Study};
 use crate::frame::lock::Lock;
@@ -142,7 +142,10 @@ impl Plan {
         let mut tasks = Vec::with_capacity(arms.len() * instances.len() * definition.seeds.len());
         for (a, arm) in arms.iter().enumerate() {
             let settings = Value::Object(arm.settings.clone()).to_string();
-            let command = arm.command.as_ref().map_or_else(String::new, Command::identity);
+            let command = arm
+                .command
+                .as_ref()
+                .map_or_else(String::new, Command::identity);
             for (i, instance) in instances.iter().enumerate() {
                 let mut common = Sha256::new();
                 for part in [

@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
+use super::command;
 use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
-use super::command;
 use super::plan::{Plan, Task};
 use super::study::{Given, Study};
 use crate::frame::Progress;

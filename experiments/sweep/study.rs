@@ -65,7 +65,8 @@ type Settings = Map<String, Value>;
 /// Asks for an answer: files of the question and of the answer in, the metrics that the answer's author states out.
 pub type Ask<'a> = dyn Fn(&Posed, &Path) -> Result<BTreeMap<String, f64>> + 'a;
 type Foreign = Box<dyn Fn(&Settings, &Given, &Ask) -> Result<Outcome> + Send + Sync>;
-type Reply = Box<dyn Fn(&Settings, &Posed, &Path, u64) -> Result<BTreeMap<String, f64>> + Send + Sync>;
+type Reply =
+    Box<dyn Fn(&Settings, &Posed, &Path, u64) -> Result<BTreeMap<String, f64>> + Send + Sync>;
 type Check = Box<dyn Fn(&Map<String, Value>) -> std::result::Result<(), String> + Send + Sync>;
 
 /// A method that sweeps can run: a function and the type of its settings.
@@ -160,7 +161,8 @@ impl Study {
         let foreign = |settings: &Settings, given: &Given, ask: &Ask| {
             let settings: T::Settings = typed(settings)?;
             let (question, truth) = T::prepare(&settings, given)?;
-            let folder = tempfile::tempdir().map_err(|e| Error::io("answer".as_ref(), "make", e))?;
+            let folder =
+                tempfile::tempdir().map_err(|e| Error::io("answer".as_ref(), "make", e))?;
             let posed = T::pose(&question, folder.path())?;
             let output = folder.path().join(T::OUTPUT);
             let claims = ask(&posed, &output)?;

@@ -19,7 +19,9 @@ pub enum Command {
     /// List the sets that are described, and which of them are in the data folder
     List(List),
     /// Read every file of sets and say what is missing or cannot be read
-    #[command(after_help = "Examples:\n  edifice data check --data DATA\n  edifice data check ecp2011 cmp --data DATA --json\n  edifice data check mine/dataset.toml")]
+    #[command(
+        after_help = "Examples:\n  edifice data check --data DATA\n  edifice data check ecp2011 cmp --data DATA --json\n  edifice data check mine/dataset.toml"
+    )]
     Check(Check),
     /// Describe a folder of files: writes dataset.toml where there is none, and croissant.json
     #[command(after_help = "Example:\n  edifice data describe mine --files '*.png'")]

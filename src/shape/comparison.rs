@@ -104,7 +104,11 @@ pub fn compare(
     probabilities: &[Option<f64>],
     longer: f64,
 ) -> Comparison {
-    let mut names: Vec<&str> = truth.iter().chain(predicted).map(|r| r.label.as_str()).collect();
+    let mut names: Vec<&str> = truth
+        .iter()
+        .chain(predicted)
+        .map(|r| r.label.as_str())
+        .collect();
     names.sort_unstable();
     names.dedup();
     let mut labels = BTreeMap::new();
@@ -226,8 +230,18 @@ fn regularity(regions: &[Region], longer: f64) -> Regularity {
         let apart = |pair: &&[f64]| pair[1] - pair[0] > ALIGNED * longer;
         usize::from(!edges.is_empty()) + edges.windows(2).filter(apart).count()
     };
-    let vertical = distinct(regions.iter().flat_map(|r| [r.rect.x, r.rect.right()]).collect());
-    let horizontal = distinct(regions.iter().flat_map(|r| [r.rect.y, r.rect.top()]).collect());
+    let vertical = distinct(
+        regions
+            .iter()
+            .flat_map(|r| [r.rect.x, r.rect.right()])
+            .collect(),
+    );
+    let horizontal = distinct(
+        regions
+            .iter()
+            .flat_map(|r| [r.rect.y, r.rect.top()])
+            .collect(),
+    );
     let edges = 4.0 * regions.len().max(1) as f64;
     Regularity {
         overlap: if area > 0.0 { overlap / area } else { 0.0 },
@@ -281,7 +295,12 @@ mod tests {
 
     #[test]
     fn labels_are_apart_and_nothing_agrees_with_nothing() {
-        let found = compare(&[region("window", 0.0, 0.0)], &[region("door", 0.0, 0.0)], &[], 9.0);
+        let found = compare(
+            &[region("window", 0.0, 0.0)],
+            &[region("door", 0.0, 0.0)],
+            &[],
+            9.0,
+        );
         assert_eq!(found.all.pairs, [0; 10]);
         assert_eq!((found.all.iou, found.labels.len()), (0.0, 2));
         let nothing = compare(&[], &[], &[], 1.0);

@@ -29,7 +29,10 @@ fn results(folder: &Path) -> Vec<[String; 5]> {
     sweep(folder, "collect", &[]).success();
     let mut reader = csv::Reader::from_path(folder.join("out/results.csv")).unwrap();
     let row = |record: csv::StringRecord| [1, 2, 3, 4, 5].map(|k| record[k].to_owned());
-    reader.records().map(|record| row(record.unwrap())).collect()
+    reader
+        .records()
+        .map(|record| row(record.unwrap()))
+        .collect()
 }
 
 /// Rows of an arm without its name.
@@ -39,7 +42,9 @@ fn of<'a>(rows: &'a [[String; 5]], arm: &str) -> Vec<&'a [String]> {
 }
 
 fn python() -> bool {
-    let found = std::process::Command::new("python3").arg("--version").output();
+    let found = std::process::Command::new("python3")
+        .arg("--version")
+        .output();
     found.is_ok_and(|output| output.status.success())
 }
 
@@ -63,7 +68,13 @@ const STUDIES: [(&str, &str, &str, &str, &str); 4] = [
         "{learn}",
         "completion",
     ),
-    ("model/gmm", "mixture_1.csv", "most = 3", "{learn}", "density"),
+    (
+        "model/gmm",
+        "mixture_1.csv",
+        "most = 3",
+        "{learn}",
+        "density",
+    ),
     (
         "procedural_logic/retrieval",
         "layouts/cottage_*.facade.json",
@@ -89,7 +100,10 @@ fn a_built_in_method_run_as_a_command_gives_the_same_bits() {
         // A bound is proven by a method, never stated by a command.
         let own: Vec<&[String]> = own.into_iter().filter(|row| row[2] != "bound").collect();
         assert!(own.len() >= 2, "{study}: {rows:?}");
-        assert!(own.iter().all(|row| row[2] != "failure"), "{study}: {rows:?}");
+        assert!(
+            own.iter().all(|row| row[2] != "failure"),
+            "{study}: {rows:?}"
+        );
         assert_eq!(own, of(&rows, "command"), "{study}");
     }
 }
@@ -111,9 +125,15 @@ fn twenty_lines_of_python_enter_four_studies() {
         std::fs::write(folder.path().join("mine.py"), text).unwrap();
         let rows = results(folder.path());
         let mine = of(&rows, "mine");
-        assert!(mine.iter().all(|row| row[2] != "failure"), "{study}: {mine:?}");
+        assert!(
+            mine.iter().all(|row| row[2] != "failure"),
+            "{study}: {mine:?}"
+        );
         let first = |arm: &str| of(&rows, arm).len();
-        assert!(first("mine") > 0 && first("mine") <= first("own"), "{study}");
+        assert!(
+            first("mine") > 0 && first("mine") <= first("own"),
+            "{study}"
+        );
         sweep(folder.path(), "report", &[]).success();
         sweep(folder.path(), "bundle", &["-o", "b.zip"]).success();
         let verify = |more: &[&str]| {
@@ -138,8 +158,10 @@ fn twenty_lines_of_python_enter_four_studies() {
         let again = sweep(folder.path(), "run", &["--json"]).success();
         let said = String::from_utf8_lossy(&again.get_output().stdout).into_owned();
         let tasks = |rows: &[&[String]]| {
-            let mut tasks: Vec<(&str, &str)> =
-                rows.iter().map(|r| (r[0].as_str(), r[1].as_str())).collect();
+            let mut tasks: Vec<(&str, &str)> = rows
+                .iter()
+                .map(|r| (r[0].as_str(), r[1].as_str()))
+                .collect();
             tasks.dedup();
             tasks.len()
         };
@@ -152,7 +174,11 @@ fn twenty_lines_of_python_enter_four_studies() {
 const LIES: [(&str, &str, &str); 12] = [
     ("nothing", "true", "wrote no answer"),
     ("empty", ": > \"$2\"", "is empty"),
-    ("status", "echo broken >&2; exit 3", "exit status: 3: broken"),
+    (
+        "status",
+        "echo broken >&2; exit 3",
+        "exit status: 3: broken",
+    ),
     ("hang", "sleep 1000", "stopped after"),
     (
         "a child that hangs",
@@ -251,7 +277,10 @@ fn an_answer_below_a_proven_bound_is_no_record() {
     let rows = results(folder.path());
     let greedy = of(&rows, "greedy");
     assert_eq!(greedy[0][2], "failure", "{greedy:?}");
-    assert!(greedy[0][3].contains("that arm `best` proved"), "{greedy:?}");
+    assert!(
+        greedy[0][3].contains("that arm `best` proved"),
+        "{greedy:?}"
+    );
     assert!(of(&rows, "best").iter().any(|row| row[2] == "cost"));
 }
 

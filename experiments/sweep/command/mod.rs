@@ -111,7 +111,10 @@ impl Command {
 
     /// The part of a key that a command decides: its words, the names and bytes of its files.
     pub fn identity(&self) -> String {
-        let files = self.files.iter().map(|f| format!("{} {}", f.name, f.digest));
+        let files = self
+            .files
+            .iter()
+            .map(|f| format!("{} {}", f.name, f.digest));
         let parts: Vec<String> = self.words.iter().cloned().chain(files).collect();
         parts.join("\0")
     }
@@ -220,7 +223,10 @@ mod tests {
         let command = new("run 'a b' {input} -o {output} x={seed}{{}}").unwrap();
         let filled = command.filled(|place| place.to_uppercase()).unwrap();
         assert_eq!(filled, ["run", "a b", "INPUT", "-o", "OUTPUT", "x=SEED{}"]);
-        assert_eq!(new("./run {input} {output}").unwrap().words[0], "/tmp/./run");
+        assert_eq!(
+            new("./run {input} {output}").unwrap().words[0],
+            "/tmp/./run"
+        );
     }
 
     #[test]
@@ -238,7 +244,11 @@ mod tests {
         }
         let written = Written::Line("a {input} {output}".into());
         let with = |files: &[String], t| Command::new(&written, files, t, Path::new("/nowhere"));
-        assert!(with(&["mine.py".into()], None).unwrap_err().contains("mine.py"));
+        assert!(
+            with(&["mine.py".into()], None)
+                .unwrap_err()
+                .contains("mine.py")
+        );
         assert!(with(&[], Some(-1.0)).unwrap_err().contains("timeout"));
     }
 }

@@ -53,9 +53,8 @@ pub fn run(args: &Args) -> Result<()> {
     let truth = Database::new(truth).map_err(|e| Error::content(&args.truth, e))?;
     let mut houses = Vec::new();
     for (index, house) in predicted.iter().enumerate() {
-        let row = attributes(house).map_err(|e| {
-            Error::input(&args.predicted, format!("house {}", index + 1), e)
-        })?;
+        let row = attributes(house)
+            .map_err(|e| Error::input(&args.predicted, format!("house {}", index + 1), e))?;
         let (mut most, mut worst, mut sum, mut known) = (0.0, "", 0.0, 0);
         let (mut missing, own) = (0, &truth.rows[index]);
         for (column, name) in COLUMNS.iter().enumerate() {

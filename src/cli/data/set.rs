@@ -87,7 +87,9 @@ impl Set {
         let absolute = std::path::absolute(folder).map_err(|e| Error::io(folder, "find", e))?;
         let name = absolute.file_name().unwrap_or_default().to_string_lossy();
         let mut set = Self {
-            name: name.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "_"),
+            name: name
+                .to_lowercase()
+                .replace(|c: char| !c.is_ascii_alphanumeric(), "_"),
             title: name.into_owned(),
             kind: "facades".into(),
             about: "describe the set in a line".into(),
@@ -126,16 +128,22 @@ impl Set {
     pub fn check(&self, path: &Path) -> std::result::Result<(), String> {
         let told = |e: Error| e.to_string();
         match self.kind.as_str() {
-            "facades" => read_source(path, &ReadOptions::default()).map(|_| ()).map_err(told),
+            "facades" => read_source(path, &ReadOptions::default())
+                .map(|_| ())
+                .map_err(told),
             "houses" => match path.to_string_lossy().contains(".csv") {
                 true => building_csv::read(path).map(|_| ()).map_err(told),
-                false => edifice_io::building_json::read(path).map(|_| ()).map_err(told),
+                false => edifice_io::building_json::read(path)
+                    .map(|_| ())
+                    .map_err(told),
             },
             "networks" => {
                 let bytes = read_bytes(path).map_err(told)?;
                 let text = String::from_utf8(bytes).map_err(|e| e.to_string())?;
                 let network = Network::from_bif(&text);
-                network.map(|_| ()).map_err(|e| format!("{}: {e}", path.display()))
+                network
+                    .map(|_| ())
+                    .map_err(|e| format!("{}: {e}", path.display()))
             }
             // A city is read when it is used: here only that there is something in the file.
             _ => match std::fs::metadata(path) {
