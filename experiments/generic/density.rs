@@ -7,7 +7,6 @@
 //! at most 1. By Hoeffding's inequality a true density exceeds `1 + t` with probability at most `exp(-2 n t^2 / M^2)`, which is 1e-6 here. A density
 //! that is honest at probes alone passes: the check is necessary, not sufficient.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use rand::seq::SliceRandom;
