@@ -318,3 +318,39 @@ fn refused_sweeps_leave_no_folder() {
         }
     }
 }
+
+#[test]
+fn bundles_whose_names_lead_out_are_refused() {
+    if !python() {
+        eprintln!("not run: there is no python3");
+        return;
+    }
+    let folder = prepared(
+        "study = \"optim/annealing\"\ndata = [\"weakly_1.knapsack.json\"]\n[base]\nrounds = 2\n[[arm]]\nname = \"a\"\n",
+    );
+    let path = folder.path();
+    sweep(path, "run", &[]).success();
+    sweep(path, "bundle", &["-o", "b.zip"]).success();
+    for (name, expected) in [
+        ("../evil", "leads out of the folder"),
+        ("a/../../evil", "leads out of the folder"),
+        ("/evil", "leads out of the folder"),
+        ("more", "is not in the manifest"),
+    ] {
+        std::fs::copy(path.join("b.zip"), path.join("c.zip")).unwrap();
+        let code = format!("import zipfile; zipfile.ZipFile('c.zip', 'a').writestr({name:?}, 'x')");
+        let made = std::process::Command::new("python3")
+            .current_dir(path)
+            .args(["-c", &code])
+            .status();
+        assert!(made.unwrap().success());
+        let failed = Command::new(EDIFICE)
+            .current_dir(path)
+            .args(["sweep", "verify", "c.zip"])
+            .assert()
+            .failure()
+            .code(1);
+        let said = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(said.contains(expected), "{name}: {said}");
+    }
+}
