@@ -163,15 +163,14 @@ impl Study {
             let (question, truth) = T::prepare(&settings, given)?;
             let folder =
                 tempfile::tempdir().map_err(|e| Error::io("answer".as_ref(), "make", e))?;
-            let posed = T::pose(&question, folder.path())?;
-            let output = folder.path().join(T::OUTPUT);
-            let claims = ask(&posed, &output)?;
-            let answer = T::read(&question, &output)?;
-            let answered = Answered {
-                claims,
-                ..Answered::plain(answer)
-            };
-            judged::<T>(&settings, &question, &truth, answered)
+            let found = answered::<T>(&question, folder.path(), ask)
+                .and_then(|answered| judged::<T>(&settings, &question, &truth, answered));
+            // The same failure has the same words in every run: the folder is another each time.
+            let place = format!("{}{}", folder.path().display(), std::path::MAIN_SEPARATOR);
+            found.map_err(|error| match error {
+                Error::Interrupted => Error::Interrupted,
+                error => Error::method(error.to_string().replace(&place, "")),
+            })
         };
         let reply = |settings: &Settings, posed: &Posed, output: &Path, seed: u64| {
             let settings: T::Settings = typed(settings)?;
@@ -276,6 +275,21 @@ impl Study {
     pub fn run(&self, settings: &Map<String, Value>, given: &Given) -> Result<Outcome> {
         (self.run)(settings, given)
     }
+}
+
+/// Asks for an answer to a question, whose files lie in a folder.
+fn answered<T: Trial>(
+    question: &T::Question,
+    folder: &Path,
+    ask: &Ask,
+) -> Result<Answered<T::Answer>> {
+    let posed = T::pose(question, folder)?;
+    let output = folder.join(T::OUTPUT);
+    let claims = ask(&posed, &output)?;
+    Ok(Answered {
+        claims,
+        ..Answered::plain(T::read(question, &output)?)
+    })
 }
 
 /// The outcome of an answer: what the judge measures, and what only its author can state.

@@ -130,28 +130,10 @@ fn wrong_share(derived: &Facade, truth: &Facade) -> f64 {
     let xs = edges(|r| r.x, Rect::right, truth.width);
     let ys = edges(|r| r.y, Rect::top, truth.height);
     let columns = xs.len() - 1;
-    let painted = |regions: &[Region]| {
-        let mut cells: Vec<&str> = Vec::new();
-        let mut indices = vec![usize::MAX; columns * (ys.len() - 1)];
-        for region in regions {
-            let r = &region.rect;
-            let label = cells.iter().position(|l| *l == region.label);
-            let label = label.unwrap_or_else(|| {
-                cells.push(&region.label);
-                cells.len() - 1
-            });
-            let span = |edges: &[f64], from: f64, to: f64| {
-                edges.partition_point(|e| *e < from)..edges.partition_point(|e| *e < to)
-            };
-            for row in span(&ys, r.y, r.top()) {
-                for column in span(&xs, r.x, r.right()) {
-                    indices[row * columns + column] = label;
-                }
-            }
-        }
-        (cells, indices)
-    };
-    let (a, b) = (painted(&derived.regions), painted(&truth.regions));
+    let (a, b) = (
+        painted(&derived.regions, &xs, &ys),
+        painted(&truth.regions, &xs, &ys),
+    );
     let name = |side: &(Vec<&str>, Vec<usize>), cell: usize| {
         side.0.get(side.1[cell]).map(|label| (*label).to_owned())
     };
@@ -165,6 +147,31 @@ fn wrong_share(derived: &Facade, truth: &Facade) -> f64 {
         }
     }
     wrong / (truth.width * truth.height)
+}
+
+/// The label of each cell between sorted coordinates, row by row: distinct labels, and an index into them, which is beyond their end where no region
+/// lies.
+fn painted<'a>(regions: &'a [Region], xs: &[f64], ys: &[f64]) -> (Vec<&'a str>, Vec<usize>) {
+    let columns = xs.len() - 1;
+    let mut labels: Vec<&str> = Vec::new();
+    let mut cells = vec![usize::MAX; columns * (ys.len() - 1)];
+    let span = |edges: &[f64], from: f64, to: f64| {
+        edges.partition_point(|e| *e < from)..edges.partition_point(|e| *e < to)
+    };
+    for region in regions {
+        let r = &region.rect;
+        let known = labels.iter().position(|label| *label == region.label);
+        let label = known.unwrap_or_else(|| {
+            labels.push(&region.label);
+            labels.len() - 1
+        });
+        for row in span(ys, r.y, r.top()) {
+            for column in span(xs, r.x, r.right()) {
+                cells[row * columns + column] = label;
+            }
+        }
+    }
+    (labels, cells)
 }
 
 #[cfg(test)]
