@@ -56,6 +56,7 @@ pub(crate) mod linalg;
 pub mod log_linear;
 pub mod low_rank;
 pub mod network;
+pub mod program;
 pub(crate) mod standardize;
 mod table;
 mod translate;
