@@ -24,7 +24,7 @@ use rand_distr::StandardNormal;
 
 use super::limits::{Answer, Limits, Watch};
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// Settings of [`minimize`]. The example of [`Limits`] uses some.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,7 +86,7 @@ pub enum CmaError {
 /// # Examples
 /// Rosenbrock's valley in ten variables, a curved one:
 /// ```
-/// use edifice::optim::{Limits, Outcome, cmaes::{Settings, minimize}};
+/// use edifice_optim::{Limits, Outcome, cmaes::{Settings, minimize}};
 /// let valley = |x: &[f64]| -> f64 {
 ///     x.windows(2).map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2)).sum()
 /// };
@@ -94,7 +94,7 @@ pub enum CmaError {
 /// let settings = Settings { step: 0.5, limits, ..Settings::default() };
 /// let run = minimize(valley, &[0.0; 10], &settings, 1, |_| {})?;
 /// assert_eq!(run.outcome, Outcome::TargetReached);
-/// # Ok::<(), edifice::optim::cmaes::CmaError>(())
+/// # Ok::<(), edifice_optim::cmaes::CmaError>(())
 /// ```
 pub fn minimize<F: FnMut(&[f64]) -> f64, A: Answer>(
     cost: F,

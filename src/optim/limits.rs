@@ -12,7 +12,7 @@ use argmin::core::{TerminationReason, TerminationStatus};
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::{Limits, Outcome, cmaes};
+/// use edifice_optim::{Limits, Outcome, cmaes};
 /// let bowl = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
 /// let limits = Limits { target: Some(1e-6), ..Limits::default() };
 /// let settings = cmaes::Settings { limits, ..cmaes::Settings::default() };

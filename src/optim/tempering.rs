@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use super::annealing::Landscape;
 use super::limits::{Answer, Limits, Watch};
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// Moves that are tried to set the temperatures.
 const TRIALS: usize = 1000;
@@ -82,7 +82,7 @@ pub enum TemperingError {
 /// # Examples
 /// A walk on the integers with valleys at all multiples of 10, the deepest at 50, from 0:
 /// ```
-/// use edifice::optim::{annealing::Landscape, tempering::{Settings, temper}};
+/// use edifice_optim::{annealing::Landscape, tempering::{Settings, temper}};
 /// use rand::{Rng, RngExt};
 /// #[derive(Clone)]
 /// struct Walk { at: i32, before: i32 }
@@ -101,7 +101,7 @@ pub enum TemperingError {
 /// let settings = Settings { temperatures: Some((0.5, 20.0)), ..Settings::default() };
 /// let run = temper(&Walk { at: 0, before: 0 }, &settings, 1, |_| {})?;
 /// assert_eq!((run.best, run.cost), (50, 0.0));
-/// # Ok::<(), edifice::optim::tempering::TemperingError>(())
+/// # Ok::<(), edifice_optim::tempering::TemperingError>(())
 /// ```
 pub fn temper<L, A: Answer>(
     landscape: &L,

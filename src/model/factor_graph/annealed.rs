@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::super::error::ModelError;
 use super::super::linalg::log_sum_exp;
 use super::{Chain, Question, dot};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// Settings of [`Question::annealed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,13 +55,13 @@ impl Question<'_> {
     ///
     /// # Examples
     /// ```
-    /// use edifice::model::factor_graph::{Annealing, Factor, Gibbs};
+    /// use edifice_model::factor_graph::{Annealing, Factor, Gibbs};
     /// let pair = |i: usize| Factor { variables: vec![i, i + 1], weight: 0, feature: Box::new(|x| if x[0] == x[1] { 1.0 } else { -1.0 }) };
     /// let chain = Gibbs::new(vec![2; 20], (0..19).map(pair).collect())?;
     /// let question = chain.ask(&[0.5])?;
     /// let found = question.annealed(&Annealing { steps: 100, ..Annealing::default() })?;
     /// assert!((found.log - question.log_partition()?).abs() < 4.0 * found.error);
-    /// # Ok::<(), edifice::model::ModelError>(())
+    /// # Ok::<(), edifice_model::ModelError>(())
     /// ```
     pub fn annealed(&self, settings: &Annealing) -> Result<LogPartition, ModelError> {
         if settings.chains < 2 || settings.steps == 0 {

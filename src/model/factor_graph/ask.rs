@@ -13,7 +13,7 @@ use super::Gibbs;
 /// # Examples
 /// A ring of four bits with weight 1 for equal neighbours, the first bit known:
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs};
+/// use edifice_model::factor_graph::{Factor, Gibbs};
 /// let equal = |a, b| Factor { variables: vec![a, b], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
 /// let ring = Gibbs::new(vec![2; 4], vec![equal(0, 1), equal(1, 2), equal(2, 3), equal(3, 0)])?;
 /// let question = ring.ask(&[1.0])?.given(0, 1)?;
@@ -24,7 +24,7 @@ use super::Gibbs;
 /// assert_eq!(most, [1; 4]);
 /// // The weight of the most probable state is 4.
 /// assert!((log - (4.0 - question.log_partition()?)).abs() < 1e-12);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone)]
 pub struct Question<'g> {

@@ -78,12 +78,12 @@ pub fn exact_gradient(
 /// # Examples
 /// Two bits that are equal in 3 of 4 examples:
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, fit_exact};
+/// use edifice_model::factor_graph::{Factor, Gibbs, fit_exact};
 /// let equal = Factor { variables: vec![0, 1], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
 /// let gibbs = Gibbs::new(vec![2, 2], vec![equal])?;
 /// let fitted = fit_exact(&gibbs, &[vec![0, 0], vec![1, 1], vec![0, 0], vec![0, 1]], 0.0)?;
 /// assert!((fitted.weights[0] - 3.0_f64.ln()).abs() < 1e-8);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn fit_exact(
     graph: &Gibbs,

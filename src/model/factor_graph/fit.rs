@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::super::error::ModelError;
 use super::super::information::Information;
 use super::Chain;
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// Settings of [`fit`].
 ///
@@ -86,14 +86,14 @@ pub struct Fitted {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, gradient};
+/// use edifice_model::factor_graph::{Factor, Gibbs, gradient};
 /// // One bit whose feature is itself: E_w f = 1 / (1 + exp(-w)). One sweep of a single variable is exact.
 /// let bit = Factor { variables: vec![0], weight: 0, feature: Box::new(|x| x[0] as f64) };
 /// let gibbs = Gibbs::new(vec![2], vec![bit])?;
 /// let data = vec![vec![1]; 10_000];
 /// let slope = gradient(&gibbs, &data, &[3.0_f64.ln()], 1, 1)?;
 /// assert!((slope[0] - (1.0 - 0.75)).abs() < 0.02);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn gradient<C: Chain>(
     chain: &C,
@@ -123,7 +123,7 @@ pub fn gradient<C: Chain>(
 /// # Examples
 /// Two bits that are equal in 3 of 4 examples: the weight of "equal" is the log odds, `log 3`.
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, Settings, fit};
+/// use edifice_model::factor_graph::{Factor, Gibbs, Settings, fit};
 /// let equal = Factor { variables: vec![0, 1], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
 /// let gibbs = Gibbs::new(vec![2, 2], vec![equal])?;
 /// let examples = [[0, 0], [1, 1], [0, 0], [0, 1]].repeat(100);
@@ -132,7 +132,7 @@ pub fn gradient<C: Chain>(
 /// assert!((fitted.weights[0] - 3.0_f64.ln()).abs() < 0.1);
 /// // The standard error of a log odds of 300 to 100 is the root of 1/300 + 1/100.
 /// assert!((fitted.standard_errors[0] - (1.0 / 300.0 + 1.0 / 100.0_f64).sqrt()).abs() < 0.03);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn fit<C: Chain>(
     chain: &C,

@@ -4,7 +4,7 @@ use super::super::elimination;
 use super::super::error::ModelError;
 use super::super::linalg::categorical_of_logs;
 use super::Chain;
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// A feature of the values of a few variables.
 pub type Feature = Box<dyn Fn(&[usize]) -> f64 + Send + Sync>;
@@ -32,8 +32,8 @@ pub struct Factor {
 /// # Examples
 /// A chain of three bits with weight `log 3` for equal neighbours: `Z = 2 (1 + 3)^2`.
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, sample};
-/// use edifice::rng::stream;
+/// use edifice_model::factor_graph::{Factor, Gibbs, sample};
+/// use edifice_base::rng::stream;
 /// let equal = |a, b| Factor {
 ///     variables: vec![a, b],
 ///     weight: 0,
@@ -46,7 +46,7 @@ pub struct Factor {
 /// let draws = sample(&gibbs, &vec![0; 3], &weights, 20_000, 2, &mut stream(1, "bits", 0));
 /// let share = draws.iter().filter(|x| x[0] == x[1]).count() as f64 / 20_000.0;
 /// assert!((share - 0.75).abs() < 0.02);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub struct Gibbs {
     pub(super) sizes: Vec<usize>,
@@ -66,7 +66,7 @@ pub struct Gibbs {
 const TABULATED: usize = 1 << 12;
 
 impl Gibbs {
-    /// Variables with so many values each, and their factors.
+    /// A sampler of variables, given the number of values of each, and their factors.
     ///
     /// # Errors
     /// [`ModelError::Parameter`] for a factor on a variable that is not there, or that it names twice, or a variable
@@ -115,7 +115,7 @@ impl Gibbs {
     /// # Examples
     /// Two bits that are equal, tied by a hidden one:
     /// ```
-    /// use edifice::model::factor_graph::{Factor, Gibbs, fit_exact};
+    /// use edifice_model::factor_graph::{Factor, Gibbs, fit_exact};
     /// let tie = |a, b, weight| Factor { variables: vec![a, b], weight, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
     /// let machine = Gibbs::new(vec![2; 3], vec![tie(0, 2, 0), tie(1, 2, 0)])?.hidden(&[2])?;
     /// let data = [vec![0, 0, 0], vec![1, 1, 0], vec![0, 0, 0], vec![0, 1, 0], vec![1, 1, 0]];
@@ -123,7 +123,7 @@ impl Gibbs {
     /// // P(equal) = (1 + e^2w) / (1 + e^w)^2 = 4/5.
     /// let w: f64 = weights[0].abs().exp();
     /// assert!(((1.0 + w * w) / (1.0 + w).powi(2) - 0.8).abs() < 1e-6);
-    /// # Ok::<(), edifice::model::ModelError>(())
+    /// # Ok::<(), edifice_model::ModelError>(())
     /// ```
     pub fn hidden(mut self, variables: &[usize]) -> Result<Self, ModelError> {
         self.check(variables)?;

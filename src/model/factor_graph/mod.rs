@@ -32,7 +32,7 @@ mod gibbs;
 
 use rand::RngExt;
 
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 pub use annealed::{Annealing, LogPartition};
 pub use ask::{Beliefs, Question};
 pub use exact::{ExactFit, exact_gradient, fit_exact};
@@ -88,8 +88,8 @@ pub trait Propose: Sync {
 /// # Examples
 /// Numbers 0 to 2 with `p(x) ∝ 2^x`: 1/7, 2/7 and 4/7.
 /// ```
-/// use edifice::model::factor_graph::{Metropolis, Propose, sample};
-/// use edifice::rng::{Stream, stream};
+/// use edifice_model::factor_graph::{Metropolis, Propose, sample};
+/// use edifice_base::rng::{Stream, stream};
 /// use rand::RngExt;
 /// struct Digits;
 /// impl Propose for Digits {

@@ -10,7 +10,7 @@ use std::fmt;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::Address;
+/// use edifice_model::program::Address;
 /// assert_eq!(Address::from("mu").to_string(), "mu");
 /// assert_eq!(Address::from(("cell", 3, 0)).to_string(), "cell[3,0]");
 /// ```

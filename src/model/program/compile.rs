@@ -23,10 +23,10 @@ use super::error::ProgramError;
 use super::exact::{any, logs};
 use super::trace::Value;
 use super::{Handler, Program};
-use crate::model::ModelError;
-use crate::model::elimination::advance;
-use crate::model::network::{self, Network, Variable};
-use crate::rng::{Stream, stream};
+use crate::ModelError;
+use crate::elimination::advance;
+use crate::network::{self, Network, Variable};
+use edifice_base::rng::{Stream, stream};
 
 /// Random assignments on which a function has to agree.
 pub const PROBES: usize = 64;
@@ -76,7 +76,7 @@ impl Compiled {
 /// # Examples
 /// A hidden Markov chain of 60 steps, which has 2⁶⁰ ways through it:
 /// ```
-/// use edifice::model::program::{Handler, Program, compile, dist::{bernoulli, normal}};
+/// use edifice_model::program::{Handler, Program, compile, dist::{bernoulli, normal}};
 /// struct Chain;
 /// impl Program for Chain {
 ///     type Out = ();
@@ -90,7 +90,7 @@ impl Compiled {
 /// }
 /// let compiled = compile(&Chain)?;
 /// assert!(compiled.marginal(("state", 5))?[1] < 0.2 && compiled.marginal(("state", 55))?[1] > 0.8);
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn compile<P: Program>(program: &P) -> Result<Compiled, ProgramError> {
     let mut rng = stream(0, "program/compile", 0);

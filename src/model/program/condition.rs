@@ -22,7 +22,7 @@ pub struct Given<P> {
 /// # Examples
 /// A coin of unknown bias that fell on one side, as data by its address:
 /// ```
-/// use edifice::model::program::{Address, Handler, Program, Value, dist, given, importance};
+/// use edifice_model::program::{Address, Handler, Program, Value, dist, given, importance};
 /// struct Coin;
 /// impl Program for Coin {
 ///     type Out = ();
@@ -34,7 +34,7 @@ pub struct Given<P> {
 /// let seen = given(Coin, [(Address::from("side"), Value::Whole(1))]);
 /// let posterior = importance(&seen, 4000, 1)?;
 /// assert!((posterior.mean("bias").unwrap() - 2.0 / 3.0).abs() < 0.02);
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn given<P: Program>(
     program: P,

@@ -18,8 +18,8 @@
 //!
 //! # Examples
 //! ```
-//! use edifice::model::program::diagnostics::{ess_bulk, mcse_mean, r_hat};
-//! use edifice::rng::stream;
+//! use edifice_model::program::diagnostics::{ess_bulk, mcse_mean, r_hat};
+//! use edifice_base::rng::stream;
 //! use rand::RngExt;
 //! let chain = |i| { let mut rng = stream(1, "chain", i); (0..1000).map(|_| rng.random::<f64>()).collect() };
 //! let mut chains: Vec<Vec<f64>> = (0..4).map(chain).collect();

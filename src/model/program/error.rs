@@ -1,6 +1,6 @@
 //! What can be wrong with a program.
 
-use crate::model::ModelError;
+use crate::ModelError;
 
 /// One variant per way in which a program cannot be run or an engine cannot serve it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -6,8 +6,8 @@ use super::error::ProgramError;
 use super::posterior::{Draw, Evidence, Kind, Posterior};
 use super::trace::{Choice, Trace, Value};
 use super::{Handler, Program};
-use crate::model::linalg::log_sum_exp;
-use crate::rng::stream;
+use crate::linalg::log_sum_exp;
+use edifice_base::rng::stream;
 
 /// Most ways through a program that are tried.
 const MOST: usize = 1 << 20;
@@ -24,7 +24,7 @@ const MOST: usize = 1 << 20;
 /// # Examples
 /// Two dice of which the sum is known:
 /// ```
-/// use edifice::model::program::{Handler, Program, dist::categorical, exact};
+/// use edifice_model::program::{Handler, Program, dist::categorical, exact};
 /// struct Dice;
 /// impl Program for Dice {
 ///     type Out = usize;
@@ -38,7 +38,7 @@ const MOST: usize = 1 << 20;
 /// let posterior = exact(&Dice)?;
 /// assert!((posterior.evidence.unwrap().log - (4.0 / 36.0_f64).ln()).abs() < 1e-12);
 /// assert!((posterior.probability(("die", 0), 3).mean - 0.25).abs() < 1e-12);
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn exact<P: Program>(program: &P) -> Result<Posterior<P::Out>, ProgramError> {
     let mut draws: Vec<Draw<P::Out>> = Vec::new();

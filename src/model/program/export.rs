@@ -12,7 +12,7 @@ impl<T> Posterior<T> {
     ///
     /// # Examples
     /// ```
-    /// use edifice::model::program::{Handler, Program, dist::bernoulli, exact};
+    /// use edifice_model::program::{Handler, Program, dist::bernoulli, exact};
     /// struct Coin;
     /// impl Program for Coin {
     ///     type Out = ();
@@ -20,7 +20,7 @@ impl<T> Posterior<T> {
     /// }
     /// let text = exact(&Coin)?.to_csv();
     /// assert!(text.starts_with("chain,draw,weight,log_prior,log_likelihood,heads\n0,0,0.5,"));
-    /// # Ok::<(), edifice::model::program::ProgramError>(())
+    /// # Ok::<(), edifice_model::program::ProgramError>(())
     /// ```
     pub fn to_csv(&self) -> String {
         let columns = self.columns();

@@ -10,8 +10,8 @@ use super::pareto::pareto_k;
 use super::posterior::{Draw, Evidence, Posterior};
 use super::run::{Old, run};
 use super::Program;
-use crate::model::linalg::log_sum_exp;
-use crate::rng::stream;
+use crate::linalg::log_sum_exp;
+use edifice_base::rng::stream;
 
 /// `count` weighted runs, in parallel, each with its own stream of `seed`: the same for any number of threads.
 ///

@@ -26,7 +26,7 @@ use super::error::ProgramError;
 use super::posterior::{Draw, Kind, Posterior};
 use super::run::{Change, Done, Old, run};
 use super::trace::Trace;
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// Share of accepted walks that the width is adapted to.
 const ACCEPTED: f64 = 0.44;
@@ -80,7 +80,7 @@ impl Chains {
 /// # Examples
 /// A number of terms that is itself chosen:
 /// ```
-/// use edifice::model::program::{Chains, Handler, Program, dist::{binomial, normal, poisson}, exact, metropolis};
+/// use edifice_model::program::{Chains, Handler, Program, dist::{binomial, normal, poisson}, exact, metropolis};
 /// struct Dice;
 /// impl Program for Dice {
 ///     type Out = u64;
@@ -97,7 +97,7 @@ impl Chains {
 ///     let (found, known) = (chains.probability("count", value), truth.probability("count", value));
 ///     assert!((found.mean - known.mean).abs() < 0.03, "{value}: {found:?} {known:?}");
 /// }
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn metropolis<P>(program: &P, settings: &Chains) -> Result<Posterior<P::Out>, ProgramError>
 where

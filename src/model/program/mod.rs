@@ -24,7 +24,7 @@
 //! R-hat below 1.01 before its numbers are believed ([`diagnostics`]).
 //!
 //! ```
-//! use edifice::model::program::{Handler, Program, Real, dist::{half_cauchy, normal}, smc};
+//! use edifice_model::program::{Handler, Program, Real, dist::{half_cauchy, normal}, smc};
 //! /// Eight schools (Rubin 1981): effects of coaching, and their standard errors.
 //! struct Schools;
 //! const EFFECTS: [(f64, f64); 8] =
@@ -43,7 +43,7 @@
 //! }
 //! let posterior = smc(&Schools, 8000, 1)?;
 //! assert!((posterior.mean("mean").unwrap() - 4.4).abs() < 1.0);
-//! # Ok::<(), edifice::model::program::ProgramError>(())
+//! # Ok::<(), edifice_model::program::ProgramError>(())
 //! ```
 //!
 //! # Deviations and readings

@@ -25,7 +25,7 @@ use super::reverse::Tape;
 use super::run::prior;
 use super::trace::{Choice, Trace};
 use super::{Handler, Program};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// Starts that are tried for one of finite density and gradient.
 const STARTS: usize = 1000;
@@ -41,7 +41,7 @@ const STARTS: usize = 1000;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::{Chains, Handler, Program, dist::{half_normal, normal}, nuts};
+/// use edifice_model::program::{Chains, Handler, Program, dist::{half_normal, normal}, nuts};
 /// struct Line;
 /// impl Program for Line {
 ///     type Out = ();
@@ -56,7 +56,7 @@ const STARTS: usize = 1000;
 /// let posterior = nuts(&Line, &Chains::default())?;
 /// assert!((posterior.mean("slope").unwrap() - 2.0).abs() < 0.02);
 /// assert!(posterior.summary().iter().all(|s| s.r_hat < 1.02));
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn nuts<P>(program: &P, settings: &Chains) -> Result<Posterior<P::Out>, ProgramError>
 where

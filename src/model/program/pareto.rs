@@ -12,7 +12,7 @@ const NEGLIGIBLE: f64 = 10.0 * f64::EPSILON;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::pareto_k;
+/// use edifice_model::program::pareto_k;
 /// // Weights u^-k have the tail k.
 /// let tail = |k: f64| pareto_k(&(1..=4000).map(|i| -k * (f64::from(i) / 4000.0).ln()).collect::<Vec<_>>());
 /// assert!((tail(0.3) - 0.3).abs() < 0.1 && (tail(0.9) - 0.9).abs() < 0.1);

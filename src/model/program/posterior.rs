@@ -9,7 +9,7 @@ use super::error::ProgramError;
 use super::run::replay;
 use super::trace::{Trace, Value};
 use super::{Program, Support};
-use crate::model::linalg::{categorical_of_logs, log_sum_exp};
+use crate::linalg::{categorical_of_logs, log_sum_exp};
 
 /// One run of a program, with its weight.
 #[derive(Clone, Debug, PartialEq)]
@@ -323,8 +323,8 @@ impl<T> Posterior<T> {
     ///
     /// # Examples
     /// ```
-    /// use edifice::model::program::{Handler, Program, dist, importance};
-    /// use edifice::rng::stream;
+    /// use edifice_model::program::{Handler, Program, dist, importance};
+    /// use edifice_base::rng::stream;
     /// struct Coin { seen: Option<bool> }
     /// impl Program for Coin {
     ///     type Out = bool;
@@ -340,7 +340,7 @@ impl<T> Posterior<T> {
     /// let next = posterior.predictive(&Coin { seen: None }, 2000, &mut stream(1, "predict", 0))?;
     /// let share = next.iter().filter(|(_, side)| *side).count() as f64 / 2000.0;
     /// assert!((share - 2.0 / 3.0).abs() < 0.05);
-    /// # Ok::<(), edifice::model::program::ProgramError>(())
+    /// # Ok::<(), edifice_model::program::ProgramError>(())
     /// ```
     pub fn predictive<P: Program, R: Rng>(
         &self,

@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::Real;
+/// use edifice_model::program::Real;
 /// fn softplus<R: Real>(x: R) -> R { x.exp().ln_1p() }
 /// assert!((softplus(0.0) - 2.0_f64.ln()).abs() < 1e-15);
 /// ```

@@ -13,7 +13,7 @@ use super::real::Real;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::{Real, reverse::Tape};
+/// use edifice_model::program::{Real, reverse::Tape};
 /// let tape = Tape::default();
 /// let (x, y) = (tape.variable(2.0), tape.variable(3.0));
 /// let out = x * y + x.ln();

@@ -205,21 +205,21 @@ impl<G: Rng> Handler for Keep<'_, G> {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::{Handler, Program, dist::normal, prior, replay};
-/// use edifice::rng::stream;
+/// use edifice_model::program::{Handler, Program, dist::normal, prior, replay};
+/// use edifice_base::rng::stream;
 /// struct Sum;
 /// impl Program for Sum {
 ///     type Out = f64;
 ///     fn run<H: Handler>(&self, h: &mut H) -> f64 {
 ///         let a = h.sample("a", normal(0.0, 1.0));
 ///         let b = h.sample("b", normal(a, 1.0));
-///         edifice::model::program::Real::value(a + b)
+///         edifice_model::program::Real::value(a + b)
 ///     }
 /// }
 /// let mut rng = stream(1, "replay", 0);
 /// let (trace, out) = prior(&Sum, &mut rng)?;
 /// assert_eq!(replay(&Sum, &trace, &mut rng)?, (trace, out));
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn replay<P: Program, G: Rng>(
     program: &P,

@@ -21,8 +21,8 @@ use super::error::ProgramError;
 use super::posterior::{Draw, Evidence, Posterior};
 use super::run::{Done, Old, run};
 use super::trace::Trace;
-use crate::model::linalg::log_sum_exp;
-use crate::rng::{Stream, stream};
+use crate::linalg::log_sum_exp;
+use edifice_base::rng::{Stream, stream};
 
 /// Independent groups of particles.
 pub const ISLANDS: usize = 32;
@@ -40,7 +40,7 @@ const LEAST_SHARE: f64 = 0.5;
 /// # Examples
 /// A hidden Markov chain; Z is known from the forward recursion.
 /// ```
-/// use edifice::model::program::{Handler, Program, dist::{bernoulli, normal}, exact, smc};
+/// use edifice_model::program::{Handler, Program, dist::{bernoulli, normal}, exact, smc};
 /// struct Chain;
 /// impl Program for Chain {
 ///     type Out = bool;
@@ -59,7 +59,7 @@ const LEAST_SHARE: f64 = 0.5;
 /// for b in sampled.beside(&truth) {
 ///     assert!(b.error().abs() < 0.05, "{b:?}");
 /// }
-/// # Ok::<(), edifice::model::program::ProgramError>(())
+/// # Ok::<(), edifice_model::program::ProgramError>(())
 /// ```
 pub fn smc<P>(program: &P, count: usize, seed: u64) -> Result<Posterior<P::Out>, ProgramError>
 where

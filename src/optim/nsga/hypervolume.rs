@@ -8,7 +8,7 @@
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::nsga::hypervolume;
+/// use edifice_optim::nsga::hypervolume;
 /// let points = vec![vec![1.0, 3.0], vec![2.0, 1.0], vec![3.0, 3.0]];
 /// assert_eq!(hypervolume(&points, &[4.0, 4.0]), 7.0);
 /// ```

@@ -19,7 +19,7 @@ use rand::{Rng, RngExt};
 
 use super::limits::{Answer, Limits, Watch};
 use super::run::{Outcome, Step};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 pub use hypervolume::hypervolume;
 pub use reals::Reals;
 
@@ -134,13 +134,13 @@ impl<G> Front<G> {
 /// # Examples
 /// Schaffer's problem, `x²` against `(x - 2)²`; the front is `sqrt(f_1) + sqrt(f_2) = 2`:
 /// ```
-/// use edifice::optim::nsga::{Reals, Settings, evolve};
+/// use edifice_optim::nsga::{Reals, Settings, evolve};
 /// let costs = |x: &[f64]| vec![x[0] * x[0], (x[0] - 2.0).powi(2)];
 /// let mut problem = Reals::new(vec![(-10.0, 10.0)], 2, costs);
 /// let front = evolve(&mut problem, &Settings { population: 40, generations: 50, ..Settings::default() }, 1, |_| {})?;
 /// assert!(front.members.iter().all(|m| (m.costs[0].sqrt() + m.costs[1].sqrt() - 2.0).abs() < 0.05));
 /// assert!(front.hypervolume(&[4.0, 4.0]) > 13.0); // of 13.33
-/// # Ok::<(), edifice::optim::nsga::NsgaError>(())
+/// # Ok::<(), edifice_optim::nsga::NsgaError>(())
 /// ```
 pub fn evolve<B: Breed, A: Answer>(
     breed: &mut B,

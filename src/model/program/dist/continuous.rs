@@ -4,9 +4,9 @@ use rand::{Rng, RngExt};
 use rand_distr::Distribution;
 
 use super::{Dist, Support};
-use crate::model::linalg::LN_2PI;
-use crate::model::program::real::Real;
-use crate::model::program::trace::Value;
+use crate::linalg::LN_2PI;
+use crate::program::real::Real;
+use crate::program::trace::Value;
 
 /// An open interval, or a half-line, or the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ impl<R> Bounds<R> {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::program::{Real, dist::{Bounds, Continuous, Dist}};
+/// use edifice_model::program::{Real, dist::{Bounds, Continuous, Dist}};
 /// use rand::{Rng, RngExt};
 /// /// Density 2x on (0, 1).
 /// struct Rising;

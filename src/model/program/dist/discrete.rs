@@ -4,8 +4,8 @@ use rand::{Rng, RngExt};
 use rand_distr::Distribution;
 
 use super::{Dist, Support};
-use crate::model::program::real::Real;
-use crate::model::program::trace::Value;
+use crate::program::real::Real;
+use crate::program::trace::Value;
 
 /// What all distributions of whole numbers share.
 macro_rules! whole {
@@ -126,7 +126,7 @@ impl<R: Real> Dist<R> for Categorical<R> {
 
     fn draw<G: Rng>(&self, rng: &mut G) -> usize {
         let logs: Vec<f64> = self.logs.iter().map(|l| l.value()).collect();
-        crate::model::linalg::categorical_of_logs(&logs, rng)
+        crate::linalg::categorical_of_logs(&logs, rng)
     }
 }
 

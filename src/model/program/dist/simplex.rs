@@ -4,8 +4,8 @@ use rand::Rng;
 use rand_distr::Distribution;
 
 use super::{Dist, Support};
-use crate::model::program::real::Real;
-use crate::model::program::trace::Value;
+use crate::program::real::Real;
+use crate::program::trace::Value;
 
 /// See [`dirichlet`].
 #[derive(Clone, Debug)]
