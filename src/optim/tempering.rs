@@ -16,7 +16,7 @@
 //!
 //! Sources: Swendsen and Wang 1986; Geyer 1991; Earl and Deem 2005.
 
-use argmin::core::{Error as ArgminError, KV, Problem, Solver, State, TerminationStatus};
+use argmin::core::{Error as ArgminError, KV, Problem, Solver, TerminationStatus};
 use rand::RngExt;
 use rayon::prelude::*;
 

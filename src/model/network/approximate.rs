@@ -5,10 +5,10 @@
 
 use rand::Rng;
 
-use super::super::elimination::Messages;
+use super::super::elimination::{Factor, Messages};
 use super::super::error::ModelError;
 use super::super::gaussian::{Particles, extend, gaussian};
-use super::super::linalg::{categorical_of_logs, log_sum_exp};
+use super::super::linalg::categorical_of_logs;
 use super::evidence::{Asked, Evidence, Known, softmax};
 use super::{Answer, Cpd, Network};
 

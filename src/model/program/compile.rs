@@ -36,7 +36,7 @@ const EACH: usize = 2;
 const MOST: usize = 1 << 14;
 
 /// A program as a network, and the evidence that its observations are.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Compiled {
     /// A variable for each choice, named as its address, with categories `0`, `1`, ..; a variable `weight j` for each observation or factor
     /// that depends on a choice.

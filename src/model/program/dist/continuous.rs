@@ -25,13 +25,17 @@ impl<R> Bounds<R> {
     };
 }
 
-/// A continuous distribution of one number; with it [`Dist`] is had.
+/// A distribution that is [`Continuous`], as a [`Dist`].
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar<C>(pub C);
+
+/// A continuous distribution of one number; within [`Scalar`] it is a [`Dist`].
 ///
 /// Bounded values are freed by logarithms: `u = ln(x - a)`, `u = ln(b - x)` or `u = ln((x - a) / (b - x))`.
 ///
 /// # Examples
 /// ```
-/// use edifice_model::program::{Real, dist::{Bounds, Continuous, Dist}};
+/// use edifice_model::program::{Real, dist::{Bounds, Continuous, Dist, Scalar}};
 /// use rand::{Rng, RngExt};
 /// /// Density 2x on (0, 1).
 /// struct Rising;
@@ -40,8 +44,8 @@ impl<R> Bounds<R> {
 ///     fn log_pdf(&self, x: R) -> R { (x * 2.0).ln() }
 ///     fn draw_one<G: Rng>(&self, rng: &mut G) -> f64 { rng.random::<f64>().sqrt() }
 /// }
-/// assert_eq!(Dist::<f64>::log_density(&Rising, &0.5), 0.0);
-/// assert_eq!(Dist::<f64>::log_density(&Rising, &1.5), f64::NEG_INFINITY);
+/// assert_eq!(Dist::<f64>::log_density(&Scalar(Rising), &0.5), 0.0);
+/// assert_eq!(Dist::<f64>::log_density(&Scalar(Rising), &1.5), f64::NEG_INFINITY);
 /// ```
 pub trait Continuous<R: Real> {
     /// Where the density is positive.
@@ -52,7 +56,7 @@ pub trait Continuous<R: Real> {
     fn draw_one<G: Rng>(&self, rng: &mut G) -> f64;
 }
 
-impl<R: Real, C: Continuous<R>> Dist<R> for C {
+impl<R: Real, C: Continuous<R>> Dist<R> for Scalar<C> {
     type Value = R;
 
     fn support(&self) -> Support {
@@ -60,17 +64,17 @@ impl<R: Real, C: Continuous<R>> Dist<R> for C {
     }
 
     fn log_density(&self, x: &R) -> R {
-        let bounds = self.bounds();
+        let bounds = self.0.bounds();
         let below = bounds.lower.is_some_and(|a| x.value() < a.value());
         let above = bounds.upper.is_some_and(|b| x.value() > b.value());
         match below || above {
             true => R::from(f64::NEG_INFINITY),
-            false => self.log_pdf(*x),
+            false => self.0.log_pdf(*x),
         }
     }
 
     fn draw<G: Rng>(&self, rng: &mut G) -> R {
-        R::from(self.draw_one(rng))
+        R::from(self.0.draw_one(rng))
     }
 
     fn store(&self, x: &R) -> Value {
@@ -88,7 +92,7 @@ impl<R: Real, C: Continuous<R>> Dist<R> for C {
         let &[u] = free else {
             return None;
         };
-        let Bounds { lower, upper } = self.bounds();
+        let Bounds { lower, upper } = self.0.bounds();
         Some(match (lower, upper) {
             (None, None) => (u, R::from(0.0)),
             (Some(a), None) => (a + u.exp(), u),
@@ -102,7 +106,7 @@ impl<R: Real, C: Continuous<R>> Dist<R> for C {
     }
 
     fn release(&self, x: &R) -> Vec<f64> {
-        let Bounds { lower, upper } = self.bounds();
+        let Bounds { lower, upper } = self.0.bounds();
         let x = x.value();
         let u = match (lower.map(R::value), upper.map(R::value)) {
             (None, None) => x,
@@ -139,9 +143,9 @@ pub struct Normal<R> {
 }
 
 /// `N(mean, sd²)`.
-pub fn normal<R: Real>(mean: impl Into<R>, sd: impl Into<R>) -> Normal<R> {
+pub fn normal<R: Real>(mean: impl Into<R>, sd: impl Into<R>) -> Scalar<Normal<R>> {
     let (mean, sd) = (mean.into(), sd.into());
-    Normal { mean, sd }
+    Scalar(Normal { mean, sd })
 }
 
 impl<R: Real> Continuous<R> for Normal<R> {
@@ -168,8 +172,8 @@ pub struct HalfNormal<R> {
 }
 
 /// |x| for x of `N(0, sd²)`.
-pub fn half_normal<R: Real>(sd: impl Into<R>) -> HalfNormal<R> {
-    HalfNormal { sd: sd.into() }
+pub fn half_normal<R: Real>(sd: impl Into<R>) -> Scalar<HalfNormal<R>> {
+    Scalar(HalfNormal { sd: sd.into() })
 }
 
 impl<R: Real> Continuous<R> for HalfNormal<R> {
@@ -178,11 +182,11 @@ impl<R: Real> Continuous<R> for HalfNormal<R> {
     }
 
     fn log_pdf(&self, x: R) -> R {
-        normal(0.0, self.sd).log_pdf(x) + std::f64::consts::LN_2
+        normal(0.0, self.sd).0.log_pdf(x) + std::f64::consts::LN_2
     }
 
     fn draw_one<G: Rng>(&self, rng: &mut G) -> f64 {
-        normal::<R>(0.0, self.sd).draw_one(rng).abs()
+        normal::<R>(0.0, self.sd).0.draw_one(rng).abs()
     }
 }
 
@@ -193,9 +197,9 @@ pub struct LogNormal<R> {
 }
 
 /// exp(x) for x of `N(mean, sd²)`.
-pub fn log_normal<R: Real>(mean: impl Into<R>, sd: impl Into<R>) -> LogNormal<R> {
-    let log = normal(mean, sd);
-    LogNormal { log }
+pub fn log_normal<R: Real>(mean: impl Into<R>, sd: impl Into<R>) -> Scalar<LogNormal<R>> {
+    let Scalar(log) = normal(mean, sd);
+    Scalar(LogNormal { log })
 }
 
 impl<R: Real> Continuous<R> for LogNormal<R> {
@@ -230,12 +234,12 @@ pub fn student_t<R: Real>(
     freedom: impl Into<R>,
     location: impl Into<R>,
     scale: impl Into<R>,
-) -> StudentT<R> {
-    StudentT {
+) -> Scalar<StudentT<R>> {
+    Scalar(StudentT {
         freedom: freedom.into(),
         location: location.into(),
         scale: scale.into(),
-    }
+    })
 }
 
 impl<R: Real> Continuous<R> for StudentT<R> {
@@ -265,9 +269,9 @@ pub struct Cauchy<R> {
 }
 
 /// Cauchy's distribution, moved and scaled.
-pub fn cauchy<R: Real>(location: impl Into<R>, scale: impl Into<R>) -> Cauchy<R> {
+pub fn cauchy<R: Real>(location: impl Into<R>, scale: impl Into<R>) -> Scalar<Cauchy<R>> {
     let (location, scale) = (location.into(), scale.into());
-    Cauchy { location, scale }
+    Scalar(Cauchy { location, scale })
 }
 
 impl<R: Real> Continuous<R> for Cauchy<R> {
@@ -294,10 +298,10 @@ pub struct HalfCauchy<R> {
 }
 
 /// |x| for x of Cauchy's distribution around 0.
-pub fn half_cauchy<R: Real>(scale: impl Into<R>) -> HalfCauchy<R> {
-    HalfCauchy {
+pub fn half_cauchy<R: Real>(scale: impl Into<R>) -> Scalar<HalfCauchy<R>> {
+    Scalar(HalfCauchy {
         scale: scale.into(),
-    }
+    })
 }
 
 impl<R: Real> Continuous<R> for HalfCauchy<R> {
@@ -306,11 +310,11 @@ impl<R: Real> Continuous<R> for HalfCauchy<R> {
     }
 
     fn log_pdf(&self, x: R) -> R {
-        cauchy(0.0, self.scale).log_pdf(x) + std::f64::consts::LN_2
+        cauchy(0.0, self.scale).0.log_pdf(x) + std::f64::consts::LN_2
     }
 
     fn draw_one<G: Rng>(&self, rng: &mut G) -> f64 {
-        cauchy::<R>(0.0, self.scale).draw_one(rng).abs()
+        cauchy::<R>(0.0, self.scale).0.draw_one(rng).abs()
     }
 }
 
@@ -322,13 +326,13 @@ pub struct Gamma<R> {
 }
 
 /// Density `∝ x^(shape - 1) exp(-rate x)`.
-pub fn gamma<R: Real>(shape: impl Into<R>, rate: impl Into<R>) -> Gamma<R> {
+pub fn gamma<R: Real>(shape: impl Into<R>, rate: impl Into<R>) -> Scalar<Gamma<R>> {
     let (shape, rate) = (shape.into(), rate.into());
-    Gamma { shape, rate }
+    Scalar(Gamma { shape, rate })
 }
 
 /// Density `rate exp(-rate x)`.
-pub fn exponential<R: Real>(rate: impl Into<R>) -> Gamma<R> {
+pub fn exponential<R: Real>(rate: impl Into<R>) -> Scalar<Gamma<R>> {
     gamma(1.0, rate)
 }
 
@@ -361,9 +365,9 @@ pub struct InverseGamma<R> {
 }
 
 /// Density `∝ x^(-shape - 1) exp(-scale / x)`.
-pub fn inverse_gamma<R: Real>(shape: impl Into<R>, scale: impl Into<R>) -> InverseGamma<R> {
-    let inverse = gamma(shape, scale);
-    InverseGamma { inverse }
+pub fn inverse_gamma<R: Real>(shape: impl Into<R>, scale: impl Into<R>) -> Scalar<InverseGamma<R>> {
+    let Scalar(inverse) = gamma(shape, scale);
+    Scalar(InverseGamma { inverse })
 }
 
 impl<R: Real> Continuous<R> for InverseGamma<R> {
@@ -391,9 +395,9 @@ pub struct Beta<R> {
 }
 
 /// Density `∝ x^(a - 1) (1 - x)^(b - 1)`.
-pub fn beta<R: Real>(a: impl Into<R>, b: impl Into<R>) -> Beta<R> {
+pub fn beta<R: Real>(a: impl Into<R>, b: impl Into<R>) -> Scalar<Beta<R>> {
     let (a, b) = (a.into(), b.into());
-    Beta { a, b }
+    Scalar(Beta { a, b })
 }
 
 impl<R: Real> Continuous<R> for Beta<R> {
@@ -428,9 +432,9 @@ pub struct Uniform<R> {
 }
 
 /// Uniform between two bounds.
-pub fn uniform<R: Real>(lower: impl Into<R>, upper: impl Into<R>) -> Uniform<R> {
+pub fn uniform<R: Real>(lower: impl Into<R>, upper: impl Into<R>) -> Scalar<Uniform<R>> {
     let (lower, upper) = (lower.into(), upper.into());
-    Uniform { lower, upper }
+    Scalar(Uniform { lower, upper })
 }
 
 impl<R: Real> Continuous<R> for Uniform<R> {

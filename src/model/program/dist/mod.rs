@@ -27,7 +27,7 @@ use super::real::Real;
 use super::trace::Value;
 pub use continuous::{
     Beta, Bounds, Cauchy, Continuous, Gamma, HalfCauchy, HalfNormal, InverseGamma, LogNormal,
-    Normal, StudentT, Uniform, beta, cauchy, exponential, gamma, half_cauchy, half_normal,
+    Normal, Scalar, StudentT, Uniform, beta, cauchy, exponential, gamma, half_cauchy, half_normal,
     inverse_gamma, log_normal, normal, student_t, uniform,
 };
 pub use discrete::{
@@ -49,7 +49,7 @@ pub enum Support {
 
 /// A distribution over values of one type, with parameters that are numbers of the kind R.
 ///
-/// To state one of one's own that is continuous and scalar, [`Continuous`] is less work.
+/// To state one of one's own that is continuous and scalar, [`Continuous`] within [`Scalar`] is less work.
 pub trait Dist<R: Real> {
     /// What it draws.
     type Value: Clone;
