@@ -31,8 +31,10 @@ pub struct Splits {
     share: f64,
     /// Models to compare, separated by commas; differences are to the first. `ours` is what the command beside learns by default
     /// (`model learn`, `building learn`), `published` the hierarchical model of the paper, `model_1` to `model_3` and `gmm` its
-    /// peers, `extended` the hierarchical model of an encoded table. All but `extended` unless given. At values that many rows share
-    /// the density of an encoded table is a probability: there its numbers are not to be compared with those of densities.
+    /// peers: these unless given. Further ones are `extended`, the hierarchical model of an encoded table whose real columns share one
+    /// hidden variable or have one each, by the higher score; `one_group`, the same where they share one; `gaussian`, one Gaussian; `kde`, a
+    /// kernel density. At values that many rows share the density of an encoded table is a probability: there its numbers are not to be
+    /// compared with those of densities.
     #[arg(long, value_delimiter = ',')]
     models: Vec<String>,
     #[command(flatten)]
@@ -96,7 +98,8 @@ impl Splits {
             all.retain(|(name, c)| *name != "published" || *c != learned);
             return Ok(all.iter().map(|(name, c)| ((*name).to_owned(), *c)).collect());
         }
-        all.push((Contender::Extended.name(), Contender::Extended));
+        let further = Contender::EVERY.into_iter().filter(|c| !Contender::ALL.contains(c));
+        all.extend(further.map(|c| (c.name(), c)));
         let known = |name: &String| {
             let found = all.iter().find(|(known, _)| known == name);
             let found = found.map(|(_, contender)| (name.clone(), *contender));
