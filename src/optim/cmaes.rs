@@ -42,7 +42,7 @@ pub struct Settings {
     pub restarts: usize,
     /// Relative to the first step and to the first spread of costs: where a run has converged.
     pub tolerance: f64,
-    /// When to end.
+    /// Limits of the run.
     pub limits: Limits,
 }
 
@@ -60,13 +60,13 @@ impl Default for Settings {
     }
 }
 
-/// What goes wrong in [`minimize`].
+/// Failures of [`minimize`].
 #[derive(Debug, thiserror::Error)]
 pub enum CmaError {
     /// A setting is out of its range.
     #[error("`{setting}` must be {must}")]
     Setting {
-        /// Which one.
+        /// Its name.
         setting: &'static str,
         /// Its range.
         must: &'static str,
@@ -255,7 +255,7 @@ impl Path {
         self.axes = eigen.eigenvectors;
     }
 
-    /// Whether nothing more is to be had from this run.
+    /// True if nothing more is to be had from this run.
     fn converged(&self, tolerance: f64, spread: f64) -> bool {
         let n = self.mean.len();
         let window = 10 + 30 * n / self.count;

@@ -1,4 +1,4 @@
-//! When a run ends before it is done: one set of limits for every optimizer, and an observer that may stop.
+//! Early ends of a run: one set of limits for every optimizer, and an observer that may stop.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -30,10 +30,10 @@ pub struct Limits {
     pub target: Option<f64>,
 }
 
-/// What an observer answers to a step: `()` goes on; [`ControlFlow`] may stop the run, whose outcome is then
+/// The answer of an observer to a step: `()` goes on; [`ControlFlow`] may stop the run, whose outcome is then
 /// [`Outcome::Stopped`](super::Outcome::Stopped).
 pub trait Answer {
-    /// Whether the run is to stop.
+    /// True if the run is to stop.
     fn stops(self) -> bool;
 }
 
@@ -49,7 +49,7 @@ impl Answer for ControlFlow<()> {
     }
 }
 
-/// What argmin's reason for an exit is called when evaluations are used up.
+/// Name of the exit of argmin when evaluations are used up.
 pub(super) const EVALUATIONS: &str = "evaluations";
 
 /// Limits while a run goes on.
@@ -70,7 +70,7 @@ impl Watch {
         }
     }
 
-    /// Whether a limit is reached at this least cost so far.
+    /// The reason to end at this least cost so far, if any.
     pub fn status(&self, best: f64) -> TerminationStatus {
         let reason = if self.limits.target.is_some_and(|t| best <= t) {
             TerminationReason::TargetCostReached

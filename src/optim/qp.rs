@@ -43,7 +43,7 @@ impl Default for QpOptions {
     }
 }
 
-/// What [`solve`] finds.
+/// Result of [`solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
     /// The point; `None` where there is none: the program is infeasible or unbounded, or the run ended before it was solved.
@@ -52,7 +52,7 @@ pub struct Solution {
     pub cost: f64,
     /// The price of each constraint, where there is a point.
     pub duals: Option<Duals>,
-    /// Why the run ended.
+    /// The reason for which the run ended.
     pub outcome: Outcome,
     /// Interior-point iterations.
     pub iterations: u32,

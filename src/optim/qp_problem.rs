@@ -256,7 +256,7 @@ impl QuadraticProgram {
         }
     }
 
-    /// Whether `P + shift` has a sparse factor `L D L'` with D > 0.
+    /// True if `P + shift` has a sparse factor `L D L'` with D > 0.
     fn factors(&self, shift: f64) -> bool {
         let n = self.dimension();
         let size = self.quadratic.len() + n;

@@ -155,7 +155,7 @@ where
     Ok((run, result.solver.inner))
 }
 
-/// Why a run ends when its observer says so.
+/// Name of the exit of argmin when the observer stops the run.
 const STOPPED: &str = "stopped";
 
 /// A solver that ends when its observer says so.

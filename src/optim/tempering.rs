@@ -39,7 +39,7 @@ pub struct Settings {
     pub rounds: u64,
     /// Lowest and highest temperature, in units of cost; found by trial moves unless given.
     pub temperatures: Option<(f64, f64)>,
-    /// When to end; a move is an evaluation.
+    /// Limits of the run; a move is an evaluation.
     pub limits: Limits,
 }
 
@@ -55,13 +55,13 @@ impl Default for Settings {
     }
 }
 
-/// What goes wrong in [`temper`].
+/// Failures of [`temper`].
 #[derive(Debug, thiserror::Error)]
 pub enum TemperingError {
     /// A setting is out of its range.
     #[error("`{setting}` must be {must}")]
     Setting {
-        /// Which one.
+        /// Its name.
         setting: &'static str,
         /// Its range.
         must: &'static str,

@@ -71,7 +71,11 @@ pub fn read_model(path: &Path) -> Result<TableModel> {
 
 /// Reads a table by a model's schema. Of the schema's columns the table may lack some: they are missing.
 pub fn read_rows(model: &TableModel, path: &Path) -> Result<Dataset> {
-    let text = read_table(path)?;
+    rows(model, &read_table(path)?, path)
+}
+
+/// The rows of a table that was read, by a model's schema; `path` names it in errors.
+pub fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset> {
     let mut schema = model.schema.clone();
     for group in &mut schema.groups {
         group.columns.retain(|column| text.header.contains(column));

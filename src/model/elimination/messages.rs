@@ -38,12 +38,12 @@ impl<'a> Messages<'a> {
         }
     }
 
-    /// Whether no factor speaks to a variable.
+    /// True if no factor speaks to a variable.
     pub fn is_free(&self, v: usize) -> bool {
         self.around[v].is_empty()
     }
 
-    /// What all factors but one say of a variable.
+    /// The product of the messages of all factors but one to a variable, as logarithms.
     fn without(&self, v: usize, factor: usize) -> Vec<f64> {
         let mut sum = vec![0.0; self.sizes[v]];
         for &(f, place) in self.around[v].iter().filter(|(f, _)| *f != factor) {

@@ -33,7 +33,7 @@ pub struct Question<'g> {
     pub(super) known: Vec<Option<usize>>,
 }
 
-/// What loopy belief propagation believes, from [`Question::loopy`].
+/// Result of loopy belief propagation ([`Question::loopy`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beliefs {
     /// Of each variable, the probabilities of its values.
@@ -42,7 +42,7 @@ pub struct Beliefs {
     pub log_partition: f64,
     /// Rounds made.
     pub rounds: usize,
-    /// Whether no message moved by more than the tolerance in the last round.
+    /// True if no message moved by more than the tolerance in the last round.
     pub converged: bool,
 }
 

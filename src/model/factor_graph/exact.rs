@@ -16,7 +16,7 @@ const STEPS: usize = 500;
 /// Length of the gradient at which the fit is done.
 const DONE: f64 = 1e-9;
 
-/// What [`fit_exact`] returns.
+/// Result of [`fit_exact`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExactFit {
     /// One weight per feature.

@@ -17,7 +17,7 @@ pub struct Settings {
     pub rounds: usize,
     /// Moves of each chain in a round.
     pub moves: usize,
-    /// Whether chains go on from round to round (persistent) or restart at the data.
+    /// True if chains go on from round to round (persistent), false if they restart at the data.
     pub persistent: bool,
     /// First step size.
     pub rate: f64,
@@ -25,7 +25,7 @@ pub struct Settings {
     pub decay: f64,
     /// λ of the penalty `λ/2 |w|²` per example.
     pub penalty: f64,
-    /// Whether steps are Newton's, with the information that the chains give of the weights; without, one rate serves all
+    /// True if steps are Newton's, with the information that the chains give of the weights; without, one rate serves all
     /// weights, which takes many times the rounds where features are correlated or of different size.
     pub newton: bool,
 }
@@ -49,7 +49,7 @@ const SETTLED: f64 = 1e-3;
 /// Rounds at the end that tell the standard errors where steps do not need the information.
 const LAST: usize = 20;
 
-/// Whether [`fit`] has come to rest.
+/// The state in which [`fit`] ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The gap would gain no more than a thousandth of a nat an example.
@@ -58,7 +58,7 @@ pub enum Outcome {
     Moving,
 }
 
-/// What [`fit`] returns.
+/// Result of [`fit`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
     /// One weight per feature, the mean over the second half of the rounds.
@@ -71,7 +71,7 @@ pub struct Fitted {
     pub standard_errors: Vec<f64>,
     /// Log-likelihood that a further Newton step would gain, nats an example, to second order.
     pub shortfall: f64,
-    /// Whether that is little.
+    /// [`Outcome::Settled`] if that is at most a thousandth of a nat.
     pub outcome: Outcome,
 }
 

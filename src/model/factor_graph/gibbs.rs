@@ -149,13 +149,13 @@ impl Gibbs {
         }
     }
 
-    /// What is known where an example is: everything but hidden variables.
+    /// The known values of an example: all but those of hidden variables.
     pub(super) fn observed(&self, state: &[usize]) -> Vec<Option<usize>> {
         let one = |(v, x): (usize, &usize)| (!self.hidden.contains(&v)).then_some(*x);
         state.iter().enumerate().map(one).collect()
     }
 
-    /// What is known without the example: its inputs.
+    /// The values of the inputs of an example.
     pub(super) fn given(&self, state: &[usize]) -> Vec<Option<usize>> {
         let mut known: Vec<Option<usize>> = state.iter().map(|x| Some(*x)).collect();
         self.free.iter().for_each(|&v| known[v] = None);

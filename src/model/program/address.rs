@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-/// Where in a program a choice is made: a name, and the indices of the plates around it.
+/// The place of a choice in a program: a name, and the indices of the plates around it.
 ///
 /// Made from a name, `"mu"`, or from a name and one or two indices, `("theta", i)` and `("cell", i, j)`. One run of a program
 /// may use each address once.

@@ -43,7 +43,7 @@ pub struct Compiled {
     pub network: Network,
     /// That every weight was seen.
     pub evidence: network::Evidence,
-    /// What the largest weights are together, nats.
+    /// Sum of the logarithms of the largest weights, nats.
     pub log_scale: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What draws of chains tell of themselves: R-hat, effective sample sizes, and Monte Carlo errors.
+//! Diagnostics of chains: R-hat, effective sample sizes, and Monte Carlo errors.
 //!
 //! Draws of M chains of N each, of one number. Each chain is split into halves, so that one that drifts disagrees with itself. With B
 //! the variance between and W within the halves,

@@ -1,4 +1,4 @@
-//! What can be wrong with a program.
+//! Failures of programs and engines.
 
 use crate::ModelError;
 
@@ -38,7 +38,7 @@ pub enum ProgramError {
     /// More ways through the program than may be tried.
     #[error("the program has more than {most} ways through: compile it to a network, or sample")]
     TooMany {
-        /// How many were allowed.
+        /// The number allowed.
         most: usize,
     },
     /// No way through the program with a positive weight.
@@ -52,7 +52,7 @@ pub enum ProgramError {
     Setting {
         /// The setting.
         name: &'static str,
-        /// What it must be.
+        /// Its range, in words.
         must: &'static str,
     },
     /// The sampler's own failure.

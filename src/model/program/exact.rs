@@ -87,7 +87,7 @@ pub fn exact<P: Program>(program: &P) -> Result<Posterior<P::Out>, ProgramError>
     Ok(posterior)
 }
 
-/// Where a choice stands: log probabilities of its values, and which of them is taken.
+/// The state of a choice: log probabilities of its values, and which of them is taken.
 struct Branch {
     logs: Vec<f64>,
     value: usize,

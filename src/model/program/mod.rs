@@ -92,7 +92,7 @@ pub use trace::{Choice, Trace, Value};
 
 /// A model as code: choices, and what data say of them. [The module](self) has an example.
 pub trait Program {
-    /// What a run returns: whatever is to be known of its choices.
+    /// The value that a run returns, any function of its choices.
     type Out;
 
     /// Runs once. The same answers of the handler have to lead to the same run: a program has no randomness of its own.
@@ -107,7 +107,7 @@ impl<P: Program> Program for &P {
     }
 }
 
-/// What a program asks for its choices; each engine has its own.
+/// The party that makes a program's choices; each engine has its own.
 pub trait Handler {
     /// Numbers that the program computes with.
     type Real: Real;

@@ -1,4 +1,4 @@
-//! How heavy the tail of importance weights is.
+//! The shape of the tail of importance weights.
 
 /// Least share of a candidate among all that is kept.
 const NEGLIGIBLE: f64 = 10.0 * f64::EPSILON;

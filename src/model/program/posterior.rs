@@ -1,4 +1,4 @@
-//! What the engines return: draws or weighted draws, and what follows from them.
+//! The result of every engine: draws or weighted draws, and the estimates that follow from them.
 
 use rand::Rng;
 use std::collections::BTreeSet;
@@ -16,7 +16,7 @@ use crate::linalg::{categorical_of_logs, log_sum_exp};
 pub struct Draw<T> {
     /// Its choices.
     pub trace: Trace,
-    /// What it returned.
+    /// The value that it returned.
     pub out: T,
     /// Logarithm of its share; the shares of all draws sum to 1.
     pub log_weight: f64,
@@ -31,7 +31,7 @@ pub struct Evidence {
     pub error: f64,
 }
 
-/// How draws depend on each other.
+/// The dependence of draws on each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Every way through the program, with its probability.

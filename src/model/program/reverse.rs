@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::real::Real;
 
-/// What was computed since the tape was made or cleared.
+/// The record of all operations since the tape was made or cleared.
 ///
 /// # Examples
 /// ```

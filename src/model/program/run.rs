@@ -10,7 +10,7 @@ use super::error::ProgramError;
 use super::trace::{Choice, Trace, Value};
 use super::{Handler, Program};
 
-/// What a run starts from.
+/// The earlier run from which a run starts.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Old<'a> {
     /// Choices to keep.
@@ -21,7 +21,7 @@ pub(super) struct Old<'a> {
     pub change: Option<(&'a Address, Change)>,
 }
 
-/// How a choice is changed.
+/// The manner in which a choice is changed.
 #[derive(Clone, Copy)]
 pub(super) enum Change {
     /// By a normal step of this deviation in each free coordinate, a symmetric one of about this size of counts, or to any
@@ -31,7 +31,7 @@ pub(super) enum Change {
     Fresh,
 }
 
-/// What a run gives.
+/// The result of a run.
 pub(super) struct Done<T> {
     pub trace: Trace,
     pub out: T,
@@ -106,7 +106,7 @@ impl<G: Rng> Keep<'_, G> {
             }
         };
         let Value::Whole(whole) = d.store(&x) else {
-            let step = |u: f64| u + scale * self.rng.sample::<f64, _>(StandardNormal);
+            let mut step = |u: f64| u + scale * self.rng.sample::<f64, _>(StandardNormal);
             let free = d.release(&x);
             let moved: Vec<f64> = free.iter().map(|&u| step(u)).collect();
             return match (d.constrain(&free), d.constrain(&moved)) {

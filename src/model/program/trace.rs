@@ -1,4 +1,4 @@
-//! What one run of a program chose.
+//! The choices of one run of a program.
 
 use rustc_hash::FxHashMap;
 
@@ -38,13 +38,13 @@ impl Value {
 /// A choice that a run made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// Where.
+    /// The address of the choice.
     pub address: Address,
-    /// What.
+    /// The value.
     pub value: Value,
     /// Logarithm of the density or probability of the value, given the choices before it; natural.
     pub log_density: f64,
-    /// What it could have been.
+    /// The values that were possible.
     pub support: Support,
 }
 

@@ -23,7 +23,7 @@ use edifice_base::rng::{Stream, stream};
 pub use hypervolume::hypervolume;
 pub use reals::Reals;
 
-/// What is bred for several costs.
+/// A problem of several costs: its genomes and their costs.
 pub trait Breed {
     /// A candidate solution.
     type Genome: Clone;
@@ -32,7 +32,7 @@ pub trait Breed {
     fn objectives(&self) -> usize;
     /// The costs, each to be minimised; one that is not a number is the worst.
     fn costs(&mut self, genome: &Self::Genome) -> Vec<f64>;
-    /// By how much constraints are violated; 0 where all hold.
+    /// Sum of the violations of all constraints, in any unit; 0 if all hold.
     fn violation(&mut self, _: &Self::Genome) -> f64 {
         0.0
     }
@@ -55,7 +55,7 @@ pub struct Settings {
     pub generations: u64,
     /// Probability that a child has two parents.
     pub crossover: f64,
-    /// When to end; there is no target.
+    /// Limits of the run; a target has no meaning here.
     pub limits: Limits,
 }
 
@@ -70,13 +70,13 @@ impl Default for Settings {
     }
 }
 
-/// What goes wrong in [`evolve`].
+/// Failures of [`evolve`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NsgaError {
     /// A setting is out of its range.
     #[error("`{setting}` must be {must}")]
     Setting {
-        /// Which one.
+        /// Its name.
         setting: &'static str,
         /// Its range.
         must: &'static str,
@@ -84,9 +84,9 @@ pub enum NsgaError {
     /// A genome has not as many costs as [`Breed::objectives`] says.
     #[error("a genome has {found} costs, expected {expected}")]
     Costs {
-        /// How many it has.
+        /// Their number.
         found: usize,
-        /// How many it must have.
+        /// The number that [`Breed::objectives`] gives.
         expected: usize,
     },
 }
@@ -98,7 +98,7 @@ pub struct Member<G> {
     pub genome: G,
     /// Its costs.
     pub costs: Vec<f64>,
-    /// By how much it violates constraints.
+    /// Its violation of constraints, at least 0.
     pub violation: f64,
     rank: usize,
     crowding: f64,
@@ -109,7 +109,7 @@ pub struct Member<G> {
 pub struct Front<G> {
     /// The genomes that no other one dominates, by their first cost.
     pub members: Vec<Member<G>>,
-    /// Why the run ended.
+    /// The reason for which the run ended.
     pub outcome: Outcome,
     /// Generations done.
     pub generations: u64,

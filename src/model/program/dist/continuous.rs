@@ -48,7 +48,7 @@ pub struct Scalar<C>(pub C);
 /// assert_eq!(Dist::<f64>::log_density(&Scalar(Rising), &1.5), f64::NEG_INFINITY);
 /// ```
 pub trait Continuous<R: Real> {
-    /// Where the density is positive.
+    /// The interval on which the density is positive.
     fn bounds(&self) -> Bounds<R>;
     /// Logarithm of the density within the bounds; not a number where a parameter is out of range.
     fn log_pdf(&self, x: R) -> R;

@@ -7,7 +7,7 @@ use super::{Dist, Support};
 use crate::program::real::Real;
 use crate::program::trace::Value;
 
-/// What all distributions of whole numbers share.
+/// The functions that all distributions of whole numbers share.
 macro_rules! whole {
     ($value:ty, $to:expr, $from:expr) => {
         type Value = $value;

@@ -36,7 +36,7 @@ pub use discrete::{
 };
 pub use simplex::{Dirichlet, dirichlet};
 
-/// Which values a distribution has.
+/// The set of values of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// The whole numbers below this one (`false` is 0, `true` is 1).
@@ -51,10 +51,10 @@ pub enum Support {
 ///
 /// To state one of one's own that is continuous and scalar, [`Continuous`] within [`Scalar`] is less work.
 pub trait Dist<R: Real> {
-    /// What it draws.
+    /// The type of its values.
     type Value: Clone;
 
-    /// Which values it has.
+    /// The set of its values.
     fn support(&self) -> Support;
 
     /// Logarithm of the density or probability of a value, natural; minus infinity outside of the support.
