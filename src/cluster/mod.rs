@@ -4,7 +4,7 @@
 //! - [`agglomerate`]: hierarchical clustering of a distance matrix, with its [`Dendrogram`].
 //! - [`ward()`]: Ward's hierarchy of points in near-linear time; [`kmeans()`] and [`lloyd`].
 //! - [`shortest_description`]: how many clusters of a hierarchy the points ask for.
-//! - [`girvan_newman`], [`louvain`]: communities of graphs, and their [`modularity`].
+//! - [`girvan_newman`], [`louvain`], [`leiden`]: communities of graphs, and their [`modularity`].
 //! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
 //! - [`adjusted_rand_index`]: agreement of two partitions.
 
@@ -12,6 +12,7 @@ mod agglomerative;
 mod agreement;
 mod chi_square;
 mod communities;
+mod leiden;
 mod description;
 mod kd_tree;
 mod kmeans;
@@ -21,6 +22,7 @@ mod ward;
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
 pub use agreement::adjusted_rand_index;
 pub use chi_square::{Histogram, chi_square};
+pub use leiden::leiden;
 pub use communities::{
     Communities, WeightedGraph, girvan_newman, louvain, modularity, weighted_graph,
 };

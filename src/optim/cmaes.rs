@@ -40,7 +40,7 @@ pub struct Settings {
     pub population: Option<usize>,
     /// Restarts after the first run has converged.
     pub restarts: usize,
-    /// Relative to the first step and to the first spread of costs: where a run has converged.
+    /// The steps and the spreads of costs at which a run has converged, relative to the first step and the widest spread.
     pub tolerance: f64,
     /// Limits of the run.
     pub limits: Limits,
@@ -169,6 +169,8 @@ struct Path {
     decomposed: u64,
     /// Best costs of the last generations, newest last.
     recent: Vec<f64>,
+    /// Largest spread of costs of a generation so far.
+    widest: f64,
     evaluations: u64,
 }
 
@@ -195,6 +197,7 @@ impl Path {
             generation: 0,
             decomposed: 0,
             recent: Vec::new(),
+            widest: 0.0,
             evaluations: 0,
         }
     }
@@ -264,7 +267,7 @@ impl Path {
         let last = &self.recent[self.recent.len().saturating_sub(window)..];
         let range = last.iter().copied().fold(f64::NEG_INFINITY, f64::max)
             - last.iter().copied().fold(f64::INFINITY, f64::min);
-        let flat = last.len() >= window && range.max(spread) <= tolerance;
+        let flat = last.len() >= window && range.max(spread) <= tolerance * self.widest;
         let small = self.step * largest <= tolerance * self.first;
         let singular = largest > 1e7 * least;
         let broken = !(self.step.is_finite() && largest.is_finite());
@@ -391,6 +394,7 @@ impl<F: FnMut(&[f64]) -> f64> Solver<&mut F, Search<Vec<f64>>> for Cma {
         let best = points.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let (best_cost, best) = best.map_or((f64::INFINITY, Vec::new()), |p| (p.0, p.3.clone()));
         self.path.recent.push(best_cost);
+        self.path.widest = self.path.widest.max(spread);
         let better = best_cost < state.get_best_cost() || state.get_best_param().is_none();
         if self.path.converged(self.settings.tolerance, spread) {
             if self.restarts.done >= self.settings.restarts {
