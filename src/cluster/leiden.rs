@@ -36,7 +36,10 @@ pub fn leiden<R: Rng>(graph: &WeightedGraph, restarts: usize, rng: &mut R) -> Co
             modularity: modularity(graph, &labels),
             labels,
         };
-        if best.as_ref().is_none_or(|b| found.modularity > b.modularity + 1e-12) {
+        if best
+            .as_ref()
+            .is_none_or(|b| found.modularity > b.modularity + 1e-12)
+        {
             best = Some(found);
         }
     }
@@ -136,7 +139,8 @@ impl Level {
             let own = label[v];
             sum[own] -= self.degree[v];
             let links = self.links(v, label);
-            let gain = |c: usize, weight: f64| weight - self.degree[v] * sum[c] / (2.0 * self.total);
+            let gain =
+                |c: usize, weight: f64| weight - self.degree[v] * sum[c] / (2.0 * self.total);
             let mut best = (gain(own, links.get(&own).copied().unwrap_or(0.0)), own);
             for (&c, &weight) in &links {
                 let g = gain(c, weight);
@@ -170,7 +174,9 @@ impl Level {
         // Weight of each part to the rest of its community.
         let within = |v: usize| -> f64 {
             let all = self.neighbours[v].iter();
-            all.filter(|(w, _)| communities[*w] == communities[v]).map(|(_, w)| w).sum()
+            all.filter(|(w, _)| communities[*w] == communities[v])
+                .map(|(_, w)| w)
+                .sum()
         };
         let mut outward: Vec<f64> = (0..n).map(within).collect();
         let well = |outward: f64, sum: f64, whole: f64| {
@@ -184,7 +190,10 @@ impl Level {
                 continue;
             }
             let mut links: BTreeMap<usize, f64> = BTreeMap::new();
-            for &(w, weight) in self.neighbours[v].iter().filter(|(w, _)| communities[*w] == communities[v]) {
+            for &(w, weight) in self.neighbours[v]
+                .iter()
+                .filter(|(w, _)| communities[*w] == communities[v])
+            {
                 *links.entry(part[w]).or_default() += weight;
             }
             // To stay alone gains nothing.
@@ -239,7 +248,84 @@ mod tests {
 
     /// Friendships in a karate club (Zachary 1977).
     const KARATE: [(usize, usize); 78] = [
-        (0, 1), (0, 2), (0, 3), (0, 4), (0, 5), (0, 6), (0, 7), (0, 8), (0, 10), (0, 11), (0, 12), (0, 13), (0, 17), (0, 19), (0, 21), (0, 31), (1, 2), (1, 3), (1, 7), (1, 13), (1, 17), (1, 19), (1, 21), (1, 30), (2, 3), (2, 7), (2, 8), (2, 9), (2, 13), (2, 27), (2, 28), (2, 32), (3, 7), (3, 12), (3, 13), (4, 6), (4, 10), (5, 6), (5, 10), (5, 16), (6, 16), (8, 30), (8, 32), (8, 33), (9, 33), (13, 33), (14, 32), (14, 33), (15, 32), (15, 33), (18, 32), (18, 33), (19, 33), (20, 32), (20, 33), (22, 32), (22, 33), (23, 25), (23, 27), (23, 29), (23, 32), (23, 33), (24, 25), (24, 27), (24, 31), (25, 31), (26, 29), (26, 33), (27, 33), (28, 31), (28, 33), (29, 32), (29, 33), (30, 32), (30, 33), (31, 32), (31, 33), (32, 33),
+        (0, 1),
+        (0, 2),
+        (0, 3),
+        (0, 4),
+        (0, 5),
+        (0, 6),
+        (0, 7),
+        (0, 8),
+        (0, 10),
+        (0, 11),
+        (0, 12),
+        (0, 13),
+        (0, 17),
+        (0, 19),
+        (0, 21),
+        (0, 31),
+        (1, 2),
+        (1, 3),
+        (1, 7),
+        (1, 13),
+        (1, 17),
+        (1, 19),
+        (1, 21),
+        (1, 30),
+        (2, 3),
+        (2, 7),
+        (2, 8),
+        (2, 9),
+        (2, 13),
+        (2, 27),
+        (2, 28),
+        (2, 32),
+        (3, 7),
+        (3, 12),
+        (3, 13),
+        (4, 6),
+        (4, 10),
+        (5, 6),
+        (5, 10),
+        (5, 16),
+        (6, 16),
+        (8, 30),
+        (8, 32),
+        (8, 33),
+        (9, 33),
+        (13, 33),
+        (14, 32),
+        (14, 33),
+        (15, 32),
+        (15, 33),
+        (18, 32),
+        (18, 33),
+        (19, 33),
+        (20, 32),
+        (20, 33),
+        (22, 32),
+        (22, 33),
+        (23, 25),
+        (23, 27),
+        (23, 29),
+        (23, 32),
+        (23, 33),
+        (24, 25),
+        (24, 27),
+        (24, 31),
+        (25, 31),
+        (26, 29),
+        (26, 33),
+        (27, 33),
+        (28, 31),
+        (28, 33),
+        (29, 32),
+        (29, 33),
+        (30, 32),
+        (30, 33),
+        (31, 32),
+        (31, 33),
+        (32, 33),
     ];
 
     #[test]
@@ -249,7 +335,11 @@ mod tests {
         for seed in 0..10 {
             let found = leiden(&graph, 10, &mut stream(seed, "karate", 0));
             // The optimum is known (Brandes et al. 2008).
-            assert!((found.modularity - 0.419_790).abs() < 1e-5, "{seed}: {}", found.modularity);
+            assert!(
+                (found.modularity - 0.419_790).abs() < 1e-5,
+                "{seed}: {}",
+                found.modularity
+            );
         }
         assert!(louvain(&graph).modularity < 0.4198);
     }
@@ -279,7 +369,8 @@ mod tests {
                     next += 1;
                     for &(a, b, _) in &edges {
                         let other = if a == v { b } else { a };
-                        if (a == v || b == v) && found.labels[other] == c && !seen.contains(&other) {
+                        if (a == v || b == v) && found.labels[other] == c && !seen.contains(&other)
+                        {
                             seen.push(other);
                         }
                     }
@@ -293,6 +384,10 @@ mod tests {
     fn graphs_without_edges_are_nodes_alone() {
         let found = leiden(&weighted_graph(3, &[]), 2, &mut stream(1, "none", 0));
         assert_eq!((found.labels, found.modularity), (vec![0, 1, 2], 0.0));
-        assert!(leiden(&weighted_graph(0, &[]), 2, &mut stream(1, "none", 0)).labels.is_empty());
+        assert!(
+            leiden(&weighted_graph(0, &[]), 2, &mut stream(1, "none", 0))
+                .labels
+                .is_empty()
+        );
     }
 }

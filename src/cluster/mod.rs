@@ -12,23 +12,23 @@ mod agglomerative;
 mod agreement;
 mod chi_square;
 mod communities;
-mod leiden;
 mod description;
 mod kd_tree;
 mod kmeans;
+mod leiden;
 mod retrieval;
 mod ward;
 
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
 pub use agreement::adjusted_rand_index;
 pub use chi_square::{Histogram, chi_square};
-pub use leiden::leiden;
 pub use communities::{
     Communities, WeightedGraph, girvan_newman, louvain, modularity, weighted_graph,
 };
 pub use description::shortest_description;
 pub use kd_tree::KdTree;
 pub use kmeans::{KMeans, kmeans, lloyd, means, sum_of_squares};
+pub use leiden::leiden;
 pub use retrieval::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,
 };

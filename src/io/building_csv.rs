@@ -77,18 +77,27 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
 /// Gives nameless columns a name, and refuses a name that stands twice.
 fn names(header: &mut [String], notes: &mut Vec<String>, path: &Path) -> Result<()> {
     if header.iter().all(|name| name.trim().parse::<f64>().is_ok()) {
-        notes.push("the first line is taken for the names of the columns, though all are numbers".to_owned());
+        notes.push(
+            "the first line is taken for the names of the columns, though all are numbers"
+                .to_owned(),
+        );
     }
     for (i, name) in header.iter_mut().enumerate() {
         if name.trim().is_empty() {
             *name = format!("column_{}", i + 1);
-            notes.push(format!("column {} has no name: it is called `{name}`", i + 1));
+            notes.push(format!(
+                "column {} has no name: it is called `{name}`",
+                i + 1
+            ));
         }
     }
     let mut seen = std::collections::BTreeMap::new();
     for (i, name) in header.iter().enumerate() {
         if let Some(before) = seen.insert(name, i + 1) {
-            let message = format!("the header has `{name}` twice, as columns {before} and {}", i + 1);
+            let message = format!(
+                "the header has `{name}` twice, as columns {before} and {}",
+                i + 1
+            );
             return Err(Error::content(path, message));
         }
     }

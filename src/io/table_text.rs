@@ -30,7 +30,8 @@ pub fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
         (b"\xfe\xff", "UTF-16 text"),
     ];
     let refused = |kind: &str| {
-        let message = format!("{kind}, not a table as CSV: save it as CSV in UTF-8, a header line first");
+        let message =
+            format!("{kind}, not a table as CSV: save it as CSV in UTF-8, a header line first");
         Err(Error::content(path, message))
     };
     if let Some((_, kind)) = starts.iter().find(|(start, _)| bytes.starts_with(start)) {
@@ -39,7 +40,9 @@ pub fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
     // ARFF may begin with comments.
     let first = text.trim_start_matches('\u{feff}').lines().map(str::trim);
-    let first = first.into_iter().find(|l| !l.is_empty() && !l.starts_with('%'));
+    let first = first
+        .into_iter()
+        .find(|l| !l.is_empty() && !l.starts_with('%'));
     let Some(first) = first else {
         return match text.trim().is_empty() {
             true => Err(Error::content(path, "the file is empty")),
@@ -49,8 +52,14 @@ pub fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
     let lower = first.to_ascii_lowercase();
     match () {
         () if lower.starts_with("@relation") => refused("an ARFF file"),
-        () if lower.starts_with("<!doctype") || lower.starts_with("<html") => refused("a page of HTML"),
-        () if first == "{" || first == "[" || first.starts_with("{\"") || first.starts_with("[{") => {
+        () if lower.starts_with("<!doctype") || lower.starts_with("<html") => {
+            refused("a page of HTML")
+        }
+        () if first == "{"
+            || first == "["
+            || first.starts_with("{\"")
+            || first.starts_with("[{") =>
+        {
             refused("JSON")
         }
         () => Ok(()),
@@ -90,7 +99,10 @@ pub fn separator(text: &[u8]) -> u8 {
         let expected = count(header, **c);
         expected > 0 && lines.iter().all(|l| count(l, **c) == expected)
     };
-    let found = [';', '\t', '|'].iter().filter(fits).max_by_key(|c| count(header, **c));
+    let found = [';', '\t', '|']
+        .iter()
+        .filter(fits)
+        .max_by_key(|c| count(header, **c));
     found.map_or(b',', |c| *c as u8)
 }
 
@@ -111,7 +123,10 @@ enum Commas {
 fn commas(text: &str) -> Option<Commas> {
     let body = text.strip_prefix(['-', '+']).unwrap_or(text);
     if !body.contains(',') {
-        return text.parse::<f64>().is_ok_and(f64::is_finite).then_some(Commas::Plain);
+        return text
+            .parse::<f64>()
+            .is_ok_and(f64::is_finite)
+            .then_some(Commas::Plain);
     }
     let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
     let grouped = |s: &str, mark: char| {
@@ -139,7 +154,11 @@ fn commas(text: &str) -> Option<Commas> {
         return None;
     }
     let either = part.len() == 3 && whole.len() <= 3 && !whole.starts_with('0');
-    Some(if either { Commas::Either } else { Commas::Decimal })
+    Some(if either {
+        Commas::Either
+    } else {
+        Commas::Decimal
+    })
 }
 
 /// Rewrites the numbers of columns that are written with commas; returns a sentence for each such column.
@@ -160,7 +179,11 @@ pub fn points(
             continue;
         };
         let has = |kind| kinds.contains(&kind);
-        let decimal = match (has(Commas::Decimal), has(Commas::Thousands), has(Commas::Either)) {
+        let decimal = match (
+            has(Commas::Decimal),
+            has(Commas::Thousands),
+            has(Commas::Either),
+        ) {
             (false, false, false) => continue,
             // Both `1,5` and `1,234.5`: no number format has both.
             (true, true, _) => continue,
@@ -186,7 +209,11 @@ pub fn points(
                 false => text.replace(',', ""),
             };
         }
-        let what = if decimal { "decimal commas" } else { "commas between thousands" };
+        let what = if decimal {
+            "decimal commas"
+        } else {
+            "commas between thousands"
+        };
         notes.push(format!("column `{name}`: numbers with {what}"));
     }
     Ok(notes)
@@ -222,8 +249,14 @@ mod tests {
         ] {
             assert_eq!(cells(text), meant, "{text:?}");
         }
-        assert_eq!(cells("a,b\n\"1,234\",x\n\"12,345.5\",y\n")[1..], [["1234", "x"], ["12345.5", "y"]]);
-        assert_eq!(cells("a;b\n1.234,5;x\n0,5;y\n")[1..], [["1234.5", "x"], ["0.5", "y"]]);
+        assert_eq!(
+            cells("a,b\n\"1,234\",x\n\"12,345.5\",y\n")[1..],
+            [["1234", "x"], ["12345.5", "y"]]
+        );
+        assert_eq!(
+            cells("a;b\n1.234,5;x\n0,5;y\n")[1..],
+            [["1234.5", "x"], ["0.5", "y"]]
+        );
         // Commas within texts are no numbers, and a quoted separator is none.
         assert_eq!(cells("a,b\n\"1, 2\",x\n\"3, 4\",y\n")[1][0], "1, 2");
         assert_eq!(cells("a;b\n\"x;y\";1\nz;2\n")[1], ["x;y", "1"]);
@@ -238,11 +271,17 @@ mod tests {
             ("\n \n", "empty"),
             ("a,b\n", "no rows"),
             ("PAR1\u{0}\u{0}", "Parquet"),
-            ("% comment\n@RELATION iris\n@attribute a numeric\n@data\n1\n", "ARFF"),
+            (
+                "% comment\n@RELATION iris\n@attribute a numeric\n@data\n1\n",
+                "ARFF",
+            ),
             ("<!DOCTYPE html>\n<p>", "HTML"),
             ("[{\"a\": 1}]", "JSON"),
             ("a,b,a\n1,2,3\n", "twice"),
-            ("a;b\n1,234;x\n2,345;y\n", "decimal comma or parted thousands"),
+            (
+                "a;b\n1,234;x\n2,345;y\n",
+                "decimal comma or parted thousands",
+            ),
             ("a,b\n1,2,3\n", "line 2"),
         ] {
             let error = read(text).unwrap_err().to_string();
@@ -254,7 +293,11 @@ mod tests {
     fn what_was_read_otherwise_than_as_plain_csv_is_said() {
         assert!(read("a,b\n1,2\n").unwrap().notes.is_empty());
         let notes = read("a;b\n1,5;2\n").unwrap().notes.join("\n");
-        assert!(notes.contains("separated by ';'") && notes.contains("column `a`: numbers with decimal commas"), "{notes}");
+        assert!(
+            notes.contains("separated by ';'")
+                && notes.contains("column `a`: numbers with decimal commas"),
+            "{notes}"
+        );
         let notes = read("1,2\n3,4\n").unwrap().notes.join("\n");
         assert!(notes.contains("first line"), "{notes}");
         let table = read(",b\n1,2\n").unwrap();

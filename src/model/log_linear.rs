@@ -68,12 +68,7 @@ where
     ///
     /// # Errors
     /// As [`fit`].
-    pub fn fit(
-        mut self,
-        data: &[X],
-        settings: &Settings,
-        seed: u64,
-    ) -> Result<Fitted, ModelError> {
+    pub fn fit(mut self, data: &[X], settings: &Settings, seed: u64) -> Result<Fitted, ModelError> {
         let all: Vec<Vec<f64>> = data.iter().map(&self.features).collect();
         for (i, scale) in self.scales.iter_mut().enumerate() {
             let (_, deviation) = super::density::moments(all.iter().map(|f| f[i]));

@@ -74,7 +74,11 @@ impl Watch {
     pub fn status(&self, best: f64) -> TerminationStatus {
         let reason = if self.limits.target.is_some_and(|t| best <= t) {
             TerminationReason::TargetCostReached
-        } else if self.limits.evaluations.is_some_and(|n| self.evaluations >= n) {
+        } else if self
+            .limits
+            .evaluations
+            .is_some_and(|n| self.evaluations >= n)
+        {
             TerminationReason::SolverExit(EVALUATIONS.to_owned())
         } else if self.limits.time.is_some_and(|t| self.start.elapsed() >= t) {
             TerminationReason::Timeout

@@ -161,10 +161,7 @@ fn outcome(status: SolverStatus) -> Outcome {
 }
 
 /// Clarabel's form: equalities, then inequalities, then bounds as rows of one matrix.
-fn run_clarabel(
-    program: &QuadraticProgram,
-    options: QpOptions,
-) -> Result<Solution, QpError> {
+fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Solution, QpError> {
     let n = program.dimension();
     let mut rows = Triplets::default();
     for row in &program.equalities {

@@ -291,7 +291,9 @@ impl QuadraticProgram {
             return p.symmetric_eigenvalues().min();
         }
         // A start that no eigenvector of use is orthogonal to.
-        let mut x: Vec<f64> = (0..n).map(|i| ((i + 1) as f64 * 0.754_877_666).fract() - 0.5).collect();
+        let mut x: Vec<f64> = (0..n)
+            .map(|i| ((i + 1) as f64 * 0.754_877_666).fract() - 0.5)
+            .collect();
         let mut least = f64::INFINITY;
         for _ in 0..POWER_STEPS {
             let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -304,7 +306,8 @@ impl QuadraticProgram {
                 }
             }
             let quotient = x.iter().zip(&y).map(|(x, y)| x * y).sum::<f64>();
-            let settled = (least - quotient).abs() <= 1e-6 * largest && quotient < -ROUNDING * largest;
+            let settled =
+                (least - quotient).abs() <= 1e-6 * largest && quotient < -ROUNDING * largest;
             least = least.min(quotient);
             if settled {
                 break;

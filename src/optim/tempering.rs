@@ -261,7 +261,10 @@ where
             r.round(moves);
         });
         self.watch.evaluations += u64::from(moves) * self.replicas.len() as u64;
-        let found = self.replicas.iter_mut().filter_map(|r| Some((r.least, r.best.take()?)));
+        let found = self
+            .replicas
+            .iter_mut()
+            .filter_map(|r| Some((r.least, r.best.take()?)));
         let best = found.reduce(|a, b| if b.0 < a.0 { b } else { a });
         let now = self.replicas.iter().map(|r| r.landscape.cost());
         let now = now.fold(f64::INFINITY, f64::min);

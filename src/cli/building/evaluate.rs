@@ -18,5 +18,6 @@ pub struct Args {
 pub fn run(args: &Args) -> edifice_base::Result<()> {
     let data = args.input.read()?;
     // `building learn` learns the model as published.
-    args.splits.evaluate(&data, &args.input.input, Contender::Ours)
+    args.splits
+        .evaluate(&data, &args.input.input, Contender::Ours)
 }

@@ -44,7 +44,8 @@ pub struct Splits {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let (data, _) = args.input.read()?;
-    args.splits.evaluate(&data, &args.input.table, Contender::Extended)
+    args.splits
+        .evaluate(&data, &args.input.table, Contender::Extended)
 }
 
 impl Splits {
@@ -78,11 +79,7 @@ impl Splits {
             let s = summary(own, reference);
             print::message(&format!(
                 "{name}: {:.3} +- {:.3} nats a row, {:+.3} +- {:.3} beside {}",
-                s.mean,
-                s.error,
-                s.difference,
-                s.difference_error,
-                contenders[0].0
+                s.mean, s.error, s.difference, s.difference_error, contenders[0].0
             ));
         }
         Ok(())
@@ -96,9 +93,14 @@ impl Splits {
         if self.models.is_empty() {
             // Each model once.
             all.retain(|(name, c)| *name != "published" || *c != learned);
-            return Ok(all.iter().map(|(name, c)| ((*name).to_owned(), *c)).collect());
+            return Ok(all
+                .iter()
+                .map(|(name, c)| ((*name).to_owned(), *c))
+                .collect());
         }
-        let further = Contender::EVERY.into_iter().filter(|c| !Contender::ALL.contains(c));
+        let further = Contender::EVERY
+            .into_iter()
+            .filter(|c| !Contender::ALL.contains(c));
         all.extend(further.map(|c| (c.name(), c)));
         let known = |name: &String| {
             let found = all.iter().find(|(known, _)| known == name);

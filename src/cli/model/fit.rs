@@ -82,17 +82,23 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// True for a column of the variable, or of one of its coordinates.
 fn covers(column: &str, variable: &str) -> bool {
-    column == variable || column.strip_prefix(variable).is_some_and(|rest| rest.starts_with('['))
+    column == variable
+        || column
+            .strip_prefix(variable)
+            .is_some_and(|rest| rest.starts_with('['))
 }
 
 /// The columns of a table that a network has, read by its categories.
 fn table(network: &Network, text: &TextTable) -> Result<Table, ModelError> {
     let mut table = Table::new();
-    for (name, categories) in network.columns() {
+    for (name, categories) in network.table_columns() {
         let Some(c) = text.header.iter().position(|h| *h == name) else {
             continue;
         };
-        let cells = text.rows.iter().map(|row| row.get(c).map_or("", |t| t.trim()));
+        let cells = text
+            .rows
+            .iter()
+            .map(|row| row.get(c).map_or("", |t| t.trim()));
         table = match categories {
             Some(all) => {
                 let names: Vec<&str> = all.iter().map(String::as_str).collect();
@@ -136,7 +142,9 @@ pub fn sample(network: &Network, given: &[String], count: usize, seed: u64) -> R
 pub fn score(network: &Network, path: &Path) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
-    let logs = network.log_likelihood(&table(network, &text).map_err(at)?).map_err(at)?;
+    let logs = network
+        .log_likelihood(&table(network, &text).map_err(at)?)
+        .map_err(at)?;
     print::line("row,log_likelihood")?;
     for (row, log) in logs.iter().enumerate() {
         print::line(&format!("{},{log}", row + 1))?;
@@ -153,7 +161,11 @@ pub fn complete(network: &Network, path: &Path, count: usize, seed: u64) -> Resu
     let table = table(network, &text).map_err(at)?;
     let mut rng = stream(seed, "model/complete", 0);
     let drawn = network.complete(&table, count, &mut rng).map_err(at)?;
-    let own: Vec<String> = drawn.columns().iter().map(|c| c.name().to_owned()).collect();
+    let own: Vec<String> = drawn
+        .columns()
+        .iter()
+        .map(|c| c.name().to_owned())
+        .collect();
     let kept = Passed::new(&text, &own);
     let mut lines = csv_lines(&drawn).into_iter();
     if let Some(header) = lines.next() {
@@ -199,7 +211,11 @@ impl<'t> Passed<'t> {
             true => format!("\"{}\"", text.replace('"', "\"\"")),
             false => text.clone(),
         };
-        let own = self.columns.iter().filter_map(|&c| cells.get(c)).map(quoted);
+        let own = self
+            .columns
+            .iter()
+            .filter_map(|&c| cells.get(c))
+            .map(quoted);
         own.chain([line.to_owned()]).collect::<Vec<_>>().join(",")
     }
 }

@@ -11,10 +11,10 @@ use edifice_model::tables::compare::{BACKGROUND, extended};
 use edifice_model::tables::encoding::Encoding;
 use edifice_model::tables::table_model::{FORMAT, TableModel};
 
-use super::{Shown, fit, network_of};
 use super::data::{TableInput, csv_lines, read_model, read_rows, read_table, rows};
 use super::given::evidence;
 use super::learning::Learning;
+use super::{Shown, fit, network_of};
 use crate::print;
 
 /// Options of `learn`.

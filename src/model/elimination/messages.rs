@@ -122,7 +122,11 @@ impl<'a> Messages<'a> {
             }
             total += log_sum_exp(&terms);
             for (place, h) in heard.iter().enumerate() {
-                let both: Vec<f64> = h.iter().zip(&self.to[f][place]).map(|(a, b)| a + b).collect();
+                let both: Vec<f64> = h
+                    .iter()
+                    .zip(&self.to[f][place])
+                    .map(|(a, b)| a + b)
+                    .collect();
                 total -= log_sum_exp(&both);
             }
         }

@@ -68,7 +68,9 @@ impl Question<'_> {
             let problem = "at least 2 chains and 1 step are needed";
             return Err(ModelError::parameter("settings", problem));
         }
-        let free: Vec<usize> = (0..self.known.len()).filter(|&v| self.known[v].is_none()).collect();
+        let free: Vec<usize> = (0..self.known.len())
+            .filter(|&v| self.known[v].is_none())
+            .collect();
         let sizes = &self.graph.sizes;
         let start: f64 = free.iter().map(|&v| (sizes[v] as f64).ln()).sum();
         let chain = |i: usize| {

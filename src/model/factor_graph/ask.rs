@@ -56,7 +56,10 @@ impl Gibbs {
             return Err(ModelError::parameter("weights", "of another number"));
         }
         if let Some(i) = weights.iter().position(|w| !w.is_finite()) {
-            return Err(ModelError::parameter(format!("weight {i}"), "is not finite"));
+            return Err(ModelError::parameter(
+                format!("weight {i}"),
+                "is not finite",
+            ));
         }
         Ok(Question {
             graph: self,
@@ -75,7 +78,10 @@ impl Question<'_> {
         let size = self.graph.sizes.get(variable).copied().unwrap_or(0);
         if value >= size {
             let problem = format!("has {size} values, {value} is none of them");
-            return Err(ModelError::parameter(format!("variable {variable}"), problem));
+            return Err(ModelError::parameter(
+                format!("variable {variable}"),
+                problem,
+            ));
         }
         self.known[variable] = Some(value);
         Ok(self)
@@ -91,7 +97,9 @@ impl Question<'_> {
         let one = |v: usize| match self.known[v] {
             Some(value) => point(value, self.graph.sizes[v]),
             None => match beliefs.of(&[v]) {
-                found if found.is_empty() => vec![1.0 / self.graph.sizes[v] as f64; self.graph.sizes[v]],
+                found if found.is_empty() => {
+                    vec![1.0 / self.graph.sizes[v] as f64; self.graph.sizes[v]]
+                }
                 found => found,
             },
         };
@@ -169,12 +177,21 @@ impl Question<'_> {
     /// The factors as tables of logarithms, known variables fixed.
     pub(super) fn tables(&self) -> Result<Vec<Table>, ModelError> {
         let mut all = Vec::with_capacity(self.graph.factors.len());
-        for (i, (factor, table)) in self.graph.factors.iter().zip(&self.graph.tables).enumerate() {
+        for (i, (factor, table)) in self
+            .graph
+            .factors
+            .iter()
+            .zip(&self.graph.tables)
+            .enumerate()
+        {
             if table.is_empty() {
                 let problem = "has too many configurations to be tabulated";
                 return Err(ModelError::parameter(format!("factor {i}"), problem));
             }
-            let logs = table.iter().map(|f| self.weights[factor.weight] * f).collect();
+            let logs = table
+                .iter()
+                .map(|f| self.weights[factor.weight] * f)
+                .collect();
             let table = Table::new(factor.variables.clone(), logs);
             all.push(table.reduce(&self.known, &self.graph.sizes));
         }
@@ -193,7 +210,9 @@ impl Question<'_> {
     /// Unknown variables without a factor are free.
     fn free(&self) -> f64 {
         let alone = |v: &usize| self.graph.around[*v].is_empty() && self.known[*v].is_none();
-        let sizes = (0..self.graph.sizes.len()).filter(alone).map(|v| self.graph.sizes[v]);
+        let sizes = (0..self.graph.sizes.len())
+            .filter(alone)
+            .map(|v| self.graph.sizes[v]);
         sizes.map(|k| (k as f64).ln()).sum()
     }
 }

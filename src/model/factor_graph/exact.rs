@@ -85,11 +85,7 @@ pub fn exact_gradient(
 /// assert!((fitted.weights[0] - 3.0_f64.ln()).abs() < 1e-8);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
-pub fn fit_exact(
-    graph: &Gibbs,
-    data: &[Vec<usize>],
-    penalty: f64,
-) -> Result<ExactFit, ModelError> {
+pub fn fit_exact(graph: &Gibbs, data: &[Vec<usize>], penalty: f64) -> Result<ExactFit, ModelError> {
     let k = graph.weights;
     // The negative of what is maximised.
     let cost = |w: &[f64]| -> Result<(f64, Vec<f64>), ModelError> {
@@ -99,7 +95,9 @@ pub fn fit_exact(
         Ok((0.5 * penalty * dot(w, w) - log, slope))
     };
     // Hidden units that all have weight 0 are alike, and stay so: a small asymmetry parts them.
-    let mut w: Vec<f64> = (0..k).map(|i| 0.01 * (((i + 1) as f64 * 0.618_034).fract() - 0.5)).collect();
+    let mut w: Vec<f64> = (0..k)
+        .map(|i| 0.01 * (((i + 1) as f64 * 0.618_034).fract() - 0.5))
+        .collect();
     let (mut now, mut slope) = cost(&w)?;
     let mut inverse: Vec<f64> = identity(k);
     for _ in 0..STEPS {
@@ -107,7 +105,9 @@ pub fn fit_exact(
         if length <= DONE {
             break;
         }
-        let mut step: Vec<f64> = (0..k).map(|i| -dot(&inverse[i * k..(i + 1) * k], &slope)).collect();
+        let mut step: Vec<f64> = (0..k)
+            .map(|i| -dot(&inverse[i * k..(i + 1) * k], &slope))
+            .collect();
         let mut along = dot(&step, &slope);
         if along >= 0.0 {
             inverse = identity(k);
@@ -144,7 +144,9 @@ pub fn fit_exact(
 }
 
 fn identity(k: usize) -> Vec<f64> {
-    (0..k * k).map(|i| f64::from(u8::from(i / k == i % k))).collect()
+    (0..k * k)
+        .map(|i| f64::from(u8::from(i / k == i % k)))
+        .collect()
 }
 
 /// `H ← (1 - ρ s yᵀ) H (1 - ρ y sᵀ) + ρ s sᵀ`, `ρ = 1 / yᵀs`; nothing where the curvature is not positive.
@@ -154,7 +156,9 @@ fn update(inverse: &mut [f64], s: &[f64], y: &[f64]) {
     if curvature <= 1e-300 {
         return;
     }
-    let hy: Vec<f64> = (0..k).map(|i| dot(&inverse[i * k..(i + 1) * k], y)).collect();
+    let hy: Vec<f64> = (0..k)
+        .map(|i| dot(&inverse[i * k..(i + 1) * k], y))
+        .collect();
     let factor = (1.0 + dot(y, &hy) / curvature) / curvature;
     for i in 0..k {
         for j in 0..k {

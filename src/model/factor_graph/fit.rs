@@ -157,7 +157,14 @@ pub fn fit<C: Chain>(
     let mut trace = Vec::with_capacity(settings.rounds);
     let half = settings.rounds / 2;
     for round in 0..settings.rounds {
-        if clamp(chain, &mut clamped, &weights, settings.moves, seed, round as u64) {
+        if clamp(
+            chain,
+            &mut clamped,
+            &weights,
+            settings.moves,
+            seed,
+            round as u64,
+        ) {
             examples = all_features(chain, &clamped)?;
         }
         if !settings.persistent {
@@ -232,7 +239,11 @@ fn clamp<C: Chain>(
         let mut rng = stream(seed ^ round.rotate_left(32), "clamped", i as u64);
         (0..moves).all(|_| chain.clamp(state, weights, &mut rng))
     };
-    states.par_iter_mut().enumerate().map(one).reduce(|| true, |a, b| a && b)
+    states
+        .par_iter_mut()
+        .enumerate()
+        .map(one)
+        .reduce(|| true, |a, b| a && b)
 }
 
 fn advance<C: Chain>(
@@ -279,4 +290,3 @@ fn mean_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<f64> {
     }
     mean
 }
-

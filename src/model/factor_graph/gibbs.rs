@@ -144,7 +144,10 @@ impl Gibbs {
 
     fn check(&self, variables: &[usize]) -> Result<(), ModelError> {
         match variables.iter().find(|v| **v >= self.sizes.len()) {
-            Some(v) => Err(ModelError::parameter(format!("variable {v}"), "is not there")),
+            Some(v) => Err(ModelError::parameter(
+                format!("variable {v}"),
+                "is not there",
+            )),
             None => Ok(()),
         }
     }

@@ -32,9 +32,9 @@ mod gibbs;
 
 use rand::RngExt;
 
-use edifice_base::rng::Stream;
 pub use annealed::{Annealing, LogPartition};
 pub use ask::{Beliefs, Question};
+use edifice_base::rng::Stream;
 pub use exact::{ExactFit, exact_gradient, fit_exact};
 pub use fit::{Fitted, Outcome, Settings, fit, gradient};
 pub use gibbs::{Factor, Feature, Gibbs};

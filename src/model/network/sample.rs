@@ -53,7 +53,7 @@ impl Network {
 
     /// Names of the columns that a table of the network has, with the categories of discrete ones: the variables' names, `name[i]` for
     /// the coordinates of a vector of several.
-    pub fn columns(&self) -> Vec<(String, Option<&[String]>)> {
+    pub fn table_columns(&self) -> Vec<(String, Option<&[String]>)> {
         let mut all = Vec::new();
         for (n, node) in self.nodes.iter().enumerate() {
             if node.is_discrete() {

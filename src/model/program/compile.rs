@@ -39,7 +39,7 @@ const MOST: usize = 1 << 14;
 #[derive(Clone, Debug)]
 pub struct Compiled {
     /// A variable for each choice, named as its address, with categories `0`, `1`, ..; a variable `weight j` for each observation or factor
-    /// that depends on a choice.
+    /// that depends on a choice; the variable `nothing` of one category where there are none.
     pub network: Network,
     /// That every weight was seen.
     pub evidence: network::Evidence,
@@ -61,7 +61,8 @@ impl Compiled {
     /// # Errors
     /// As [`Network::marginal`].
     pub fn marginal(&self, at: impl Into<Address>) -> Result<Vec<f64>, ModelError> {
-        self.network.marginal(&self.evidence, &at.into().to_string())
+        self.network
+            .marginal(&self.evidence, &at.into().to_string())
     }
 }
 
@@ -180,7 +181,12 @@ impl<'p, P: Program> Probe<'p, P> {
     }
 
     /// Parents and table of a function of the first `before` choices.
-    fn function(&self, f: usize, before: usize, rng: &mut Stream) -> Result<Function, ProgramError> {
+    fn function(
+        &self,
+        f: usize,
+        before: usize,
+        rng: &mut Stream,
+    ) -> Result<Function, ProgramError> {
         let mut parents: Vec<usize> = Vec::new();
         'again: loop {
             let sizes = parents.iter().map(|&p| self.sizes[p]);
@@ -275,7 +281,9 @@ impl<'p, P: Program> Probe<'p, P> {
                 let all = || function.values.iter().flatten().copied();
                 let top = all().fold(f64::NEG_INFINITY, f64::max);
                 if top == f64::NEG_INFINITY {
-                    return Err(ProgramError::Impossible { tried: all().count() });
+                    return Err(ProgramError::Impossible {
+                        tried: all().count(),
+                    });
                 }
                 log_scale += top;
                 if !function.parents.is_empty() {
@@ -284,7 +292,12 @@ impl<'p, P: Program> Probe<'p, P> {
                     let table: Vec<f64> = seen.flat_map(|p| [1.0 - p, p]).collect();
                     evidence = evidence.is(&name, "seen");
                     let categories = ["not seen", "seen"];
-                    variables.push(Variable::table(&name, &categories, &parents(function), &table));
+                    variables.push(Variable::table(
+                        &name,
+                        &categories,
+                        &parents(function),
+                        &table,
+                    ));
                 }
                 continue;
             };
@@ -295,6 +308,10 @@ impl<'p, P: Program> Probe<'p, P> {
             let table: Vec<f64> = function.values.iter().flatten().map(|l| l.exp()).collect();
             let table = Variable::table(&names[f], &categories, &parents(function), &table);
             variables.push(table);
+        }
+        if variables.is_empty() {
+            // A network has at least one variable.
+            variables.push(Variable::table("nothing", &["0"], &[], &[1.0]));
         }
         Ok(Compiled {
             network: Network::new(variables)?,
@@ -349,7 +366,11 @@ impl Handler for Assigned<'_> {
         };
         let (place, k) = (self.choices.len(), logs.len());
         let value = match (self.known, &mut self.draw) {
-            (Some(known), _) => known.get(place).copied().unwrap_or(0).min(k.saturating_sub(1)),
+            (Some(known), _) => known
+                .get(place)
+                .copied()
+                .unwrap_or(0)
+                .min(k.saturating_sub(1)),
             (None, Some(rng)) if k > 0 => rng.random_range(0..k),
             _ => 0,
         };
@@ -360,7 +381,8 @@ impl Handler for Assigned<'_> {
         self.choices.push(address);
         self.sizes.push(k);
         self.logs.push(logs);
-        d.load(&Value::Whole(value as u64)).unwrap_or_else(|| any(&d))
+        d.load(&Value::Whole(value as u64))
+            .unwrap_or_else(|| any(&d))
     }
 
     fn observe<D: Dist<f64>>(&mut self, d: D, x: &D::Value) {

@@ -107,7 +107,10 @@ pub fn quantile(draws: &[f64], probability: f64) -> f64 {
 
 fn valid(chains: &[Vec<f64>]) -> bool {
     let n = chains.first().map_or(0, Vec::len);
-    n >= 4 && chains.iter().all(|c| c.len() == n && c.iter().all(|x| x.is_finite()))
+    n >= 4
+        && chains
+            .iter()
+            .all(|c| c.len() == n && c.iter().all(|x| x.is_finite()))
 }
 
 fn map(chains: &[Vec<f64>], f: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {

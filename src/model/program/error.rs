@@ -12,7 +12,9 @@ pub enum ProgramError {
         at: String,
     },
     /// A density or a value that is not a number, or an infinite weight: a parameter is out of its range.
-    #[error("at `{at}`: the density or the value is not a number (a parameter is out of its range)")]
+    #[error(
+        "at `{at}`: the density or the value is not a number (a parameter is out of its range)"
+    )]
     NotANumber {
         /// The address, or which observation.
         at: String,
@@ -30,7 +32,9 @@ pub enum ProgramError {
         at: String,
     },
     /// Other choices in one run than in another, where they must be the same.
-    #[error("the choice at `{at}` is not made in every run, or has other values: this engine needs the same choices in all runs")]
+    #[error(
+        "the choice at `{at}` is not made in every run, or has other values: this engine needs the same choices in all runs"
+    )]
     Changing {
         /// The address.
         at: String,

@@ -38,7 +38,11 @@ impl<T> Posterior<T> {
         for (i, draw) in self.draws.iter().enumerate() {
             let weight = draw.log_weight.exp();
             let (prior, likelihood) = (draw.trace.log_prior(), draw.trace.log_likelihood());
-            text += &format!("{},{},{weight},{prior},{likelihood}", i / length, i % length);
+            text += &format!(
+                "{},{},{weight},{prior},{likelihood}",
+                i / length,
+                i % length
+            );
             for (_, _, values) in &columns {
                 text += ",";
                 if !values[i].is_nan() {
@@ -70,7 +74,11 @@ impl<T> Posterior<T> {
         };
         let mut posterior = serde_json::Map::new();
         for (name, entries) in names {
-            let depth = entries.iter().map(|(index, _)| index.len()).max().unwrap_or(0);
+            let depth = entries
+                .iter()
+                .map(|(index, _)| index.len())
+                .max()
+                .unwrap_or(0);
             // The same name with different numbers of indices: each number under its own name.
             if entries.iter().any(|(index, _)| index.len() != depth) {
                 for (index, values) in &entries {
@@ -88,7 +96,10 @@ impl<T> Posterior<T> {
             posterior.insert(name, chains(&array));
         }
         let mut stats = serde_json::Map::new();
-        stats.insert("lp".to_owned(), chains(&|i| number(self.draws[i].trace.log_joint())));
+        stats.insert(
+            "lp".to_owned(),
+            chains(&|i| number(self.draws[i].trace.log_joint())),
+        );
         let weights = chains(&|i| number(self.draws[i].log_weight));
         stats.insert("log_weight".to_owned(), weights);
         if self.diverging.len() == self.draws.len() {

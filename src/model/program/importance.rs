@@ -5,11 +5,11 @@
 
 use rayon::prelude::*;
 
+use super::Program;
 use super::error::ProgramError;
 use super::pareto::pareto_k;
 use super::posterior::{Draw, Evidence, Posterior};
 use super::run::{Old, run};
-use super::Program;
 use crate::linalg::log_sum_exp;
 use edifice_base::rng::stream;
 
@@ -23,7 +23,11 @@ use edifice_base::rng::stream;
 ///
 /// # Examples
 /// [`given`](super::given) and [`Posterior::predictive`] have some.
-pub fn importance<P>(program: &P, count: usize, seed: u64) -> Result<Posterior<P::Out>, ProgramError>
+pub fn importance<P>(
+    program: &P,
+    count: usize,
+    seed: u64,
+) -> Result<Posterior<P::Out>, ProgramError>
 where
     P: Program + Sync,
     P::Out: Send,

@@ -198,7 +198,9 @@ fn change<P: Program>(
         let (old, new) = (trace.choices.len() as f64, done.trace.choices.len() as f64);
         let stale = trace.log_prior() - done.kept;
         let gain = done.trace.log_joint() - trace.log_joint();
-        (gain + done.ratio + stale - done.fresh + (old / new).ln()).min(0.0).exp()
+        (gain + done.ratio + stale - done.fresh + (old / new).ln())
+            .min(0.0)
+            .exp()
     };
     // A walk may lead to parameters out of range for a later choice that is kept: such a run has no weight.
     let (done, p) = match run(program, old, rng) {

@@ -11,7 +11,10 @@
 
 use std::collections::HashMap;
 
-use nuts_rs::{Chain as _, CpuLogpFunc, CpuMath, CpuMathError, DiagNutsSettings, HasDims, LogpError, Settings as _};
+use nuts_rs::{
+    Chain as _, CpuLogpFunc, CpuMath, CpuMathError, DiagNutsSettings, HasDims, LogpError,
+    Settings as _,
+};
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
@@ -121,7 +124,9 @@ fn chain<P: Program>(
     let mut start = vec![0.0; shape.dimension];
     let mut found = false;
     for _ in 0..STARTS {
-        start.iter_mut().for_each(|u| *u = rng.random_range(-2.0..2.0));
+        start
+            .iter_mut()
+            .for_each(|u| *u = rng.random_range(-2.0..2.0));
         match density.logp(&start, &mut gradient) {
             Ok(_) => {
                 found = true;
@@ -148,7 +153,9 @@ fn chain<P: Program>(
     };
     let stopped = |e: &dyn std::fmt::Display| ProgramError::Engine(format!("{e:#}"));
     let math = CpuMath::new(density);
-    let mut sampler = nuts.new_chain(number as u64, math, rng).map_err(|e| stopped(&e))?;
+    let mut sampler = nuts
+        .new_chain(number as u64, math, rng)
+        .map_err(|e| stopped(&e))?;
     sampler.set_position(&start).map_err(|e| stopped(&e))?;
     for n in 0..settings.warmup + settings.draws {
         let (position, progress) = sampler.draw().map_err(|e| stopped(&e))?;

@@ -218,7 +218,9 @@ impl<T> Posterior<T> {
             });
             for i in 0..width {
                 let one = |n: &Option<Vec<f64>>| {
-                    n.as_ref().and_then(|n| n.get(i).copied()).unwrap_or(f64::NAN)
+                    n.as_ref()
+                        .and_then(|n| n.get(i).copied())
+                        .unwrap_or(f64::NAN)
                 };
                 let column = numbers.iter().map(one).collect();
                 columns.push((at.clone(), several.then_some(i), column));
@@ -267,10 +269,12 @@ impl<T> Posterior<T> {
             return 0.0;
         };
         let weights = self.draws.iter().map(|d| d.log_weight.exp());
-        let off = weights.zip(values).map(|(w, v)| match v.is_nan() || w == 0.0 {
-            true => 0.0,
-            false => w * (v - mean) / total,
-        });
+        let off = weights
+            .zip(values)
+            .map(|(w, v)| match v.is_nan() || w == 0.0 {
+                true => 0.0,
+                false => w * (v - mean) / total,
+            });
         let off: Vec<f64> = off.collect();
         let size = (off.len() / groups.max(1)).max(1);
         let sums = off.chunks(size).map(|g| g.iter().sum::<f64>().powi(2));
@@ -283,7 +287,11 @@ impl<T> Posterior<T> {
     pub fn beside<U>(&self, truth: &Posterior<U>) -> Vec<Beside> {
         let mut all = Vec::new();
         for at in truth.addresses() {
-            let support = truth.draws.iter().find_map(|d| d.trace.find(&at, 0)).map(|c| c.support);
+            let support = truth
+                .draws
+                .iter()
+                .find_map(|d| d.trace.find(&at, 0))
+                .map(|c| c.support);
             if let Some(Support::Finite(k)) = support {
                 for value in 0..k as u64 {
                     all.push(Beside {

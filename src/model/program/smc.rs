@@ -112,7 +112,10 @@ where
     let mut stage = 0;
     while particles.iter().any(|(t, _)| t.stages.len() > stage) {
         stage += 1;
-        let gains: Vec<f64> = particles.iter().map(|(t, _)| gain(t, from, stage)).collect();
+        let gains: Vec<f64> = particles
+            .iter()
+            .map(|(t, _)| gain(t, from, stage))
+            .collect();
         let total = log_sum_exp(&gains);
         if total == f64::NEG_INFINITY {
             break;
@@ -147,11 +150,14 @@ where
         .collect();
     let base = evidence - (size as f64).ln();
     let log_evidence = base + log_sum_exp(&gains);
-    let draws = particles.into_iter().zip(gains).map(|((trace, out), g)| Draw {
-        trace,
-        out,
-        log_weight: base + g,
-    });
+    let draws = particles
+        .into_iter()
+        .zip(gains)
+        .map(|((trace, out), g)| Draw {
+            trace,
+            out,
+            log_weight: base + g,
+        });
     Ok(Island {
         draws: draws.collect(),
         log_evidence,

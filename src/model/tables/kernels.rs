@@ -75,7 +75,11 @@ impl Kernels {
         let mut best = f64::NEG_INFINITY;
         let mixed = found.columns.iter().any(|c| c.categories.is_some());
         let real = found.columns.iter().any(|c| c.categories.is_none());
-        for &bandwidth in if real { &BANDWIDTHS[..] } else { &BANDWIDTHS[..1] } {
+        for &bandwidth in if real {
+            &BANDWIDTHS[..]
+        } else {
+            &BANDWIDTHS[..1]
+        } {
             for &share in if mixed { &SHARES[..] } else { &SHARES[..1] } {
                 let own = Self {
                     bandwidth,
@@ -178,16 +182,32 @@ mod tests {
         let table = Table::new().real("x", x).unwrap();
         let kernels = Kernels::learn(&table).unwrap();
         let grid: Vec<f64> = (0..4000).map(|i| -4.0 + f64::from(i) * 0.003).collect();
-        let at = Table::new().real("x", grid.iter().map(|x| Some(*x))).unwrap();
-        let mass: f64 = kernels.log_likelihood(&at).unwrap().iter().map(|l| l.exp() * 0.003).sum();
+        let at = Table::new()
+            .real("x", grid.iter().map(|x| Some(*x)))
+            .unwrap();
+        let mass: f64 = kernels
+            .log_likelihood(&at)
+            .unwrap()
+            .iter()
+            .map(|l| l.exp() * 0.003)
+            .sum();
         assert!((mass - 1.0).abs() < 1e-3, "{mass}");
     }
 
     #[test]
     fn units_do_not_matter() {
         let x: Vec<f64> = (0..40).map(|i| (f64::from(i) * 0.618).fract()).collect();
-        let table = |unit: f64| Table::new().real("x", x.iter().map(|x| Some(x * unit))).unwrap();
-        let logs = |unit: f64| Kernels::learn(&table(unit)).unwrap().log_likelihood(&table(unit)).unwrap();
+        let table = |unit: f64| {
+            Table::new()
+                .real("x", x.iter().map(|x| Some(x * unit)))
+                .unwrap()
+        };
+        let logs = |unit: f64| {
+            Kernels::learn(&table(unit))
+                .unwrap()
+                .log_likelihood(&table(unit))
+                .unwrap()
+        };
         for (a, b) in logs(1.0).iter().zip(logs(1000.0)) {
             assert!((a - b - 1000_f64.ln()).abs() < 1e-9);
         }

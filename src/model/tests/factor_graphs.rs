@@ -61,7 +61,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn random(count: usize, scale: f64, rng: &mut Stream) -> Vec<f64> {
-    (0..count).map(|_| scale * (2.0 * rng.random::<f64>() - 1.0)).collect()
+    (0..count)
+        .map(|_| scale * (2.0 * rng.random::<f64>() - 1.0))
+        .collect()
 }
 
 #[test]
@@ -85,7 +87,9 @@ fn answers_equal_enumeration() {
             factors.push(Factor {
                 variables: scope,
                 weight,
-                feature: Box::new(move |x| (1.0 + x.iter().sum::<usize>() as f64 * 1.7 + weight as f64).sin()),
+                feature: Box::new(move |x| {
+                    (1.0 + x.iter().sum::<usize>() as f64 * 1.7 + weight as f64).sin()
+                }),
             });
         }
         let count = factors.len();
@@ -102,22 +106,41 @@ fn answers_equal_enumeration() {
         let (mut z, mut marginals) = (0.0, sizes.iter().map(|&k| vec![0.0; k]).collect::<Vec<_>>());
         let (mut best, mut most): (f64, Vec<usize>) = (f64::NEG_INFINITY, Vec::new());
         for x in states(&sizes) {
-            if x.iter().zip(&known).any(|(x, k)| k.is_some_and(|k| k != *x)) {
+            if x.iter()
+                .zip(&known)
+                .any(|(x, k)| k.is_some_and(|k| k != *x))
+            {
                 continue;
             }
-            let log: f64 = scopes.iter().enumerate().map(|(w, scope)| {
-                let sum: usize = scope.iter().map(|&v| x[v]).sum();
-                weights[w] * (1.0 + sum as f64 * 1.7 + w as f64).sin()
-            }).sum();
+            let log: f64 = scopes
+                .iter()
+                .enumerate()
+                .map(|(w, scope)| {
+                    let sum: usize = scope.iter().map(|&v| x[v]).sum();
+                    weights[w] * (1.0 + sum as f64 * 1.7 + w as f64).sin()
+                })
+                .sum();
             z += log.exp();
-            x.iter().enumerate().for_each(|(v, &k)| marginals[v][k] += log.exp());
+            x.iter()
+                .enumerate()
+                .for_each(|(v, &k)| marginals[v][k] += log.exp());
             if log > best + 1e-12 {
                 (best, most) = (log, x);
             }
         }
         assert!((question.log_partition().unwrap() - z.ln()).abs() < 1e-12 * (1.0 + z.ln().abs()));
-        for (found, expected) in question.marginals().unwrap().iter().flatten().zip(marginals.iter().flatten()) {
-            assert!((found - expected / z).abs() < 1e-12, "{found} is not {}", expected / z);
+        for (found, expected) in question
+            .marginals()
+            .unwrap()
+            .iter()
+            .flatten()
+            .zip(marginals.iter().flatten())
+        {
+            assert!(
+                (found - expected / z).abs() < 1e-12,
+                "{found} is not {}",
+                expected / z
+            );
         }
         let (state, log) = question.explain().unwrap();
         assert!((log - (best - z.ln())).abs() < 1e-9, "{state:?} {most:?}");
@@ -130,14 +153,27 @@ fn answers_equal_enumeration() {
 #[test]
 fn loopy_propagation_is_exact_on_trees() {
     // A star and a tail.
-    let factors = [(0, 1), (0, 2), (0, 3), (3, 4), (4, 5)].into_iter().enumerate();
-    let factors = factors.map(|(w, (a, b))| product(a, b, w)).chain([alone(2, 5), alone(5, 5)]);
+    let factors = [(0, 1), (0, 2), (0, 3), (3, 4), (4, 5)]
+        .into_iter()
+        .enumerate();
+    let factors = factors
+        .map(|(w, (a, b))| product(a, b, w))
+        .chain([alone(2, 5), alone(5, 5)]);
     let graph = Gibbs::new(vec![3; 6], factors.collect()).unwrap();
-    let question = graph.ask(&[0.3, -0.7, 1.1, 0.4, -0.2, 0.5]).unwrap().given(1, 2).unwrap();
+    let question = graph
+        .ask(&[0.3, -0.7, 1.1, 0.4, -0.2, 0.5])
+        .unwrap()
+        .given(1, 2)
+        .unwrap();
     let loopy = question.loopy(500, 1e-14).unwrap();
     assert!(loopy.converged);
     assert!((loopy.log_partition - question.log_partition().unwrap()).abs() < 1e-9);
-    for (a, b) in loopy.marginals.iter().flatten().zip(question.marginals().unwrap().iter().flatten()) {
+    for (a, b) in loopy
+        .marginals
+        .iter()
+        .flatten()
+        .zip(question.marginals().unwrap().iter().flatten())
+    {
         assert!((a - b).abs() < 1e-9);
     }
 }
@@ -145,8 +181,13 @@ fn loopy_propagation_is_exact_on_trees() {
 /// Draws from a random machine by enumeration.
 fn data(n: usize, weights: &[f64], count: usize, rng: &mut Stream) -> Vec<Vec<usize>> {
     let all = states(&vec![2; n]);
-    let p: Vec<f64> = all.iter().map(|x| dot(weights, &features(n, x)).exp()).collect();
-    (0..count).map(|_| all[edifice_base::rng::categorical(&p, rng)].clone()).collect()
+    let p: Vec<f64> = all
+        .iter()
+        .map(|x| dot(weights, &features(n, x)).exp())
+        .collect();
+    (0..count)
+        .map(|_| all[edifice_base::rng::categorical(&p, rng)].clone())
+        .collect()
 }
 
 #[test]
@@ -164,7 +205,10 @@ fn defaults_reach_the_maximum_likelihood_of_random_machines() {
         let (log, _) = exact_gradient(&graph, &data, &fitted.weights).unwrap();
         let short = best.log_likelihood - log;
         worst = worst.max(short);
-        println!("{round}: {short:.6} nats below, says {:.6}, {:?}", fitted.shortfall, fitted.outcome);
+        println!(
+            "{round}: {short:.6} nats below, says {:.6}, {:?}",
+            fitted.shortfall, fitted.outcome
+        );
         assert!(short < 1e-3, "{round}: {short}");
         assert_eq!(fitted.outcome, Outcome::Settled);
     }
@@ -179,9 +223,17 @@ fn standard_errors_are_those_of_the_information() {
     let fitted = fit(&graph, &data, &Settings::default(), 1).unwrap();
     // The covariance of the features under the fit, by enumeration; its inverse by Gauss-Jordan.
     let all = states(&[2; 3]);
-    let p: Vec<f64> = all.iter().map(|x| dot(&fitted.weights, &features(3, x)).exp()).collect();
+    let p: Vec<f64> = all
+        .iter()
+        .map(|x| dot(&fitted.weights, &features(3, x)).exp())
+        .collect();
     let z: f64 = p.iter().sum();
-    let mean = |f: &dyn Fn(&[f64]) -> f64| all.iter().zip(&p).map(|(x, p)| p / z * f(&features(3, x))).sum::<f64>();
+    let mean = |f: &dyn Fn(&[f64]) -> f64| {
+        all.iter()
+            .zip(&p)
+            .map(|(x, p)| p / z * f(&features(3, x)))
+            .sum::<f64>()
+    };
     let k = 6;
     let mut m = vec![vec![0.0; 2 * k]; k];
     for i in 0..k {
@@ -203,7 +255,10 @@ fn standard_errors_are_those_of_the_information() {
     }
     for (i, found) in fitted.standard_errors.iter().enumerate() {
         let expected = (m[i][k + i] / 2000.0).sqrt();
-        assert!((found / expected - 1.0).abs() < 0.25, "{i}: {found} is not {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 0.25,
+            "{i}: {found} is not {expected}"
+        );
     }
 }
 
@@ -217,7 +272,10 @@ fn restricted(v: usize, h: usize) -> Gibbs {
         }
     }
     let hidden: Vec<usize> = (v..v + h).collect();
-    Gibbs::new(vec![2; v + h], factors).unwrap().hidden(&hidden).unwrap()
+    Gibbs::new(vec![2; v + h], factors)
+        .unwrap()
+        .hidden(&hidden)
+        .unwrap()
 }
 
 #[test]
@@ -226,7 +284,9 @@ fn the_gradient_of_a_restricted_machine_equals_enumeration() {
     let graph = restricted(v, h);
     let mut rng = stream(4, "restricted", 0);
     let weights = random(v + h + v * h, 1.0, &mut rng);
-    let data: Vec<Vec<usize>> = (0..10).map(|_| (0..v + h).map(|_| rng.random_range(0..2)).collect()).collect();
+    let data: Vec<Vec<usize>> = (0..10)
+        .map(|_| (0..v + h).map(|_| rng.random_range(0..2)).collect())
+        .collect();
     let energy = |w: &[f64], x: &[usize]| {
         let mut sum = x.iter().zip(w).map(|(x, w)| *x as f64 * w).sum::<f64>();
         let mut at = v + h;
@@ -256,14 +316,30 @@ fn the_gradient_of_a_restricted_machine_equals_enumeration() {
             log(&w)
         };
         let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
-        assert!((s - difference).abs() < 1e-8, "{i}: {s} is not {difference}");
+        assert!(
+            (s - difference).abs() < 1e-8,
+            "{i}: {s} is not {difference}"
+        );
     }
     // A fit by chains climbs the same likelihood.
     let long: Vec<Vec<usize>> = data.iter().cycle().take(2000).cloned().collect();
     let before = log(&vec![0.0; weights.len()]);
-    let fitted = fit(&graph, &long, &Settings { rounds: 200, ..Settings::default() }, 1).unwrap();
+    let fitted = fit(
+        &graph,
+        &long,
+        &Settings {
+            rounds: 200,
+            ..Settings::default()
+        },
+        1,
+    )
+    .unwrap();
     let best = fit_exact(&graph, &data, 1e-4).unwrap();
-    println!("zero {before:.4}, chains {:.4}, exact {:.4}", log(&fitted.weights), best.log_likelihood);
+    println!(
+        "zero {before:.4}, chains {:.4}, exact {:.4}",
+        log(&fitted.weights),
+        best.log_likelihood
+    );
     assert!(log(&fitted.weights) > before + 0.1 && best.log_likelihood > before + 0.1);
 }
 
@@ -273,21 +349,43 @@ fn a_conditional_field_is_fitted_given_its_inputs() {
     let mut factors: Vec<Factor> = (0..3).map(|i| product(i, i + 1, 0)).collect();
     factors.extend((0..4).map(|i| product(i, i + 4, 1)));
     factors.extend((0..4).map(|i| alone(i, 2)));
-    let field = Gibbs::new(vec![2; 8], factors).unwrap().inputs(&[4, 5, 6, 7]).unwrap();
+    let field = Gibbs::new(vec![2; 8], factors)
+        .unwrap()
+        .inputs(&[4, 5, 6, 7])
+        .unwrap();
     let truth = [1.0, 1.5, -1.0];
     let mut rng = stream(5, "field", 0);
     let mut data = Vec::new();
     for _ in 0..1500 {
         let mut start = vec![0; 8];
         // Inputs of a distribution that the field does not model.
-        start[4..].iter_mut().for_each(|x| *x = usize::from(rng.random::<f64>() < 0.7));
+        start[4..]
+            .iter_mut()
+            .for_each(|x| *x = usize::from(rng.random::<f64>() < 0.7));
         data.extend(sample(&field, &start, &truth, 1, 20, &mut rng));
     }
     let exact = fit_exact(&field, &data, 0.0).unwrap();
-    let fitted = fit(&field, &data, &Settings { moves: 3, ..Settings::default() }, 1).unwrap();
-    println!("exact {:?}, chains {:?} +- {:?}", exact.weights, fitted.weights, fitted.standard_errors);
-    for ((w, e), (t, s)) in exact.weights.iter().zip(&fitted.weights).zip(truth.iter().zip(&fitted.standard_errors)) {
-        assert!((w - t).abs() < 4.0 * s && (w - e).abs() < s);
+    let fitted = fit(
+        &field,
+        &data,
+        &Settings {
+            moves: 3,
+            ..Settings::default()
+        },
+        1,
+    )
+    .unwrap();
+    println!(
+        "exact {:?}, chains {:?} +- {:?}",
+        exact.weights, fitted.weights, fitted.standard_errors
+    );
+    for ((w, e), (t, s)) in exact
+        .weights
+        .iter()
+        .zip(&fitted.weights)
+        .zip(truth.iter().zip(&fitted.standard_errors))
+    {
+        assert!((w - t).abs() < 4.0 * s && (w - e).abs() < *s);
     }
     let slope = gradient(&field, &data, &exact.weights, 20, 3).unwrap();
     assert!(slope.iter().all(|s| s.abs() < 0.1), "{slope:?}");

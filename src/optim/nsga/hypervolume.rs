@@ -13,9 +13,8 @@
 /// assert_eq!(hypervolume(&points, &[4.0, 4.0]), 7.0);
 /// ```
 pub fn hypervolume(points: &[Vec<f64>], reference: &[f64]) -> f64 {
-    let below = |p: &&Vec<f64>| {
-        p.len() == reference.len() && p.iter().zip(reference).all(|(x, r)| x < r)
-    };
+    let below =
+        |p: &&Vec<f64>| p.len() == reference.len() && p.iter().zip(reference).all(|(x, r)| x < r);
     let mut points: Vec<&[f64]> = points.iter().filter(below).map(Vec::as_slice).collect();
     volume(&mut points, reference)
 }

@@ -215,7 +215,11 @@ fn judge<B: Breed>(breed: &mut B, mut genome: B::Genome) -> Result<Member<B::Gen
     }
     let violation = breed.violation(&genome);
     Ok(Member {
-        violation: if violation.is_nan() { f64::INFINITY } else { violation.max(0.0) },
+        violation: if violation.is_nan() {
+            f64::INFINITY
+        } else {
+            violation.max(0.0)
+        },
         genome,
         costs,
         rank: 0,
@@ -230,7 +234,10 @@ fn child<B: Breed>(
     rng: &mut Stream,
 ) -> B::Genome {
     let pick = |rng: &mut Stream| {
-        let (a, b) = (rng.random_range(0..parents.len()), rng.random_range(0..parents.len()));
+        let (a, b) = (
+            rng.random_range(0..parents.len()),
+            rng.random_range(0..parents.len()),
+        );
         let (a, b) = (&parents[a], &parents[b]);
         let better = b.rank < a.rank || b.rank == a.rank && b.crowding > a.crowding;
         if better { b } else { a }

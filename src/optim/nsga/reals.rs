@@ -61,7 +61,8 @@ where
 
     fn random<R: Rng>(&mut self, rng: &mut R) -> Vec<f64> {
         let each = self.bounds.iter();
-        each.map(|(l, u)| l + (u - l) * rng.random::<f64>()).collect()
+        each.map(|(l, u)| l + (u - l) * rng.random::<f64>())
+            .collect()
     }
 
     fn cross<R: Rng>(&mut self, a: &Vec<f64>, b: &Vec<f64>, rng: &mut R) -> Vec<f64> {

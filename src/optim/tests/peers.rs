@@ -28,7 +28,10 @@ impl Tour {
         };
         let cities: Vec<[f64; 2]> = (0..n).map(|_| [next(), next()]).collect();
         let far = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-        let distance: Vec<Vec<f64>> = cities.iter().map(|a| cities.iter().map(|b| far(a, b)).collect()).collect();
+        let distance: Vec<Vec<f64>> = cities
+            .iter()
+            .map(|a| cities.iter().map(|b| far(a, b)).collect())
+            .collect();
         let near = distance.iter().enumerate().map(|(i, row)| {
             let mut order: Vec<usize> = (0..n).filter(|j| *j != i).collect();
             order.sort_by(|a, b| row[*a].total_cmp(&row[*b]));
@@ -132,23 +135,37 @@ fn tempering_finds_tours_near_those_of_lkh() {
         };
         let run = temper(&tour, &settings, 1, |_| {}).unwrap();
         // The tour itself is measured, not the sum of its changes.
-        let length: f64 = (0..200).map(|k| tour.distance[run.best[k]][run.best[(k + 1) % 200]]).sum();
+        let length: f64 = (0..200)
+            .map(|k| tour.distance[run.best[k]][run.best[(k + 1) % 200]])
+            .sum();
         assert!((length - run.cost).abs() < 1e-6);
         tempered += (length / best - 1.0) / 10.0;
         let (low, high) = temperatures(tour.clone(), &mut stream(1, "trial", 0));
-        let cooling = Cooling { start: high, end: low };
+        let cooling = Cooling {
+            start: high,
+            end: low,
+        };
         let mut own = tour.clone();
-        let run = Annealing::new(cooling, 2000, 6000, 1).unwrap().run(&mut own, |_| {}).unwrap();
+        let run = Annealing::new(cooling, 2000, 6000, 1)
+            .unwrap()
+            .run(&mut own, |_| {})
+            .unwrap();
         annealed += (run.cost / best - 1.0) / 10.0;
     }
-    println!("mean gap to LKH: tempering {:.2} %, annealing with as many moves {:.2} %", 100.0 * tempered, 100.0 * annealed);
+    println!(
+        "mean gap to LKH: tempering {:.2} %, annealing with as many moves {:.2} %",
+        100.0 * tempered,
+        100.0 * annealed
+    );
     assert!(tempered <= 0.01, "{tempered}");
 }
 
 #[test]
 fn rosenbrocks_valley_of_ten_is_solved_in_ten_thousand() {
     let valley = |x: &[f64]| -> f64 {
-        x.windows(2).map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2)).sum()
+        x.windows(2)
+            .map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2))
+            .sum()
     };
     let mut solved = 0;
     for seed in 0..20 {
@@ -164,7 +181,11 @@ fn rosenbrocks_valley_of_ten_is_solved_in_ten_thousand() {
         };
         let run = cmaes::minimize(valley, &[0.0; 10], &settings, seed, |_| {}).unwrap();
         solved += u32::from(run.outcome == Outcome::TargetReached);
-        println!("{seed}: {:.1e} after {} generations of 10", run.cost, run.trace.len());
+        println!(
+            "{seed}: {:.1e} after {} generations of 10",
+            run.cost,
+            run.trace.len()
+        );
     }
     // pycma needs 4940 to 5660 evaluations; one in some ten starts ends in the local minimum near (-1, 1, .., 1).
     assert!(solved >= 17, "{solved} of 20");
@@ -174,7 +195,9 @@ fn rosenbrocks_valley_of_ten_is_solved_in_ten_thousand() {
 fn restarts_find_the_best_of_many_valleys() {
     // Rastrigin in five variables: 11^5 valleys within the bounds.
     let waves = |x: &[f64]| -> f64 {
-        x.iter().map(|x| x * x + 10.0 * (1.0 - (2.0 * std::f64::consts::PI * x).cos())).sum()
+        x.iter()
+            .map(|x| x * x + 10.0 * (1.0 - (2.0 * std::f64::consts::PI * x).cos()))
+            .sum()
     };
     let settings = cmaes::Settings {
         step: 2.0,
@@ -222,16 +245,34 @@ fn fronts_are_as_large_as_pymoos() {
     let dtlz2: Costs = Box::new(move |x| {
         let g: f64 = x[2..].iter().map(|x| (x - 0.5).powi(2)).sum();
         let (a, b) = (x[0] * pi / 2.0, x[1] * pi / 2.0);
-        vec![(1.0 + g) * a.cos() * b.cos(), (1.0 + g) * a.cos() * b.sin(), (1.0 + g) * a.sin()]
+        vec![
+            (1.0 + g) * a.cos() * b.cos(),
+            (1.0 + g) * a.cos() * b.sin(),
+            (1.0 + g) * a.sin(),
+        ]
     });
     let problems: [(&str, usize, usize, Costs, f64); 4] = [
-        ("ZDT1", 30, 2, zdt(|x, g| g * (1.0 - (x / g).sqrt())), 0.8697),
-        ("ZDT2", 30, 2, zdt(|x, g| g * (1.0 - (x / g).powi(2))), 0.5364),
+        (
+            "ZDT1",
+            30,
+            2,
+            zdt(|x, g| g * (1.0 - (x / g).sqrt())),
+            0.8697,
+        ),
+        (
+            "ZDT2",
+            30,
+            2,
+            zdt(|x, g| g * (1.0 - (x / g).powi(2))),
+            0.5364,
+        ),
         (
             "ZDT3",
             30,
             2,
-            zdt(|x, g| g * (1.0 - (x / g).sqrt() - x / g * (10.0 * std::f64::consts::PI * x).sin())),
+            zdt(|x, g| {
+                g * (1.0 - (x / g).sqrt() - x / g * (10.0 * std::f64::consts::PI * x).sin())
+            }),
             1.3276,
         ),
         ("DTLZ2", 12, 3, dtlz2, 0.7056),
@@ -239,7 +280,9 @@ fn fronts_are_as_large_as_pymoos() {
     for (name, variables, objectives, costs, pymoo) in problems {
         let mut mean = 0.0;
         for seed in 0..3 {
-            let mut problem = Reals::new(vec![(0.0, 1.0); variables], objectives, |x: &[f64]| costs(x));
+            let mut problem = Reals::new(vec![(0.0, 1.0); variables], objectives, |x: &[f64]| {
+                costs(x)
+            });
             let front = evolve(&mut problem, &Nsga::default(), seed, |_| {}).unwrap();
             mean += front.hypervolume(&vec![1.1; objectives]) / 3.0;
             assert_eq!(front.evaluations, 100 * 251);
@@ -252,18 +295,35 @@ fn fronts_are_as_large_as_pymoos() {
 #[test]
 fn constraints_are_kept() {
     // Binh and Korn's problem.
-    let costs = |x: &[f64]| vec![4.0 * (x[0] * x[0] + x[1] * x[1]), (x[0] - 5.0).powi(2) + (x[1] - 5.0).powi(2)];
+    let costs = |x: &[f64]| {
+        vec![
+            4.0 * (x[0] * x[0] + x[1] * x[1]),
+            (x[0] - 5.0).powi(2) + (x[1] - 5.0).powi(2),
+        ]
+    };
     let violation = |x: &[f64]| {
         let first = (x[0] - 5.0).powi(2) + x[1] * x[1] - 25.0;
         let second = 7.7 - (x[0] - 8.0).powi(2) - (x[1] + 3.0).powi(2);
         first.max(0.0) + second.max(0.0)
     };
     let mut problem = Reals::new(vec![(0.0, 5.0), (0.0, 3.0)], 2, costs).constrained(violation);
-    let front = evolve(&mut problem, &Nsga { generations: 60, ..Nsga::default() }, 1, |_| {}).unwrap();
+    let front = evolve(
+        &mut problem,
+        &Nsga {
+            generations: 60,
+            ..Nsga::default()
+        },
+        1,
+        |_| {},
+    )
+    .unwrap();
     assert!(front.members.len() > 50 && front.members.iter().all(|m| m.violation == 0.0));
     // The ends of the front are (0, 50) and (136, 4).
     let last = &front.members[front.members.len() - 1];
-    assert!(front.members[0].costs[0] < 1.0 && last.costs[1] < 4.2, "{last:?}");
+    assert!(
+        front.members[0].costs[0] < 1.0 && last.costs[1] < 4.2,
+        "{last:?}"
+    );
 }
 
 #[test]
@@ -272,13 +332,27 @@ fn hypervolumes_equal_counts() {
     let mut rng = stream(3, "volume", 0);
     for dimension in 2..5 {
         for _ in 0..20 {
-            let points: Vec<Vec<f64>> = (0..6).map(|_| (0..dimension).map(|_| f64::from(rng.random_range(0..6))).collect()).collect();
+            let points: Vec<Vec<f64>> = (0..6)
+                .map(|_| {
+                    (0..dimension)
+                        .map(|_| f64::from(rng.random_range(0..6)))
+                        .collect()
+                })
+                .collect();
             // Unit cubes of a grid below 5 that some point dominates.
             let cells = 5_usize.pow(dimension as u32);
             let inside = (0..cells).filter(|&c| {
                 let mut rest = c;
-                let cell: Vec<f64> = (0..dimension).map(|_| { let x = rest % 5; rest /= 5; x as f64 }).collect();
-                points.iter().any(|p| p.iter().all(|x| *x < 5.0) && p.iter().zip(&cell).all(|(x, c)| x <= c))
+                let cell: Vec<f64> = (0..dimension)
+                    .map(|_| {
+                        let x = rest % 5;
+                        rest /= 5;
+                        x as f64
+                    })
+                    .collect();
+                points
+                    .iter()
+                    .any(|p| p.iter().all(|x| *x < 5.0) && p.iter().zip(&cell).all(|(x, c)| x <= c))
             });
             let volume = hypervolume(&points, &vec![5.0; dimension]);
             assert_eq!(volume, inside.count() as f64, "{points:?}");
@@ -291,7 +365,11 @@ fn smoothing(n: usize) -> QuadraticProgram {
     let mut program = QuadraticProgram::new(n);
     let mut rng = stream(5, "smoothing", 0);
     for i in 0..n {
-        program.pull(i, (i as f64 / 50.0).sin() + 0.3 * (rng.random::<f64>() - 0.5), 1.0);
+        program.pull(
+            i,
+            (i as f64 / 50.0).sin() + 0.3 * (rng.random::<f64>() - 0.5),
+            1.0,
+        );
     }
     for i in 1..n - 1 {
         // 10 (x_(i-1) - 2 x_i + x_(i+1))².
@@ -312,7 +390,12 @@ fn a_banded_program_of_four_thousand_is_solved_at_once_and_its_duals_are_right()
     let program = smoothing(n);
     let start = std::time::Instant::now();
     let found = solve(&program, QpOptions::default()).unwrap();
-    println!("{n} variables: {:?}, {} iterations, {:.3} s", found.outcome, found.iterations, start.elapsed().as_secs_f64());
+    println!(
+        "{n} variables: {:?}, {} iterations, {:.3} s",
+        found.outcome,
+        found.iterations,
+        start.elapsed().as_secs_f64()
+    );
     assert_eq!(found.outcome, Outcome::Converged);
     let (x, duals) = (found.best.unwrap(), found.duals.unwrap());
     let mut gradient = program.linear.clone();
@@ -346,7 +429,9 @@ fn programs_that_are_not_convex_are_refused_by_their_eigenvalue() {
     let mut program = QuadraticProgram::new(400);
     for i in 0..400 {
         for j in i..400 {
-            program.quadratic.push((i, j, (i as f64).sin() * (j as f64).sin()));
+            program
+                .quadratic
+                .push((i, j, (i as f64).sin() * (j as f64).sin()));
         }
     }
     assert_eq!(program.check(), Ok(()));

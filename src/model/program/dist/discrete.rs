@@ -104,7 +104,10 @@ pub fn categorical<R: Real, P: Into<R> + Copy>(probabilities: &[P]) -> Categoric
 /// 0 to k - 1 in proportion to the exponentials of these numbers.
 pub fn categorical_logit<R: Real, P: Into<R> + Copy>(logits: &[P]) -> Categorical<R> {
     let x: Vec<R> = logits.iter().map(|&x| x.into()).collect();
-    let top = x.iter().map(|x| x.value()).fold(f64::NEG_INFINITY, f64::max);
+    let top = x
+        .iter()
+        .map(|x| x.value())
+        .fold(f64::NEG_INFINITY, f64::max);
     let sum = x.iter().fold(R::from(0.0), |sum, &x| sum + (x - top).exp());
     let total = sum.ln() + top;
     Categorical {

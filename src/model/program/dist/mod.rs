@@ -19,20 +19,25 @@
 
 mod continuous;
 mod discrete;
+mod scaled;
+mod shaped;
 mod simplex;
 
 use rand::Rng;
 
 use super::real::Real;
 use super::trace::Value;
-pub use continuous::{
-    Beta, Bounds, Cauchy, Continuous, Gamma, HalfCauchy, HalfNormal, InverseGamma, LogNormal,
-    Normal, Scalar, StudentT, Uniform, beta, cauchy, exponential, gamma, half_cauchy, half_normal,
-    inverse_gamma, log_normal, normal, student_t, uniform,
-};
+pub use continuous::{Bounds, Continuous, Scalar};
 pub use discrete::{
     Bernoulli, Binomial, Categorical, Poisson, bernoulli, bernoulli_logit, binomial, categorical,
     categorical_logit, poisson, poisson_log,
+};
+pub use scaled::{
+    Cauchy, HalfCauchy, HalfNormal, LogNormal, Normal, StudentT, cauchy, half_cauchy, half_normal,
+    log_normal, normal, student_t,
+};
+pub use shaped::{
+    Beta, Gamma, InverseGamma, Uniform, beta, exponential, gamma, inverse_gamma, uniform,
 };
 pub use simplex::{Dirichlet, dirichlet};
 

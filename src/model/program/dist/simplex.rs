@@ -94,11 +94,15 @@ impl<R: Real> Dist<R> for Dirichlet<R> {
     fn release(&self, x: &Vec<R>) -> Vec<f64> {
         let k = x.len();
         let mut left = 1.0;
-        let free = x.iter().take(k.saturating_sub(1)).enumerate().map(|(i, x)| {
-            let share = x.value() / left;
-            left -= x.value();
-            (share / (1.0 - share)).ln() + ((k - 1 - i) as f64).ln()
-        });
+        let free = x
+            .iter()
+            .take(k.saturating_sub(1))
+            .enumerate()
+            .map(|(i, x)| {
+                let share = x.value() / left;
+                left -= x.value();
+                (share / (1.0 - share)).ln() + ((k - 1 - i) as f64).ln()
+            });
         free.collect()
     }
 }

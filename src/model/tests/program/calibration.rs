@@ -4,7 +4,8 @@
 use edifice_base::rng::stream;
 use edifice_model::program::dist::*;
 use edifice_model::program::{
-    Address, Chains, Handler, Posterior, Program, ProgramError, Value, given, importance, metropolis, prior, smc,
+    Address, Chains, Handler, Posterior, Program, ProgramError, Value, given, importance,
+    metropolis, prior, smc,
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -33,7 +34,12 @@ fn calibrate<P: Program + Sync + Copy>(
         let truth = trace.get(target).unwrap().numbers()[0];
         let posterior = engine(&given(program, seen), round).unwrap();
         let below = (0..DRAWS).filter(|_| {
-            let x = posterior.pick(&mut rng).trace.get(target).unwrap().numbers()[0];
+            let x = posterior
+                .pick(&mut rng)
+                .trace
+                .get(target)
+                .unwrap()
+                .numbers()[0];
             // Equal whole numbers are ranked by lot.
             x < truth || x == truth && rand::RngExt::random::<bool>(&mut rng)
         });
@@ -41,7 +47,10 @@ fn calibrate<P: Program + Sync + Copy>(
         counts[rank * BINS / (DRAWS + 1)] += 1;
     }
     let expected = ROUNDS as f64 / BINS as f64;
-    let square: f64 = counts.iter().map(|&c| (f64::from(c) - expected).powi(2) / expected).sum();
+    let square: f64 = counts
+        .iter()
+        .map(|&c| (f64::from(c) - expected).powi(2) / expected)
+        .sum();
     let p = 1.0 - ChiSquared::new(BINS as f64 - 1.0).unwrap().cdf(square);
     println!("{name}: {counts:?}, p = {p:.3}");
     p
@@ -117,11 +126,41 @@ fn five_programs_are_calibrated() {
         seed,
     };
     let p = [
-        calibrate("mean by importance", Mean, |p, s| importance(p, 2000, s), y, "mean"),
-        calibrate("rate by single changes", Rate, |p, s| metropolis(p, &chains(s)), y, "rate"),
-        calibrate("walk by sequential Monte Carlo", Walk, |p, s| smc(p, 6400, s), y, "noise"),
-        calibrate("bias by single changes", Bias, |p, s| metropolis(p, &chains(s)), y, "bias"),
-        calibrate("mixture by single changes", Mixture, |p, s| metropolis(p, &chains(s)), y, "share"),
+        calibrate(
+            "mean by importance",
+            Mean,
+            |p, s| importance(p, 2000, s),
+            y,
+            "mean",
+        ),
+        calibrate(
+            "rate by single changes",
+            Rate,
+            |p, s| metropolis(p, &chains(s)),
+            y,
+            "rate",
+        ),
+        calibrate(
+            "walk by sequential Monte Carlo",
+            Walk,
+            |p, s| smc(p, 6400, s),
+            y,
+            "noise",
+        ),
+        calibrate(
+            "bias by single changes",
+            Bias,
+            |p, s| metropolis(p, &chains(s)),
+            y,
+            "bias",
+        ),
+        calibrate(
+            "mixture by single changes",
+            Mixture,
+            |p, s| metropolis(p, &chains(s)),
+            y,
+            "share",
+        ),
     ];
     // Five tests at one in a hundred together.
     assert!(p.iter().all(|p| *p > 0.002), "{p:?}");

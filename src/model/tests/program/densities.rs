@@ -52,9 +52,15 @@ fn continuous_ones_equal_those_of_statrs() {
             assert!(close(Dist::<f64>::log_density(&beta(2.5, 1.7), &x), theirs));
         }
         let half = Dist::<f64>::log_density(&half_normal(1.7), &x);
-        assert!(close(half, s::Normal::new(0.0, 1.7).unwrap().ln_pdf(x) + 2_f64.ln()));
+        assert!(close(
+            half,
+            s::Normal::new(0.0, 1.7).unwrap().ln_pdf(x) + 2_f64.ln()
+        ));
         let half = Dist::<f64>::log_density(&half_cauchy(1.7), &x);
-        assert!(close(half, s::Cauchy::new(0.0, 1.7).unwrap().ln_pdf(x) + 2_f64.ln()));
+        assert!(close(
+            half,
+            s::Cauchy::new(0.0, 1.7).unwrap().ln_pdf(x) + 2_f64.ln()
+        ));
     }
 }
 
@@ -64,7 +70,10 @@ fn discrete_ones_equal_those_of_statrs() {
     for x in 0..6_u64 {
         let ours = Dist::<f64>::log_density(&poisson(2.3), &x);
         assert!(close(ours, s::Poisson::new(2.3).unwrap().ln_pmf(x)));
-        assert!(close(Dist::<f64>::log_density(&poisson_log(2.3_f64.ln()), &x), ours));
+        assert!(close(
+            Dist::<f64>::log_density(&poisson_log(2.3_f64.ln()), &x),
+            ours
+        ));
         let ours = Dist::<f64>::log_density(&binomial(5, 0.3), &x);
         assert!(close(ours, s::Binomial::new(0.3, 5).unwrap().ln_pmf(x)));
     }
@@ -82,7 +91,10 @@ fn discrete_ones_equal_those_of_statrs() {
 fn parameters_out_of_range_are_not_a_number() {
     assert!(Dist::<f64>::log_density(&normal(0.0, -1.0), &0.0).is_nan());
     assert!(Dist::<f64>::log_density(&gamma(0.0, 1.0), &1.0).is_nan());
-    assert!(Dist::<f64>::log_density(&uniform(2.0, 1.0), &1.5).is_nan() || Dist::<f64>::log_density(&uniform(2.0, 1.0), &1.5) == f64::NEG_INFINITY);
+    assert!(
+        Dist::<f64>::log_density(&uniform(2.0, 1.0), &1.5).is_nan()
+            || Dist::<f64>::log_density(&uniform(2.0, 1.0), &1.5) == f64::NEG_INFINITY
+    );
     assert!(Dist::<f64>::log_density(&bernoulli(1.5), &true).is_nan());
     assert!(Dist::<f64>::log_density(&poisson(-1.0), &1).is_nan());
 }
@@ -107,7 +119,10 @@ fn draws_follow_densities_and_volumes() {
             }
             let back = d.release(&x)[0];
             if u.abs() < 10.0 {
-                assert!((back - u).abs() < 1e-4 * (1.0 + u.abs()), "{name}: {u} became {back}");
+                assert!(
+                    (back - u).abs() < 1e-4 * (1.0 + u.abs()),
+                    "{name}: {u} became {back}"
+                );
             }
         }
         // Heavy tails reach beyond the grid.
@@ -180,7 +195,10 @@ fn gradients_equal_differences() {
                     log_density::<f64>(which, &q)
                 };
                 let difference = (at(h) - at(-h)) / (2.0 * h);
-                assert!((g - difference).abs() < 1e-6 * (1.0 + g.abs()), "{which}, {i}: {g} is not {difference}");
+                assert!(
+                    (g - difference).abs() < 1e-6 * (1.0 + g.abs()),
+                    "{which}, {i}: {g} is not {difference}"
+                );
             }
         }
     }

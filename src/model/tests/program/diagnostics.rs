@@ -126,8 +126,14 @@ fn paretos_k_equals_that_of_arviz() {
         (1.5, 1.3132363102623599),
         (3.0, 2.6364147311265067),
     ] {
-        let logs: Vec<f64> = base.iter().map(|x| -scale * (x + 0.5 + 1e-6_f64).ln()).collect();
+        let logs: Vec<f64> = base
+            .iter()
+            .map(|x| -scale * (x + 0.5 + 1e-6_f64).ln())
+            .collect();
         let k = pareto_k(&logs);
-        assert!((k - expected).abs() < 1e-6, "{scale}: {k} is not {expected}");
+        assert!(
+            (k - expected).abs() < 1e-6,
+            "{scale}: {k} is not {expected}"
+        );
     }
 }

@@ -17,7 +17,10 @@ fn chains(draws: usize) -> Chains {
 fn check<T>(posterior: &Posterior<T>, name: &str, means: &[f64], errors: &[f64]) -> f64 {
     let all = posterior.summary();
     let own = |s: &&edifice_model::program::Summary| {
-        s.name == name || s.name.strip_prefix(name).is_some_and(|rest| rest.starts_with('['))
+        s.name == name
+            || s.name
+                .strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('['))
     };
     let found: Vec<_> = all.iter().filter(own).collect();
     assert_eq!(found.len(), means.len(), "{name}");
@@ -25,7 +28,12 @@ fn check<T>(posterior: &Posterior<T>, name: &str, means: &[f64], errors: &[f64])
     for ((s, mean), error) in found.iter().zip(means).zip(errors) {
         let z = (s.mean - mean).abs() / s.mcse.hypot(*error);
         worst = worst.max(z);
-        assert!(z < 4.0, "{}: {} is not {mean}, {z:.1} errors", s.name, s.mean);
+        assert!(
+            z < 4.0,
+            "{}: {} is not {mean}, {z:.1} errors",
+            s.name,
+            s.mean
+        );
         assert!(s.r_hat < 1.01, "{}: R-hat {}", s.name, s.r_hat);
     }
     worst
@@ -54,12 +62,25 @@ impl Program for Schools {
 #[test]
 fn eight_schools() {
     let posterior = nuts(&Schools, &chains(4000)).unwrap();
-    check(&posterior, "average", &data::SCHOOLS_AVERAGE_MEAN, &data::SCHOOLS_AVERAGE_ERROR);
-    check(&posterior, "log_sd", &data::SCHOOLS_LOG_SD_MEAN, &data::SCHOOLS_LOG_SD_ERROR);
+    check(
+        &posterior,
+        "average",
+        &data::SCHOOLS_AVERAGE_MEAN,
+        &data::SCHOOLS_AVERAGE_ERROR,
+    );
+    check(
+        &posterior,
+        "log_sd",
+        &data::SCHOOLS_LOG_SD_MEAN,
+        &data::SCHOOLS_LOG_SD_ERROR,
+    );
     for i in 0..8 {
         let found = posterior.estimate(|d| d.out[i]);
         let error = found.error.hypot(data::SCHOOLS_EFFECTS_ERROR[i]);
-        assert!((found.mean - data::SCHOOLS_EFFECTS_MEAN[i]).abs() < 4.0 * error, "{i}: {found:?}");
+        assert!(
+            (found.mean - data::SCHOOLS_EFFECTS_MEAN[i]).abs() < 4.0 * error,
+            "{i}: {found:?}"
+        );
     }
 }
 
@@ -92,15 +113,35 @@ fn brownian_motion() {
         scales: Some([0.1, 0.15]),
     };
     let posterior = nuts(&program, &chains(4000)).unwrap();
-    check(&posterior, "at", &data::BROWNIAN_LOCS_MEAN, &data::BROWNIAN_LOCS_ERROR);
+    check(
+        &posterior,
+        "at",
+        &data::BROWNIAN_LOCS_MEAN,
+        &data::BROWNIAN_LOCS_ERROR,
+    );
 }
 
 #[test]
 fn brownian_motion_of_unknown_scales() {
     let posterior = nuts(&Brownian { scales: None }, &chains(20_000)).unwrap();
-    check(&posterior, "at", &data::UNKNOWN_LOCS_MEAN, &data::UNKNOWN_LOCS_ERROR);
-    check(&posterior, "innovation", &data::UNKNOWN_INNOVATION_MEAN, &data::UNKNOWN_INNOVATION_ERROR);
-    check(&posterior, "observation", &data::UNKNOWN_OBSERVATION_MEAN, &data::UNKNOWN_OBSERVATION_ERROR);
+    check(
+        &posterior,
+        "at",
+        &data::UNKNOWN_LOCS_MEAN,
+        &data::UNKNOWN_LOCS_ERROR,
+    );
+    check(
+        &posterior,
+        "innovation",
+        &data::UNKNOWN_INNOVATION_MEAN,
+        &data::UNKNOWN_INNOVATION_ERROR,
+    );
+    check(
+        &posterior,
+        "observation",
+        &data::UNKNOWN_OBSERVATION_MEAN,
+        &data::UNKNOWN_OBSERVATION_ERROR,
+    );
 }
 
 struct Volatility;
@@ -129,15 +170,28 @@ impl Program for Volatility {
 #[test]
 fn stochastic_volatility() {
     let posterior = nuts(&Volatility, &chains(4000)).unwrap();
-    check(&posterior, "mean", &data::VOLATILITY_MEAN_LOG_MEAN, &data::VOLATILITY_MEAN_LOG_ERROR);
-    check(&posterior, "shock", &data::VOLATILITY_SHOCK_MEAN, &data::VOLATILITY_SHOCK_ERROR);
+    check(
+        &posterior,
+        "mean",
+        &data::VOLATILITY_MEAN_LOG_MEAN,
+        &data::VOLATILITY_MEAN_LOG_ERROR,
+    );
+    check(
+        &posterior,
+        "shock",
+        &data::VOLATILITY_SHOCK_MEAN,
+        &data::VOLATILITY_SHOCK_ERROR,
+    );
     let found = posterior.estimate(|d| d.out.0);
     let error = found.error.hypot(data::VOLATILITY_PERSISTENCE_ERROR[0]);
     assert!((found.mean - data::VOLATILITY_PERSISTENCE_MEAN[0]).abs() < 4.0 * error);
     for t in 0..100 {
         let found = posterior.estimate(|d| d.out.1[t]);
         let error = found.error.hypot(data::VOLATILITY_LOG_ERROR[t]);
-        assert!((found.mean - data::VOLATILITY_LOG_MEAN[t]).abs() < 4.0 * error, "{t}: {found:?}");
+        assert!(
+            (found.mean - data::VOLATILITY_LOG_MEAN[t]).abs() < 4.0 * error,
+            "{t}: {found:?}"
+        );
     }
 }
 
@@ -152,7 +206,8 @@ impl Program for Lorenz {
             if t > 0 {
                 let [x, y, z] = at;
                 let drift = [(y - x) * 10.0, x * (-z + 28.0) - y, x * y - z * (8.0 / 3.0)];
-                at = [0, 1, 2].map(|c| h.sample(("at", t, c), normal(at[c] + drift[c] * step, noise)));
+                at = [0, 1, 2]
+                    .map(|c| h.sample(("at", t, c), normal(at[c] + drift[c] * step, noise)));
             }
             if !seen.is_nan() {
                 h.observe(normal(at[0], 1.0), &seen.into());
@@ -164,5 +219,10 @@ impl Program for Lorenz {
 #[test]
 fn lorenz_bridge() {
     let posterior = nuts(&Lorenz, &chains(4000)).unwrap();
-    check(&posterior, "at", &data::LORENZ_STATE_MEAN, &data::LORENZ_STATE_ERROR);
+    check(
+        &posterior,
+        "at",
+        &data::LORENZ_STATE_MEAN,
+        &data::LORENZ_STATE_ERROR,
+    );
 }

@@ -23,7 +23,10 @@ impl Random {
         let mut parents = Vec::new();
         let mut tables = Vec::new();
         for i in 0..n {
-            let all: Vec<usize> = (0..i).filter(|_| rng.random::<f64>() < 0.4).take(3).collect();
+            let all: Vec<usize> = (0..i)
+                .filter(|_| rng.random::<f64>() < 0.4)
+                .take(3)
+                .collect();
             let rows: usize = all.iter().map(|&p| sizes[p]).product();
             let mut table = Vec::new();
             for _ in 0..rows {
@@ -34,7 +37,9 @@ impl Random {
             parents.push(all);
             tables.push(table);
         }
-        let seen = sizes.iter().map(|&k| (rng.random::<f64>() < 0.35).then(|| rng.random_range(0..k)));
+        let seen = sizes
+            .iter()
+            .map(|&k| (rng.random::<f64>() < 0.35).then(|| rng.random_range(0..k)));
         Self {
             seen: seen.collect(),
             sizes,
@@ -52,7 +57,12 @@ impl Random {
         let categories = ["0", "1", "2"];
         let variable = |i: usize| {
             let parents: Vec<&str> = self.parents[i].iter().map(|&p| names[p].as_str()).collect();
-            Variable::table(&names[i], &categories[..self.sizes[i]], &parents, &self.tables[i])
+            Variable::table(
+                &names[i],
+                &categories[..self.sizes[i]],
+                &parents,
+                &self.tables[i],
+            )
         };
         let network = Network::new((0..self.sizes.len()).map(variable).collect()).unwrap();
         let mut evidence = Evidence::new();
@@ -71,7 +81,9 @@ impl Program for Random {
     fn run<H: Handler>(&self, h: &mut H) {
         let mut x: Vec<usize> = Vec::new();
         for (i, &k) in self.sizes.iter().enumerate() {
-            let row = self.parents[i].iter().fold(0, |r, &p| r * self.sizes[p] + x[p]);
+            let row = self.parents[i]
+                .iter()
+                .fold(0, |r, &p| r * self.sizes[p] + x[p]);
             let d = categorical::<H::Real, f64>(&self.tables[i][row * k..(row + 1) * k]);
             match self.seen[i] {
                 Some(v) => {
@@ -97,7 +109,10 @@ fn enumeration_and_compilation_equal_the_network() {
         let compiled = compile(&program).unwrap();
         let z = tried.evidence.unwrap();
         assert!((z.log - log).abs() < 1e-10, "{i}: {z:?} is not {log}");
-        assert!((compiled.log_evidence().unwrap() - log).abs() < 1e-10, "{i}");
+        assert!(
+            (compiled.log_evidence().unwrap() - log).abs() < 1e-10,
+            "{i}"
+        );
         for (v, name) in program.names().iter().enumerate() {
             if program.seen[v].is_some() {
                 continue;
@@ -106,7 +121,10 @@ fn enumeration_and_compilation_equal_the_network() {
             let other = compiled.marginal(("x", v)).unwrap();
             for (k, p) in truth.iter().enumerate() {
                 let found = tried.probability(("x", v), k as u64).mean;
-                assert!((found - p).abs() < 1e-10, "{i}, {name}={k}: {found} is not {p}");
+                assert!(
+                    (found - p).abs() < 1e-10,
+                    "{i}, {name}={k}: {found} is not {p}"
+                );
                 assert!((other[k] - p).abs() < 1e-10, "{i}, {name}={k}");
             }
         }
@@ -139,7 +157,9 @@ fn evidence_is_within_three_errors_on_nearly_all() {
             }
         }
     }
-    println!("importance {near_importance}, smc {near_smc} of 200; {off} of {count} probabilities off");
+    println!(
+        "importance {near_importance}, smc {near_smc} of 200; {off} of {count} probabilities off"
+    );
     assert!(near_importance >= 197 && near_smc >= 197);
     // Three errors are left by 3 in 1000.
     assert!(off / count < 0.02, "{off} of {count}");
