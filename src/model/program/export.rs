@@ -6,6 +6,9 @@ use serde_json::{Value as Json, json};
 
 use super::posterior::{Posterior, name};
 
+/// Indices of a number of one name, and its values by draw.
+type Numbered = (Vec<usize>, Vec<f64>);
+
 impl<T> Posterior<T> {
     /// The draws as CSV, one a line: `chain,draw,weight,log_prior,log_likelihood` and a column for each number that was chosen,
     /// empty where a draw has none. Numbers are written so that they are read back the same.
@@ -60,7 +63,7 @@ impl<T> Posterior<T> {
     ///
     /// Numbers that a draw has not are null.
     pub fn to_inference_data(&self) -> String {
-        let mut names: BTreeMap<String, Vec<(Vec<usize>, Vec<f64>)>> = BTreeMap::new();
+        let mut names: BTreeMap<String, Vec<Numbered>> = BTreeMap::new();
         for (at, coordinate, values) in self.columns() {
             let mut index: Vec<usize> = at.indices().iter().map(|&i| i as usize).collect();
             index.extend(coordinate);

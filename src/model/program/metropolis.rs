@@ -122,11 +122,14 @@ where
 }
 
 /// The draws of a chain, and the share of changes that were accepted.
+type Chain<T> = (Vec<Draw<T>>, f64);
+
+/// Runs a chain.
 fn chain<P: Program>(
     program: &P,
     settings: &Chains,
     rng: &mut Stream,
-) -> Result<(Vec<Draw<P::Out>>, f64), ProgramError>
+) -> Result<Chain<P::Out>, ProgramError>
 where
     P::Out: Clone,
 {

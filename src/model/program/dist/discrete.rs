@@ -212,7 +212,8 @@ impl<R: Real> Dist<R> for Poisson<R> {
     }
 
     fn log_density(&self, &x: &u64) -> R {
-        if !(self.rate.value() >= 0.0) {
+        let rate = self.rate.value();
+        if rate.is_nan() || rate < 0.0 {
             return R::from(f64::NAN);
         }
         // At a rate of 0 the probability of 0 is 1.
