@@ -32,11 +32,20 @@ fn main() -> Result<(), ModelError> {
         }
         let signs: Vec<usize> = labels
             .iter()
-            .map(|l| if rng.random::<f64>() < 0.25 { 1 - l } else { *l })
+            .map(|l| {
+                if rng.random::<f64>() < 0.25 {
+                    1 - l
+                } else {
+                    *l
+                }
+            })
             .collect();
         [labels, signs].concat()
     };
-    let (train, test): (Vec<_>, Vec<_>) = ((0..300).map(|_| line()).collect(), (0..300).map(|_| line()).collect());
+    let (train, test): (Vec<_>, Vec<_>) = (
+        (0..300).map(|_| line()).collect(),
+        (0..300).map(|_| line()).collect(),
+    );
     let weights = fit_exact(&field, &train, 0.0)?.weights;
     let (mut right, mut by_sign) = (0, 0);
     for example in &test {
@@ -46,9 +55,14 @@ fn main() -> Result<(), ModelError> {
         }
         let (labels, _) = question.explain()?;
         right += (0..LENGTH).filter(|&i| labels[i] == example[i]).count();
-        by_sign += (0..LENGTH).filter(|&i| example[i + LENGTH] == example[i]).count();
+        by_sign += (0..LENGTH)
+            .filter(|&i| example[i + LENGTH] == example[i])
+            .count();
     }
-    println!("weights {weights:.2?}: {right} of {} labels right, {by_sign} by their signs alone", 300 * LENGTH);
+    println!(
+        "weights {weights:.2?}: {right} of {} labels right, {by_sign} by their signs alone",
+        300 * LENGTH
+    );
     assert!(right > by_sign);
     Ok(())
 }

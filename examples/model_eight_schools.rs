@@ -51,7 +51,10 @@ fn main() -> Result<(), ProgramError> {
         );
     }
     let (a, b) = (weighted.estimate(|d| d.out), chains.estimate(|d| d.out));
-    println!("first school: {:.2} +- {:.2} and {:.2} +- {:.2}", a.mean, a.error, b.mean, b.error);
+    println!(
+        "first school: {:.2} +- {:.2} and {:.2} +- {:.2}",
+        a.mean, a.error, b.mean, b.error
+    );
     assert!((a.mean - b.mean).abs() < 5.0 * a.error.hypot(b.error));
     Ok(())
 }

@@ -30,15 +30,35 @@ fn main() -> Result<(), ModelError> {
     for i in 0..600_usize {
         let bar = i % 6;
         let mut image: Vec<usize> = (0..9)
-            .map(|p| usize::from(if bar < 3 { p / 3 == bar } else { p % 3 == bar - 3 }))
+            .map(|p| {
+                usize::from(if bar < 3 {
+                    p / 3 == bar
+                } else {
+                    p % 3 == bar - 3
+                })
+            })
             .collect();
         image.extend((0..HIDDEN).map(|h| (i / 6 + h * (i % 7)) % 2));
         data.push(image);
     }
-    let fitted = fit(&machine, &data, &Settings { rounds: 1500, ..Settings::default() }, 1)?;
+    let fitted = fit(
+        &machine,
+        &data,
+        &Settings {
+            rounds: 1500,
+            ..Settings::default()
+        },
+        1,
+    )?;
     let (log, _) = exact_gradient(&machine, &data, &fitted.weights)?;
     let independent = 9.0 * (1.0_f64 / 3.0 * 3.0_f64.ln() + 2.0 / 3.0 * 1.5_f64.ln());
-    println!("{:?}: {:.3} nats an image; six bars alone would have {:.3}, independent pixels {:.3}", fitted.outcome, log, -6.0_f64.ln(), -independent);
+    println!(
+        "{:?}: {:.3} nats an image; six bars alone would have {:.3}, independent pixels {:.3}",
+        fitted.outcome,
+        log,
+        -6.0_f64.ln(),
+        -independent
+    );
     assert!(log > -independent + 0.5);
     Ok(())
 }

@@ -36,7 +36,9 @@ fn portfolio(k: usize, rng: &mut Stream) -> QuadraticProgram {
     let n = 20 * k;
     let mut program = QuadraticProgram::new(n + k);
     for i in 0..n {
-        program.quadratic.push((i, i, 2.0 * rng.random::<f64>() * (k as f64).sqrt()));
+        program
+            .quadratic
+            .push((i, i, 2.0 * rng.random::<f64>() * (k as f64).sqrt()));
         program.linear[i] = -normal(rng);
         program.lower[i] = 0.0;
     }
@@ -46,7 +48,9 @@ fn portfolio(k: usize, rng: &mut Stream) -> QuadraticProgram {
         let terms = row.into_iter().chain([(n + j, -1.0)]);
         program.equalities.push(Row::new(terms, 0.0));
     }
-    program.equalities.push(Row::new((0..n).map(|i| (i, 1.0)), 1.0));
+    program
+        .equalities
+        .push(Row::new((0..n).map(|i| (i, 1.0)), 1.0));
     program
 }
 
@@ -56,14 +60,22 @@ fn lasso(n: usize, rng: &mut Stream) -> QuadraticProgram {
     let mut program = QuadraticProgram::new(2 * n + m);
     for (j, row) in sparse(m, n, 0.15, rng).into_iter().enumerate() {
         program.quadratic.push((2 * n + j, 2 * n + j, 1.0));
-        let right = row.iter().map(|(i, a)| if i % 2 == 0 { *a } else { 0.0 }).sum::<f64>() + 0.1 * normal(rng);
+        let right = row
+            .iter()
+            .map(|(i, a)| if i % 2 == 0 { *a } else { 0.0 })
+            .sum::<f64>()
+            + 0.1 * normal(rng);
         let terms = row.into_iter().chain([(2 * n + j, -1.0)]);
         program.equalities.push(Row::new(terms, right));
     }
     for i in 0..n {
         program.linear[n + i] = 1.0;
-        program.inequalities.push(Row::new([(i, 1.0), (n + i, -1.0)], 0.0));
-        program.inequalities.push(Row::new([(i, -1.0), (n + i, -1.0)], 0.0));
+        program
+            .inequalities
+            .push(Row::new([(i, 1.0), (n + i, -1.0)], 0.0));
+        program
+            .inequalities
+            .push(Row::new([(i, -1.0), (n + i, -1.0)], 0.0));
     }
     program
 }
@@ -79,7 +91,12 @@ fn huber(n: usize, rng: &mut Stream) -> QuadraticProgram {
             program.linear[v] = 2.0;
             program.lower[v] = 0.0;
         }
-        let right = row.iter().map(|(_, a)| a).sum::<f64>() + if j % 20 == 0 { 10.0 * rng.random::<f64>() } else { 0.25 * normal(rng) };
+        let right = row.iter().map(|(_, a)| a).sum::<f64>()
+            + if j % 20 == 0 {
+                10.0 * rng.random::<f64>()
+            } else {
+                0.25 * normal(rng)
+            };
         let terms = row.into_iter().chain([(u, -1.0), (r, -1.0), (s, 1.0)]);
         program.equalities.push(Row::new(terms, right));
     }
@@ -95,8 +112,12 @@ fn svm(n: usize, rng: &mut Stream) -> QuadraticProgram {
         let label = if j % 2 == 0 { 1.0 } else { -1.0 };
         program.linear[n + j] = 1.0;
         program.lower[n + j] = 0.0;
-        let terms = row.into_iter().map(|(i, a)| (i, label * (a + label / n as f64)));
-        program.inequalities.push(Row::new(terms.chain([(n + j, -1.0)]), -1.0));
+        let terms = row
+            .into_iter()
+            .map(|(i, a)| (i, label * (a + label / n as f64)));
+        program
+            .inequalities
+            .push(Row::new(terms.chain([(n + j, -1.0)]), -1.0));
     }
     program
 }
@@ -107,14 +128,20 @@ fn control(n: usize, rng: &mut Stream) -> QuadraticProgram {
     let width = n + inputs;
     let mut program = QuadraticProgram::new(steps * width);
     let dynamics: Vec<Vec<(usize, f64)>> = (0..n)
-        .map(|i| (0..n).map(|j| (j, if i == j { 1.0 } else { 0.0 } + 0.01 * normal(rng))).collect())
+        .map(|i| {
+            (0..n)
+                .map(|j| (j, if i == j { 1.0 } else { 0.0 } + 0.01 * normal(rng)))
+                .collect()
+        })
         .collect();
     let effect = sparse(n, inputs, 0.5, rng);
     let start: Vec<f64> = (0..n).map(|_| rng.random::<f64>() - 0.5).collect();
     for t in 0..steps {
         for i in 0..n {
             let x = t * width + i;
-            program.quadratic.push((x, x, 10.0 * f64::from(u8::from(i % 3 == 0))));
+            program
+                .quadratic
+                .push((x, x, 10.0 * f64::from(u8::from(i % 3 == 0))));
             (program.lower[x], program.upper[x]) = (-2.0, 2.0);
             let mut terms = vec![(x, 1.0)];
             let mut right = 0.0;
@@ -139,7 +166,8 @@ fn control(n: usize, rng: &mut Stream) -> QuadraticProgram {
 /// Clarabel's cost and seconds, the matrices made here.
 fn direct(program: &QuadraticProgram) -> (f64, f64) {
     let n = program.dimension();
-    let (mut rows, mut columns, mut values, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut rows, mut columns, mut values, mut right) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut push = |terms: &[(usize, f64)], b: f64| {
         for (i, v) in terms {
             rows.push(right.len());
@@ -148,8 +176,14 @@ fn direct(program: &QuadraticProgram) -> (f64, f64) {
         }
         right.push(b);
     };
-    program.equalities.iter().for_each(|r| push(&r.terms, r.right));
-    program.inequalities.iter().for_each(|r| push(&r.terms, r.right));
+    program
+        .equalities
+        .iter()
+        .for_each(|r| push(&r.terms, r.right));
+    program
+        .inequalities
+        .iter()
+        .for_each(|r| push(&r.terms, r.right));
     for i in 0..n {
         if program.upper[i].is_finite() {
             push(&[(i, 1.0)], program.upper[i]);
@@ -159,7 +193,10 @@ fn direct(program: &QuadraticProgram) -> (f64, f64) {
         }
     }
     let e = program.equalities.len();
-    let cones = [SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(right.len() - e)];
+    let cones = [
+        SupportedConeT::ZeroConeT(e),
+        SupportedConeT::NonnegativeConeT(right.len() - e),
+    ];
     let a = CscMatrix::new_from_triplets(right.len(), n, rows, columns, values);
     let q = &program.quadratic;
     let p = CscMatrix::new_from_triplets(
@@ -201,9 +238,19 @@ fn families_are_solved_as_fast_as_by_clarabel_itself() {
             let (cost, seconds) = direct(program);
             theirs = theirs.min(seconds);
             assert_eq!(found.outcome, Outcome::Converged, "{name}");
-            assert!((found.cost - cost).abs() < 1e-6 * (1.0 + cost.abs()), "{name}: {} is not {cost}", found.cost);
+            assert!(
+                (found.cost - cost).abs() < 1e-6 * (1.0 + cost.abs()),
+                "{name}: {} is not {cost}",
+                found.cost
+            );
         }
-        println!("{name}, {} variables: {:.4} s, Clarabel {:.4} s, ratio {:.2}", program.dimension(), ours, theirs, ours / theirs);
+        println!(
+            "{name}, {} variables: {:.4} s, Clarabel {:.4} s, ratio {:.2}",
+            program.dimension(),
+            ours,
+            theirs,
+            ours / theirs
+        );
         // Times on a busy machine vary.
         assert!(ours < 3.0 * theirs + 0.01, "{name}");
     }

@@ -133,4 +133,3 @@ pub(super) fn positive<R: Real>() -> Bounds<R> {
         upper: None,
     }
 }
-
