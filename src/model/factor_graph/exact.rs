@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::super::error::ModelError;
-use super::{Gibbs, Question, dot};
+use super::{Chain, Gibbs, Question, dot};
 
 /// Steps at most.
 const STEPS: usize = 500;
@@ -57,6 +57,17 @@ pub fn exact_gradient(
     }
     let (mut log, mut slope) = (0.0, vec![0.0; weights.len()]);
     for (known, count) in known {
+        if let Some(state) = known.iter().copied().collect::<Option<Vec<usize>>>() {
+            // Nothing is hidden: no sum is needed.
+            let share = count / data.len() as f64;
+            let features = graph.features(&state);
+            log += share * dot(weights, &features);
+            slope
+                .iter_mut()
+                .zip(features)
+                .for_each(|(s, f)| *s += share * f);
+            continue;
+        }
         let question = Question {
             known,
             ..question.clone()
