@@ -10,7 +10,7 @@
 //! what is stuck in the cold goes up: unlike annealing there is no last temperature at which all is over, and no schedule to guess.
 //!
 //! # Deviations and readings
-//! - Temperatures unless given: of the moves from the start, the cost rises by d; the highest accepts the median d half of the
+//! - Temperatures unless given: after a descent by moves that do not raise the cost, moves raise it by d; the highest accepts the median d half of the
 //!   time, the lowest one in a hundred of the least positive d (their 5 % quantile). The ladder between is geometric.
 //! - Copies run in parallel, each with its own stream; the result is the same for any number of threads.
 //!
@@ -25,8 +25,10 @@ use super::limits::{Answer, Limits, Watch};
 use super::run::{Run, Search, Step, execute};
 use edifice_base::rng::{Stream, stream};
 
-/// Moves that are tried to set the temperatures.
+/// Moves that are tried to set the temperatures, and moves without a gain that end the descent before.
 const TRIALS: usize = 1000;
+/// Moves of that descent at most.
+const DESCENT: usize = 100_000;
 
 /// Settings of [`temper`], whose example uses them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,11 +154,31 @@ where
     Ok(run)
 }
 
-/// Lowest and highest temperature, by moves from where the landscape stands.
+/// Lowest and highest temperature, by moves from a solution that a descent from where the landscape stands comes to.
 ///
 /// A rise by d is accepted with probability `exp(-d / T)`: the highest is `median / ln 2`, the lowest `least / ln 100`. Where no move rises, 1 and
 /// 2. Annealing may use them as its start and end.
 pub fn temperatures<L: Landscape>(mut landscape: L, rng: &mut Stream) -> (f64, f64) {
+    // Down to where moves mostly rise: from a random start nearly any move is an improvement, and large.
+    let mut idle = 0;
+    for _ in 0..DESCENT {
+        let before = landscape.cost();
+        let fell = match landscape.propose(rng) {
+            Some(after) if after <= before => {
+                landscape.accept();
+                after < before
+            }
+            Some(_) => {
+                landscape.reject();
+                false
+            }
+            None => false,
+        };
+        idle = if fell { 0 } else { idle + 1 };
+        if idle == TRIALS {
+            break;
+        }
+    }
     let mut rises = Vec::new();
     for _ in 0..TRIALS {
         let before = landscape.cost();
@@ -166,12 +188,7 @@ pub fn temperatures<L: Landscape>(mut landscape: L, rng: &mut Stream) -> (f64, f
         if after - before > 1e-12 * before.abs() && after.is_finite() {
             rises.push(after - before);
         }
-        // Every other move is kept, so that not all start from one solution.
-        if after <= before || after.is_finite() && rng.random::<bool>() {
-            landscape.accept();
-        } else {
-            landscape.reject();
-        }
+        landscape.reject();
     }
     rises.sort_by(f64::total_cmp);
     let (Some(&least), Some(&median)) = (rises.get(rises.len() / 20), rises.get(rises.len() / 2))

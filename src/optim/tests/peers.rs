@@ -222,7 +222,7 @@ fn units_and_shifts_of_the_cost_do_not_matter_to_cmaes() {
     let bowl = |x: &[f64]| x.iter().map(|x| (x - 1.0).powi(2)).sum::<f64>();
     let settings = cmaes::Settings {
         limits: Limits {
-            evaluations: Some(600),
+            evaluations: Some(200),
             ..Limits::default()
         },
         ..cmaes::Settings::default()
