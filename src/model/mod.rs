@@ -23,7 +23,7 @@
 //! | points of one kind of number; clusters, a density | [`gmm`] | scikit-learn, linfa |
 //! | one number, bounded, multimodal or given another | [`density`] | rv, SciPy |
 //! | states of any kind with features that you can compute, but no sum over states | [`factor_graph`], [`log_linear`] | – |
-//! | a model that is easily written as a function that draws; posteriors of what it draws | [`program`], whose page says which engine when | Stan, PyMC, Gen |
+//! | a model that is easily written as a function that draws; posteriors of what it draws | [`program`], whose page says which engine when | Stan, Gen, Pyro |
 //! | a probability of yes or no from features | [`boosting`] | CatBoost, scikit-learn |
 //! | a matrix with holes | [`low_rank`] | softImpute |
 //!

@@ -171,7 +171,7 @@ fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Soluti
     for row in &program.inequalities {
         rows.push(row.terms.iter().copied(), row.right);
     }
-    // Where the rows of the bounds are.
+    // The rows of the bounds.
     let (mut upper_at, mut lower_at) = (vec![None; n], vec![None; n]);
     for i in 0..n {
         if program.upper[i] < f64::INFINITY {

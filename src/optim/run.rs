@@ -95,7 +95,7 @@ impl Outcome {
         matches!(status, TerminationStatus::Terminated(_)).then(|| Self::of(status))
     }
 
-    /// What argmin tells of the end of a run.
+    /// The outcome of an end of a run that argmin tells of.
     fn of(status: &TerminationStatus) -> Self {
         let TerminationStatus::Terminated(reason) = status else {
             return Self::Stalled;

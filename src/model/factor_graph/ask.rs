@@ -143,7 +143,7 @@ impl Question<'_> {
     }
 
     /// Loopy belief propagation: `rounds` at most, or until no message moves by more than `tolerance` (a probability). Exact where
-    /// the factors form a tree, else without a guarantee. O(Σ_f cells_f variables_f²) a round, whatever the width.
+    /// the factors form a tree, else without a guarantee. `O(Σ_f c_f s_f²)` a round for factors of `c_f` cells and `s_f` variables, whatever the width.
     ///
     /// # Errors
     /// [`ModelError::Parameter`] for a factor of more than 2¹² configurations.

@@ -211,7 +211,7 @@ pub fn fit<C: Chain>(
     let pairs = mean_gap.iter().zip(&mean);
     let slope: Vec<f64> = pairs.map(|(g, w)| g - settings.penalty * w).collect();
     let left = information.newton(&slope, settings.penalty);
-    // What a further Newton step would gain, to second order.
+    // The gain of a further Newton step, to second order.
     let shortfall = 0.5 * slope.iter().zip(&left).map(|(s, l)| s * l).sum::<f64>();
     Ok(Fitted {
         standard_errors: information.standard_errors(settings.penalty, data.len()),
