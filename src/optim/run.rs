@@ -95,7 +95,7 @@ impl Outcome {
         matches!(status, TerminationStatus::Terminated(_)).then(|| Self::of(status))
     }
 
-    /// The outcome of an end of a run that argmin tells of.
+    /// The outcome that argmin's status of termination means.
     fn of(status: &TerminationStatus) -> Self {
         let TerminationStatus::Terminated(reason) = status else {
             return Self::Stalled;
