@@ -3,8 +3,6 @@
 //! A repeat is a rule of its own, written once for all rules that use it; a rule that is one repeat is that
 //! repeat. Every other rule is a split.
 
-use std::hash::Hash;
-
 use rustc_hash::FxHashMap;
 
 use super::rules::{Item, Rules, Symbol};
@@ -37,6 +35,8 @@ pub struct Bodies {
     pub bodies: Vec<Body>,
     /// The body of each rule.
     pub of_rule: Vec<u32>,
+    /// The body of each repeat of each rule, by rule and item.
+    of_repeat: FxHashMap<(u32, usize), u32>,
     index: FxHashMap<Body, u32>,
 }
 
@@ -44,7 +44,13 @@ impl Bodies {
     /// The bodies of all rules.
     pub fn new(rules: &Rules) -> Self {
         let mut all = Self::default();
-        for rule in rules.rules() {
+        for (number, rule) in rules.rules().iter().enumerate() {
+            for (item, written) in rule.items.iter().enumerate() {
+                if let Item::Repeat(period) = written {
+                    let repeat = all.repeat(rule.axis, period);
+                    all.of_repeat.insert((number as u32, item), repeat);
+                }
+            }
             let body = match &rule.items[..] {
                 [Item::Repeat(period)] => all.repeat(rule.axis, period),
                 items => {
@@ -59,6 +65,11 @@ impl Bodies {
             all.of_rule.push(body);
         }
         all
+    }
+
+    /// The body of a repeat that stands as an item of a rule.
+    pub fn repeat_of(&self, rule: u32, item: usize) -> u32 {
+        self.of_repeat[&(rule, item)]
     }
 
     /// The letter of a symbol whose rule is known.

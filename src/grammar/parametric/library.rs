@@ -29,8 +29,6 @@ pub struct Library {
     rules: Rules,
     members: Vec<Member>,
     tables: Tables,
-    /// Bits of each facade given those before it.
-    sequential: Vec<f64>,
 }
 
 /// A facade written with a library: a program that has the library reads it back, region for region.
@@ -89,7 +87,7 @@ impl Library {
             tree::unfold(&member.parse, rules.rules(), |_, _, _| {})?;
         }
         let mut library =
-            Self { unit, step, rules, members, tables: Tables::default(), sequential: Vec::new() };
+            Self { unit, step, rules, members, tables: Tables::default() };
         library.fit()?;
         Ok(library)
     }
