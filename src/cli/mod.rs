@@ -13,6 +13,7 @@ mod reproduce;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
+mod tolerance;
 
 use std::process::ExitCode;
 

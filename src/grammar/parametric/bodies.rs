@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::rules::{Item, Rules, Symbol};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// A symbol of a string: a label, or a body by its index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -59,7 +59,11 @@ impl Bodies {
                         Item::Repeat(period) => Letter::Body(all.repeat(rule.axis, period)),
                     });
                     let letters = letters.collect();
-                    all.intern(Body { axis: rule.axis, repeat: false, letters })
+                    all.intern(Body {
+                        axis: rule.axis,
+                        repeat: false,
+                        letters,
+                    })
                 }
             };
             all.of_rule.push(body);
@@ -82,7 +86,11 @@ impl Bodies {
 
     fn repeat(&mut self, axis: Axis, period: &[Symbol]) -> u32 {
         let letters = period.iter().map(|&symbol| self.letter(symbol)).collect();
-        self.intern(Body { axis, repeat: true, letters })
+        self.intern(Body {
+            axis,
+            repeat: true,
+            letters,
+        })
     }
 
     fn intern(&mut self, body: Body) -> u32 {

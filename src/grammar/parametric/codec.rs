@@ -7,7 +7,7 @@ use super::rules::{Rules, Symbol};
 use super::sizes::{self, Question, SizeMemory, SizeTable, Trust};
 use super::structure::{Speller, StructureTable};
 use super::tree::{Parse, index, slots};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Most regions of a facade that is read from a code.
 const REGION_LIMIT: usize = 1 << 22;
@@ -37,14 +37,19 @@ impl Tables {
             table.change(extent, more);
         }
         let (counts, sizes) = (&mut self.counts, &mut self.sizes);
-        questions(parse, rules, |repeat, axis, count| counts.change(repeat, axis, count, more), |at, size| {
-            sizes.change(at, size, more);
-        });
+        questions(
+            parse,
+            rules,
+            |repeat, axis, count| counts.change(repeat, axis, count, more),
+            |at, size| {
+                sizes.change(at, size, more);
+            },
+        );
     }
 }
 
 /// Walks a parse; tells each count and each size with the question it answers.
-fn questions(
+pub fn questions(
     parse: &Parse,
     rules: &Rules,
     mut tell_count: impl FnMut(counts::Repeat, Axis, u32),
@@ -57,7 +62,12 @@ fn questions(
         let written = rules.rule(rule);
         let along = index(written.axis);
         let mut own_counts = Vec::new();
-        for (item, _) in written.items.iter().enumerate().filter(|(_, item)| item.is_repeat()) {
+        for (item, _) in written
+            .items
+            .iter()
+            .enumerate()
+            .filter(|(_, item)| item.is_repeat())
+        {
             let count = counts.next().unwrap_or(2);
             tell_count((rule, item as u32), written.axis, count);
             own_counts.push(count);
@@ -66,7 +76,11 @@ fn questions(
         let first = stack.len();
         let (mut at, mut left) = (corner, extent[along]);
         for (k, slot) in slots.iter().enumerate() {
-            let size = if k + 1 < slots.len() { sizes.next().unwrap_or(1) } else { left };
+            let size = if k + 1 < slots.len() {
+                sizes.next().unwrap_or(1)
+            } else {
+                left
+            };
             if k + 1 < slots.len() {
                 let question = Question {
                     rule,
@@ -112,7 +126,12 @@ pub fn walk<C: Coder>(
     for (k, table) in tables.extents.iter().enumerate() {
         extent[k] = table.choose(coder, known.map(|known| known.0.extent[k]))?;
     }
-    let mut parse = Parse { root, extent, counts: Vec::new(), sizes: Vec::new() };
+    let mut parse = Parse {
+        root,
+        extent,
+        counts: Vec::new(),
+        sizes: Vec::new(),
+    };
     let (mut seen_counts, mut memory) = (CountTable::default(), SizeMemory::default());
     let mut stack = vec![(root, [0, 0], extent)];
     let mut regions = 0;
@@ -122,11 +141,22 @@ pub fn walk<C: Coder>(
         let axis = written.axis;
         let along = index(axis);
         let mut own_counts = Vec::new();
-        for (item, _) in written.items.iter().enumerate().filter(|(_, item)| item.is_repeat()) {
+        for (item, _) in written
+            .items
+            .iter()
+            .enumerate()
+            .filter(|(_, item)| item.is_repeat())
+        {
             let value = known.map(|known| known.0.counts[parse.counts.len()]);
             let asked = ((rule, item as u32), axis, extent[along]);
-            let count =
-                counts::choose(coder, &tables.counts, &mut seen_counts, count_trust, asked, value)?;
+            let count = counts::choose(
+                coder,
+                &tables.counts,
+                &mut seen_counts,
+                count_trust,
+                asked,
+                value,
+            )?;
             own_counts.push(count);
             parse.counts.push(count);
         }
@@ -144,7 +174,8 @@ pub fn walk<C: Coder>(
                 left
             } else {
                 let mirror = slots.len() - 1 - k;
-                let mirrored = (mirror < k && slots[mirror].symbol == slot.symbol).then(|| own_sizes[mirror]);
+                let mirrored =
+                    (mirror < k && slots[mirror].symbol == slot.symbol).then(|| own_sizes[mirror]);
                 let question = Question {
                     rule,
                     axis,
@@ -155,7 +186,8 @@ pub fn walk<C: Coder>(
                     mirrored,
                 };
                 let value = known.map(|known| known.0.sizes[parse.sizes.len()]);
-                let size = sizes::choose(coder, &tables.sizes, &mut memory, trust, &question, value)?;
+                let size =
+                    sizes::choose(coder, &tables.sizes, &mut memory, trust, &question, value)?;
                 parse.sizes.push(size);
                 size
             };

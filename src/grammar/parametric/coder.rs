@@ -89,7 +89,12 @@ pub struct Encoder {
 
 impl Default for Encoder {
     fn default() -> Self {
-        Self { low: 0, high: 2 * HALF - 1, pending: 0, bits: Vec::new() }
+        Self {
+            low: 0,
+            high: 2 * HALF - 1,
+            pending: 0,
+            bits: Vec::new(),
+        }
     }
 }
 
@@ -106,7 +111,9 @@ impl Encoder {
         self.pending += 1;
         self.push(self.low >= QUARTER);
         let byte = |bits: &[bool]| {
-            bits.iter().enumerate().fold(0, |byte, (k, &bit)| byte | (u8::from(bit) << (7 - k)))
+            bits.iter()
+                .enumerate()
+                .fold(0, |byte, (k, &bit)| byte | (u8::from(bit) << (7 - k)))
         };
         self.bits.chunks(8).map(byte).collect()
     }
@@ -161,7 +168,13 @@ pub struct Decoder<'c> {
 impl<'c> Decoder<'c> {
     /// Starts to read; past its end a code is zeros.
     pub fn new(code: &'c [u8]) -> Self {
-        let mut decoder = Self { low: 0, high: 2 * HALF - 1, value: 0, next: 0, code };
+        let mut decoder = Self {
+            low: 0,
+            high: 2 * HALF - 1,
+            value: 0,
+            next: 0,
+            code,
+        };
         for _ in 0..63 {
             decoder.shift();
         }

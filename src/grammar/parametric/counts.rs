@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use super::coder::Coder;
 use super::tree::index;
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 const PREDICTORS: usize = 5;
 
@@ -34,16 +34,25 @@ pub struct CountTable {
 impl CountTable {
     /// Adds a count, or takes it away.
     pub fn change(&mut self, repeat: Repeat, axis: Axis, count: u32, more: bool) {
-        for counts in [self.repeat.entry(repeat).or_default(), &mut self.axis[index(axis)]] {
+        for counts in [
+            self.repeat.entry(repeat).or_default(),
+            &mut self.axis[index(axis)],
+        ] {
             let seen = counts.entry(count).or_default();
-            *seen = if more { *seen + 1 } else { seen.saturating_sub(1) };
+            *seen = if more {
+                *seen + 1
+            } else {
+                seen.saturating_sub(1)
+            };
         }
     }
 
     /// The counts of a repeat with how often they were seen.
     pub fn of(&self, repeat: Repeat) -> impl Iterator<Item = (u32, u32)> {
         let counts = self.repeat.get(&repeat).into_iter().flatten();
-        counts.map(|(&count, &seen)| (count, seen)).filter(|seen| seen.1 > 0)
+        counts
+            .map(|(&count, &seen)| (count, seen))
+            .filter(|seen| seen.1 > 0)
     }
 }
 
@@ -83,18 +92,24 @@ pub fn choose<C: Coder>(
         of(Some(&table.axis[index(axis)])),
         Some(geometric),
     ];
-    let speakers = (0..PREDICTORS).filter(|&k| predictions[k].is_some()).fold(0, |set, k| set | 1 << k);
+    let speakers = (0..PREDICTORS)
+        .filter(|&k| predictions[k].is_some())
+        .fold(0, |set, k| set | 1 << k);
     let own = trust.counts.entry(speakers).or_insert(PRIOR);
     let mixed: Vec<f64> = (0..range)
         .map(|v| {
             let terms = predictions.iter().zip(own.iter());
-            terms.map(|(p, w)| p.as_ref().map_or(0.0, |p| w * p[v])).sum()
+            terms
+                .map(|(p, w)| p.as_ref().map_or(0.0, |p| w * p[v]))
+                .sum()
         })
         .collect();
     let at = coder.choose(&mixed, value.map(|v| (v as usize).wrapping_sub(2)))?;
     let weights = *own;
     for ((count, prediction), weight) in own.iter_mut().zip(&predictions).zip(weights) {
-        *count += prediction.as_ref().map_or(0.0, |p| weight * p[at] / mixed[at]);
+        *count += prediction
+            .as_ref()
+            .map_or(0.0, |p| weight * p[at] / mixed[at]);
     }
     let count = at as u32 + 2;
     memory.change(repeat, axis, count, true);

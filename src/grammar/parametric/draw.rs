@@ -18,7 +18,7 @@ use super::error::LibraryError;
 use super::library::{Library, Member};
 use super::rules::Symbol;
 use super::tree::{self, slots};
-use crate::shape::{Axis, Facade, LabelGrid, Region, Rect, Span, components, decompose};
+use edifice_shape::{Axis, Facade, LabelGrid, Rect, Region, Span, components, decompose};
 
 /// Narrowest and widest band, as shares of the side.
 const BAND: (f64, f64) = (0.06, 0.45);
@@ -40,8 +40,13 @@ impl Library {
             .collect();
         let second = alike[rng.random_range(0..alike.len())];
         let between = self.between(first, second, rng.random(), name)?;
-        let wrong = |message: String| LibraryError::Invalid { place: name.to_owned(), message };
-        let mut grid = LabelGrid::from_facade(&between, None).map_err(|e| wrong(e.to_string()))?.merged();
+        let wrong = |message: String| LibraryError::Invalid {
+            place: name.to_owned(),
+            message,
+        };
+        let mut grid = LabelGrid::from_facade(&between, None)
+            .map_err(|e| wrong(e.to_string()))?
+            .merged();
         for axis in Axis::BOTH {
             let from = self.largest_count(first, axis);
             let to = self.largest_count(&members[rng.random_range(0..members.len())], axis);
@@ -59,23 +64,38 @@ impl Library {
     fn between(&self, a: &Member, b: &Member, t: f64, name: &str) -> Result<Facade, LibraryError> {
         let edges = |member: &Member| {
             let mut edges = Vec::new();
-            tree::unfold(&member.parse, self.rules().rules(), |label, [x, y], [w, h]| {
-                edges.push((label, [x, y, x + w, y + h].map(f64::from)));
-            })?;
+            tree::unfold(
+                &member.parse,
+                self.rules().rules(),
+                |label, [x, y], [w, h]| {
+                    edges.push((label, [x, y, x + w, y + h].map(f64::from)));
+                },
+            )?;
             Ok::<_, LibraryError>(edges)
         };
         // A difference of one step or more stays one: rounding keeps order.
         let mix = |a: f64, b: f64| (a + t * (b - a)).round() * self.step();
-        let regions = edges(a)?.into_iter().zip(edges(b)?).map(|((label, a), (_, b))| {
-            let [x, y, right, top]: [f64; 4] = std::array::from_fn(|k| mix(a[k], b[k]));
-            let label = self.rules().labels()[label as usize].clone();
-            Region { label, rect: Rect::new(x, y, right - x, top - y) }
-        });
+        let regions = edges(a)?
+            .into_iter()
+            .zip(edges(b)?)
+            .map(|((label, a), (_, b))| {
+                let [x, y, right, top]: [f64; 4] = std::array::from_fn(|k| mix(a[k], b[k]));
+                let label = self.rules().labels()[label as usize].clone();
+                Region {
+                    label,
+                    rect: Rect::new(x, y, right - x, top - y),
+                }
+            });
         let regions = regions.collect();
-        let [width, height]: [f64; 2] =
-            std::array::from_fn(|k| mix(f64::from(a.parse.extent[k]), f64::from(b.parse.extent[k])));
-        Facade::new(name, self.unit(), width, height, regions)
-            .map_err(|source| LibraryError::Layout { name: name.to_owned(), source })
+        let [width, height]: [f64; 2] = std::array::from_fn(|k| {
+            mix(f64::from(a.parse.extent[k]), f64::from(b.parse.extent[k]))
+        });
+        Facade::new(name, self.unit(), width, height, regions).map_err(|source| {
+            LibraryError::Layout {
+                name: name.to_owned(),
+                source,
+            }
+        })
     }
 
     /// The largest count of a repeat along an axis; 1 where nothing repeats.
@@ -112,7 +132,8 @@ fn with_band<R: Rng>(grid: &LabelGrid, axis: Axis, more: bool, rng: &mut R) -> O
     for from in (0..count).filter(|&k| wide(k)) {
         // The first line at which the picture is the same, one period further.
         let same = |to: &usize| {
-            (0..across(&grid, axis)).all(|t| label(&grid, axis, from, t) == label(&grid, axis, *to, t))
+            (0..across(&grid, axis))
+                .all(|t| label(&grid, axis, from, t) == label(&grid, axis, *to, t))
         };
         let to = (from + 1..count).find(|to| wide(*to) && same(to));
         if let Some(to) = to {
@@ -132,7 +153,10 @@ fn with_band<R: Rng>(grid: &LabelGrid, axis: Axis, more: bool, rng: &mut R) -> O
         };
         let after = pieces(&edited);
         let fits = before.iter().all(|(label, count)| {
-            let now = after.iter().find(|other| other.0 == *label).map_or(0, |other| other.1);
+            let now = after
+                .iter()
+                .find(|other| other.0 == *label)
+                .map_or(0, |other| other.1);
             now > 0 && (*count > 1 || now == 1)
         });
         if fits {
@@ -166,7 +190,10 @@ fn joined(grid: &LabelGrid, axis: Axis, end: usize, start: usize) -> LabelGrid {
     // Strips in order; the seam strip has half of either width, the larger half from the first.
     let half = |k: usize| ((cuts[k + 1] - cuts[k]) / 2.0).ceil();
     let mut strips: Vec<(usize, f64)> = (0..end).map(|k| (k, cuts[k + 1] - cuts[k])).collect();
-    strips.push((end, half(end) + (cuts[start + 1] - cuts[start]) - half(start)));
+    strips.push((
+        end,
+        half(end) + (cuts[start + 1] - cuts[start]) - half(start),
+    ));
     strips.extend((start + 1..cuts.len() - 1).map(|k| (k, cuts[k + 1] - cuts[k])));
     let mut new_cuts = vec![0.0];
     for &(_, width) in &strips {
@@ -196,7 +223,12 @@ fn joined(grid: &LabelGrid, axis: Axis, end: usize, start: usize) -> LabelGrid {
 
 /// Number of connected areas of each label.
 fn pieces(grid: &LabelGrid) -> Vec<(u16, usize)> {
-    let whole = Span { left: 0, right: grid.columns(), bottom: 0, top: grid.rows() };
+    let whole = Span {
+        left: 0,
+        right: grid.columns(),
+        bottom: 0,
+        top: grid.rows(),
+    };
     let mut of_cell = vec![0; grid.cells.len()];
     let found = components(grid, whole, &mut of_cell);
     let mut counts: Vec<(u16, usize)> = Vec::new();

@@ -1,6 +1,6 @@
 //! Ways for facades, libraries and codes to be wrong.
 
-use crate::shape::LayoutError;
+use edifice_shape::LayoutError;
 
 /// Why facades make no library, or a facade has no code in it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -59,7 +59,11 @@ impl ExtentTable {
                 if starts[k] >= starts[k + 1] {
                     return 0.0;
                 }
-                let near = self.seen.iter().enumerate().map(|(l, n)| n * (-(k.abs_diff(l) as f64) / 1.2).exp());
+                let near = self
+                    .seen
+                    .iter()
+                    .enumerate()
+                    .map(|(l, n)| n * (-(k.abs_diff(l) as f64) / 1.2).exp());
                 near.sum::<f64>() + 0.02
             })
             .collect();

@@ -9,8 +9,8 @@ use super::error::LibraryError;
 use super::phrases::{self, Sharing};
 use super::rules::{Rules, Symbol};
 use super::tree::{self, Parse};
-use crate::grammar::Costs;
-use crate::shape::Facade;
+use crate::Costs;
+use edifice_shape::Facade;
 
 /// A facade that the library was made from.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,7 @@ pub struct Library {
     rules: Rules,
     members: Vec<Member>,
     tables: Tables,
+    told_by_others: Vec<f64>,
 }
 
 /// A facade written with a library: a program that has the library reads it back, region for region.
@@ -65,7 +66,10 @@ impl Library {
         for facade in facades {
             same_unit(facade, &first.unit)?;
             let parse = tree::parse(facade, step, &mut rules)?;
-            members.push(Member { name: facade.name.clone(), parse });
+            members.push(Member {
+                name: facade.name.clone(),
+                parse,
+            });
         }
         Self::from_members(first.unit.clone(), step, rules, members)
     }
@@ -86,8 +90,14 @@ impl Library {
         for member in &members {
             tree::unfold(&member.parse, rules.rules(), |_, _, _| {})?;
         }
-        let mut library =
-            Self { unit, step, rules, members, tables: Tables::default() };
+        let mut library = Self {
+            unit,
+            step,
+            rules,
+            members,
+            tables: Tables::default(),
+            told_by_others: Vec::new(),
+        };
         library.fit()?;
         Ok(library)
     }
@@ -105,8 +115,9 @@ impl Library {
             self.tables.change(&member.parse, &self.rules, false);
             let known = Some((&member.parse, &self.rules));
             let mut rules = self.rules.clone();
+            let mut counter = Counter::default();
             let walked = walk(
-                &mut Counter::default(),
+                &mut counter,
                 &self.tables,
                 (&mut trust, &mut count_trust),
                 &mut rules,
@@ -114,6 +125,7 @@ impl Library {
             );
             self.tables.change(&member.parse, &self.rules, true);
             walked.ok_or_else(|| no_code(&member.name))?;
+            self.told_by_others.push(counter.bits);
         }
         self.tables.trust = trust;
         self.tables.count_trust = count_trust;
@@ -145,6 +157,12 @@ impl Library {
         &self.tables
     }
 
+    /// Bits of each facade given the counts, sizes and roots of all others, while it is learnt whom to trust. The rules
+    /// are known already: for facades that are not in the library, [`Library::bits`] is the honest number.
+    pub fn told_by_others(&self) -> &[f64] {
+        &self.told_by_others
+    }
+
     /// The rules as Wu's cost counts them, with shared phrases and the bound on their choice.
     pub fn sharing(&self, costs: &Costs) -> Sharing {
         phrases::share(&Bodies::new(&self.rules), costs)
@@ -155,7 +173,13 @@ impl Library {
     /// # Errors
     /// [`LibraryError::Invalid`] for parameters that do not fit the library's rules.
     pub fn facade(&self, parse: &Parse, name: &str) -> Result<Facade, LibraryError> {
-        tree::facade(parse, self.rules.rules(), self.rules.labels(), self.step, (name, &self.unit))
+        tree::facade(
+            parse,
+            self.rules.rules(),
+            self.rules.labels(),
+            self.step,
+            (name, &self.unit),
+        )
     }
 
     /// The code of a facade: structure, counts, sizes and extents, given the library.
@@ -165,7 +189,10 @@ impl Library {
     pub fn encode(&self, facade: &Facade) -> Result<Code, LibraryError> {
         let mut encoder = Encoder::default();
         let bits = self.told(facade, &mut encoder)?;
-        Ok(Code { bytes: encoder.finish(), bits })
+        Ok(Code {
+            bytes: encoder.finish(),
+            bits,
+        })
     }
 
     /// The bits that a facade costs given the library: the shorter, the more alike.
@@ -180,15 +207,30 @@ impl Library {
         same_unit(facade, &self.unit)?;
         let mut own = self.rules.clone();
         let parse = tree::parse(facade, self.step, &mut own)?;
-        let mut both = Both { counter: Counter::default(), coder };
-        self.walked(&mut both, Some((&parse, &own))).ok_or_else(|| no_code(&facade.name))?;
+        let mut both = Both {
+            counter: Counter::default(),
+            coder,
+        };
+        self.walked(&mut both, Some((&parse, &own)))
+            .ok_or_else(|| no_code(&facade.name))?;
         Ok(both.counter.bits)
     }
 
-    fn walked<C: Coder>(&self, coder: &mut C, known: Option<(&Parse, &Rules)>) -> Option<(Parse, Rules)> {
+    fn walked<C: Coder>(
+        &self,
+        coder: &mut C,
+        known: Option<(&Parse, &Rules)>,
+    ) -> Option<(Parse, Rules)> {
         let mut rules = self.rules.clone();
-        let (mut trust, mut count_trust) = (self.tables.trust.clone(), self.tables.count_trust.clone());
-        let parse = walk(coder, &self.tables, (&mut trust, &mut count_trust), &mut rules, known)?;
+        let (mut trust, mut count_trust) =
+            (self.tables.trust.clone(), self.tables.count_trust.clone());
+        let parse = walk(
+            coder,
+            &self.tables,
+            (&mut trust, &mut count_trust),
+            &mut rules,
+            known,
+        )?;
         Some((parse, rules))
     }
 
@@ -197,9 +239,16 @@ impl Library {
     /// # Errors
     /// [`LibraryError::Invalid`] for bytes that are no code of this library.
     pub fn decode(&self, code: &[u8], name: &str) -> Result<Facade, LibraryError> {
-        let (parse, rules) =
-            self.walked(&mut Decoder::new(code), None).ok_or_else(|| no_code(name))?;
-        tree::facade(&parse, rules.rules(), rules.labels(), self.step, (name, &self.unit))
+        let (parse, rules) = self
+            .walked(&mut Decoder::new(code), None)
+            .ok_or_else(|| no_code(name))?;
+        tree::facade(
+            &parse,
+            rules.rules(),
+            rules.labels(),
+            self.step,
+            (name, &self.unit),
+        )
     }
 
     /// Draws from the distribution of codes: a facade comes as often as its bits say.
@@ -207,8 +256,16 @@ impl Library {
     /// # Errors
     /// [`LibraryError::Invalid`] where what was drawn is larger than a code may be.
     pub fn draw_code<R: Rng>(&self, rng: &mut R, name: &str) -> Result<Facade, LibraryError> {
-        let (parse, rules) = self.walked(&mut Drawer { rng }, None).ok_or_else(|| no_code(name))?;
-        tree::facade(&parse, rules.rules(), rules.labels(), self.step, (name, &self.unit))
+        let (parse, rules) = self
+            .walked(&mut Drawer { rng }, None)
+            .ok_or_else(|| no_code(name))?;
+        tree::facade(
+            &parse,
+            rules.rules(),
+            rules.labels(),
+            self.step,
+            (name, &self.unit),
+        )
     }
 
     /// Whether the library has a facade with this root.
@@ -258,11 +315,16 @@ fn step(facades: &[Facade]) -> Result<f64, LibraryError> {
             let edges = facade.regions.iter().map(|region| region.rect);
             on(facade.width)
                 && on(facade.height)
-                && edges.into_iter().all(|r| on(r.x) && on(r.y) && on(r.right()) && on(r.top()))
+                && edges
+                    .into_iter()
+                    .all(|r| on(r.x) && on(r.y) && on(r.right()) && on(r.top()))
         })
     };
     if facades.is_empty() {
         return Err(LibraryError::NoFacades);
     }
-    Ok(STEPS.into_iter().find(|&step| fits(step)).unwrap_or(STEPS[STEPS.len() - 1]))
+    Ok(STEPS
+        .into_iter()
+        .find(|&step| fits(step))
+        .unwrap_or(STEPS[STEPS.len() - 1]))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Gives names that no label has, numbered by kind in the order in which they are asked for.
 pub struct Namer<'l> {
@@ -26,7 +26,10 @@ pub enum Kind {
 impl<'l> Namer<'l> {
     /// Names that differ from the labels.
     pub fn new(labels: &'l [String]) -> Self {
-        Self { labels: labels.iter().map(String::as_str).collect(), given: [0; 6] }
+        Self {
+            labels: labels.iter().map(String::as_str).collect(),
+            given: [0; 6],
+        }
     }
 
     /// The next name of a kind.

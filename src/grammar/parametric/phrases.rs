@@ -11,25 +11,19 @@
 //!      z_a <= y_p for every arc a of phrase p (1 in a string, y_p of the other in a phrase),
 //!      y_p in {0, 1}, z >= 0
 //! ```
-//! For fixed `y` the rest is a shortest path, so that only `y` is branched on. The start is greedy; the bound is
-//! that of branch and bound (microlp), stopped after a number of nodes so that equal inputs give equal bytes.
-//! A proof holds for the collapse of repeats that made the strings, and for phrases of this length.
+//! For fixed `y` the rest is a shortest path, so that only `y` is branched on; the start is greedy, and the bound is the
+//! Lagrangian one of `program.rs`. A proof holds for the collapse of repeats that made the strings, and for phrases of
+//! this length.
 
-use microlp::{ComparisonOp, LinearExpr, OptimizationDirection, Problem, SolveOptions, Variable};
 use rustc_hash::FxHashMap;
 
 use super::bodies::{Bodies, Body, Letter};
-use crate::grammar::Costs;
-use crate::shape::Axis;
+use super::program::branch_and_bound;
+use crate::Costs;
+use edifice_shape::Axis;
 
 /// Letters of the longest phrase.
 pub const LONGEST: usize = 14;
-
-/// Programs with more arcs than this keep the greedy choice, with the bound of no sharing that is always true.
-const MOST_ARCS: usize = 60_000;
-
-/// Nodes of branch and bound.
-const NODES: u64 = 400;
 
 /// One written rule: a body or a phrase, whose letters may be further phrases.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,36 +66,29 @@ impl Sharing {
 }
 
 /// A string of the program.
-struct Text {
+pub(super) struct Text {
     axis: Axis,
-    letters: Vec<Letter>,
+    pub letters: Vec<Letter>,
     /// Phrases that stand in it: first place, one past the last, and the index of the phrase's text.
-    arcs: Vec<(usize, usize, usize)>,
+    pub arcs: Vec<(usize, usize, usize)>,
 }
 
 /// Bodies first, then the phrases that may be opened.
-struct Texts {
-    texts: Vec<Text>,
-    bodies: usize,
+pub(super) struct Texts {
+    pub texts: Vec<Text>,
+    pub bodies: usize,
 }
 
 /// Chooses the phrases. `costs` are those of a split and a repeat.
 pub fn share(bodies: &Bodies, costs: &Costs) -> Sharing {
     let texts = Texts::new(&bodies.bodies);
-    let fixed: f64 = bodies.bodies.iter().map(|body| operation_cost(body, costs)).sum();
-    let mut open = texts.greedy(costs.split);
-    let arcs: usize = texts.texts.iter().map(|text| text.arcs.len()).sum();
-    let mut bound = texts.trivial_bound();
-    if texts.texts.len() > texts.bodies && arcs <= MOST_ARCS {
-        if let Some((better, proven)) = texts.solve(&open, costs.split) {
-            if texts.cost(&better, costs.split) < texts.cost(&open, costs.split) {
-                open = better;
-            }
-            bound = bound.max(proven);
-        }
-    } else if texts.texts.len() == texts.bodies {
-        bound = texts.cost(&open, costs.split);
-    }
+    let fixed: f64 = bodies
+        .bodies
+        .iter()
+        .map(|body| operation_cost(body, costs))
+        .sum();
+    let start = texts.greedy(costs.split);
+    let (open, bound) = branch_and_bound(&texts, start, costs.split);
     let cost = fixed + texts.cost(&open, costs.split);
     Sharing {
         rules: texts.written(&open, &bodies.bodies),
@@ -112,7 +99,11 @@ pub fn share(bodies: &Bodies, costs: &Costs) -> Sharing {
 }
 
 fn operation_cost(body: &Body, costs: &Costs) -> f64 {
-    if body.repeat { costs.repeat } else { costs.split }
+    if body.repeat {
+        costs.repeat
+    } else {
+        costs.split
+    }
 }
 
 impl Texts {
@@ -121,7 +112,9 @@ impl Texts {
         for body in bodies {
             for from in 0..body.letters.len() {
                 for to in from + 2..=body.letters.len().min(from + LONGEST) {
-                    *found.entry((body.axis, &body.letters[from..to])).or_default() += 1;
+                    *found
+                        .entry((body.axis, &body.letters[from..to]))
+                        .or_default() += 1;
                 }
             }
         }
@@ -142,7 +135,10 @@ impl Texts {
             text_of.insert(*phrase, bodies.len() + k);
         }
         let longest = text_of.keys().map(|key| key.1.len()).max().unwrap_or(0);
-        let strings = bodies.iter().map(|body| (body.axis, &body.letters[..])).chain(phrases);
+        let strings = bodies
+            .iter()
+            .map(|body| (body.axis, &body.letters[..]))
+            .chain(phrases);
         let texts = strings.enumerate().map(|(own, (axis, letters))| {
             let mut arcs = Vec::new();
             for from in 0..letters.len() {
@@ -154,14 +150,16 @@ impl Texts {
                     }
                 }
             }
-            Text { axis, letters: letters.to_vec(), arcs }
+            Text {
+                axis,
+                letters: letters.to_vec(),
+                arcs,
+            }
         });
-        Self { texts: texts.collect(), bodies: bodies.len() }
-    }
-
-    /// Every string costs at least one letter, and every distinct letter stands somewhere.
-    fn trivial_bound(&self) -> f64 {
-        self.bodies as f64
+        Self {
+            texts: texts.collect(),
+            bodies: bodies.len(),
+        }
     }
 
     /// Fewest parts of a text with the open phrases, and the parts: places where they start and their text.
@@ -200,7 +198,7 @@ impl Texts {
     }
 
     /// Cost of the open phrases and of all paths, without the operations of the bodies.
-    fn cost(&self, open: &[bool], split: f64) -> f64 {
+    pub fn cost(&self, open: &[bool], split: f64) -> f64 {
         let texts = (0..self.texts.len()).filter(|&k| open[k]);
         texts
             .map(|k| self.path(k, open).0 as f64 + if k < self.bodies { 0.0 } else { split })
@@ -218,7 +216,9 @@ impl Texts {
                 }
             }
         }
-        let mut paths: Vec<usize> = (0..self.texts.len()).map(|k| self.path(k, &open).0).collect();
+        let mut paths: Vec<usize> = (0..self.texts.len())
+            .map(|k| self.path(k, &open).0)
+            .collect();
         // What opening a phrase saves now; an upper bound later, evaluated again when it comes first.
         let saves = |phrase: usize, open: &mut Vec<bool>, paths: &[usize]| -> f64 {
             let own = self.path(phrase, open).0 as f64;
@@ -245,11 +245,17 @@ impl Texts {
                 paths[k] = self.path(k, &open).0;
             }
         }
-        let mut cost = self.cost(&open, split);
+        self.close(&mut open, split);
+        open
+    }
+
+    /// Closes the phrases that save nothing, one after another, and returns the cost.
+    pub fn close(&self, open: &mut [bool], split: f64) -> f64 {
+        let mut cost = self.cost(open, split);
         for phrase in self.bodies..self.texts.len() {
             if open[phrase] {
                 open[phrase] = false;
-                let without = self.cost(&open, split);
+                let without = self.cost(open, split);
                 if without <= cost {
                     cost = without;
                 } else {
@@ -257,63 +263,7 @@ impl Texts {
                 }
             }
         }
-        open
-    }
-
-    /// Branch and bound from a start: the open texts and the bound; none where the solver fails.
-    fn solve(&self, start: &[bool], split: f64) -> Option<(Vec<bool>, f64)> {
-        let mut problem = Problem::new(OptimizationDirection::Minimize);
-        let mut hint = Vec::new();
-        let opens: Vec<Option<Variable>> = (0..self.texts.len())
-            .map(|k| {
-                (k >= self.bodies).then(|| {
-                    let open = problem.add_binary_var(split);
-                    hint.push((open, f64::from(u8::from(start[k]))));
-                    open
-                })
-            })
-            .collect();
-        for (k, text) in self.texts.iter().enumerate() {
-            let n = text.letters.len();
-            let mut flow: Vec<LinearExpr> = vec![LinearExpr::empty(); n + 1];
-            for from in 0..n {
-                let letter = problem.add_var(1.0, (0.0, 1.0));
-                flow[from].add(letter, 1.0);
-                flow[from + 1].add(letter, -1.0);
-            }
-            for &(from, to, phrase) in &text.arcs {
-                let arc = problem.add_var(1.0, (0.0, 1.0));
-                flow[from].add(arc, 1.0);
-                flow[to].add(arc, -1.0);
-                if let Some(open) = opens[phrase] {
-                    problem.add_constraint(&[(arc, 1.0), (open, -1.0)], ComparisonOp::Le, 0.0);
-                }
-            }
-            for (place, mut balance) in flow.into_iter().enumerate().take(n) {
-                let source = place == 0;
-                match opens[k] {
-                    Some(open) if source => {
-                        balance.add(open, -1.0);
-                        problem.add_constraint(balance, ComparisonOp::Eq, 0.0);
-                    }
-                    _ => {
-                        let out = if source { 1.0 } else { 0.0 };
-                        problem.add_constraint(balance, ComparisonOp::Eq, out);
-                    }
-                }
-            }
-        }
-        let mut options = SolveOptions::default();
-        options.node_limit = Some(NODES);
-        options.warm_start = Some(hint);
-        let outcome = problem.solve_with(options).ok()?;
-        let solution = outcome.solution()?;
-        let bound = match outcome.is_optimal() {
-            true => solution.objective(),
-            false => outcome.stats().best_bound?,
-        };
-        let opened = |open: &Option<Variable>| open.is_none_or(|v| solution.var_value(v) > 0.5);
-        Some((opens.iter().map(opened).collect(), bound))
+        cost
     }
 
     /// The rules that a choice writes.

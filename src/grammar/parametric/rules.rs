@@ -2,7 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::shape::Axis;
+use super::error::LibraryError;
+use edifice_shape::Axis;
 
 /// What stands for a region in a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -56,6 +57,59 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// A table from its parts.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] for a label or rule that stands twice, a rule that does not split, or that uses a
+    /// symbol that is no label and no earlier rule of the other direction.
+    pub fn from_parts(labels: Vec<String>, rules: Vec<Rule>) -> Result<Self, LibraryError> {
+        let wrong = |place: String, message: &str| {
+            let message = message.to_owned();
+            Err(LibraryError::Invalid { place, message })
+        };
+        let mut table = Self::default();
+        for (k, label) in labels.iter().enumerate() {
+            if label.is_empty() {
+                return wrong(format!("labels[{k}]"), "a label is empty");
+            }
+            if table.label(label) != Symbol::Terminal(k as u32) {
+                return wrong(format!("labels[{k}]"), "this label stands twice");
+            }
+        }
+        for (k, rule) in rules.into_iter().enumerate() {
+            let splits = rule.items.len() > 1 || rule.items.first().is_some_and(Item::is_repeat);
+            if !splits {
+                return wrong(
+                    format!("rules[{k}]"),
+                    "expected at least two items, or one repeat",
+                );
+            }
+            for (n, item) in rule.items.iter().enumerate() {
+                let place = || format!("rules[{k}].items[{n}]");
+                if item.symbols().is_empty() {
+                    return wrong(place(), "a repeat has no parts");
+                }
+                for &symbol in item.symbols() {
+                    match symbol {
+                        Symbol::Terminal(l) if (l as usize) < table.labels.len() => {}
+                        Symbol::Rule(r) if r as usize >= k => {
+                            return wrong(place(), "expected the index of an earlier rule");
+                        }
+                        Symbol::Rule(r) if table.rule(r).axis == rule.axis => {
+                            return wrong(place(), "expected a rule of the other direction");
+                        }
+                        Symbol::Rule(_) => {}
+                        Symbol::Terminal(_) => return wrong(place(), "there is no such label"),
+                    }
+                }
+            }
+            if table.intern(rule) != Symbol::Rule(k as u32) {
+                return wrong(format!("rules[{k}]"), "this rule stands twice");
+            }
+        }
+        Ok(table)
+    }
+
     /// The labels by index.
     pub fn labels(&self) -> &[String] {
         &self.labels

@@ -23,14 +23,15 @@ use rustc_hash::FxHashMap;
 use super::coder::Coder;
 use super::rules::Symbol;
 use super::tree::{Slot, index};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Number of predictors.
 const PREDICTORS: usize = 13;
 
 /// How much each predictor is believed before anything was seen.
-const PRIOR: [f64; PREDICTORS] =
-    [2.0, 1.0, 0.5, 0.5, 0.3, 0.1, 0.5, 0.5, 0.3, 0.3, 0.2, 0.1, 0.05];
+const PRIOR: [f64; PREDICTORS] = [
+    2.0, 1.0, 0.5, 0.5, 0.3, 0.1, 0.5, 0.5, 0.3, 0.3, 0.2, 0.1, 0.05,
+];
 
 /// How often each size was seen.
 pub type Sizes = BTreeMap<u32, u32>;
@@ -50,15 +51,27 @@ pub struct SizeTable {
 
 fn change<K: Ord>(counts: &mut BTreeMap<K, u32>, key: K, more: bool) {
     let count = counts.entry(key).or_default();
-    *count = if more { *count + 1 } else { count.saturating_sub(1) };
+    *count = if more {
+        *count + 1
+    } else {
+        count.saturating_sub(1)
+    };
 }
 
 impl SizeTable {
     /// Adds one size, or takes it away.
     pub fn change(&mut self, at: &Question, size: u32, more: bool) {
         change(self.place.entry(at.place()).or_default(), size, more);
-        change(self.share.entry(at.place()).or_default(), (size, at.extent), more);
-        change(self.symbol.entry((at.axis, at.slot.symbol)).or_default(), size, more);
+        change(
+            self.share.entry(at.place()).or_default(),
+            (size, at.extent),
+            more,
+        );
+        change(
+            self.symbol.entry((at.axis, at.slot.symbol)).or_default(),
+            size,
+            more,
+        );
         change(&mut self.axis[index(at.axis)], size, more);
     }
 }
@@ -101,9 +114,19 @@ pub struct SizeMemory {
 impl SizeMemory {
     /// Remembers a size.
     pub fn add(&mut self, at: &Question, size: u32) {
-        change(self.slot.entry((at.place(), at.slot.repetition)).or_default(), size, true);
+        change(
+            self.slot
+                .entry((at.place(), at.slot.repetition))
+                .or_default(),
+            size,
+            true,
+        );
         change(self.place.entry(at.place()).or_default(), size, true);
-        change(self.symbol.entry((at.axis, at.slot.symbol)).or_default(), size, true);
+        change(
+            self.symbol.entry((at.axis, at.slot.symbol)).or_default(),
+            size,
+            true,
+        );
         change(&mut self.axis[index(at.axis)], size, true);
         self.cuts[index(at.axis)].insert(at.start + size);
     }
@@ -182,11 +205,17 @@ fn predictions(table: &SizeTable, memory: &SizeMemory, at: &Question) -> [Predic
     let place = at.place();
     let along = index(at.axis);
     let seen = |sizes: &Sizes| -> Vec<(f64, u32)> {
-        sizes.iter().map(|(&size, &count)| (f64::from(size), count)).collect()
+        sizes
+            .iter()
+            .map(|(&size, &count)| (f64::from(size), count))
+            .collect()
     };
     let mut next = vec![0.0; max as usize];
     let mut weight = 1.0;
-    for &cut in memory.cuts[along].range(at.start + 1..=at.start + max).take(24) {
+    for &cut in memory.cuts[along]
+        .range(at.start + 1..=at.start + max)
+        .take(24)
+    {
         next[(cut - at.start) as usize - 1] = weight;
         weight *= 0.5;
     }
@@ -196,10 +225,22 @@ fn predictions(table: &SizeTable, memory: &SizeMemory, at: &Question) -> [Predic
         one
     });
     let of_place = table.place.get(&place).map(seen).unwrap_or_default();
-    let shares = table.share.get(&place).into_iter().flatten().map(|(&(size, extent), &count)| {
-        (f64::from(size) * f64::from(at.extent) / f64::from(extent), count)
-    });
-    let of_symbol = table.symbol.get(&(at.axis, at.slot.symbol)).map(seen).unwrap_or_default();
+    let shares = table
+        .share
+        .get(&place)
+        .into_iter()
+        .flatten()
+        .map(|(&(size, extent), &count)| {
+            (
+                f64::from(size) * f64::from(at.extent) / f64::from(extent),
+                count,
+            )
+        });
+    let of_symbol = table
+        .symbol
+        .get(&(at.axis, at.slot.symbol))
+        .map(seen)
+        .unwrap_or_default();
     [
         exact(memory.slot.get(&(place, at.slot.repetition)), max),
         normalized(next),
@@ -227,7 +268,9 @@ pub fn choose<C: Coder>(
     value: Option<u32>,
 ) -> Option<u32> {
     let predictions = predictions(table, memory, at);
-    let speakers = (0..PREDICTORS).filter(|&k| predictions[k].is_some()).fold(0, |set, k| set | 1 << k);
+    let speakers = (0..PREDICTORS)
+        .filter(|&k| predictions[k].is_some())
+        .fold(0, |set, k| set | 1 << k);
     let weights = trust.weights(speakers);
     let mut mixed = vec![0.0; at.max as usize];
     for (prediction, weight) in predictions.iter().zip(&weights) {

@@ -14,7 +14,7 @@ use rustc_hash::FxHashMap;
 use super::coder::Coder;
 use super::rules::{Item, Rule, Rules, Symbol};
 use super::tree::{DEPTH_LIMIT, index};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Weight of the unconditional distribution of tokens.
 const BETA: f64 = 1.0;
@@ -59,7 +59,11 @@ impl StructureTable {
     /// Adds the root of a facade, or takes it away.
     pub fn change_root(&mut self, root: Symbol, more: bool) {
         let count = self.roots.entry(root).or_default();
-        *count = if more { *count + 1 } else { count.saturating_sub(1) };
+        *count = if more {
+            *count + 1
+        } else {
+            count.saturating_sub(1)
+        };
         if *count == 0 {
             self.roots.remove(&root);
         }
@@ -69,7 +73,12 @@ impl StructureTable {
     pub fn add_rule(&mut self, rule: &Rule) {
         let mut previous = Token::End;
         for token in tokens(rule) {
-            *self.follows.entry((rule.axis, previous)).or_default().entry(token).or_default() += 1;
+            *self
+                .follows
+                .entry((rule.axis, previous))
+                .or_default()
+                .entry(token)
+                .or_default() += 1;
             *self.seen[index(rule.axis)].entry(token).or_default() += 1;
             previous = token;
         }
@@ -120,11 +129,21 @@ impl<C: Coder> Speller<'_, C> {
         let all: u32 = roots.iter().map(|root| root.1).sum();
         let once = roots.iter().filter(|root| root.1 == 1).count() as f64;
         let new = (once + 0.5) / (f64::from(all) + 1.0);
-        let mut names = Names { label: BTreeMap::new(), rule: BTreeMap::new() };
-        let mut weights: Vec<f64> =
-            roots.iter().map(|root| (1.0 - new) * f64::from(root.1) / f64::from(all.max(1))).collect();
+        let mut names = Names {
+            label: BTreeMap::new(),
+            rule: BTreeMap::new(),
+        };
+        let mut weights: Vec<f64> = roots
+            .iter()
+            .map(|root| (1.0 - new) * f64::from(root.1) / f64::from(all.max(1)))
+            .collect();
         weights.push(new);
-        let at = value.map(|root| roots.iter().position(|known| known.0 == root).unwrap_or(roots.len()));
+        let at = value.map(|root| {
+            roots
+                .iter()
+                .position(|known| known.0 == root)
+                .unwrap_or(roots.len())
+        });
         let at = self.coder.choose(&weights, at)?;
         if let Some(&(root, _)) = roots.get(at) {
             return Some(root);
@@ -154,7 +173,12 @@ impl<C: Coder> Speller<'_, C> {
         depth: usize,
     ) -> Option<Symbol> {
         let token = match axis {
-            None => self.token(&self.labels_only(), previous, None, value.map(|v| self.tell(v, names)))?,
+            None => self.token(
+                &self.labels_only(),
+                previous,
+                None,
+                value.map(|v| self.tell(v, names)),
+            )?,
             Some(axis) => {
                 let mut may = vec![(Token::NewRule, 1.0)];
                 may.extend(self.rules_of(axis).map(|s| (Token::Known(s), 0.5)));
@@ -177,7 +201,9 @@ impl<C: Coder> Speller<'_, C> {
             Token::Known(symbol) => Some(symbol),
             Token::NewLabel => {
                 let label = match (value, self.known) {
-                    (Some(Symbol::Terminal(own)), Some(known)) => Some(known.labels()[own as usize].clone()),
+                    (Some(Symbol::Terminal(own)), Some(known)) => {
+                        Some(known.labels()[own as usize].clone())
+                    }
                     _ => None,
                 };
                 let bytes = self.bytes(label.as_deref())?;
@@ -206,7 +232,10 @@ impl<C: Coder> Speller<'_, C> {
     /// The token for a symbol of the known rules.
     fn tell(&self, symbol: Symbol, names: &Names) -> Token {
         let own = |index: u32, given: &BTreeMap<u32, u32>, library: usize| {
-            given.get(&index).copied().or(((index as usize) < library).then_some(index))
+            given
+                .get(&index)
+                .copied()
+                .or(((index as usize) < library).then_some(index))
         };
         let (labels, rules) = self.library;
         match symbol {
@@ -219,17 +248,26 @@ impl<C: Coder> Speller<'_, C> {
     }
 
     fn labels_only(&self) -> Vec<(Token, f64)> {
-        let labels = (0..self.rules.labels().len() as u32).map(|l| (Token::Known(Symbol::Terminal(l)), 1.0));
+        let labels =
+            (0..self.rules.labels().len() as u32).map(|l| (Token::Known(Symbol::Terminal(l)), 1.0));
         labels.chain([(Token::NewLabel, 0.1)]).collect()
     }
 
     fn rules_of(&self, axis: Axis) -> impl Iterator<Item = Symbol> {
         let rules = self.rules.rules().iter().enumerate();
-        rules.filter(move |(_, rule)| rule.axis == axis).map(|(k, _)| Symbol::Rule(k as u32))
+        rules
+            .filter(move |(_, rule)| rule.axis == axis)
+            .map(|(k, _)| Symbol::Rule(k as u32))
     }
 
     /// Spells the items of a rule.
-    fn rule(&mut self, axis: Axis, value: Option<&Rule>, names: &mut Names, depth: usize) -> Option<Rule> {
+    fn rule(
+        &mut self,
+        axis: Axis,
+        value: Option<&Rule>,
+        names: &mut Names,
+        depth: usize,
+    ) -> Option<Rule> {
         if depth > DEPTH_LIMIT {
             return None;
         }
@@ -237,7 +275,9 @@ impl<C: Coder> Speller<'_, C> {
         let (mut items, mut period): (Vec<Item>, Option<Vec<Symbol>>) = (Vec::new(), None);
         let mut previous = Token::End;
         while items.len() < ITEM_LIMIT {
-            let next = written.as_mut().map(|tokens| tokens.next().unwrap_or(Token::End));
+            let next = written
+                .as_mut()
+                .map(|tokens| tokens.next().unwrap_or(Token::End));
             let value = match next {
                 Some(Token::Known(symbol)) => Some(symbol),
                 _ => None,
@@ -252,7 +292,11 @@ impl<C: Coder> Speller<'_, C> {
                 Some(_) => may.push((Token::Close, 0.5)),
             }
             let labels = (0..self.rules.labels().len() as u32).map(Symbol::Terminal);
-            may.extend(labels.chain(self.rules_of(axis.other())).map(|s| (Token::Known(s), 0.1)));
+            may.extend(
+                labels
+                    .chain(self.rules_of(axis.other()))
+                    .map(|s| (Token::Known(s), 0.1)),
+            );
             let token = self.token(&may, previous, Some(axis), told)?;
             match token {
                 Token::End => {
@@ -287,7 +331,10 @@ impl<C: Coder> Speller<'_, C> {
         let count = |counts: Option<&BTreeMap<Token, u32>>, token| {
             f64::from(counts.and_then(|c| c.get(&token)).copied().unwrap_or(0))
         };
-        let base: Vec<f64> = may.iter().map(|&(token, smoothing)| count(seen, token) + smoothing).collect();
+        let base: Vec<f64> = may
+            .iter()
+            .map(|&(token, smoothing)| count(seen, token) + smoothing)
+            .collect();
         let sum: f64 = base.iter().sum();
         let weights: Vec<f64> = may
             .iter()
@@ -313,7 +360,12 @@ impl<C: Coder> Speller<'_, C> {
             .collect();
         let mut bytes = Vec::new();
         while bytes.len() <= LABEL_LIMIT {
-            let value = label.map(|l| l.as_bytes().get(bytes.len()).copied().map_or(0, usize::from));
+            let value = label.map(|l| {
+                l.as_bytes()
+                    .get(bytes.len())
+                    .copied()
+                    .map_or(0, usize::from)
+            });
             match self.coder.choose(&weights, value)? {
                 0 => return (!bytes.is_empty()).then_some(bytes),
                 byte => bytes.push(byte as u8),

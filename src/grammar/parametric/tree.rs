@@ -6,7 +6,7 @@
 use super::collapse::collapse;
 use super::error::LibraryError;
 use super::rules::{Item, Rule, Rules, Symbol};
-use crate::shape::{Axis, Facade, Rect, Region, Span};
+use edifice_shape::{Axis, Facade, Rect, Region, Span};
 
 /// Deepest nesting of parts.
 pub const DEPTH_LIMIT: usize = 400;
@@ -51,7 +51,7 @@ pub fn index(axis: Axis) -> usize {
 /// [`LibraryError::Layout`] for a layout that full lines do not split into its regions, [`LibraryError::OffStep`],
 /// [`LibraryError::TooLarge`], [`LibraryError::TooDeep`].
 pub fn parse(facade: &Facade, step: f64, rules: &mut Rules) -> Result<Parse, LibraryError> {
-    crate::shape::splittable(facade).map_err(|source| LibraryError::Layout {
+    edifice_shape::splittable(facade).map_err(|source| LibraryError::Layout {
         name: facade.name.clone(),
         source,
     })?;
@@ -63,8 +63,18 @@ pub fn parse(facade: &Facade, step: f64, rules: &mut Rules) -> Result<Parse, Lib
         in_steps(facade, Axis::X, layout.xs.values(), step)?,
         in_steps(facade, Axis::Y, layout.ys.values(), step)?,
     ];
-    let labels = facade.regions.iter().map(|region| rules.label(&region.label)).collect();
-    let mut builder = Builder { spans: &layout.spans, labels, cuts: &cuts, name: &facade.name, rules };
+    let labels = facade
+        .regions
+        .iter()
+        .map(|region| rules.label(&region.label))
+        .collect();
+    let mut builder = Builder {
+        spans: &layout.spans,
+        labels,
+        cuts: &cuts,
+        name: &facade.name,
+        rules,
+    };
     let mut all: Vec<usize> = (0..layout.spans.len()).collect();
     let node = builder.node(&mut all, 0)?;
     let [width, height] = [&cuts[0], &cuts[1]].map(|cuts| cuts[cuts.len() - 1]);
@@ -79,7 +89,12 @@ pub fn parse(facade: &Facade, step: f64, rules: &mut Rules) -> Result<Parse, Lib
 }
 
 /// The cut coordinates of an axis as numbers of steps.
-fn in_steps(facade: &Facade, axis: Axis, values: &[f64], step: f64) -> Result<Vec<u32>, LibraryError> {
+fn in_steps(
+    facade: &Facade,
+    axis: Axis,
+    values: &[f64],
+    step: f64,
+) -> Result<Vec<u32>, LibraryError> {
     let convert = |&value: &f64| {
         let steps = (value / step).round();
         if steps > f64::from(STEP_LIMIT) {
@@ -129,10 +144,18 @@ impl Builder<'_> {
     fn node(&mut self, part: &mut [usize], depth: usize) -> Result<Node, LibraryError> {
         if let [only] = part {
             let symbol = self.labels[*only];
-            return Ok(Node { symbol, counts: Vec::new(), sizes: Vec::new(), parts: Vec::new() });
+            return Ok(Node {
+                symbol,
+                counts: Vec::new(),
+                sizes: Vec::new(),
+                parts: Vec::new(),
+            });
         }
         if depth == DEPTH_LIMIT {
-            return Err(LibraryError::TooDeep { name: self.name.to_owned(), limit: DEPTH_LIMIT });
+            return Err(LibraryError::TooDeep {
+                name: self.name.to_owned(),
+                limit: DEPTH_LIMIT,
+            });
         }
         let Some((axis, starts)) = [Axis::Y, Axis::X]
             .into_iter()
@@ -141,12 +164,15 @@ impl Builder<'_> {
             // The layout was found to be splittable.
             return Err(LibraryError::Layout {
                 name: self.name.to_owned(),
-                source: crate::shape::LayoutError::Empty,
+                source: edifice_shape::LayoutError::Empty,
             });
         };
         let cuts = &self.cuts[index(axis)];
         let edge = |i: usize| cuts[self.spans[part[i]].along(axis).0];
-        let sizes: Vec<u32> = starts.windows(2).map(|pair| edge(pair[1]) - edge(pair[0])).collect();
+        let sizes: Vec<u32> = starts
+            .windows(2)
+            .map(|pair| edge(pair[1]) - edge(pair[0]))
+            .collect();
         let mut parts = Vec::with_capacity(starts.len());
         for (k, &from) in starts.iter().enumerate() {
             let to = starts.get(k + 1).copied().unwrap_or(part.len());
@@ -155,7 +181,12 @@ impl Builder<'_> {
         let symbols: Vec<Symbol> = parts.iter().map(|node| node.symbol).collect();
         let (items, counts) = collapse(&symbols);
         let symbol = self.rules.intern(Rule { axis, items });
-        Ok(Node { symbol, counts, sizes, parts })
+        Ok(Node {
+            symbol,
+            counts,
+            sizes,
+            parts,
+        })
     }
 
     /// Sorts the regions along an axis; where each piece between full lines starts. None if there is one piece.
@@ -207,7 +238,12 @@ pub fn slots(rule: &Rule, counts: &[u32]) -> Vec<Slot> {
         };
         for repetition in 0..times {
             for (place, &symbol) in written.symbols().iter().enumerate() {
-                slots.push(Slot { symbol, item: item as u32, place: place as u32, repetition });
+                slots.push(Slot {
+                    symbol,
+                    item: item as u32,
+                    place: place as u32,
+                    repetition,
+                });
             }
         }
     }
@@ -223,7 +259,10 @@ pub fn unfold(
     rules: &[Rule],
     mut visit: impl FnMut(u32, [u32; 2], [u32; 2]),
 ) -> Result<(), LibraryError> {
-    let wrong = |place: String, message: &str| LibraryError::Invalid { place, message: message.to_owned() };
+    let wrong = |place: String, message: &str| LibraryError::Invalid {
+        place,
+        message: message.to_owned(),
+    };
     let (mut count, mut size) = (0, 0);
     let mut stack = vec![(parse.root, [0, 0], parse.extent)];
     while let Some((symbol, corner, extent)) = stack.pop() {
@@ -244,7 +283,10 @@ pub fn unfold(
         let most = extent[index(rule.axis)];
         if let Some(k) = counts.iter().position(|&c| c < 2 || c > most) {
             let place = format!("counts[{}]", count + k);
-            return Err(wrong(place, "expected at least 2, and no more than there are steps"));
+            return Err(wrong(
+                place,
+                "expected at least 2, and no more than there are steps",
+            ));
         }
         count += repeats;
         let slots = slots(rule, counts);
@@ -272,7 +314,10 @@ pub fn unfold(
         size += inner;
     }
     match (count < parse.counts.len(), size < parse.sizes.len()) {
-        (true, _) => Err(wrong(format!("counts[{count}]"), "no repeat is left for it")),
+        (true, _) => Err(wrong(
+            format!("counts[{count}]"),
+            "no repeat is left for it",
+        )),
         (_, true) => Err(wrong(format!("sizes[{size}]"), "no part is left for it")),
         _ => Ok(()),
     }
@@ -290,18 +335,30 @@ pub fn facade(
     (name, unit): (&str, &str),
 ) -> Result<Facade, LibraryError> {
     let mut found = Vec::new();
-    unfold(parse, rules, |label, corner, extent| found.push((corner[1], corner[0], label, extent)))?;
+    unfold(parse, rules, |label, corner, extent| {
+        found.push((corner[1], corner[0], label, extent))
+    })?;
     found.sort_unstable();
     let region = |&(y, x, label, extent): &(u32, u32, u32, [u32; 2])| {
-        let label = labels.get(label as usize).ok_or_else(|| LibraryError::Invalid {
-            place: format!("label {label}"),
-            message: "there is no such label".to_owned(),
-        })?;
+        let label = labels
+            .get(label as usize)
+            .ok_or_else(|| LibraryError::Invalid {
+                place: format!("label {label}"),
+                message: "there is no such label".to_owned(),
+            })?;
         // Edges, not extents, are multiples of the step: neighbours share them exactly.
         let edge = |steps: u32| f64::from(steps) * step;
         let (left, bottom) = (edge(x), edge(y));
-        let rect = Rect::new(left, bottom, edge(x + extent[0]) - left, edge(y + extent[1]) - bottom);
-        Ok(Region { label: label.clone(), rect })
+        let rect = Rect::new(
+            left,
+            bottom,
+            edge(x + extent[0]) - left,
+            edge(y + extent[1]) - bottom,
+        );
+        Ok(Region {
+            label: label.clone(),
+            rect,
+        })
     };
     let regions = found.iter().map(region).collect::<Result<_, _>>()?;
     let [width, height] = parse.extent.map(|steps| f64::from(steps) * step);

@@ -12,7 +12,9 @@ use super::names::{Kind, Namer};
 use super::phrases::{Part, Sharing, Written};
 use super::rules::Symbol;
 use super::tree::{index, slots};
-use crate::grammar::{Grammar, Operation, Rule, Size, Start, Successor};
+use edifice_shape::Axis;
+
+use crate::{Grammar, Operation, Rule, Size, Start, Successor};
 
 /// Symbol of all facades together in a stochastic grammar.
 pub const FACADE: &str = "Facade";
@@ -43,36 +45,71 @@ impl Library {
             (true, true) => Kind::Repeat(rule.axis),
             (true, false) => Kind::Split(rule.axis),
         };
-        let names: Vec<String> = sharing.rules.iter().enumerate().map(|r| namer.next(kind(r))).collect();
+        let names: Vec<String> = sharing
+            .rules
+            .iter()
+            .enumerate()
+            .map(|r| namer.next(kind(r)))
+            .collect();
         let sizes = self.letter_sizes(&bodies, sharing);
         let name = |part: Part| match part {
             Part::Label(label) => self.rules().labels()[label as usize].clone(),
             Part::Rule(rule) => names[rule as usize].clone(),
         };
-        let rules = sharing.rules.iter().zip(&sizes).zip(&names).map(|((rule, sizes), own)| {
-            let mut at = 0;
-            let successors = rule.parts.iter().map(|&part| {
-                let letters = letters(sharing, part);
-                let size: f64 = sizes[at..at + letters].iter().sum();
-                at += letters;
-                Successor { symbol: name(part), size: Size::Relative(size) }
+        let rules = sharing
+            .rules
+            .iter()
+            .zip(&sizes)
+            .zip(&names)
+            .map(|((rule, sizes), own)| {
+                let mut at = 0;
+                let successors = rule.parts.iter().map(|&part| {
+                    let letters = letters(sharing, rule.axis, part);
+                    let size: f64 = sizes[at..at + letters].iter().sum();
+                    at += letters;
+                    Successor {
+                        symbol: name(part),
+                        size: Size::Relative(size),
+                    }
+                });
+                let successors = successors.collect();
+                let operation = match rule.repeat {
+                    true => Operation::Repeat {
+                        axis: rule.axis,
+                        successors,
+                    },
+                    false => Operation::Split {
+                        axis: rule.axis,
+                        successors,
+                    },
+                };
+                Rule {
+                    symbol: own.clone(),
+                    weight: None,
+                    operation,
+                }
             });
-            let successors = successors.collect();
-            let operation = match rule.repeat {
-                true => Operation::Repeat { axis: rule.axis, successors },
-                false => Operation::Split { axis: rule.axis, successors },
-            };
-            Rule { symbol: own.clone(), weight: None, operation }
-        });
         let starts = self.members().iter().map(|member| {
-            let [width, height] = member.parse.extent.map(|steps| f64::from(steps) * self.step());
+            let [width, height] = member
+                .parse
+                .extent
+                .map(|steps| f64::from(steps) * self.step());
             let symbol = match bodies.letter(member.parse.root) {
                 Letter::Label(label) => Part::Label(label),
                 Letter::Body(body) => Part::Rule(body),
             };
-            Start { name: member.name.clone(), symbol: name(symbol), width, height }
+            Start {
+                name: member.name.clone(),
+                symbol: name(symbol),
+                width,
+                height,
+            }
         });
-        Grammar { unit: self.unit().to_owned(), rules: rules.collect(), starts: starts.collect() }
+        Grammar {
+            unit: self.unit().to_owned(),
+            rules: rules.collect(),
+            starts: starts.collect(),
+        }
     }
 
     /// The rules with one start, [`FACADE`], that is one of the facades' symbols by chance, as often as they are;
@@ -98,19 +135,39 @@ impl Library {
         }
         let rules = chosen.into_iter().map(|(root, weight)| {
             let own = grammar.rules.iter().find(|rule| rule.symbol == root);
-            let operation = own.map(|rule| rule.operation.clone()).unwrap_or(Operation::Split {
-                axis: crate::shape::Axis::X,
-                successors: vec![Successor { symbol: root, size: Size::Relative(1.0) }],
-            });
-            Rule { symbol: symbol.clone(), weight: Some(weight), operation }
+            let operation = own
+                .map(|rule| rule.operation.clone())
+                .unwrap_or(Operation::Split {
+                    axis: Axis::X,
+                    successors: vec![Successor {
+                        symbol: root,
+                        size: Size::Relative(1.0),
+                    }],
+                });
+            Rule {
+                symbol: symbol.clone(),
+                weight: Some(weight),
+                operation,
+            }
         });
         let mut rules: Vec<Rule> = rules.collect();
-        let used: BTreeSet<&str> =
-            grammar.rules.iter().flat_map(|rule| rule.operation.symbols()).collect();
-        let kept = grammar.rules.iter().filter(|rule| used.contains(rule.symbol.as_str()));
+        let used: BTreeSet<&str> = grammar
+            .rules
+            .iter()
+            .flat_map(|rule| rule.operation.symbols())
+            .collect();
+        let kept = grammar
+            .rules
+            .iter()
+            .filter(|rule| used.contains(rule.symbol.as_str()));
         rules.extend(kept.cloned());
         grammar.rules = rules;
-        grammar.starts = vec![Start { name: symbol.clone(), symbol, width, height }];
+        grammar.starts = vec![Start {
+            name: symbol.clone(),
+            symbol,
+            width,
+            height,
+        }];
         grammar
     }
 
@@ -127,7 +184,7 @@ impl Library {
         for rule in 0..sharing.rules.len() {
             let mut at = 0;
             for &part in &sharing.rules[rule].parts {
-                let letters = letters(sharing, part);
+                let letters = letters(sharing, sharing.rules[rule].axis, part);
                 if let Part::Rule(phrase) = part
                     && phrase as usize >= sharing.bodies
                 {
@@ -135,7 +192,10 @@ impl Library {
                     let own = sums[rule].sum[at..at + letters].to_vec();
                     let used = &mut sums[phrase as usize];
                     used.sum.resize(letters, 0.0);
-                    used.sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+                    used.sum
+                        .iter_mut()
+                        .zip(own)
+                        .for_each(|(sum, own)| *sum += own);
                     used.count += count;
                 }
                 at += letters;
@@ -143,7 +203,10 @@ impl Library {
         }
         let mean = |sums: Sums| {
             let count = sums.count.max(1.0);
-            sums.sum.iter().map(|s| (s / count * 1e3).round().max(1.0) / 1e3).collect()
+            sums.sum
+                .iter()
+                .map(|s| (s / count * 1e3).round().max(1.0) / 1e3)
+                .collect()
         };
         sums.into_iter().map(mean).collect()
     }
@@ -164,7 +227,11 @@ impl Library {
             let body = bodies.of_rule[rule as usize] as usize;
             let first = stack.len();
             for (k, slot) in slots.iter().enumerate() {
-                let size = if k + 1 < slots.len() { sizes.next().unwrap_or(1) } else { left };
+                let size = if k + 1 < slots.len() {
+                    sizes.next().unwrap_or(1)
+                } else {
+                    left
+                };
                 left = left.saturating_sub(size);
                 let length = f64::from(size) * self.step();
                 if !bodies.bodies[body].repeat {
@@ -189,12 +256,18 @@ impl Library {
     }
 }
 
-/// Number of letters that a written part stands for.
-fn letters(sharing: &Sharing, part: Part) -> usize {
+/// Number of letters that a part of a string of direction `axis` stands for: splits of that direction are strings
+/// that it shares.
+fn letters(sharing: &Sharing, axis: Axis, part: Part) -> usize {
     match part {
-        Part::Rule(rule) if rule as usize >= sharing.bodies => {
-            sharing.rules[rule as usize].parts.iter().map(|&part| letters(sharing, part)).sum()
-        }
-        _ => 1,
+        Part::Rule(rule) => match &sharing.rules[rule as usize] {
+            shared if shared.axis == axis && !shared.repeat => shared
+                .parts
+                .iter()
+                .map(|&part| letters(sharing, axis, part))
+                .sum(),
+            _ => 1,
+        },
+        Part::Label(_) => 1,
     }
 }
