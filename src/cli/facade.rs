@@ -20,6 +20,7 @@ use edifice_layout::regularize::{RegularizeError, Report, regularize_facade, reg
 use edifice_shape as shape;
 use edifice_shape::{Decomposition, Facade, LabelGrid};
 
+use super::cleaning::Cleaning;
 use super::print;
 use super::reading::{self, Reading};
 use super::tolerance;
@@ -70,6 +71,8 @@ pub struct Convert {
     output: PathBuf,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    cleaning: Cleaning,
     /// Keep only elements (windows, doors, ...), not the wall.
     #[arg(long)]
     elements: bool,
@@ -98,6 +101,7 @@ pub fn run(command: Command) -> Result<()> {
 fn convert(options: &Convert) -> Result<()> {
     let path = &options.input;
     let source = reading::source(path, &options.reading.options()?)?;
+    let source = options.cleaning.source(source, path)?;
     if let Some(share) = options.tolerance {
         let facade = tolerance::retiled(source, path, share, &Settings::default())?;
         return written(&facade, &options.output);

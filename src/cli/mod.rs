@@ -3,6 +3,7 @@
 
 mod building;
 mod city;
+mod cleaning;
 mod facade;
 mod grammar;
 mod logic;

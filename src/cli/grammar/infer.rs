@@ -12,6 +12,7 @@ use edifice_io as io;
 use edifice_shape::Facade;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::cleaning::Cleaning;
 use crate::print;
 use crate::reading::{self, Reading};
 use crate::tolerance;
@@ -63,6 +64,8 @@ pub struct Args {
     no_protection: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    cleaning: Cleaning,
     /// Grammar to write: .grammar.json or .cga; with --sizes free also .library.json
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
@@ -137,7 +140,9 @@ fn read(args: &Args, costs: Costs) -> Result<Vec<Facade>> {
         ..Settings::default()
     };
     let checked = |path: &PathBuf| {
-        let source = reading::source(path, &options)?;
+        let source = args
+            .cleaning
+            .source(reading::source(path, &options)?, path)?;
         let facade = match args.tolerance {
             Some(share) => tolerance::retiled(source, path, share, &prices)?,
             None => source.facade(path)?,
