@@ -15,6 +15,7 @@ pub mod noise;
 pub mod outline;
 mod readings;
 mod retrieval_search;
+mod segmentation;
 pub mod shipped;
 pub mod study;
 pub mod trivial;
@@ -96,6 +97,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "frequent_rules",
         title: "the most frequent rules, in words (Sec. 5.5)",
         run: frequent_rules::run,
+    },
+    Artefact {
+        name: "segmentation",
+        title: "inexact labels of the same facades, as given and cleaned",
+        run: segmentation::run,
     },
     Artefact {
         name: "noise",

@@ -35,8 +35,8 @@ enum How {
 fn how(text: &str) -> std::result::Result<How, String> {
     match text.parse() {
         _ if text == "lattice" => Ok(How::Lattice),
-        Ok(value) if f64::is_finite(value) && value >= 0.0 => Ok(How::Pixels(value)),
-        _ => Err("expected a length from 0".to_owned()),
+        Ok(value) => Ok(How::Pixels(value)),
+        Err(_) => Err("expected a length".to_owned()),
     }
 }
 
@@ -49,8 +49,8 @@ impl Cleaning {
     /// How, for messages.
     pub fn name(&self) -> String {
         match self.clean {
-            Some(How::Pixels(tolerance)) => format!("tolerance {tolerance}"),
-            _ => "rows and columns".to_owned(),
+            Some(How::Pixels(tolerance)) => format!("with tolerance {tolerance}"),
+            _ => "by rows and columns".to_owned(),
         }
     }
 

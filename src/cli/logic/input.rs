@@ -63,7 +63,7 @@ fn cleaned(grids: &[LabelGrid], cleaning: &Cleaning) -> Result<Vec<LabelGrid>> {
     let before: usize = grids.iter().map(lines).sum();
     let after: usize = clean.iter().map(lines).sum();
     print::message(&format!(
-        "cleaned {} facades ({}): {before} cut lines became {after}",
+        "cleaned {} facades {}: {before} cut lines became {after}",
         grids.len(),
         cleaning.name()
     ));

@@ -7,7 +7,7 @@ use super::codec::{Tables, walk};
 use super::coder::{Coder, Counter, Decoder, Drawer, Encoder};
 use super::error::LibraryError;
 use super::phrases::{self, Sharing};
-use super::rules::{Rules, Symbol};
+use super::rules::Rules;
 use super::tree::{self, Parse};
 use crate::Costs;
 use edifice_shape::Facade;
@@ -268,9 +268,43 @@ impl Library {
         )
     }
 
-    /// Whether the library has a facade with this root.
-    pub fn has_root(&self, root: Symbol) -> bool {
-        self.tables.structure.roots().contains_key(&root)
+    /// True if the library has a facade with the structure of another: the same root.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn knows(&self, facade: &Facade) -> Result<bool, LibraryError> {
+        let mut own = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut own)?;
+        Ok(self.tables.structure.roots().contains_key(&parse.root))
+    }
+
+    /// True if no facade of the library has the root and the counts of another one.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn is_new(&self, facade: &Facade) -> Result<bool, LibraryError> {
+        let mut own = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut own)?;
+        let same = |member: &Member| {
+            (member.parse.root, &member.parse.counts) == (parse.root, &parse.counts)
+        };
+        Ok(!self.members.iter().any(same))
+    }
+
+    /// The bits of a facade without any library: everything it has is spelled out, in the library's steps.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn bits_alone(&self, facade: &Facade) -> Result<f64, LibraryError> {
+        let empty = Self {
+            unit: self.unit.clone(),
+            step: self.step,
+            rules: Rules::default(),
+            members: Vec::new(),
+            tables: Tables::default(),
+            told_by_others: Vec::new(),
+        };
+        empty.bits(facade)
     }
 }
 

@@ -133,10 +133,8 @@ fn estimated(grid: &LabelGrid, tolerance: f64) -> Result<Vec<Estimated>, GridErr
             let facade = decompose(&state.grid)?.facade;
             let step = facade.width.max(facade.height) / 60_000.0;
             // Lengths are compared up to the step here: an estimate needs no more.
-            let whole = [1.0, step].into_iter();
-            let estimate = whole
-                .filter_map(|step| parse_cost(&facade, step, &Costs::default()).ok())
-                .next();
+            let mut steps = [1.0, step].into_iter();
+            let estimate = steps.find_map(|step| parse_cost(&facade, step, &Costs::default()).ok());
             let estimate = estimate.unwrap_or(facade.regions.len() as f64);
             all.push(Estimated {
                 facade,
