@@ -56,7 +56,8 @@ pub fn infer(facades: &[Facade], costs: &Costs, output: Option<&Path>, json: boo
         "cost {cost} {proof}, {} rules for {} facades in {seconds:.2} s; {mean:.1} bits a facade, each told by all others",
         sharing.rules.len(),
         facades.len()
-    ))
+    ));
+    Ok(())
 }
 
 fn tidy(value: f64) -> f64 {

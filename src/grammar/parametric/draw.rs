@@ -3,8 +3,8 @@
 //! 1. A facade of the library is drawn, and another one with the same root and counts, if there is one. Between two
 //!    such facades every edge is `(1 - t) a + t b` with one `t` from 0 to 1 for all: what is aligned, equal, mirrored or
 //!    repeated in both stays so.
-//! 2. Along each axis the largest count of a repeat in a facade is drawn from the facades of the library, and columns
-//!    and floors are inserted or taken away until the facade has it, as far as it can be done without a seam: a *band*
+//! 2. Along each axis the number of columns or floors is drawn from the facades of the library, and columns and floors
+//!    are inserted or taken away until the facade has it, as far as it can be done without a seam: a *band*
 //!    reaches from one line of the facade to another at which the picture is the same from end to end, so that
 //!    beside every seam stands what stands beside one of these lines already. A band that would double something
 //!    which the facade has once (a door), or take away all of something, is left alone.
@@ -16,8 +16,7 @@ use rand::{Rng, RngExt};
 
 use super::error::LibraryError;
 use super::library::{Library, Member};
-use super::rules::Symbol;
-use super::tree::{self, slots};
+use super::tree;
 use edifice_shape::{Axis, Facade, LabelGrid, Rect, Region, Span, components, decompose};
 
 /// Narrowest and widest band, as shares of the side.
@@ -48,8 +47,9 @@ impl Library {
             .map_err(|e| wrong(e.to_string()))?
             .merged();
         for axis in Axis::BOTH {
-            let from = self.largest_count(first, axis);
-            let to = self.largest_count(&members[rng.random_range(0..members.len())], axis);
+            let from = levels(&between, axis);
+            let other = &members[rng.random_range(0..members.len())];
+            let to = levels(&self.facade(&other.parse, name)?, axis);
             for _ in 0..from.abs_diff(to).min(4) {
                 match with_band(&grid, axis, to > from, rng) {
                     Some(edited) => grid = edited,
@@ -73,22 +73,28 @@ impl Library {
             )?;
             Ok::<_, LibraryError>(edges)
         };
-        // A difference of one step or more stays one: rounding keeps order.
-        let mix = |a: f64, b: f64| (a + t * (b - a)).round() * self.step();
-        let regions = edges(a)?
-            .into_iter()
-            .zip(edges(b)?)
-            .map(|((label, a), (_, b))| {
-                let [x, y, right, top]: [f64; 4] = std::array::from_fn(|k| mix(a[k], b[k]));
-                let label = self.rules().labels()[label as usize].clone();
-                Region {
-                    label,
-                    rect: Rect::new(x, y, right - x, top - y),
-                }
-            });
+        let (a, b) = (edges(a)?, edges(b)?);
+        let cuts = [0, 1].map(|axis| {
+            let pairs = a
+                .iter()
+                .zip(&b)
+                .flat_map(|((_, a), (_, b))| [(a[axis], b[axis]), (a[axis + 2], b[axis + 2])]);
+            mixed(pairs.collect(), t)
+        });
+        let place = |axis: usize, a: f64, b: f64| {
+            let at = cuts[axis].iter().find(|cut| (cut.0, cut.1) == (a, b));
+            at.map_or(0.0, |cut| cut.2) * self.step()
+        };
+        let regions = a.iter().zip(&b).map(|((label, a), (_, b))| {
+            let edge = |k: usize| place(k % 2, a[k], b[k]);
+            let label = self.rules().labels()[*label as usize].clone();
+            let rect = Rect::new(edge(0), edge(1), edge(2) - edge(0), edge(3) - edge(1));
+            Region { label, rect }
+        });
         let regions = regions.collect();
-        let [width, height]: [f64; 2] = std::array::from_fn(|k| {
-            mix(f64::from(a.parse.extent[k]), f64::from(b.parse.extent[k]))
+        let [width, height] = [0, 1].map(|axis| {
+            let last = cuts[axis].iter().map(|cut| cut.2).fold(0.0, f64::max);
+            last * self.step()
         });
         Facade::new(name, self.unit(), width, height, regions).map_err(|source| {
             LibraryError::Layout {
@@ -97,24 +103,63 @@ impl Library {
             }
         })
     }
+}
 
-    /// The largest count of a repeat along an axis; 1 where nothing repeats.
-    fn largest_count(&self, member: &Member, axis: Axis) -> u32 {
-        let mut counts = member.parse.counts.iter().copied();
-        let mut largest = 1;
-        let mut stack = vec![member.parse.root];
-        while let Some(symbol) = stack.pop() {
-            let Symbol::Rule(rule) = symbol else { continue };
-            let rule = self.rules().rule(rule);
-            let repeats = rule.items.iter().filter(|item| item.is_repeat()).count();
-            let own: Vec<u32> = counts.by_ref().take(repeats).collect();
-            if rule.axis == axis {
-                largest = own.iter().copied().fold(largest, u32::max);
-            }
-            stack.extend(slots(rule, &own).iter().rev().map(|slot| slot.symbol));
-        }
-        largest
+/// The places between two: of pairs of coordinates, with a share `t` of the second. Steps from one place to the next that are
+/// equal in both stay equal, and none vanishes.
+fn mixed(mut pairs: Vec<(f64, f64)>, t: f64) -> Vec<(f64, f64, f64)> {
+    let mix = |pair: &(f64, f64)| pair.0 + t * (pair.1 - pair.0);
+    pairs.sort_by(|x, y| {
+        mix(x)
+            .total_cmp(&mix(y))
+            .then(x.0.total_cmp(&y.0))
+            .then(x.1.total_cmp(&y.1))
+    });
+    pairs.dedup();
+    let mut places: Vec<(f64, f64, f64)> = Vec::with_capacity(pairs.len());
+    for pair in pairs {
+        let place = match places.last() {
+            None => 0.0,
+            Some(&(a, b, place)) => place + mix(&(pair.0 - a, pair.1 - b)).round().max(1.0),
+        };
+        places.push((pair.0, pair.1, place));
     }
+    places
+}
+
+/// How many rows (along y) or columns (along x) of elements a facade has: spans along the axis of the regions of its most
+/// frequent label but the one of most area, those that overlap counted once; at least 1.
+fn levels(facade: &Facade, axis: Axis) -> u32 {
+    let mut labels: Vec<(&str, f64, usize)> = Vec::new();
+    for region in &facade.regions {
+        match labels.iter_mut().find(|known| known.0 == region.label) {
+            Some(known) => {
+                known.1 += region.rect.area();
+                known.2 += 1;
+            }
+            None => labels.push((&region.label, region.rect.area(), 1)),
+        }
+    }
+    labels.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(b.0)));
+    let Some(element) = labels.iter().skip(1).rev().max_by_key(|known| known.2) else {
+        return 1;
+    };
+    let own = facade
+        .regions
+        .iter()
+        .filter(|region| region.label == element.0);
+    let mut spans: Vec<(f64, f64)> = own
+        .map(|r| (r.rect.start(axis), r.rect.end(axis)))
+        .collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut count, mut reach) = (0, f64::NEG_INFINITY);
+    for (start, end) in spans {
+        if start >= reach {
+            count += 1;
+        }
+        reach = reach.max(end);
+    }
+    count.max(1)
 }
 
 /// The picture with one band more or less along an axis; none where no band fits.

@@ -17,7 +17,10 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, S
 use super::phrases::Texts;
 
 /// Nodes of branch and bound.
-const NODES: usize = 60;
+const NODES: usize = 2000;
+
+/// Arcs of all programs that are solved together.
+const WORK: usize = 1_000_000;
 
 /// Programs with more arcs than this are not solved: the bound is that of no multipliers.
 const MOST_ARCS: usize = 40_000;
@@ -56,14 +59,15 @@ pub fn branch_and_bound(texts: &Texts, start: Vec<bool>, split: f64) -> (Vec<boo
         .collect();
     let root = Node { fixed, bound: 0.0 };
     let mut open = vec![root];
-    let mut solved = 0;
+    let (mut solved, mut work) = (0, 0);
     while let Some(at) = (0..open.len()).min_by(|&a, &b| open[a].bound.total_cmp(&open[b].bound)) {
-        if open[at].bound >= cost - NOISE || solved == NODES {
+        if open[at].bound >= cost - NOISE || solved == NODES || work >= WORK {
             break;
         }
         solved += 1;
         let mut node = open.swap_remove(at);
         let mut relaxed = relax(texts, &node.fixed, split);
+        work += arcs(texts, &node.fixed);
         // Fixing makes the program smaller; what is left is solved again while much was fixed.
         for _ in 0..3 {
             let rounded: Vec<bool> = (0..count)
@@ -92,6 +96,7 @@ pub fn branch_and_bound(texts: &Texts, start: Vec<bool>, split: f64) -> (Vec<boo
                 break;
             }
             relaxed = relax(texts, &node.fixed, split);
+            work += arcs(texts, &node.fixed);
         }
         if node.bound >= cost - NOISE {
             continue;
@@ -123,6 +128,16 @@ pub fn branch_and_bound(texts: &Texts, start: Vec<bool>, split: f64) -> (Vec<boo
     }
     let bound = open.iter().map(|node| node.bound).fold(cost, f64::min);
     (best, bound)
+}
+
+/// Arcs of the texts that are not closed.
+fn arcs(texts: &Texts, fixed: &[Option<bool>]) -> usize {
+    let used = texts
+        .texts
+        .iter()
+        .zip(fixed)
+        .filter(|(_, fixed)| **fixed != Some(false));
+    used.map(|(text, _)| text.arcs.len()).sum()
 }
 
 fn free(fixed: &[Option<bool>]) -> usize {
@@ -239,10 +254,7 @@ fn multipliers(
     split: f64,
 ) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
     let used = |k: usize| fixed[k] != Some(false);
-    let arcs: usize = (0..texts.texts.len())
-        .filter(|&k| used(k))
-        .map(|k| texts.texts[k].arcs.len())
-        .sum();
+    let arcs = arcs(texts, fixed);
     if arcs > MOST_ARCS || arcs == 0 {
         return None;
     }
