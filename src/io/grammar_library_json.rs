@@ -346,7 +346,7 @@ mod tests {
         assert!(wrong("[\"wall\", 0]", "[\"roof\", 0]").contains("\"roof\" is none of the labels"));
         assert!(wrong("\"root\": 1", "\"root\": 7").contains("rule 7"));
         assert!(wrong("[2, 3, 3]", "[2, 3]").contains("counts[2]"));
-        assert!(wrong("[10, 30, 10", "[10, 90, 10").contains("sizes[0]"));
+        assert!(wrong("[10, 30, 10", "[10, 90, 10").contains("sizes[1]"));
         assert!(wrong("\"version\": 1", "\"version\": 2").contains("version"));
     }
 }
