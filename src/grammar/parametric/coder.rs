@@ -122,7 +122,7 @@ impl Encoder {
 /// The part of an interval that a choice takes.
 fn narrow(low: u64, high: u64, before: u64, frequency: u64) -> (u64, u64) {
     let range = high - low + 1;
-    let at = |f: u64| (u128::from(range) * u128::from(f) >> TOTAL_BITS) as u64;
+    let at = |f: u64| ((u128::from(range) * u128::from(f)) >> TOTAL_BITS) as u64;
     (low + at(before), low + at(before + frequency) - 1)
 }
 
@@ -183,7 +183,7 @@ impl<'c> Decoder<'c> {
 
     fn shift(&mut self) {
         let byte = self.code.get(self.next / 8).copied().unwrap_or(0);
-        self.value = 2 * self.value + u64::from(byte >> (7 - self.next % 8) & 1);
+        self.value = 2 * self.value + u64::from((byte >> (7 - self.next % 8)) & 1);
         self.next += 1;
     }
 }

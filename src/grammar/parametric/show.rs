@@ -16,6 +16,9 @@ use super::rules::{Item, Symbol};
 /// Sizes are one parameter when they agree in this share of the regions.
 const TIED: f64 = 0.95;
 
+/// The sizes of a region by item and place.
+type PartSizes = BTreeMap<(u32, u32), Vec<u32>>;
+
 /// What the facades chose for one rule.
 #[derive(Default)]
 struct Chosen {
@@ -125,7 +128,7 @@ impl Library {
             .collect();
         for member in self.members() {
             let mut counts: Vec<(u32, u32, u32)> = Vec::new();
-            let mut regions: Vec<(u32, BTreeMap<(u32, u32), Vec<u32>>)> = Vec::new();
+            let mut regions: Vec<(u32, PartSizes)> = Vec::new();
             questions(
                 &member.parse,
                 self.rules(),

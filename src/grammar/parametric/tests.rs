@@ -111,7 +111,7 @@ fn exhaustive(bodies: &Bodies, costs: &Costs) -> Option<f64> {
     let mut least = f64::INFINITY;
     for set in 0..1u32 << phrases.len() {
         let open: Vec<&(Axis, Vec<Letter>)> = (0..phrases.len())
-            .filter(|k| set >> k & 1 == 1)
+            .filter(|k| (set >> k) & 1 == 1)
             .map(|k| &phrases[k])
             .collect();
         let of_bodies = bodies.bodies.iter().map(|b| {
