@@ -2,8 +2,10 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{InstanceGrammar, InstanceGrammarError, Placement};
+use super::{InstanceGrammar, InstanceGrammarError, InstanceRule, Placement};
 
+/// How far a successor may reach above the last level, by rounding.
+const LEVEL: f64 = 1e-6;
 /// Deepest nesting of rules.
 pub(super) const DEEPEST: usize = 64;
 
@@ -80,6 +82,7 @@ impl InstanceGrammar {
             }
         }
         for (rule, r) in self.rules.iter().enumerate() {
+            self.check_parameters(rule, &symbols)?;
             for (successor, s) in r.successors.iter().enumerate() {
                 let place = || format!("rules[{rule}].successors[{successor}]");
                 self.check_placement(s, &symbols, &place)?;
@@ -153,6 +156,33 @@ fn number(
 }
 
 impl InstanceGrammar {
+    /// Factors, and what the successors of a rule with parameters are.
+    fn check_parameters(
+        &self,
+        rule: usize,
+        symbols: &FxHashMap<&str, Symbol>,
+    ) -> Result<(), InstanceGrammarError> {
+        let r = &self.rules[rule];
+        for v in r.scale {
+            let usable = v.is_finite() && v > 0.0;
+            number(v, "factor", usable, || format!("rules[{rule}].scale"))?;
+        }
+        if r.levels == 0 && r.is_unscaled() {
+            return Ok(());
+        }
+        for (i, s) in r.successors.iter().enumerate() {
+            if !matches!(symbols.get(s.symbol.as_str()), Some(Symbol::Template(_))) {
+                let symbol = s.symbol.clone();
+                return Err(InstanceGrammarError::NoTemplate { rule, symbol });
+            }
+            let place = || format!("rules[{rule}].successors[{i}]");
+            let top = s.at[2] + s.size[2];
+            let within = s.at[2] >= 0.0 && top <= r.levels as f64 + LEVEL;
+            number(top, "level", r.levels == 0 || within, place)?;
+        }
+        Ok(())
+    }
+
     fn check_placement(
         &self,
         placement: &Placement,
@@ -179,6 +209,18 @@ impl InstanceGrammar {
         if rule.is_some() {
             let what = "size of a non-terminal, which takes one factor for all axes";
             number(d, what, w == d && d == h, || format!("{}.size", place()))?;
+        }
+        let expected = rule.map_or(0, InstanceRule::parameters);
+        if placement.numbers.len() != expected {
+            return Err(InstanceGrammarError::Numbers {
+                symbol: placement.symbol.clone(),
+                found: placement.numbers.len(),
+                expected,
+            });
+        }
+        for (k, &v) in placement.numbers.iter().enumerate() {
+            let usable = v.is_finite() && v > 0.0;
+            number(v, "length", usable, || format!("{}.numbers[{k}]", place()))?;
         }
         let expected = rule.map_or(0, |r| r.successors.len());
         if !placement.parts.is_empty() && placement.parts.len() != expected {

@@ -188,11 +188,7 @@ fn join(
         });
     }
     let successors = means.into_iter().map(|m| rounded(m.placement)).collect();
-    tree.rules.push(InstanceRule {
-        symbol,
-        weight,
-        successors,
-    });
+    tree.rules.push(InstanceRule::new(symbol, weight, successors));
     tree.children.push(children);
 }
 

@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
-use super::emission::{Detail, emit, emit_tree, placed_components};
+use super::emission::{Detail, Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
 use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
+use super::rulebook::Stacks;
 use super::type_graph::DistanceWeights;
 use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
 use crate::cluster::WardError;
@@ -186,6 +187,7 @@ struct Best<'a> {
     stated: Option<Types>,
     types: TypeTree<'a>,
     buildings: BuildingTypes,
+    stacks: Stacks<'a>,
     patterns: Vec<Repeated>,
 }
 
@@ -225,6 +227,7 @@ impl<'a> Prepared<'a> {
                     stated: stated_types(components),
                     types: TypeTree::new(components, &shape)?,
                     patterns: patterns(components, &buildings),
+                    stacks: Stacks::new(components, &buildings)?,
                     buildings,
                 })
             }
@@ -258,7 +261,8 @@ impl<'a> Prepared<'a> {
             };
         };
         let stated = best.stated.as_ref();
-        let (types, detail) = match (stated.filter(|s| s.representatives.len() <= k), budget) {
+        let stated = stated.filter(|s| s.representatives.len() <= k);
+        let (types, detail) = match (stated, budget) {
             (Some(stated), Budget::All) => (stated.clone(), Detail::MILLIMETRE),
             (Some(stated), _) => (stated.clone(), Detail::CENTIMETRE),
             (None, Budget::All) => (distinct_types(components), Detail::MILLIMETRE),
@@ -270,9 +274,24 @@ impl<'a> Prepared<'a> {
             Some(Precision::Centimetre) => Detail::CENTIMETRE,
             Some(Precision::Decimetre) => Detail::DECIMETRE,
         };
+        // What is stated is kept as it is.
+        let detail = match stated {
+            Some(_) => detail.at_least_centimetre(),
+            None => detail,
+        };
+        let exact = stated.is_some() || budget == Budget::All;
         let (buildings, patterns) = (&best.buildings, &best.patterns);
+        let rulebook = best.stacks.rulebook(&types, k);
+        let found = Found {
+            city,
+            components,
+            types: &types,
+            buildings,
+            rulebook: &rulebook,
+            patterns,
+        };
         Made {
-            grammar: emit(city, components, &types, buildings, patterns, &detail),
+            grammar: emit(&found, &detail, exact),
             types,
             structure: Structure::Patterns {
                 buildings: buildings.clone(),
