@@ -1,5 +1,6 @@
 //! Cities on the command line.
 
+mod colours;
 mod compare;
 mod data;
 mod derive;
@@ -7,6 +8,7 @@ mod draw;
 mod edit;
 mod locate;
 mod proceduralize;
+mod residuals;
 mod show;
 mod synthesize;
 mod tiles;
@@ -20,6 +22,7 @@ pub enum Command {
     #[command(after_help = "Examples:
   edifice city proceduralize midtown.npz -o midtown.city-grammar.json
   edifice city proceduralize delft.city.json --templates 500 -o delft.city-grammar.json.gz --glb delft.glb
+  edifice city proceduralize delft.npz --bytes 560000 --residuals drop --keep shape -o delft.city-grammar.bin
   edifice city proceduralize midtown.npz --mode paper --level 2 --weights height=3 -o paper.city-grammar.json
 Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metres.")]
     Proceduralize(proceduralize::Args),
@@ -27,13 +30,16 @@ Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metr
     #[command(after_help = "Examples:
   edifice city derive midtown.city-grammar.json -o midtown.glb
   edifice city derive midtown.city-grammar.json -o midtown.obj
+  edifice city derive midtown.city-grammar.json --rules-only -o rules.glb
 OBJ and CityJSON are z up, in metres; glTF is y up.")]
     Derive(derive::Args),
     /// Change sizes of templates and weights of rules.
     #[command(after_help = "Examples:
-  edifice city edit midtown.city-grammar.json 'scale t12=1,1,1.5' -o taller.city-grammar.json
-Edits, made in turn: scale TEMPLATE=FX,FY,FZ (factors of width, depth and height wherever it stands); weight RULE=W, the rules
-counted from 0 as in the file.")]
+  edifice city edit midtown.city-grammar.json 'scale B1=1,1,1.5' -o taller.city-grammar.json
+  edifice city edit midtown.city-grammar.json 'scale B*=1,1,1.5' 'scale E*=1,1,1.5' -o taller.city-grammar.json
+Edits, made in turn: scale NAME=FX,FY,FZ (factors of width, depth and height of a type of building, B1 or E1, or of a template,
+T1, wherever it stands; NAME may end in * for all names that begin so); weight RULE=W, the rules counted from 0 as in the file.
+Residuals are carried along, or left out with --residuals drop.")]
     Edit(edit::Args),
     /// Compare two cities, or a city and a grammar.
     #[command(after_help = "Examples:
@@ -61,7 +67,8 @@ The view lists buildings near each other: { \"format\": \"edifice/city-view\", \
     Tiles(tiles::Args),
     /// Draw a city or a grammar.
     #[command(after_help = "Examples:
-  edifice city draw midtown.city-grammar.json --beside midtown.npz -o midtown.png")]
+  edifice city draw midtown.city-grammar.json --beside midtown.npz -o midtown.png
+  edifice city draw midtown.city-grammar.json --colour type --plan --at 300000,61000 --radius 400 --size 1600x1600 -o types.png")]
     Draw(draw::Args),
 }
 

@@ -18,9 +18,13 @@ pub fn city(path: &Path) -> Result<City> {
     if !is_grammar(path) {
         return city::read(path);
     }
-    let grammar = grammar(path)?;
+    derived(&grammar(path)?, path)
+}
+
+/// Derives the city of a grammar that was read from `path`.
+pub fn derived(grammar: &InstanceGrammar, path: &Path) -> Result<City> {
     let derivation = grammar.derive().map_err(|e| Error::content(path, e))?;
-    let mut city = derivation.city(&grammar);
+    let mut city = derivation.city(grammar);
     city::paint_parts(&mut city).map_err(|e| Error::content(path, e))?;
     Ok(city)
 }

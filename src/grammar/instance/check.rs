@@ -4,8 +4,6 @@ use rustc_hash::FxHashMap;
 
 use super::{InstanceGrammar, InstanceGrammarError, InstanceRule, Placement};
 
-/// How far a successor may reach above the last level, by rounding.
-const LEVEL: f64 = 1e-6;
 /// Deepest nesting of rules.
 pub(super) const DEEPEST: usize = 64;
 
@@ -176,9 +174,9 @@ impl InstanceGrammar {
                 return Err(InstanceGrammarError::NoTemplate { rule, symbol });
             }
             let place = || format!("rules[{rule}].successors[{i}]");
-            let top = s.at[2] + s.size[2];
-            let within = s.at[2] >= 0.0 && top <= r.levels as f64 + LEVEL;
-            number(top, "level", r.levels == 0 || within, place)?;
+            let level = s.at[2];
+            let within = level >= 0.0 && level < r.levels as f64;
+            number(level, "level", r.levels == 0 || within, place)?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{InstanceGrammar, Placement};
+use super::{InstanceGrammar, InstanceRule, Placement};
 
 /// What of a grammar is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,6 +60,16 @@ impl InstanceGrammar {
     pub fn residuals(&self) -> usize {
         let successors = self.rules.iter().flat_map(|r| &r.successors);
         successors.filter(|p| !p.parts.is_empty()).count()
+    }
+
+    /// How many rules with parameters have a single instance: buildings whose shape no type explains.
+    pub fn escapes(&self) -> usize {
+        let mut uses: FxHashMap<&str, usize> = FxHashMap::default();
+        for placed in self.rules.iter().flat_map(|r| &r.successors) {
+            *uses.entry(placed.symbol.as_str()).or_default() += 1;
+        }
+        let single = |r: &&InstanceRule| r.levels > 0 && uses.get(r.symbol.as_str()) == Some(&1);
+        self.rules.iter().filter(single).count()
     }
 
     /// The symbols that the axiom leads to.

@@ -1,9 +1,9 @@
 //! Rules with parameters.
 //!
 //! `B(w, d, h1, ..., hn) -> ⊕ E_l T_l`: an instance of B states its width w, its depth d and the heights h1, ..., hn of its levels,
-//! in metres. A successor's lengths along x are shares of w, those along y shares of d, and its heights are levels: 0 is the base,
-//! k the height h1 + ... + hk, and between two levels the height grows evenly. A successor from level 0 that is 2 levels high
-//! reaches from the base to h1 + h2. A successor that is turned by t has, of its width s, s times the length of (w cos t, d sin t), and of its
+//! in metres. A successor's lengths along x are shares of w and those along y shares of d. It stands at a level: 0 is the base, k the
+//! height h1 + ... + hk, and between two levels the height grows evenly; its height is a share of that of the level that it
+//! stands on: at level 1 with a height of 1, it reaches from h1 to h1 + h2. A successor that is turned by t has, of its width s, s times the length of (w cos t, d sin t), and of its
 //! depth, s times that of (w sin t, d cos t).
 //!
 //! Lengths that a rule computes are rounded to the centimetre, so that a derived city becomes the grammar that it was derived
@@ -48,21 +48,19 @@ impl InstanceRule {
         };
         let round = |v: f64| (v * STEPS).round() / STEPS + 0.0;
         let least = |v: f64| round(v).max(1.0 / STEPS);
-        let (bottom, top) = (
-            height(successor.at[2]),
-            height(successor.at[2] + successor.size[2]),
-        );
+        let level = successor.at[2];
+        let tall = successor.size[2] * number(level.max(0.0) as usize + 2);
         let [along, across] = along_and_across(successor.turn, number(0), number(1));
         let mut out = successor.clone();
         out.at = [
             round(successor.at[0] * number(0)),
             round(successor.at[1] * number(1)),
-            round(bottom),
+            round(height(level)),
         ];
         out.size = [
             least(successor.size[0] * along),
             least(successor.size[1] * across),
-            least(top - bottom),
+            least(tall),
         ];
         out
     }
