@@ -8,6 +8,8 @@ pub use edifice::io::city::grammar_file::is_grammar;
 use edifice::shape::triangles::City;
 use edifice::{Error, Result};
 
+use crate::cli::print;
+
 /// Reads a grammar.
 pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
     city::grammar_file::read(path)
@@ -16,7 +18,9 @@ pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
 /// Reads a city, or derives it from a grammar.
 pub fn city(path: &Path) -> Result<City> {
     if !is_grammar(path) {
-        return city::read(path);
+        let city = city::read(path)?;
+        city.notes.iter().for_each(|note| print::message(note));
+        return Ok(city);
     }
     derived(&grammar(path)?, path)
 }

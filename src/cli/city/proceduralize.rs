@@ -143,7 +143,10 @@ pub fn run(args: &Args) -> Result<()> {
             };
             method::smallest(&input, &settings, good).map_err(|e| failure(e, args))?
         }
-        _ => Some(method::proceduralize(&input, &settings).map_err(|e| failure(e.into(), args))?),
+        _ => {
+            let made = method::proceduralize_watched(&input, &settings, &print::message);
+            Some(made.map_err(|e| failure(e.into(), args))?)
+        },
     };
     let option = if args.bytes.is_some() {
         "--bytes"
@@ -299,6 +302,7 @@ fn read(paths: &[PathBuf]) -> Result<City> {
     let mut all: Option<City> = None;
     for path in paths {
         let next = city::read(path)?;
+        next.notes.iter().for_each(|note| print::message(note));
         match &mut all {
             None => all = Some(next),
             Some(city) => city.merge(next),

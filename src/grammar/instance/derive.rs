@@ -229,6 +229,7 @@ impl InstanceDerivation {
             reference_system: grammar.reference_system.clone(),
             origin: grammar.origin,
             buildings,
+            notes: Vec::new(),
         }
     }
 }

@@ -66,5 +66,6 @@ pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{
     Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize, smallest,
+    Structure, from_components, largest, proceduralize,
+    proceduralize_watched, smallest,
 };

@@ -6,7 +6,7 @@ use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
-use super::parse_tree::{Detection, ParseTree, grow};
+use super::parse_tree::{Detection, ParseTree, grow_watched};
 use super::patterns::patterns;
 use super::rulebook::Stacks;
 use super::type_graph::DistanceWeights;
@@ -155,8 +155,24 @@ pub fn proceduralize(
     city: &City,
     settings: &Settings,
 ) -> Result<Proceduralized, ProceduralizeError> {
+    proceduralize_watched(city, settings, &|_| {})
+}
+
+/// As [`proceduralize`], telling each stage before it begins.
+///
+/// # Errors
+/// [`ProceduralizeError`].
+pub fn proceduralize_watched(
+    city: &City,
+    settings: &Settings,
+    tell: &dyn Fn(&str),
+) -> Result<Proceduralized, ProceduralizeError> {
+    tell("cutting buildings into components");
     let decomposition = decompose(city, settings.budget != Budget::All);
-    from_components(city, decomposition, settings)
+    tell(&format!("types of {} components", decomposition.components.len()));
+    let prepared = Prepared::new(city, &decomposition.components, settings)?;
+    let made = prepared.grammar(settings.budget, tell);
+    Ok(made.of(decomposition))
 }
 
 /// Makes a grammar of a city that is already cut.
@@ -168,7 +184,8 @@ pub fn from_components(
     decomposition: Decomposition,
     settings: &Settings,
 ) -> Result<Proceduralized, ProceduralizeError> {
-    let made = Prepared::new(city, &decomposition.components, settings)?.grammar(settings.budget);
+    let prepared = Prepared::new(city, &decomposition.components, settings)?;
+    let made = prepared.grammar(settings.budget, &|_| {});
     Ok(made.of(decomposition))
 }
 
@@ -240,7 +257,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    fn grammar(&self, budget: Budget) -> Made {
+    fn grammar(&self, budget: Budget, tell: &dyn Fn(&str)) -> Made {
         let (city, components, settings) = (self.city, self.components, self.settings);
         let n = components.len();
         let k = match budget {
@@ -253,7 +270,9 @@ impl<'a> Prepared<'a> {
             let types = paper_types(components, k, weights, representative, settings.seed);
             let placed = placed_components(city, components, &types);
             let leaves = types.representatives.len();
-            let tree = grow(leaves, placed, settings.detection, settings.distance);
+            let (detection, distance) = (settings.detection, settings.distance);
+            let tree = grow_watched(leaves, placed, detection, distance, tell);
+            tell("rules");
             return Made {
                 grammar: emit_tree(city, components, &types, &tree),
                 types,
@@ -274,6 +293,7 @@ impl<'a> Prepared<'a> {
             Some(Precision::Centimetre) => Detail::CENTIMETRE,
             Some(Precision::Decimetre) => Detail::DECIMETRE,
         };
+        tell(&format!("rules of buildings over {} templates", types.representatives.len()));
         // What is stated is kept as it is.
         let detail = match stated {
             Some(_) => detail.at_least_centimetre(),
@@ -351,14 +371,14 @@ fn bisected<E: From<ProceduralizeError>>(
 ) -> Result<Option<Made>, E> {
     let prepared = Prepared::new(city, components, settings)?;
     let (mut low, mut high) = (1, components.len());
-    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }));
+    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }), &|_| {});
     let mut best = fits(&sure.grammar)?.then_some(sure);
     for _ in 0..SEARCH_STEPS {
         let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
         if best.is_none() || middle == low || middle == high {
             break;
         }
-        let made = prepared.grammar(Budget::Templates(middle));
+        let made = prepared.grammar(Budget::Templates(middle), &|_| {});
         let fit = fits(&made.grammar)?;
         if fit {
             best = Some(made);
