@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use edifice::grammar::instance::InstanceGrammar;
-use edifice::io::city::picture::Legend;
-use edifice::shape::triangles::{City, CityBuilding};
-use edifice::{Error, Result};
+use edifice_grammar::instance::InstanceGrammar;
+use edifice_io::city::picture::Legend;
+use edifice_shape::triangles::{City, CityBuilding};
+use edifice_base::{Error, Result};
 use rustc_hash::FxHashMap;
 
 use super::data;

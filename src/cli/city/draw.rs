@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use edifice::io::city::picture::{self, Drawing, Drawn};
-use edifice::{Error, Result};
+use edifice_io::city::picture::{self, Drawing, Drawn};
+use edifice_base::{Error, Result};
 
 use super::colours::{Colouring, Read, colouring};
 
@@ -95,7 +95,7 @@ pub fn run(args: &Args) -> Result<()> {
         around,
     };
     let bytes = picture::draw(&cities, &drawing, &legend);
-    edifice::io::write_atomic(
+    edifice_io::write_atomic(
         &args.output,
         &bytes.map_err(|e| Error::content(&args.output, e))?,
     )

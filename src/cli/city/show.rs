@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use edifice::grammar::instance::{InstanceGrammar, InstanceRule, Placement};
-use edifice::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement};
+use edifice_base::{Error, Result};
 use rustc_hash::FxHashMap;
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Rules of each kind that are told.
 const TOLD: usize = 25;

@@ -4,7 +4,7 @@
 //! `Building` with its parts and installations is a building. Of each, the highest level of detail from 1 to 3 is read: its
 //! solids, with their surfaces by reference (`xlink`) or in place, else its boundary surfaces and multi-surfaces, with doors and
 //! windows. Polygons with holes are triangulated. What lies in rooms, footprints of level 0, and implicit geometry are left
-//! out, and counted in the city's [notes](crate::shape::triangles::City::notes), as are references that lead nowhere.
+//! out, and counted in the city's [notes](edifice_shape::triangles::City::notes), as are references that lead nowhere.
 //!
 //! Coordinates in degrees ([`system`]) are projected to metres east and north of the first corner's degree, on the GRS 80
 //! ellipsoid; their order is told by the reference system: latitude first, unless their values say otherwise.
@@ -26,9 +26,9 @@ use self::building::Draft;
 use self::element::Element;
 use self::system::System;
 use super::CityError;
-use crate::io::file_stem;
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use crate::file_stem;
+use edifice_shape::triangles::City;
+use edifice_base::{Error, Result};
 
 /// Deepest nesting of elements.
 const DEEPEST: usize = 256;

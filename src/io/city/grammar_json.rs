@@ -28,11 +28,11 @@ use std::path::Path;
 
 use self::file::{File, FileTemplate, Number, levels_of, parameters, placement_file, rule_of};
 use super::pictures;
-use crate::grammar::instance::{InstanceGrammar, Template};
-use crate::io::json::{check_versions, parse_json};
-use crate::io::{read_bytes, write_atomic};
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, Template};
+use crate::json::{check_versions, parse_json};
+use crate::{read_bytes, write_atomic};
+use edifice_shape::triangles::TriangleMesh;
+use edifice_base::{Error, Result};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-grammar";

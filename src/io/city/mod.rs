@@ -41,8 +41,8 @@ pub use pictures::{add_textures, paint_parts};
 use std::path::Path;
 
 use super::packed;
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::City;
 
 /// Coordinates beyond this are no metres.
 const FARTHEST: f64 = 1e8;
@@ -74,7 +74,7 @@ pub enum CityError {
     Dangling {
         /// The index.
         index: u64,
-        /// How many positions there are.
+        /// Number of positions.
         count: usize,
     },
     /// Anything else that the format does not allow.

@@ -6,9 +6,9 @@ mod legend;
 mod scene;
 mod terrain;
 
-use crate::scene::render::{Picture, render};
-use crate::scene::trace::framing_at;
-use crate::shape::triangles::City;
+use edifice_scene::render::{Picture, render};
+use edifice_scene::trace::framing_at;
+use edifice_shape::triangles::City;
 
 use self::scene::scene;
 

@@ -1,7 +1,7 @@
 //! The nearest of some rows of a table of features.
 
 use super::medoids::square;
-use crate::cluster::KdTree;
+use edifice_cluster::KdTree;
 
 /// Chosen rows in a kd-tree.
 pub(super) struct Nearest<'a> {

@@ -18,7 +18,7 @@ use super::nearest::Nearest;
 use super::proceduralize::ProceduralizeError;
 use super::stacks::Stack;
 use super::types::Types;
-use crate::cluster::{WardTree, ward};
+use edifice_cluster::{WardTree, ward};
 
 /// Cells along a side of a level's features, in stacks of few levels and of more than [`FEW`].
 const FINE: usize = 8;

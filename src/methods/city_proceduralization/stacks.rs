@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::components::{CELLS, Component, SAMPLES};
 use super::types::Types;
-use crate::shape::triangles::{OrientedBox, TriangleMesh, height_map};
+use edifice_shape::triangles::{OrientedBox, TriangleMesh, height_map};
 
 /// Cells of a map.
 const AREA: usize = CELLS * CELLS;

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use super::element::Element;
 use super::system::System;
 use super::{CityGmlError, Dropped};
-use crate::shape::triangles::{CityBuilding, TriangleMesh, polygon_triangles};
+use edifice_shape::triangles::{CityBuilding, TriangleMesh, polygon_triangles};
 
 /// The levels of detail that are read.
 const LEVELS: usize = 4;

@@ -13,7 +13,7 @@ use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
 use super::steps::{SHARES, in_steps};
 use super::{CompactError, Steps};
-use crate::grammar::instance::{InstanceRule, Placement};
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Most placements of a file.
 const MOST_PLACEMENTS: u64 = 8_000_000;
@@ -30,7 +30,7 @@ struct Pose {
     size: [i64; 3],
 }
 
-/// What a placement is near to.
+/// The reference of a placement, from which its numbers are differences.
 #[derive(Clone, Copy, PartialEq)]
 enum Near {
     /// The axiom's successor before it.

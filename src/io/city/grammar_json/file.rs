@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::grammar::instance::{InstanceRule, Placement};
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// A number that is written as an integer where it is one.
 #[derive(Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::Legend;
 use super::glyphs::glyph;
-use crate::scene::render::Picture;
+use edifice_scene::render::Picture;
 
 /// Columns and rows of a letter with the space after it.
 const CELL: [usize; 2] = [6, 9];

@@ -6,8 +6,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::terrain::Terrain;
 use super::{Drawing, Drawn, seen};
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::shape::triangles::{City, CityBuilding, Painted, corner_bits};
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
+use edifice_shape::triangles::{City, CityBuilding, Painted, corner_bits};
 
 /// Textures are drawn in about so many pieces.
 const MOST_PIECES: f64 = 600_000.0;

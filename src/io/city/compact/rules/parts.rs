@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::{CompactError, Flag, Near, PARAMETERS, Rules};
-use crate::grammar::instance::{InstanceRule, Placement};
-use crate::io::city::compact::range_coder::Coder;
-use crate::io::city::compact::steps::in_steps;
+use edifice_grammar::instance::{InstanceRule, Placement};
+use crate::city::compact::range_coder::Coder;
+use crate::city::compact::steps::in_steps;
 
 impl<C: Coder> Rules<'_, C> {
     /// The parts of the instances of `rules`.
