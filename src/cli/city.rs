@@ -2,6 +2,7 @@
 
 mod colours;
 mod compare;
+mod convert;
 mod data;
 mod derive;
 mod draw;
@@ -41,6 +42,12 @@ Edits, made in turn: scale NAME=FX,FY,FZ (factors of width, depth and height of 
 T1, wherever it stands; NAME may end in * for all names that begin so); weight RULE=W, the rules counted from 0 as in the file.
 Residuals are carried along, or left out with --residuals drop.")]
     Edit(edit::Args),
+    /// Write a city in another format.
+    #[command(after_help = "Examples:
+  edifice city convert berlin.gml -o berlin.city.json
+  edifice city convert midtown.npz -o midtown.obj
+Reads .npz, .obj, .gml (CityGML 2 and 3), .city.json, .city.jsonl, .glb, .gltf and grammars; writes .obj and .city.json.")]
+    Convert(convert::Args),
     /// Compare two cities, or a city and a grammar.
     #[command(after_help = "Examples:
   edifice city compare midtown.npz midtown.city-grammar.json --resolution 0.5")]
@@ -79,6 +86,7 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Derive(args) => derive::run(&args),
         Command::Edit(args) => edit::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Show(args) => show::run(&args),
         Command::Draw(args) => draw::run(&args),
         Command::Synthesize(args) => synthesize::run(&args),

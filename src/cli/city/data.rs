@@ -8,7 +8,7 @@ use edifice_io::city;
 pub use edifice_io::city::grammar_file::is_grammar;
 use edifice_shape::triangles::City;
 
-use crate::cli::print;
+use crate::print;
 
 /// Reads a grammar.
 pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
