@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> Result<()> {
     let around = match &args.at {
         None => None,
         Some(text) => {
-            let point = numbers(text, ',').filter(|p| p.iter().all(|v| v.is_finite()));
+            let point = numbers::<f64>(text, ',').filter(|p| p.iter().all(|v| v.is_finite()));
             let wrong = || Error::option("--at", format!("{text:?} is not X,Y"));
             Some((point.ok_or_else(wrong)?, args.radius))
         }
@@ -79,10 +79,6 @@ pub fn run(args: &Args) -> Result<()> {
         beside: others,
         legend,
     } = colouring(args.colour, &shown, beside.as_ref())?;
-    let drawn = |read: &'_ Read, colours| Drawn {
-        city: &read.city,
-        colours,
-    };
     let mut cities = Vec::new();
     if let Some(beside) = &beside {
         cities.push(drawn(beside, others.as_deref()));
@@ -99,6 +95,13 @@ pub fn run(args: &Args) -> Result<()> {
         &args.output,
         &bytes.map_err(|e| Error::content(&args.output, e))?,
     )
+}
+
+fn drawn<'a>(read: &'a Read, colours: Option<&'a [[u8; 3]]>) -> Drawn<'a> {
+    Drawn {
+        city: &read.city,
+        colours,
+    }
 }
 
 fn size(args: &Args) -> Result<[usize; 2]> {

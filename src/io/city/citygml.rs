@@ -25,7 +25,6 @@ use quick_xml::events::Event;
 use self::building::Draft;
 use self::element::Element;
 use self::system::System;
-use super::CityError;
 use crate::file_stem;
 use edifice_shape::triangles::City;
 use edifice_base::{Error, Result};

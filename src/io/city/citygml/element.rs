@@ -1,5 +1,6 @@
 //! Elements of XML, by their local names.
 
+use quick_xml::XmlVersion;
 use quick_xml::events::{BytesRef, BytesStart};
 
 /// An open element.
@@ -36,7 +37,7 @@ impl Element {
             text: String::new(),
         };
         for attribute in start.attributes().flatten() {
-            let value = match attribute.unescape_value() {
+            let value = match attribute.normalized_value(XmlVersion::Implicit1_0) {
                 Ok(value) => value.into_owned(),
                 Err(_) => continue,
             };

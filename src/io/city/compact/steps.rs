@@ -30,14 +30,14 @@ impl Steps {
         let templates = || grammar.templates.iter();
         let terminals: rustc_hash::FxHashSet<&str> =
             templates().map(|t| t.symbol.as_str()).collect();
-        let lengths = |p: &Placement| {
+        let lengths = |p: &Placement| -> Vec<f64> {
             let size = if terminals.contains(p.symbol.as_str()) {
                 p.size
             } else {
                 [0.0; 3]
             };
             let numbers = p.numbers.iter().copied();
-            p.at.into_iter().chain(size).chain(numbers)
+            p.at.into_iter().chain(size).chain(numbers).collect()
         };
         // Corners that no triangle has are not written.
         let corners = || {

@@ -9,7 +9,7 @@ use crate::city::compact::steps::in_steps;
 
 impl<C: Coder> Rules<'_, C> {
     /// The parts of the instances of `rules`.
-    pub(super) fn residuals(
+    pub(in crate::city::compact) fn residuals(
         &mut self,
         given: &[InstanceRule],
         rules: &mut [InstanceRule],
