@@ -3,6 +3,7 @@
 
 mod building;
 mod city;
+mod cleaning;
 mod data;
 mod documents;
 mod facade;
@@ -15,6 +16,7 @@ mod reproduce;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
+mod tolerance;
 
 use std::process::ExitCode;
 
