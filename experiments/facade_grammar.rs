@@ -34,6 +34,7 @@ mod table_3;
 mod table_4;
 mod table_5;
 mod tolerance;
+mod trial;
 
 use super::{Artefact, Budget, Experiment, picture};
 use edifice_facade_grammar::Method;

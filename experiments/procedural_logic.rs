@@ -18,6 +18,7 @@ mod retrieval_search;
 mod segmentation;
 pub mod shipped;
 pub mod study;
+pub mod trial;
 pub mod trivial;
 pub mod words;
 

@@ -1,5 +1,6 @@
 //! Facade files on the command line.
 
+mod compare;
 mod complete;
 mod edit;
 mod hide;
@@ -57,6 +58,8 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
         after_help = "Example:\n  edifice facade hide monge_42.png --task side50 --seed 1 -o partial.facade.json"
     )]
     Hide(hide::Args),
+    /// Compare predicted layouts with the true one: agreement, areas, counts, regularity, probabilities.
+    Compare(compare::Args),
     /// Score a facade by the statistical model of Fan et al. 2014, term by term.
     Score(score::Args),
 }
@@ -94,6 +97,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Complete(args) => complete::run(&args),
         Command::Edit(args) => edit::run(&args),
         Command::Hide(args) => hide::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Score(args) => score::run(&args),
     }
 }

@@ -2,6 +2,7 @@
 
 mod derive;
 mod edit;
+mod evaluate;
 mod infer;
 mod library;
 mod merge;
@@ -23,8 +24,6 @@ pub enum Command {
     Merge(merge::Args),
     /// Combine grammars of several facades into a stochastic one, part by part.
     Combine(library::Combine),
-    /// Compare what a grammar derives with facades, and compute its cost.
-    Evaluate(library::Evaluate),
     /// Draw new facades from a library (`infer --sizes free`).
     Draw(library::Draw),
     /// Tell how many bits facades cost given a library: how like its facades they are.
@@ -33,6 +32,8 @@ pub enum Command {
     Encode(library::Encode),
     /// Read a facade that was written with a library.
     Decode(library::Decode),
+    /// Judge a grammar: does it derive the facades, at which cost, how far from a proven bound.
+    Evaluate(evaluate::Args),
     /// Show the rules of a grammar or library, what it costs and what it derives.
     Show(show::Args),
 }
@@ -45,11 +46,11 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Edit(args) => edit::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Combine(args) => library::combine(&args),
-        Command::Evaluate(args) => library::evaluated(&args),
         Command::Draw(args) => library::draw(&args),
         Command::Score(args) => library::score(&args),
         Command::Encode(args) => library::encode(&args),
         Command::Decode(args) => library::decode(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
         Command::Show(args) => show::run(&args),
     }
 }

@@ -12,6 +12,7 @@ mod building;
 mod building_error;
 mod building_plan;
 mod cleaning;
+pub mod comparison;
 mod components;
 mod cuts;
 mod decompose;
