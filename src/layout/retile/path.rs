@@ -5,7 +5,7 @@ use edifice_shape::LabelGrid;
 /// Widest strip that a merge may fill, as a share of its side.
 const WIDEST: f64 = 0.04;
 
-/// How the next merge is chosen.
+/// The rule by which the next merge is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// The one that makes the least area wrong.
