@@ -22,7 +22,7 @@ const DRAWS: u64 = 100;
 /// The share of the area that may become wrong in cleaned Graz.
 const CLEANED: f64 = 0.005;
 
-/// What is measured of one set.
+/// The numbers of one set.
 struct Measured {
     facades: usize,
     separate: f64,

@@ -17,7 +17,7 @@ use crate::Context;
 /// The tolerances, in per cent of the area.
 const TOLERANCES: [f64; 6] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0];
 
-/// What the numbers of the Art Deco set stand for (its README).
+/// The labels of the numbers of the Art Deco set (its README).
 const ART_DECO: &str = r#"{"door": 0, "shop": 1, "balcony": 2, "window": 3, "wall": 4, "sky": 5, "roof": 6, "unlabelled": -1}"#;
 
 /// Sets of label pictures: name, place, ending.

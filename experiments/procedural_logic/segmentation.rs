@@ -10,7 +10,7 @@ use super::data::{Source, label_images, sources};
 use super::noise::outcome;
 use crate::{Budget, Context};
 
-/// What is measured of one set of labels.
+/// The numbers of one set of labels.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Numbers {
     rules: f64,

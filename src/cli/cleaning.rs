@@ -23,7 +23,7 @@ pub struct Cleaning {
     clean: Option<How>,
 }
 
-/// How to clean.
+/// The two ways to clean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum How {
     /// Rows and columns from element boxes.
@@ -41,12 +41,12 @@ fn how(text: &str) -> std::result::Result<How, String> {
 }
 
 impl Cleaning {
-    /// Whether pictures are cleaned.
+    /// True if pictures are cleaned.
     pub fn is_asked(&self) -> bool {
         self.clean.is_some()
     }
 
-    /// How, for messages.
+    /// The way to clean, for messages.
     pub fn name(&self) -> String {
         match self.clean {
             Some(How::Pixels(tolerance)) => format!("with tolerance {tolerance}"),

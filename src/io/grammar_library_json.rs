@@ -112,7 +112,7 @@ pub struct EncodedFacade {
     pub bytes: Vec<u8>,
 }
 
-/// Whether the bytes begin as a JSON object that names the format of a library.
+/// True if the bytes begin as a JSON object that names the format of a library.
 pub fn is_library(bytes: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(400)]);
     head.contains(&format!("\"{FORMAT}\""))

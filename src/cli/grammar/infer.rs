@@ -38,7 +38,7 @@ pub struct Args {
     /// Method of search
     #[arg(long, value_enum, default_value = "adp")]
     method: MethodName,
-    /// Whether sizes are written into the rules, or are parameters of them
+    /// Sizes written into the rules, or as parameters of them
     #[arg(long, value_enum, default_value = "fixed")]
     sizes: Sizes,
     /// Per cent of the area that may become wrong so that the grammar becomes shorter: lines a few pixels apart are merged

@@ -22,7 +22,7 @@ pub enum Letter {
 pub struct Body {
     /// Direction.
     pub axis: Axis,
-    /// Whether the letters are one period of a repeat; else those of a split.
+    /// True if the letters are one period of a repeat; else they are those of a split.
     pub repeat: bool,
     /// The letters in order.
     pub letters: Vec<Letter>,

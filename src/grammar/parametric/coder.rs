@@ -57,7 +57,7 @@ impl Coder for Counter {
 
 /// Draws.
 pub struct Drawer<'r, R> {
-    /// Where chance comes from.
+    /// The source of chance.
     pub rng: &'r mut R,
 }
 

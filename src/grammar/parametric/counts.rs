@@ -1,4 +1,4 @@
-//! How often the period of a repeat stands: floors and columns.
+//! The counts of repeats: numbers of floors and columns.
 //!
 //! A mixture of the count of the same repeat in this facade, any count of the axis in this facade, the
 //! library's counts of the repeat, its counts of the axis, and a geometric distribution; its weights are learnt as those of
@@ -56,7 +56,7 @@ impl CountTable {
     }
 }
 
-/// What to trust, for each set of predictors that speaks.
+/// The weights of the predictors, for each set of them that speaks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CountTrust {
     counts: BTreeMap<u32, [f64; PREDICTORS]>,

@@ -127,7 +127,7 @@ fn mixed(mut pairs: Vec<(f64, f64)>, t: f64) -> Vec<(f64, f64, f64)> {
     places
 }
 
-/// How many rows (along y) or columns (along x) of elements a facade has: spans along the axis of the regions of its most
+/// Number of rows (along y) or columns (along x) of elements of a facade: spans along the axis of the regions of its most
 /// frequent label but the one of most area, those that overlap counted once; at least 1.
 fn levels(facade: &Facade, axis: Axis) -> u32 {
     let mut labels: Vec<(&str, f64, usize)> = Vec::new();

@@ -13,7 +13,7 @@ pub enum LibraryError {
     Layout {
         /// Name of the facade.
         name: String,
-        /// What is wrong with it.
+        /// The fault of the layout.
         source: LayoutError,
     },
     /// Two facades have lengths in different units.
@@ -63,9 +63,9 @@ pub enum LibraryError {
     /// A code, or a part of a file, that no facade has.
     #[error("{place}: {message}")]
     Invalid {
-        /// Where, for example `rules[3].items[2]`.
+        /// The place, for example `rules[3].items[2]`.
         place: String,
-        /// What is wrong there.
+        /// The fault.
         message: String,
     },
 }

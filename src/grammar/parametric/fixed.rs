@@ -1,4 +1,4 @@
-//! What one facade costs alone, sizes included: a quick bound from above on Wu's cost.
+//! The cost of one facade's own parse tree, sizes included: a quick bound from above on Wu's cost.
 
 use edifice_shape::Facade;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -152,7 +152,7 @@ impl Library {
         &self.members
     }
 
-    /// What it knows about counts and sizes.
+    /// The tables of roots, counts and sizes.
     pub fn tables(&self) -> &Tables {
         &self.tables
     }

@@ -10,7 +10,7 @@ pub struct Namer<'l> {
     given: [usize; 6],
 }
 
-/// What a name is for.
+/// The kind of rule that a name is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A whole facade.

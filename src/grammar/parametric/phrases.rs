@@ -30,9 +30,9 @@ pub const LONGEST: usize = 14;
 pub struct Written {
     /// Direction.
     pub axis: Axis,
-    /// Whether it is a repeat.
+    /// True if it is a repeat.
     pub repeat: bool,
-    /// What is written: letters, or phrases by the index of their rule.
+    /// The right-hand side: letters, or phrases by the index of their rule.
     pub parts: Vec<Part>,
 }
 
@@ -59,7 +59,7 @@ pub struct Sharing {
 }
 
 impl Sharing {
-    /// Whether no choice of phrases is cheaper.
+    /// True if no choice of phrases is cheaper.
     pub fn is_proven(&self) -> bool {
         self.cost <= self.lower_bound + 1e-6
     }

@@ -34,13 +34,13 @@ struct Node {
     bound: f64,
 }
 
-/// What the relaxation of a node says.
+/// The relaxation of a node.
 struct Relaxed {
     /// The Lagrangian bound.
     bound: f64,
     /// `r_p` of each phrase.
     reduced: Vec<f64>,
-    /// How far each phrase is open, from 0 to 1.
+    /// The share by which each phrase is open, from 0 to 1.
     open: Vec<f64>,
 }
 

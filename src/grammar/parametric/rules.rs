@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::error::LibraryError;
 use edifice_shape::Axis;
 
-/// What stands for a region in a rule.
+/// The symbol of a region in a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Symbol {
     /// A label, by its index.
@@ -32,7 +32,7 @@ impl Item {
         }
     }
 
-    /// Whether it is a repeat.
+    /// True if it is a repeat.
     pub fn is_repeat(&self) -> bool {
         matches!(self, Item::Repeat(_))
     }

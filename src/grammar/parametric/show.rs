@@ -19,7 +19,7 @@ const TIED: f64 = 0.95;
 /// The sizes of a region by item and place.
 type PartSizes = BTreeMap<(u32, u32), Vec<u32>>;
 
-/// What the facades chose for one rule.
+/// The parameters that the facades chose for one rule.
 #[derive(Default)]
 struct Chosen {
     /// Number of regions.
@@ -118,7 +118,7 @@ impl Library {
         lines
     }
 
-    /// What the facades chose for each rule.
+    /// The parameters that the facades chose for each rule.
     fn chosen(&self) -> Vec<Chosen> {
         let mut all: Vec<Chosen> = self
             .rules()

@@ -28,12 +28,12 @@ use edifice_shape::Axis;
 /// Number of predictors.
 const PREDICTORS: usize = 13;
 
-/// How much each predictor is believed before anything was seen.
+/// The weight of each predictor before anything was seen.
 const PRIOR: [f64; PREDICTORS] = [
     2.0, 1.0, 0.5, 0.5, 0.3, 0.1, 0.5, 0.5, 0.3, 0.3, 0.2, 0.1, 0.05,
 ];
 
-/// How often each size was seen.
+/// The number of times that each size was seen.
 pub type Sizes = BTreeMap<u32, u32>;
 
 /// A slot of a rule in any repetition.
@@ -87,7 +87,7 @@ pub struct Question {
     pub extent: u32,
     /// The slot.
     pub slot: Slot,
-    /// Where the part starts, in the facade.
+    /// The start of the part, in the facade.
     pub start: u32,
     /// Greatest size.
     pub max: u32,
@@ -101,7 +101,7 @@ impl Question {
     }
 }
 
-/// What the facade at hand has shown so far.
+/// The sizes and cuts of the facade at hand so far.
 #[derive(Debug, Clone, Default)]
 pub struct SizeMemory {
     slot: FxHashMap<(Place, u32), Sizes>,

@@ -25,7 +25,7 @@ pub const LABEL_LIMIT: usize = 4096;
 /// Most items of a rule that is read from a code.
 const ITEM_LIMIT: usize = 1 << 16;
 
-/// What a rule is spelled with.
+/// The tokens that a rule is spelled with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum Token {
     /// Before the first item, and after the last.
@@ -103,9 +103,9 @@ fn tokens(rule: &Rule) -> Vec<Token> {
 
 /// Spells structures.
 pub struct Speller<'s, C> {
-    /// Where choices are met.
+    /// The coder that meets the choices.
     pub coder: &'s mut C,
-    /// What the library has seen.
+    /// The tables of the library.
     pub table: &'s StructureTable,
     /// Rules of the library, and after them those of the facade that it does not have. While a known facade is
     /// written they are only read up to what was spelled so far.
@@ -116,7 +116,7 @@ pub struct Speller<'s, C> {
     pub library: (usize, usize),
 }
 
-/// Where two tables of rules with the same beginning say the same.
+/// The numbers in the table at hand of labels and rules of the known one.
 struct Names {
     label: BTreeMap<u32, u32>,
     rule: BTreeMap<u32, u32>,

@@ -23,7 +23,7 @@ pub struct Parse {
     pub root: Symbol,
     /// Width and height in steps.
     pub extent: [u32; 2],
-    /// How often the period of each repeat stands.
+    /// The number of periods of each repeat.
     pub counts: Vec<u32>,
     /// Sizes of the parts in steps, without the last part of each region, which fills what is left.
     pub sizes: Vec<u32>,

@@ -5,7 +5,7 @@ use edifice_shape::LabelGrid;
 /// Widest strip that a merge may fill, as a share of its side.
 const WIDEST: f64 = 0.04;
 
-/// How the next merge is chosen.
+/// The rule by which the next merge is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// The one that makes the least area wrong.
@@ -196,10 +196,9 @@ impl Merging {
                 continue;
             }
             // The new strip of each old one.
-            let mut strip_of = vec![0; strips];
-            for k in 0..strips {
-                strip_of[k] = kept.partition_point(|&first| first <= k) - 1;
-            }
+            let strip_of: Vec<usize> = (0..strips)
+                .map(|k| kept.partition_point(|&first| first <= k) - 1)
+                .collect();
             let width = if columns { kept.len() } else { across };
             let mut cells = vec![0; kept.len() * across];
             let mut areas = vec![0.0; cells.len() * self.labels];

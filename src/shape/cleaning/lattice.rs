@@ -11,7 +11,7 @@
 //! 4. Behind them lie horizontal *bands*: the label of `sky`, `roof`, `wall`, `shop` and the like that most of each row shows.
 //! 5. The largest `door` stands on the ground where it is, at its own width and height.
 //!
-//! What was found is painted in this order: bands, windows, balconies, door. Labels of other kinds are not kept.
+//! All of it is painted in this order: bands, windows, balconies, door. Labels of other kinds are not kept.
 //! A picture whose windows lie on these lines already is given back as it is: exact labels stay exact.
 
 mod bands;
@@ -23,7 +23,7 @@ use bands::bands;
 /// A window smaller than this share of the median one is a speck.
 const SPECK: f64 = 0.3;
 
-/// What most columns have, all have.
+/// The share of columns from which on all have what these have.
 const MOST: f64 = 0.7;
 
 /// A balcony this wide, as a share of the facade, runs from side to side.
@@ -190,7 +190,7 @@ fn middle(cluster: &[usize], boxes: &[Box4], side: impl Fn(&Box4) -> [f64; 2]) -
     [0, 1].map(|end| median(cluster.iter().map(|&k| side(&boxes[k])[end]).collect()))
 }
 
-/// What most columns have, all have.
+/// All true where most are.
 fn filled(mut has: Vec<bool>) -> Vec<bool> {
     let count = has.iter().filter(|has| **has).count();
     if count as f64 >= MOST * has.len() as f64 {
