@@ -70,6 +70,5 @@ pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{
     Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize,
-    proceduralize_watched, smallest,
+    Structure, from_components, largest, proceduralize, proceduralize_watched, smallest,
 };

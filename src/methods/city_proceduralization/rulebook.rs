@@ -105,11 +105,16 @@ impl<'a> Stacks<'a> {
     ) -> Result<Self, ProceduralizeError> {
         let mut by_levels: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
         for &b in &buildings.order {
-            by_levels.entry(buildings.parts[b].len()).or_default().push(b);
+            by_levels
+                .entry(buildings.parts[b].len())
+                .or_default()
+                .push(b);
         }
         let class = |(levels, members): (usize, Vec<usize>)| {
-            let parts: Vec<Vec<usize>> =
-                members.iter().map(|&b| buildings.parts[b].clone()).collect();
+            let parts: Vec<Vec<usize>> = members
+                .iter()
+                .map(|&b| buildings.parts[b].clone())
+                .collect();
             let one = |parts: &Vec<usize>| Stack::of(components, parts);
             let stacks: Vec<Stack> = parts.par_iter().map(one).collect();
             let side = if levels <= FEW { FINE } else { COARSE };
@@ -206,7 +211,12 @@ impl<'a> Stacks<'a> {
     }
 
     /// The candidates that become rules, in the order of their choice.
-    fn choose(&self, candidates: &[Candidate], near: &[Vec<Vec<Near>>], count: usize) -> Vec<usize> {
+    fn choose(
+        &self,
+        candidates: &[Candidate],
+        near: &[Vec<Vec<Near>>],
+        count: usize,
+    ) -> Vec<usize> {
         // Who is near to each candidate.
         let mut served: Vec<Vec<(usize, f64)>> = vec![Vec::new(); candidates.len()];
         let mut left: Vec<f64> = Vec::new();
@@ -295,15 +305,16 @@ impl<'a> Stacks<'a> {
             let one = |i: usize| {
                 let kept = near[class][i].iter().filter(|n| is_chosen[n.candidate]);
                 let others = nearest.of(c.row(c.group[i]), NEAR).into_iter();
-                let others =
-                    others.map(|p| best(&c.stacks[i], own[p], &candidates[own[p]]));
+                let others = others.map(|p| best(&c.stacks[i], own[p], &candidates[own[p]]));
                 let all = kept.copied().chain(others);
-                let least = all.min_by(|a, b| {
-                    (a.cost.total_cmp(&b.cost)).then(a.candidate.cmp(&b.candidate))
-                });
+                let least = all
+                    .min_by(|a, b| (a.cost.total_cmp(&b.cost)).then(a.candidate.cmp(&b.candidate)));
                 Some((c.members[i], least?))
             };
-            let own: Vec<_> = (0..c.members.len()).into_par_iter().filter_map(one).collect();
+            let own: Vec<_> = (0..c.members.len())
+                .into_par_iter()
+                .filter_map(one)
+                .collect();
             found.extend(own);
         }
         let mut counts = vec![0usize; candidates.len()];
@@ -322,7 +333,10 @@ impl<'a> Stacks<'a> {
             });
         }
         Rulebook {
-            rules: order.iter().map(|&k| self.building(&candidates[k])).collect(),
+            rules: order
+                .iter()
+                .map(|&k| self.building(&candidates[k]))
+                .collect(),
             uses,
         }
     }
@@ -342,7 +356,11 @@ fn best(stack: &Stack, candidate: usize, of: &Candidate) -> Near {
     for &quarter in quarters {
         let cost = stack.mismatch(&of.maps, quarter);
         if cost < best.cost {
-            best = Near { quarter, cost, ..best };
+            best = Near {
+                quarter,
+                cost,
+                ..best
+            };
         }
     }
     best
@@ -358,12 +376,20 @@ impl Class {
         let labels = self.tree.cut(k);
         let count = labels.iter().max().map_or(0, |m| m + 1);
         let mut members = vec![Vec::new(); count];
-        labels.iter().enumerate().for_each(|(i, &l)| members[l].push(i));
+        labels
+            .iter()
+            .enumerate()
+            .for_each(|(i, &l)| members[l].push(i));
         let medoid = |list: &Vec<usize>| {
             let weight = |i: usize| self.weights[i];
             let total: f64 = list.iter().map(|&i| weight(i)).sum();
             let mean: Vec<f64> = (0..self.dimension)
-                .map(|d| list.iter().map(|&i| weight(i) * self.row(i)[d]).sum::<f64>() / total)
+                .map(|d| {
+                    list.iter()
+                        .map(|&i| weight(i) * self.row(i)[d])
+                        .sum::<f64>()
+                        / total
+                })
                 .collect();
             let far = |i: usize| square(self.row(i), &mean);
             let nearer = |a: &usize, b: &usize| far(*a).total_cmp(&far(*b)).then(a.cmp(b));
