@@ -50,6 +50,7 @@ pub mod components;
 pub mod emission;
 pub mod facades;
 pub mod features;
+mod gain;
 pub mod localization;
 mod medoids;
 mod nearest;

@@ -6,7 +6,6 @@
 //! building that no rule reaches within its neighbourhood takes the nearest rule of its number of levels.
 //! Rules of one instance are escapes: buildings whose shape no type explains.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use rayon::prelude::*;
@@ -14,6 +13,7 @@ use rustc_hash::FxHashMap;
 
 use super::building_types::{BuildingTypes, projected};
 use super::components::Component;
+use super::gain::Gain;
 use super::medoids::square;
 use super::nearest::Nearest;
 use super::proceduralize::ProceduralizeError;
@@ -396,27 +396,5 @@ impl Class {
             list.iter().copied().min_by(nearer)
         };
         members.iter().filter_map(medoid).collect()
-    }
-}
-
-/// What a candidate would remove for what it costs; of equals, the first candidate is greatest.
-#[derive(Clone, Copy, PartialEq)]
-struct Gain {
-    value: f64,
-    candidate: usize,
-}
-
-impl Eq for Gain {}
-
-impl Ord for Gain {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_value = self.value.total_cmp(&other.value);
-        by_value.then(other.candidate.cmp(&self.candidate))
-    }
-}
-
-impl PartialOrd for Gain {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }
