@@ -67,7 +67,9 @@ pub enum InstanceGrammarError {
         expected: String,
     },
     /// An instance states more or fewer numbers than its rule has parameters.
-    #[error("an instance of {symbol:?} states {found} numbers where its rule has {expected} parameters")]
+    #[error(
+        "an instance of {symbol:?} states {found} numbers where its rule has {expected} parameters"
+    )]
     Numbers {
         /// The symbol.
         symbol: String,
@@ -77,7 +79,9 @@ pub enum InstanceGrammarError {
         expected: usize,
     },
     /// A rule with parameters, or with factors, whose successors are not all templates.
-    #[error("rules[{rule}]: a rule with parameters or factors puts down templates only, not {symbol:?}")]
+    #[error(
+        "rules[{rule}]: a rule with parameters or factors puts down templates only, not {symbol:?}"
+    )]
     NoTemplate {
         /// Index of the rule.
         rule: usize,

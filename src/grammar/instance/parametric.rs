@@ -76,7 +76,11 @@ impl InstanceRule {
         let [along, across] = along_and_across(part.turn, x, y);
         let mut out = part.clone();
         out.at = [part.at[0] * x, part.at[1] * y, part.at[2] * z];
-        out.size = [part.size[0] * along, part.size[1] * across, part.size[2] * z];
+        out.size = [
+            part.size[0] * along,
+            part.size[1] * across,
+            part.size[2] * z,
+        ];
         out
     }
 }

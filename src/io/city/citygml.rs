@@ -26,8 +26,8 @@ use self::building::Draft;
 use self::element::Element;
 use self::system::System;
 use crate::file_stem;
-use edifice_shape::triangles::City;
 use edifice_base::{Error, Result};
+use edifice_shape::triangles::City;
 
 /// Deepest nesting of elements.
 const DEEPEST: usize = 256;
@@ -207,7 +207,10 @@ impl Model {
                 self.depth = self.open.len();
             }
             None => {
-                let member = self.open.last().is_some_and(|e| e.name == "cityObjectMember");
+                let member = self
+                    .open
+                    .last()
+                    .is_some_and(|e| e.name == "cityObjectMember");
                 self.dropped.others += usize::from(member);
             }
         }
@@ -258,14 +261,19 @@ impl Model {
         } = self.dropped;
         let notes = [
             (others, "city objects that are no buildings"),
-            (empty, "buildings without surfaces of level of detail 1 to 3"),
+            (
+                empty,
+                "buildings without surfaces of level of detail 1 to 3",
+            ),
             (implicit, "implicit geometries"),
             (rooms, "rooms"),
             (references, "references to surfaces that lead nowhere"),
             (degenerate, "polygons without area"),
         ];
         let said = notes.into_iter().filter(|(n, _)| *n > 0);
-        self.city.notes = said.map(|(n, what)| format!("left out: {n} {what}")).collect();
+        self.city.notes = said
+            .map(|(n, what)| format!("left out: {n} {what}"))
+            .collect();
         if self.system.is_projected_here() {
             let note = "degrees were projected to metres around the first corner".to_owned();
             self.city.notes.push(note);

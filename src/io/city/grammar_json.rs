@@ -28,11 +28,11 @@ use std::path::Path;
 
 use self::file::{File, FileTemplate, Number, levels_of, parameters, placement_file, rule_of};
 use super::pictures;
-use edifice_grammar::instance::{InstanceGrammar, Template};
 use crate::json::{check_versions, parse_json};
 use crate::{read_bytes, write_atomic};
-use edifice_shape::triangles::TriangleMesh;
 use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, Template};
+use edifice_shape::triangles::TriangleMesh;
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-grammar";
@@ -169,7 +169,10 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 /// As [`packed_bytes`].
 pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
     let steps = steps_of(grammar);
-    let newer = grammar.rules.iter().any(|r| r.levels > 0 || !r.is_unscaled());
+    let newer = grammar
+        .rules
+        .iter()
+        .any(|r| r.levels > 0 || !r.is_unscaled());
     let version = if newer { VERSION } else { FIRST };
     let mut out = format!(
         "{{ \"format\": \"{FORMAT}\", \"version\": {version}, \"name\": {}, \"unit\": \"m\", \"up\": \"z\",\n  \

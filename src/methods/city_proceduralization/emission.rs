@@ -177,7 +177,12 @@ pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGramm
     }
     // The type of a pattern's member is told by the first building of its kind.
     let member = |m: &Posed| match m.kind.checked_sub(buildings.count) {
-        Some(other) => Some(Placement::new(pattern_symbol(other), m.at, m.turn, [1.0; 3])),
+        Some(other) => Some(Placement::new(
+            pattern_symbol(other),
+            m.at,
+            m.turn,
+            [1.0; 3],
+        )),
         None => {
             let of_kind = |b: &&usize| buildings.labels[**b] == Some(m.kind);
             let building = *buildings.order.iter().find(of_kind)?;
@@ -195,7 +200,9 @@ pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGramm
         InstanceRule::new(pattern_symbol(i), p.count as f64, members.collect())
     };
     let patterns: Vec<InstanceRule> = patterns.iter().enumerate().map(pattern).collect();
-    grammar.rules.push(InstanceRule::new(AXIOM, 1.0, successors));
+    grammar
+        .rules
+        .push(InstanceRule::new(AXIOM, 1.0, successors));
     grammar.rules.extend(rules);
     grammar.rules.extend(patterns);
     grammar
@@ -276,7 +283,8 @@ fn instance(
 fn like(own: &Placement, computed: &Placement, step: f64) -> bool {
     let apart = (own.turn - computed.turn + 180.0).rem_euclid(360.0) - 180.0;
     let turn = if step > 0.0 { 1.0 / TURNS } else { 0.0 };
-    let near = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() <= step * 1.001 + 1e-9);
+    let near =
+        |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() <= step * 1.001 + 1e-9);
     own.symbol == computed.symbol
         && apart.abs() <= turn + 1e-9
         && near(&own.at, &computed.at)

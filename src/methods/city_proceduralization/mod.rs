@@ -50,6 +50,7 @@ pub mod components;
 pub mod emission;
 pub mod facades;
 pub mod features;
+mod gain;
 pub mod localization;
 mod medoids;
 mod nearest;
@@ -70,6 +71,5 @@ pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{
     Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize,
-    proceduralize_watched, smallest,
+    Structure, from_components, largest, proceduralize, proceduralize_watched, smallest,
 };

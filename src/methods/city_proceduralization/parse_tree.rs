@@ -205,7 +205,8 @@ fn join(
         });
     }
     let successors = means.into_iter().map(|m| rounded(m.placement)).collect();
-    tree.rules.push(InstanceRule::new(symbol, weight, successors));
+    tree.rules
+        .push(InstanceRule::new(symbol, weight, successors));
     tree.children.push(children);
 }
 

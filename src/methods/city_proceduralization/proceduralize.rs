@@ -169,7 +169,10 @@ pub fn proceduralize_watched(
 ) -> Result<Proceduralized, ProceduralizeError> {
     tell("cutting buildings into components");
     let decomposition = decompose(city, settings.budget != Budget::All);
-    tell(&format!("types of {} components", decomposition.components.len()));
+    tell(&format!(
+        "types of {} components",
+        decomposition.components.len()
+    ));
     let prepared = Prepared::new(city, &decomposition.components, settings)?;
     let made = prepared.grammar(settings.budget, tell);
     Ok(made.of(decomposition))
@@ -293,7 +296,10 @@ impl<'a> Prepared<'a> {
             Some(Precision::Centimetre) => Detail::CENTIMETRE,
             Some(Precision::Decimetre) => Detail::DECIMETRE,
         };
-        tell(&format!("rules of buildings over {} templates", types.representatives.len()));
+        tell(&format!(
+            "rules of buildings over {} templates",
+            types.representatives.len()
+        ));
         // What is stated is kept as it is.
         let detail = match stated {
             Some(_) => detail.at_least_centimetre(),

@@ -6,13 +6,14 @@
 //! building that no rule reaches within its neighbourhood takes the nearest rule of its number of levels.
 //! Rules of one instance are escapes: buildings whose shape no type explains.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::building_types::{BuildingTypes, projected};
 use super::components::Component;
+use super::gain::Gain;
 use super::medoids::square;
 use super::nearest::Nearest;
 use super::proceduralize::ProceduralizeError;
@@ -31,6 +32,8 @@ const LEAST: usize = 8;
 const NEAR: usize = 20;
 /// Bases at least as square as this may be turned by a quarter.
 const SQUARE: f64 = 0.75;
+/// Steps of features within which they are equal.
+const STEPS: f64 = 255.0;
 /// What a rule costs beside what each of its levels costs, in levels.
 const RULE: f64 = 1.0;
 
@@ -67,13 +70,18 @@ struct Class {
     /// Components of each member, from the ground up.
     parts: Vec<Vec<usize>>,
     stacks: Vec<Stack>,
+    /// Members of distinct features, the first of each, and which of them each member is like.
+    distinct: Vec<usize>,
+    group: Vec<usize>,
+    /// Features of the distinct members, row after row, what they weigh, and their hierarchy.
     rows: Vec<f64>,
     dimension: usize,
+    weights: Vec<f64>,
     tree: WardTree,
     volume: f64,
 }
 
-/// A building that a rule may be made from, and the class and the row that it is.
+/// A building that a rule may be made from: its class, and which of the distinct members it is.
 struct Candidate {
     class: usize,
     row: usize,
@@ -97,23 +105,44 @@ impl<'a> Stacks<'a> {
     ) -> Result<Self, ProceduralizeError> {
         let mut by_levels: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
         for &b in &buildings.order {
-            by_levels.entry(buildings.parts[b].len()).or_default().push(b);
+            by_levels
+                .entry(buildings.parts[b].len())
+                .or_default()
+                .push(b);
         }
         let class = |(levels, members): (usize, Vec<usize>)| {
-            let parts: Vec<Vec<usize>> =
-                members.iter().map(|&b| buildings.parts[b].clone()).collect();
+            let parts: Vec<Vec<usize>> = members
+                .iter()
+                .map(|&b| buildings.parts[b].clone())
+                .collect();
             let one = |parts: &Vec<usize>| Stack::of(components, parts);
             let stacks: Vec<Stack> = parts.par_iter().map(one).collect();
             let side = if levels <= FEW { FINE } else { COARSE };
-            let raw: Vec<Vec<f64>> = stacks.iter().map(|s| s.features(side)).collect();
-            let (rows, dimension) = match raw.len() {
+            let raw: Vec<Vec<f64>> = stacks.par_iter().map(|s| s.features(side)).collect();
+            // Equal features first: the hierarchy is over distinct ones.
+            let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
+            let (mut distinct, mut group, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+            for (i, features) in raw.iter().enumerate() {
+                let key = features.iter().map(|v| (v * STEPS).round() as u8).collect();
+                let g = *known.entry(key).or_insert_with(|| {
+                    distinct.push(i);
+                    weights.push(0.0);
+                    distinct.len() - 1
+                });
+                weights[g] += stacks[i].volume.max(1e-3);
+                group.push(g);
+            }
+            let own: Vec<Vec<f64>> = distinct.iter().map(|&i| raw[i].clone()).collect();
+            let (rows, dimension) = match own.len() {
                 1 => (vec![0.0], 1),
-                _ => projected(&raw),
+                _ => projected(&own),
             };
-            let weights: Vec<f64> = stacks.iter().map(|s| s.volume.max(1e-3)).collect();
             Ok(Class {
                 tree: ward(&rows, dimension, &weights)?,
                 volume: weights.iter().sum(),
+                distinct,
+                group,
+                weights,
                 levels,
                 members,
                 parts,
@@ -144,14 +173,15 @@ impl<'a> Stacks<'a> {
         let volume: f64 = self.classes.iter().map(|c| c.volume).sum();
         let mut out = Vec::new();
         for (class, c) in self.classes.iter().enumerate() {
-            let n = c.members.len();
-            let share = (n as f64 / all as f64 + c.volume / volume) / 2.0;
+            let n = c.distinct.len();
+            let share = (c.members.len() as f64 / all as f64 + c.volume / volume) / 2.0;
             let wanted = (SURPLUS * count as f64 * share).ceil() as usize + LEAST;
             let medoids = c.medoids(wanted.min(n));
             out.extend(medoids.into_iter().map(|row| (class, row)));
         }
         let drawn = out.into_par_iter().map(|(class, row)| {
-            let parts = &self.classes[class].parts[row];
+            let c = &self.classes[class];
+            let parts = &c.parts[c.distinct[row]];
             Candidate {
                 class,
                 row,
@@ -170,7 +200,7 @@ impl<'a> Stacks<'a> {
             let rows: Vec<usize> = own.iter().map(|&k| candidates[k].row).collect();
             let nearest = Nearest::new(&c.rows, c.dimension, &rows);
             let one = |i: usize| -> Vec<Near> {
-                let found = nearest.of(c.row(i), NEAR).into_iter();
+                let found = nearest.of(c.row(c.group[i]), NEAR).into_iter();
                 found
                     .map(|position| best(&c.stacks[i], own[position], &candidates[own[position]]))
                     .collect()
@@ -181,7 +211,12 @@ impl<'a> Stacks<'a> {
     }
 
     /// The candidates that become rules, in the order of their choice.
-    fn choose(&self, candidates: &[Candidate], near: &[Vec<Vec<Near>>], count: usize) -> Vec<usize> {
+    fn choose(
+        &self,
+        candidates: &[Candidate],
+        near: &[Vec<Vec<Near>>],
+        count: usize,
+    ) -> Vec<usize> {
         // Who is near to each candidate.
         let mut served: Vec<Vec<(usize, f64)>> = vec![Vec::new(); candidates.len()];
         let mut left: Vec<f64> = Vec::new();
@@ -247,7 +282,8 @@ impl<'a> Stacks<'a> {
     }
 
     fn building(&self, candidate: &Candidate) -> usize {
-        self.classes[candidate.class].members[candidate.row]
+        let class = &self.classes[candidate.class];
+        class.members[class.distinct[candidate.row]]
     }
 
     /// The best rule for each building; rules of most instances first, those of none left out.
@@ -268,16 +304,17 @@ impl<'a> Stacks<'a> {
             let nearest = Nearest::new(&c.rows, c.dimension, &rows);
             let one = |i: usize| {
                 let kept = near[class][i].iter().filter(|n| is_chosen[n.candidate]);
-                let others = nearest.of(c.row(i), NEAR).into_iter();
-                let others =
-                    others.map(|p| best(&c.stacks[i], own[p], &candidates[own[p]]));
+                let others = nearest.of(c.row(c.group[i]), NEAR).into_iter();
+                let others = others.map(|p| best(&c.stacks[i], own[p], &candidates[own[p]]));
                 let all = kept.copied().chain(others);
-                let least = all.min_by(|a, b| {
-                    (a.cost.total_cmp(&b.cost)).then(a.candidate.cmp(&b.candidate))
-                });
+                let least = all
+                    .min_by(|a, b| (a.cost.total_cmp(&b.cost)).then(a.candidate.cmp(&b.candidate)));
                 Some((c.members[i], least?))
             };
-            let own: Vec<_> = (0..c.members.len()).into_par_iter().filter_map(one).collect();
+            let own: Vec<_> = (0..c.members.len())
+                .into_par_iter()
+                .filter_map(one)
+                .collect();
             found.extend(own);
         }
         let mut counts = vec![0usize; candidates.len()];
@@ -296,7 +333,10 @@ impl<'a> Stacks<'a> {
             });
         }
         Rulebook {
-            rules: order.iter().map(|&k| self.building(&candidates[k])).collect(),
+            rules: order
+                .iter()
+                .map(|&k| self.building(&candidates[k]))
+                .collect(),
             uses,
         }
     }
@@ -316,7 +356,11 @@ fn best(stack: &Stack, candidate: usize, of: &Candidate) -> Near {
     for &quarter in quarters {
         let cost = stack.mismatch(&of.maps, quarter);
         if cost < best.cost {
-            best = Near { quarter, cost, ..best };
+            best = Near {
+                quarter,
+                cost,
+                ..best
+            };
         }
     }
     best
@@ -327,44 +371,30 @@ impl Class {
         &self.rows[i * self.dimension..(i + 1) * self.dimension]
     }
 
-    /// Of each of `k` clusters, the member nearest to the mean, of equals the first.
+    /// Of each of `k` clusters, the distinct member nearest to the mean, of equals the first.
     fn medoids(&self, k: usize) -> Vec<usize> {
         let labels = self.tree.cut(k);
         let count = labels.iter().max().map_or(0, |m| m + 1);
         let mut members = vec![Vec::new(); count];
-        labels.iter().enumerate().for_each(|(i, &l)| members[l].push(i));
+        labels
+            .iter()
+            .enumerate()
+            .for_each(|(i, &l)| members[l].push(i));
         let medoid = |list: &Vec<usize>| {
-            let weight = |i: usize| self.stacks[i].volume.max(1e-3);
+            let weight = |i: usize| self.weights[i];
             let total: f64 = list.iter().map(|&i| weight(i)).sum();
             let mean: Vec<f64> = (0..self.dimension)
-                .map(|d| list.iter().map(|&i| weight(i) * self.row(i)[d]).sum::<f64>() / total)
+                .map(|d| {
+                    list.iter()
+                        .map(|&i| weight(i) * self.row(i)[d])
+                        .sum::<f64>()
+                        / total
+                })
                 .collect();
             let far = |i: usize| square(self.row(i), &mean);
             let nearer = |a: &usize, b: &usize| far(*a).total_cmp(&far(*b)).then(a.cmp(b));
             list.iter().copied().min_by(nearer)
         };
         members.iter().filter_map(medoid).collect()
-    }
-}
-
-/// What a candidate would remove for what it costs; of equals, the first candidate is greatest.
-#[derive(Clone, Copy, PartialEq)]
-struct Gain {
-    value: f64,
-    candidate: usize,
-}
-
-impl Eq for Gain {}
-
-impl Ord for Gain {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_value = self.value.total_cmp(&other.value);
-        by_value.then(other.candidate.cmp(&self.candidate))
-    }
-}
-
-impl PartialOrd for Gain {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }

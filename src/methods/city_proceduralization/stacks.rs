@@ -68,7 +68,9 @@ impl Stack {
         for (k, volume) in self.boxes.iter().enumerate() {
             let level = k * AREA..(k + 1) * AREA;
             let (own, rule) = (&self.maps[level.clone()], &rule[level]);
-            let apart: f32 = (0..AREA).map(|i| (own[i] - rule[turned(i, quarter)]).abs()).sum();
+            let apart: f32 = (0..AREA)
+                .map(|i| (own[i] - rule[turned(i, quarter)]).abs())
+                .sum();
             sum += volume * f64::from(apart) / AREA as f64;
         }
         sum

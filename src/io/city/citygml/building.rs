@@ -11,7 +11,11 @@ use edifice_shape::triangles::{CityBuilding, TriangleMesh, polygon_triangles};
 /// The levels of detail that are read.
 const LEVELS: usize = 4;
 /// Elements whose content is not the outer shell.
-const ROOMS: [&str; 3] = ["interiorRoom", "buildingRoom", "interiorBuildingInstallation"];
+const ROOMS: [&str; 3] = [
+    "interiorRoom",
+    "buildingRoom",
+    "interiorBuildingInstallation",
+];
 /// Coordinates closer than this are one corner, in metres.
 const WELD: f64 = 1e-6;
 
@@ -105,7 +109,10 @@ impl Draft {
             self.generic.clone_from(&element.label);
         }
         if let Some(link) = &element.link
-            && matches!(name, "surfaceMember" | "baseSurface" | "exterior" | "surfaceMembers" | "shell")
+            && matches!(
+                name,
+                "surfaceMember" | "baseSurface" | "exterior" | "surfaceMembers" | "shell"
+            )
         {
             let member = Member::Link(link.clone(), self.reversed % 2 == 1);
             self.add(member);
@@ -187,7 +194,11 @@ impl Draft {
             return;
         };
         let shell = &mut self.shells[object];
-        let list = if solid { &mut shell.solids } else { &mut shell.surfaces };
+        let list = if solid {
+            &mut shell.solids
+        } else {
+            &mut shell.surfaces
+        };
         list[level].push(member);
     }
 

@@ -153,11 +153,22 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     for rule in sorted.iter_mut().filter(|r| r.symbol == grammar.axiom) {
         order::along_curve(&mut rule.successors, &steps);
     }
-    let mut rules = Rules::new(coder, steps, &symbols, templates, Identities::default(), true);
+    let mut rules = Rules::new(
+        coder,
+        steps,
+        &symbols,
+        templates,
+        Identities::default(),
+        true,
+    );
     let mut made = rules.rules(&sorted, axiom)?;
     let mut residuals = Vec::new();
     let mut coder = None;
-    if sorted.iter().flat_map(|r| &r.successors).any(|p| !p.parts.is_empty()) {
+    if sorted
+        .iter()
+        .flat_map(|r| &r.successors)
+        .any(|p| !p.parts.is_empty())
+    {
         coder = Some(rules.switch(Encoder::new()));
         rules.residuals(&sorted, &mut made)?;
     }

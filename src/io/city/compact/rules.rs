@@ -234,9 +234,9 @@ impl<'a, C: Coder> Rules<'a, C> {
                 .coder
                 .bit(&mut self.as_usual, own.symbol == other.symbol),
             // The next building often is of the same type.
-            Near::Before if self.parametric => self
-                .coder
-                .bit(&mut self.again, own.symbol == other.symbol),
+            Near::Before if self.parametric => {
+                self.coder.bit(&mut self.again, own.symbol == other.symbol)
+            }
             _ => false,
         };
         let symbol = match usual {

@@ -39,7 +39,6 @@ fn numbers<S: serde::Serializer>(
     serializer.collect_seq(values.iter().map(|&v| Number(v)))
 }
 
-
 fn triple<S: serde::Serializer>(
     v: &[f64; 3],
     serializer: S,

@@ -66,6 +66,8 @@ const GLYPHS: [[u8; 5]; 59] = [
 /// The columns of a letter, small letters as capitals; an empty letter for what there is none for.
 pub(super) fn glyph(letter: char) -> [u8; 5] {
     let code = u32::from(letter.to_ascii_uppercase());
-    let at = code.checked_sub(u32::from(' ')).and_then(|k| usize::try_from(k).ok());
+    let at = code
+        .checked_sub(u32::from(' '))
+        .and_then(|k| usize::try_from(k).ok());
     at.and_then(|k| GLYPHS.get(k)).copied().unwrap_or_default()
 }

@@ -14,8 +14,18 @@ pub(super) fn write(picture: &mut Picture, legend: &Legend) {
         let top = scale * (3 + line * (CELL[1] + 1));
         let left = scale * 3;
         let columns = 10 + 2 + text.chars().count() * CELL[0];
-        fill(picture, [left, top], [columns * scale, (CELL[1] + 1) * scale], [255; 3]);
-        fill(picture, [left + scale, top + scale], [8 * scale, 8 * scale], *colour);
+        fill(
+            picture,
+            [left, top],
+            [columns * scale, (CELL[1] + 1) * scale],
+            [255; 3],
+        );
+        fill(
+            picture,
+            [left + scale, top + scale],
+            [8 * scale, 8 * scale],
+            *colour,
+        );
         for (k, letter) in text.chars().enumerate() {
             for (column, bits) in glyph(letter).into_iter().enumerate() {
                 for row in (0..8).filter(|row| bits >> row & 1 == 1) {

@@ -102,7 +102,9 @@ pub(super) fn scene(drawn: &Drawn, drawing: &Drawing, middle: [f64; 3]) -> Scene
         scene.meshes.extend(small(mesh));
     }
     if low[0] <= high[0] {
-        scene.meshes.extend(small(ground(&bases, low, high, &turned)));
+        scene
+            .meshes
+            .extend(small(ground(&bases, low, high, &turned)));
     }
     scene.groups.push(Group {
         name: city.name.clone(),
@@ -166,11 +168,7 @@ fn ground(
 ) -> Mesh {
     let extent = (high[0] - low[0]).max(high[1] - low[1]);
     let margin = (MARGIN.0 * extent).min(MARGIN.1);
-    let terrain = Terrain::under(
-        bases,
-        low.map(|v| v - margin),
-        high.map(|v| v + margin),
-    );
+    let terrain = Terrain::under(bases, low.map(|v| v - margin), high.map(|v| v + margin));
     let [columns, rows] = terrain.size;
     let corner = |at: usize| {
         let [x, y] = [at % columns, at / columns].map(|n| n as f64 * terrain.side);

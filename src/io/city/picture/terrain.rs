@@ -65,7 +65,11 @@ fn filled(known: &[Option<f64>], size: [usize; 2]) -> Vec<f64> {
             let corner = |n: usize, last: usize| {
                 let x = (n as f64 - 0.5) / 2.0;
                 let low = x.floor().clamp(0.0, last as f64);
-                (low as usize, (low as usize + 1).min(last), (x - low).clamp(0.0, 1.0))
+                (
+                    low as usize,
+                    (low as usize + 1).min(last),
+                    (x - low).clamp(0.0, 1.0),
+                )
             };
             let (i, k, u) = corner(at % size[0], half[0] - 1);
             let (j, l, v) = corner(at / size[0], half[1] - 1);

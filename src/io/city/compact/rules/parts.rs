@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::{CompactError, Flag, Near, PARAMETERS, Rules};
-use edifice_grammar::instance::{InstanceRule, Placement};
 use crate::city::compact::range_coder::Coder;
 use crate::city::compact::steps::in_steps;
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 impl<C: Coder> Rules<'_, C> {
     /// The parts of the instances of `rules`.
@@ -49,7 +49,8 @@ impl<C: Coder> Rules<'_, C> {
         for (k, v) in last.iter_mut().enumerate() {
             let own = given.and_then(|g| g.numbers.get(k)).copied();
             let own = in_steps(own.unwrap_or(0.0), steps)?;
-            let change = models[k.min(PARAMETERS - 1)].code(&mut self.coder, own.max(1).wrapping_sub(*v));
+            let change =
+                models[k.min(PARAMETERS - 1)].code(&mut self.coder, own.max(1).wrapping_sub(*v));
             *v = v.wrapping_add(change);
         }
         let numbers = last.iter().map(|&v| v as f64 / steps as f64).collect();
