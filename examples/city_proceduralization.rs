@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         reference_system: None,
         origin: [0.0; 3],
         buildings: buildings.collect(),
+        ..City::default()
     };
     let settings = Settings {
         budget: Budget::Templates(4),

@@ -6,7 +6,7 @@ use std::time::Instant;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_grammar::parametric::{Library, LibraryError, Sharing};
-use edifice_grammar::{Costs, evaluate, same_tiling};
+use edifice_grammar::{Costs, same_tiling};
 use edifice_io as io;
 use edifice_io::grammar_library_json::{self as library_json, EncodedFacade};
 use edifice_shape::Facade;
