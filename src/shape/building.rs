@@ -192,6 +192,35 @@ pub enum Special {
     Tower,
 }
 
+/// A part of a house that has not been looked at: whether there is one, and of what kind, is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Hidden {
+    /// Garages.
+    Garage,
+    /// Porches.
+    Porch,
+    /// Windows and doors of all sides.
+    Facades,
+    /// Kinds of roofs.
+    Roof,
+    /// Chimneys and towers.
+    Special,
+}
+
+impl Hidden {
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Hidden::Garage => "garage",
+            Hidden::Porch => "porch",
+            Hidden::Facades => "facades",
+            Hidden::Roof => "roof",
+            Hidden::Special => "special",
+        }
+    }
+}
+
 /// A house seen from outside. A side without facade pieces has not been observed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Building {
@@ -207,6 +236,8 @@ pub struct Building {
     pub facades: Vec<FacadePiece>,
     /// Special elements that are present.
     pub special: Vec<Special>,
+    /// Parts that have not been looked at, for example in a city model without windows; none for a whole house.
+    pub unobserved: Vec<Hidden>,
 }
 
 impl Building {
@@ -241,7 +272,13 @@ impl Building {
             boxes,
             facades,
             special,
+            unobserved: Vec::new(),
         })
+    }
+
+    /// Whether a part has not been looked at.
+    pub fn is_unobserved(&self, part: Hidden) -> bool {
+        self.unobserved.contains(&part)
     }
 
     /// Number of floors the box reaches, at least 1.
