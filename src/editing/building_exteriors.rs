@@ -26,7 +26,6 @@ use crate::methods::building_exteriors::house::{
     Database, GenerateError, Generated, HouseReport, Joining, Model, Options, model,
 };
 use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::model::hierarchy::Hierarchy;
 use crate::rng::stream;
 use crate::shape::Building;
 use crate::{Error, Result};
@@ -113,7 +112,7 @@ pub fn shipped_model() -> Result<&'static ModelFile> {
 pub fn edit(
     house: &Building,
     edits: &[Edit],
-    model: Option<&Hierarchy>,
+    model: Option<&ModelFile>,
     database: &Database,
     options: &Options,
     seed: u64,

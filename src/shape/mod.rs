@@ -29,7 +29,7 @@ pub mod triangles;
 
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{
-    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof, RoofStyle,
+    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, Hidden, MassBox, Ridge, Roof, RoofStyle,
     Side, Special,
 };
 pub use building_error::BuildingError;

@@ -128,14 +128,14 @@ fn sampler<'a>(
         let index = style.checked_sub(1);
         let index = index.ok_or_else(|| Error::option("--style", "the first style is 1"))?;
         let batch = move || {
-            let draws = file.model.sample_style(index, args.count, &mut rng);
+            let draws = file.sample_style(index, args.count, &mut rng);
             let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
             Ok(draws.table)
         };
         return Ok((Box::new(batch), Table::new()));
     }
-    let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-    let mut given = evidence(&file.groups, &kinds.table, &args.given)
+    let kinds = file.sample(1, &mut rng).map_err(Error::method)?;
+    let mut given = evidence(&file.attributes(), &kinds.table, &args.given)
         .map_err(|e| Error::option("--given", e.to_string()))?;
     for (c, value) in plan.into_iter().flat_map(decided) {
         // What --given says of the plan is checked against it when the houses are made.

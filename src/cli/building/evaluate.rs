@@ -14,6 +14,6 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> edifice::Result<()> {
-    let data = args.input.read()?;
+    let data = args.input.known()?;
     args.splits.evaluate(&data, &args.input.input)
 }

@@ -16,8 +16,8 @@ use crate::methods::building_exteriors::house::{
 };
 use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
 use crate::methods::building_exteriors::mass::target::PARTS;
+use crate::methods::building_exteriors::model_file::ModelFile;
 use crate::model::ModelError;
-use crate::model::hierarchy::Hierarchy;
 use crate::rng::stream;
 use crate::shape::Building;
 
@@ -108,7 +108,7 @@ pub fn given(texts: &[String]) -> std::result::Result<AttributeRow, CommandError
 pub fn wished(
     house: &Building,
     wishes: &Wishes,
-    (model, database): (&Hierarchy, &Database),
+    (model, database): (&ModelFile, &Database),
     options: &Options,
     seed: u64,
     work: &Work,
@@ -149,7 +149,7 @@ pub fn wished(
             let evidence = table(std::slice::from_ref(&wishes.given))?;
             wanted_rows(
                 &model
-                    .most_probable(&evidence, TRIES, POOL, 0.0, None, &mut rng)?
+                    .most_probable(&evidence, TRIES, POOL, 0.0, &mut rng)?
                     .table,
             )
         }
@@ -209,7 +209,7 @@ pub fn ranges() -> Result<&'static [[f64; 2]; 49]> {
     if let Some(known) = KNOWN.get() {
         return Ok(known);
     }
-    let model = &shipped_model()?.model;
+    let model = shipped_model()?;
     let draws = model.sample(DRAWS, &mut stream(0, "building/ranges", 0));
     let rows = wanted_rows(&draws.map_err(crate::Error::method)?.table);
     let between = |c: usize| {

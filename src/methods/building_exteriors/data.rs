@@ -2,7 +2,7 @@
 
 use super::attributes::{AttributeRow, GROUPS, Level};
 use crate::model::hierarchy::Group;
-use crate::model::{ModelError, Table};
+use crate::model::{Cell, ModelError, Table};
 use crate::tables::Dataset;
 
 /// The 49 attributes of many buildings with the paper's 13 groups.
@@ -13,6 +13,37 @@ pub fn dataset(rows: &[AttributeRow]) -> Result<Dataset, ModelError> {
     Ok(Dataset {
         table: table(rows)?,
         groups: groups(),
+    })
+}
+
+/// The dataset without columns of which nothing is known, and without attributes that have no other.
+///
+/// # Errors
+/// [`ModelError::Empty`] when nothing is known at all.
+pub fn known(data: Dataset) -> Result<Dataset, ModelError> {
+    let tells = |name: &str| -> Result<bool, ModelError> {
+        let column = data.table.column(name)?;
+        Ok((0..data.table.rows()).any(|row| column.cell(row) != Cell::Missing))
+    };
+    let (mut groups, mut names) = (Vec::new(), Vec::new());
+    for group in &data.groups {
+        let mut own: Vec<&str> = Vec::new();
+        for column in &group.columns {
+            if tells(column)? {
+                own.push(column);
+            }
+        }
+        if !own.is_empty() {
+            groups.push(Group::new(&group.name, &own));
+            names.extend(own);
+        }
+    }
+    if groups.is_empty() {
+        return Err(ModelError::Empty { what: "columns" });
+    }
+    Ok(Dataset {
+        table: data.table.in_order(&names)?,
+        groups,
     })
 }
 

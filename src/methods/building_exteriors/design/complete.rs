@@ -18,11 +18,11 @@ use crate::methods::building_exteriors::house::{
 use crate::methods::building_exteriors::mass::contradiction::check_given;
 use crate::methods::building_exteriors::mass::repair::{changes, repair};
 use crate::methods::building_exteriors::mass::target::{PARTS, part_of};
+use crate::methods::building_exteriors::model_file::ModelFile;
 use crate::methods::building_exteriors::mass::{
     Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search,
 };
 use crate::model::ModelError;
-use crate::model::hierarchy::Hierarchy;
 use crate::rng::stream;
 use crate::shape::{BoxStyle, Building, MassBox};
 
@@ -102,7 +102,7 @@ const APART: f64 = 0.05;
 /// [`CompleteError`]; when some answers can be built, the others are passed over.
 pub fn completions(
     partial: &Building,
-    model: &Hierarchy,
+    model: &ModelFile,
     given: &AttributeRow,
     count: usize,
     database: &Database,
@@ -120,7 +120,7 @@ pub fn completions(
         ..options.clone()
     };
     let evidence = table(std::slice::from_ref(given))?;
-    let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, None, &mut rng)?;
+    let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, &mut rng)?;
     let is_given: [bool; 49] = std::array::from_fn(|c| given[c].is_some());
     let mut houses = Vec::new();
     let mut first = None;

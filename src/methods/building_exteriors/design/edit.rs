@@ -11,7 +11,7 @@ use crate::methods::building_exteriors::house::{
 };
 use crate::methods::building_exteriors::mass::target::{PARTS, bounds};
 use crate::methods::building_exteriors::mass::{MASS, MassModel, Search, is_sound};
-use crate::model::hierarchy::Hierarchy;
+use crate::methods::building_exteriors::model_file::ModelFile;
 use crate::shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
 
 /// One edit of a house.
@@ -191,7 +191,7 @@ fn sound(boxes: &Building) -> Result<(), EditError> {
 pub fn suggested(
     house: &Building,
     edits: &[Edit],
-    model: &Hierarchy,
+    model: &ModelFile,
     database: &Database,
     options: &Options,
     rng: &mut impl Rng,
@@ -205,7 +205,7 @@ pub fn suggested(
         .collect();
     let table = table(&[evidence]).map_err(CompleteError::from)?;
     let draws = model
-        .most_probable(&table, TRIES, POOL, 0.0, None, rng)
+        .most_probable(&table, TRIES, POOL, 0.0, rng)
         .map_err(CompleteError::from)?;
     let mut own = boxes.clone();
     own.boxes = boxes

@@ -100,6 +100,7 @@ fn measured(pieces: &[FacadePiece], floor_height: f64) -> Vec<f64> {
         boxes: Vec::new(),
         facades: pieces.to_vec(),
         special: Vec::new(),
+        unobserved: Vec::new(),
     };
     let measured = facade_attributes(&walls).into_iter();
     measured.map(|v| v.unwrap_or(0.0)).collect()

@@ -341,6 +341,7 @@ impl SideSearch<'_> {
             boxes: Vec::new(),
             facades: pieces.to_vec(),
             special: Vec::new(),
+            unobserved: Vec::new(),
         };
         let measured = facade_attributes(&side);
         [0, 1, 2].map(|k| measured[4 * k + self.column])

@@ -141,6 +141,7 @@ pub fn stand(
         boxes,
         facades: Vec::new(),
         special: Vec::new(),
+        unobserved: Vec::new(),
     };
     if !is_sound(&building) {
         return Err(PlanError::Floors);
