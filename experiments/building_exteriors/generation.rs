@@ -74,7 +74,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .model
         .sample(many, &mut rng)
         .map_err(Error::method)?;
-    let possible = possible_rows(many, &[false; 49], &database.deviations, || {
+    let possible = possible_rows(many, &[false; 49], &database.deviations, |_| 0.0, || {
         let draws = learned.model.sample(many, &mut rng);
         draws.map(|d| d.table).map_err(Error::method)
     })?;

@@ -7,6 +7,7 @@ mod data;
 mod design;
 mod draw;
 mod evaluate;
+mod import;
 mod learn;
 mod output;
 mod produce;
@@ -17,6 +18,13 @@ use clap::Subcommand;
 /// Commands.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Measure the houses of city models (LoD2): detached buildings as boxes with roofs.
+    #[command(after_help = "Examples:
+  edifice building import datasets/building_exteriors/village.city.json -o village.buildings.jsonl --report village.csv
+  edifice building learn village.buildings.jsonl -o village.houses.json
+A city model shows no windows, porches and chimneys: they are left unobserved, for models to fill in. The report has a line for
+each building: why it is no house, or intersection over union of the plans, volume over volume, mean error of the heights.")]
+    Import(import::Args),
     /// Measure the 49 attributes of buildings; prints CSV.
     #[command(after_help = "Examples:
   edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv")]
@@ -90,6 +98,7 @@ Columns are those of `building attributes`. Wishes that no house can have togeth
 /// Runs the command.
 pub fn run(command: Command) -> edifice::Result<()> {
     match command {
+        Command::Import(args) => import::run(&args),
         Command::Attributes(args) => attributes::run(&args),
         Command::Learn(args) => learn::run(&args),
         Command::Show(args) => show::run(&args),

@@ -16,7 +16,8 @@ use rand::{Rng, RngExt};
 use super::elements::{Elements, SubStyle};
 use super::glaze::millimetres;
 use super::knapsack::widths;
-use super::layout::{FacadeTarget, Facades, door_strip};
+use super::doors::door_strip;
+use super::layout::{FacadeTarget, Facades};
 use super::room::{Room, Walls};
 use crate::methods::building_exteriors::attributes::facade_attributes;
 use crate::optim::Step;
@@ -46,7 +47,7 @@ pub fn breed(
     seed: u64,
 ) -> Result<(Facades, Vec<Step>), GeneticError> {
     let walls = Walls::new(building, shell, &target.fixed);
-    let door = door_strip(building, &walls);
+    let door = door_strip(building, &walls, Side::Front);
     let mut places = Vec::new();
     for (s, strips) in walls.strips.iter().enumerate() {
         for (k, strip) in strips.iter().enumerate() {

@@ -41,7 +41,7 @@ impl HeightMap {
     pub fn new(mesh: &TriangleMesh, planes: &Planes) -> Option<Self> {
         let (low, high) = mesh.bounds()?;
         let extent = [0, 1].map(|k| (high[k] - low[k]) / STEP);
-        if !(extent[0] * extent[1] <= MOST) {
+        if (extent[0] * extent[1]).is_nan() || extent[0] * extent[1] > MOST {
             return None;
         }
         let size = extent.map(|n| n.ceil() as usize + 1);

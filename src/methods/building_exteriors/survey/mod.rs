@@ -45,6 +45,8 @@ mod planes;
 mod roofs;
 mod walls;
 
+use rayon::prelude::*;
+
 use crate::shape::triangles::TriangleMesh;
 use crate::shape::{BoxStyle, Building, BuildingError, Hidden, MassBox, RoofStyle};
 
@@ -185,6 +187,48 @@ pub fn sized(mesh: &TriangleMesh, limits: &Limits) -> Result<(), Refused> {
         true => Ok(()),
         false => Err(Refused::Size { area, height }),
     }
+}
+
+/// A building of a city model.
+#[derive(Debug, Clone, Copy)]
+pub struct Candidate<'a> {
+    /// Its identifier.
+    pub name: &'a str,
+    /// Its triangles, in metres.
+    pub mesh: &'a TriangleMesh,
+    /// Its attributes in the file.
+    pub attributes: &'a serde_json::Map<String, serde_json::Value>,
+}
+
+/// Measures the detached houses among all buildings of a city, in their order. Names of houses are identifiers without
+/// what cannot stand in the name of a file.
+///
+/// Complexity: linear in the triangles; buildings are measured in parallel, with the same result for any number of threads.
+pub fn survey_all(city: &[Candidate], limits: &Limits) -> Vec<Result<Surveyed, Refused>> {
+    let meshes: Vec<&TriangleMesh> = city.iter().map(|b| b.mesh).collect();
+    let attached = attached(&meshes);
+    let mut found: Vec<_> = city
+        .par_iter()
+        .zip(&attached)
+        .map(|(b, attached)| {
+            sized(b.mesh, limits)?;
+            if *attached {
+                return Err(Refused::Attached);
+            }
+            survey(b.name, b.mesh, &Known::new(b.attributes), limits)
+        })
+        .collect();
+    let mut seen = std::collections::HashSet::new();
+    for (number, house) in found.iter_mut().enumerate().filter_map(|(k, f)| Some((k, f.as_mut().ok()?))) {
+        let usual = |c: char| if c.is_ascii_alphanumeric() || "_-".contains(c) { c } else { '_' };
+        let plain: String = house.building.name.chars().map(usual).take(80).collect();
+        let is_new = !plain.is_empty() && seen.insert(plain.clone());
+        house.building.name = match is_new {
+            true => plain,
+            false => format!("{plain}_{}", number + 1),
+        };
+    }
+    found
 }
 
 /// Measures a detached building of known size. `known` is what the file says of it.
