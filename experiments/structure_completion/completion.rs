@@ -7,16 +7,16 @@ use super::data::{self, Item};
 use super::plausibility::statistics;
 use super::results::{Answer, OTHER_SETS, Results};
 use super::{folds, row};
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::structure_completion::best::modes;
-use crate::methods::structure_completion::completion::Completion;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::measure::{agreement, area_iou};
-use crate::methods::structure_completion::method::{self, Method};
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::task::Task;
-use crate::rng::stream;
+use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_structure_completion::best::modes;
+use edifice_structure_completion::completion::Completion;
+use edifice_structure_completion::layout::{Class, Element};
+use edifice_structure_completion::measure::{agreement, area_iou};
+use edifice_structure_completion::method::{self, Method};
+use edifice_structure_completion::model::Model;
+use edifice_structure_completion::task::Task;
 
 /// Folds of the cross-validation.
 const FOLDS: usize = 5;
@@ -217,8 +217,8 @@ fn added(completion: Option<&Completion>) -> Vec<Element> {
         .collect()
 }
 
-/// Whether the true number of windows lies between the 10 % and the 90 % quantile of the pool; `None` where the pool
-/// has no layout to count.
+/// 1 if the true number of windows lies between the 10 % and the 90 % quantile of the pool, otherwise 0; `None` if the
+/// pool has no layout to count.
 fn inside(windows: &[(usize, f64)], hidden: &[Element]) -> Option<f64> {
     let truth = hidden.iter().filter(|e| e.class == Class::Window).count();
     let weight = |test: &dyn Fn(usize) -> bool| -> f64 {

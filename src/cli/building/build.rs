@@ -21,8 +21,8 @@ use edifice::{Error, Result};
 use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
-use crate::cli::model::given::evidence;
-use crate::cli::print;
+use crate::model::given::evidence;
+use crate::print;
 
 /// Options of `build`.
 #[derive(clap::Args)]
@@ -131,7 +131,7 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
 /// Draws a batch of samples at each call.
 type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
 
-/// Where the samples of `generate` come from, and what is given.
+/// The source of the samples of `generate`, and the values that are given.
 fn sampler<'a>(
     args: &'a GenerateArgs,
     file: &'a ModelFile,

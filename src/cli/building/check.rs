@@ -10,7 +10,7 @@ use edifice::{Error, Result};
 
 use super::output::{street, write_png};
 use super::produce::RoofOption;
-use crate::cli::print;
+use crate::print;
 
 /// Options of `check`.
 #[derive(clap::Args)]

@@ -12,7 +12,7 @@ use edifice::tables::Dataset;
 use edifice::tables::schema::{FORMAT, Schema, VERSION};
 use edifice::{Error, Result};
 
-/// Where houses come from.
+/// The source of houses.
 #[derive(clap::Args)]
 pub struct Input {
     /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`. A CSV

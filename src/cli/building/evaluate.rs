@@ -1,7 +1,7 @@
 //! `edifice building evaluate`.
 
 use super::data::Input;
-use crate::cli::model::evaluate::Splits;
+use crate::model::evaluate::Splits;
 
 /// Options.
 #[derive(clap::Args)]

@@ -7,15 +7,15 @@ use edifice::methods::building_exteriors::coding::Coding;
 use edifice::methods::building_exteriors::model_file::ModelFile;
 
 use super::data::Input;
-use crate::cli::model::learning::Learning;
-use crate::cli::print;
+use crate::model::learning::Learning;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     input: Input,
-    /// Where the model goes (`*.houses.json`).
+    /// File of the model (`*.houses.json`).
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]
@@ -54,7 +54,7 @@ pub fn run(args: &Args) -> edifice::Result<()> {
         model,
     };
     let text = file.to_json().map_err(Error::method)?;
-    edifice::io::write_atomic(&args.output, text.as_bytes())?;
+    edifice_io::write_atomic(&args.output, text.as_bytes())?;
     let houses = data.table.rows();
     print::message(&format!(
         "{houses} houses: {styles} styles, kinds {cardinalities:?}, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {:.1} s",

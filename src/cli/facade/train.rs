@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use edifice::io::write_atomic;
-use edifice::methods::structure_completion::layout::scope::in_scope;
-use edifice::methods::structure_completion::model::Model;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::write_atomic;
+use edifice_structure_completion::layout::scope::in_scope;
+use edifice_structure_completion::model::Model;
 
 use super::input;
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade train`.
 #[derive(clap::Args)]

@@ -23,21 +23,21 @@ use crate::shape::Building;
 
 /// First column that is yes or no.
 pub const FIRST_FLAG: usize = 39;
-/// Draws of the model: for an answer, of which so many are built; for the ranges.
+/// Draws of the model for an answer, those of them that are built, and draws for the ranges.
 const POOL: usize = 500;
 const TRIES: usize = 4;
 const DRAWS: usize = 2000;
 /// A house within this distance of its row (standard deviations) is near enough.
 const NEAR: f64 = 0.05;
 
-/// What is wished of a house.
+/// The wishes for a house.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wishes {
     /// Columns that must have these values.
     pub given: AttributeRow,
     /// A style of the model, from 1.
     pub style: Option<usize>,
-    /// Whether all other columns stay as they are; else they are the model's.
+    /// True if all other columns stay as they are; otherwise they are the model's.
     pub keep: bool,
 }
 
@@ -49,7 +49,7 @@ pub enum WishError {
     Style {
         /// The style, from 1.
         wanted: usize,
-        /// How many there are.
+        /// Number of styles.
         count: usize,
     },
     /// Two wishes that no house can have together.
@@ -211,7 +211,7 @@ pub fn ranges() -> Result<&'static [[f64; 2]; 49]> {
     }
     let model = shipped_model()?;
     let draws = model.sample(DRAWS, &mut stream(0, "building/ranges", 0));
-    let rows = wanted_rows(&draws.map_err(crate::Error::method)?.table);
+    let rows = wanted_rows(&draws.map_err(edifice_base::Error::method)?.table);
     let between = |c: usize| {
         let mut values: Vec<f64> = rows.iter().map(|r| r[c]).collect();
         values.sort_by(f64::total_cmp);

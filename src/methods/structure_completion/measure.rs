@@ -1,7 +1,7 @@
-//! How near a completion is to the truth, computed without knowledge of any method.
+//! Agreement of a completion with the truth, computed without knowledge of any method.
 
 use super::layout::Element;
-use crate::shape::Rect;
+use edifice_shape::Rect;
 
 /// Precision, recall and their harmonic mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +100,7 @@ fn covered(rects: &[Rect]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::structure_completion::layout::Class;
+    use crate::layout::Class;
 
     fn window(x: f64) -> Element {
         Element::new(Class::Window, Rect::new(x, 0.0, 2.0, 2.0))

@@ -59,7 +59,7 @@ pub enum AttributeError {
     TooManyFloors {
         /// Name of the building.
         name: String,
-        /// Its floors.
+        /// Number of its floors.
         floors: usize,
     },
 }

@@ -34,15 +34,15 @@ pub enum CompleteError {
         "boxes[{index}] of the partial house reaches from {low:.3} to {high:.3} m, outside 0 to {bound} m ({column})"
     )]
     Outside {
-        /// The box.
+        /// Index of the box.
         index: usize,
-        /// Its lower end.
+        /// Its lower end, in metres.
         low: f64,
-        /// Its upper end.
+        /// Its upper end, in metres.
         high: f64,
         /// Column of the bounding box.
         column: &'static str,
-        /// Its value.
+        /// Value of that column, in metres.
         bound: f64,
     },
     /// An observed box has more floors than the house is to have.
@@ -50,17 +50,17 @@ pub enum CompleteError {
         "boxes[{index}] of the partial house has {floors} floors, the shares of the floors (arf) ask for {wanted}"
     )]
     Floors {
-        /// The box.
+        /// Index of the box.
         index: usize,
-        /// Its floors.
+        /// Number of its floors.
         floors: usize,
-        /// Those of the house.
+        /// Number of floors of the house.
         wanted: usize,
     },
     /// An observed facade piece stands on no wall of the observed boxes.
     #[error("facades[{index}] of the partial house stands on no wall of its boxes")]
     NoWall {
-        /// The piece.
+        /// Index of the facade piece.
         index: usize,
     },
     /// No arrangement of further boxes leaves the observed facades free.
@@ -71,9 +71,9 @@ pub enum CompleteError {
     /// No answer of the model could be built.
     #[error("none of {tried} answers of the model fits the observed parts; the first: {first}")]
     NoAnswer {
-        /// Answers tried.
+        /// Number of answers tried.
         tried: usize,
-        /// What was wrong with the first.
+        /// The reason why the first one fails.
         first: Box<CompleteError>,
     },
     /// The model refuses the evidence.
@@ -318,7 +318,7 @@ fn fixed_pieces(partial: &Building) -> Result<Vec<FixedPiece>, CompleteError> {
     fixed.collect()
 }
 
-/// Whether the pieces stand on their walls.
+/// True if the pieces stand on their walls.
 fn stands(building: &Building, fixed: &[FixedPiece]) -> bool {
     let walls = walls_of_pieces(building);
     fixed.iter().all(|f| {

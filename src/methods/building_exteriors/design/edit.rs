@@ -23,7 +23,7 @@ pub enum Edit {
     Move(usize, [f64; 2]),
     /// Gives a box another width, depth and height.
     Resize(usize, [f64; 3]),
-    /// Removes a box.
+    /// Removes the box of this index.
     Remove(usize),
 }
 
@@ -33,9 +33,9 @@ pub enum EditError {
     /// There is no such box.
     #[error("there is no boxes[{index}]: the house has {count} boxes")]
     NoBox {
-        /// The index.
+        /// The index that was given.
         index: usize,
-        /// Boxes of the house.
+        /// Number of boxes of the house.
         count: usize,
     },
     /// The boxes are no house: a size that is not positive, or none left.

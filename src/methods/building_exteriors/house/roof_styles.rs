@@ -1,6 +1,6 @@
 //! Roof styles on boxes, as the style attributes want them.
 
-use crate::shape::{BoxStyle, MassBox, Ridge, RoofStyle};
+use edifice_shape::{BoxStyle, MassBox, Ridge, RoofStyle};
 
 /// Pitches that a donor may give, the pitch without one, and the steepest of a porch or garage without a donor (degrees).
 const USUAL: std::ops::RangeInclusive<f64> = 12.0..=60.0;

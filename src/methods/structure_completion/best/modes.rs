@@ -6,11 +6,11 @@ use super::candidates::{Candidates, supported};
 use super::pool::{Draw, Origin, pool};
 use super::scene::Scene;
 use super::select::select;
-use crate::methods::structure_completion::completion::{Completed, Completion};
-use crate::methods::structure_completion::layout::Class;
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::rng::Stream;
+use crate::completion::{Completed, Completion};
+use crate::layout::Class;
+use crate::model::Model;
+use crate::partial::PartialLayout;
+use edifice_base::rng::Stream;
 
 /// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`].
 const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];
@@ -190,7 +190,7 @@ fn support_of(
     support
 }
 
-/// Whether two choices show much the same: nine tenths of each have a like one in the other.
+/// True if two choices show much the same: nine tenths of each have a like one in the other.
 fn alike(candidates: &Candidates, a: &[usize], b: &[usize]) -> bool {
     let covered = |a: &[usize], b: &[usize]| {
         let like = |&&c: &&usize| {
