@@ -2,18 +2,18 @@
 
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::methods::building_exteriors::design::{Edit, completions, edited, observed, suggested};
-use crate::methods::building_exteriors::house::walls::walls_of_pieces;
-use crate::methods::building_exteriors::house::{Database, Generated, Joining, Options, model};
-use crate::methods::building_exteriors::mass::iou;
-use crate::methods::building_exteriors::coding::Coding;
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::model::hierarchy::learn;
-use crate::report::{Align, Row, Table};
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, Side};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_building_exteriors::design::{Edit, completions, edited, observed, suggested};
+use edifice_building_exteriors::house::walls::walls_of_pieces;
+use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
+use edifice_building_exteriors::mass::iou;
+use edifice_building_exteriors::coding::Coding;
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_model::hierarchy::learn;
+use edifice_report::{Align, Row, Table};
+use edifice_base::rng::stream;
+use edifice_shape::{BoxStyle, Building, Side};
+use edifice_base::{Error, Result};
 
 /// Houses of the shipped database that are held out of model and donors.
 const HELD_OUT: usize = 20;

@@ -25,10 +25,10 @@ use edifice_building_exteriors::design::{Edit, EditError, edited, suggested, var
 use edifice_building_exteriors::house::{
     Database, GenerateError, Generated, HouseReport, Joining, Model, Options, model,
 };
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::rng::stream;
-use crate::shape::Building;
-use crate::{Error, Result};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_base::rng::stream;
+use edifice_shape::Building;
+use edifice_base::{Error, Result};
 
 /// The name of the shipped houses in the program; that of the model learned from them follows.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";

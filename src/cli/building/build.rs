@@ -2,26 +2,26 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::{is_file_name, shipped_model};
-use edifice::io::building_csv::{self, TextTable};
-use edifice::io::footprint;
-use edifice::methods::building_exteriors::attributes::{AttributeRow, COLUMNS};
-use edifice::methods::building_exteriors::coding::attribute_rows;
-use edifice::methods::building_exteriors::data::{self as rows_of, filled};
-use edifice::methods::building_exteriors::design::{MOVED, Possible, possible_rows, wanted_rows};
-use edifice::methods::building_exteriors::house::Options;
-use edifice::methods::building_exteriors::mass::footprint::{decided, distance};
-use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::methods::building_exteriors::observations::cell;
-use edifice::model::Table;
-use edifice::rng::stream;
-use edifice::shape::Rect;
-use edifice::{Error, Result};
+use edifice_editing::building_exteriors::{is_file_name, shipped_model};
+use edifice_io::building_csv::{self, TextTable};
+use edifice_io::footprint;
+use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS};
+use edifice_building_exteriors::coding::attribute_rows;
+use edifice_building_exteriors::data::{self as rows_of, filled};
+use edifice_building_exteriors::design::{MOVED, Possible, possible_rows, wanted_rows};
+use edifice_building_exteriors::house::Options;
+use edifice_building_exteriors::mass::footprint::{decided, distance};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_building_exteriors::observations::cell;
+use edifice_model::Table;
+use edifice_base::rng::stream;
+use edifice_shape::Rect;
+use edifice_base::{Error, Result};
 
 use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
-use crate::model::given::evidence;
+use edifice_model::given::evidence;
 use crate::print;
 
 /// Options of `build`.

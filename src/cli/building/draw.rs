@@ -13,8 +13,8 @@ use edifice_model::{Cell, Table};
 
 use super::data::{self, Input};
 use super::produce::Making;
-use crate::model::data::csv_lines;
-use crate::model::given::evidence;
+use edifice_model::data::csv_lines;
+use edifice_model::given::evidence;
 use crate::print;
 
 /// Samples among which the most probable are sought.

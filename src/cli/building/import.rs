@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::io::{building_json, city, write_atomic};
-use edifice::methods::building_exteriors::survey::{Candidate, Limits, Refused, Surveyed, survey_all};
-use edifice::shape::Building;
-use edifice::shape::triangles::City;
-use edifice::{Error, Result};
+use edifice_io::{building_json, city, write_atomic};
+use edifice_building_exteriors::survey::{Candidate, Limits, Refused, Surveyed, survey_all};
+use edifice_shape::Building;
+use edifice_shape::triangles::City;
+use edifice_base::{Error, Result};
 
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]

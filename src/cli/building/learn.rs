@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use edifice::Error;
-use edifice::methods::building_exteriors::coding::Coding;
-use edifice::methods::building_exteriors::model_file::ModelFile;
+use edifice_base::Error;
+use edifice_building_exteriors::coding::Coding;
+use edifice_building_exteriors::model_file::ModelFile;
 
 use super::data::Input;
-use crate::model::learning::Learning;
+use edifice_model::learning::Learning;
 use crate::print;
 
 /// Options.
@@ -30,7 +30,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice::Result<()> {
+pub fn run(args: &Args) -> edifice_base::Result<()> {
     let (data, coding) = match args.as_published || args.input.schema.is_some() {
         true => (args.input.known()?, Coding::Published),
         false => (args.input.coded()?, Coding::Presence),

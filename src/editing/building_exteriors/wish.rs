@@ -5,21 +5,17 @@ use std::sync::OnceLock;
 use super::super::CommandError;
 use super::super::work::{Stopped, Work};
 use super::shipped_model;
-use crate::Result;
-use crate::methods::building_exteriors::attributes::{
-    AttributeError, AttributeRow, COLUMNS, attributes,
-};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::design::wanted_rows;
-use crate::methods::building_exteriors::house::{
-    Database, GenerateError, Generated, Options, generate,
-};
-use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
-use crate::methods::building_exteriors::mass::target::PARTS;
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::model::ModelError;
-use crate::rng::stream;
-use crate::shape::Building;
+use edifice_base::Result;
+use edifice_building_exteriors::attributes::{AttributeError, AttributeRow, COLUMNS, attributes};
+use edifice_building_exteriors::data::table;
+use edifice_building_exteriors::design::wanted_rows;
+use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
+use edifice_building_exteriors::mass::contradiction::{Contradiction, check_given};
+use edifice_building_exteriors::mass::target::PARTS;
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_model::ModelError;
+use edifice_base::rng::stream;
+use edifice_shape::Building;
 
 /// First column that is yes or no.
 pub const FIRST_FLAG: usize = 39;

@@ -20,9 +20,9 @@
 use super::attributes::{AttributeRow, COLUMNS, GROUPS, Level};
 use super::mass::repair::repair;
 use super::mass::target::{FLOOR_SHARE, PARTS};
-use crate::model::hierarchy::Group;
-use crate::model::{Cell, ModelError, Table};
-use crate::tables::Dataset;
+use edifice_model::hierarchy::Group;
+use edifice_model::{Cell, ModelError, Table};
+use edifice_model::tables::Dataset;
 
 /// Columns of presence, in the order of garage, front and back porch.
 pub const THERE: [&str; 3] = ["garage.there", "porch.front.there", "porch.back.there"];

@@ -5,9 +5,9 @@ use rand::Rng;
 use super::attributes::{AttributeRow, GROUPS, Level};
 use super::coding::attribute_rows;
 use super::model_file::ModelFile;
-use crate::model::hierarchy::Group;
-use crate::model::{Cell, ModelError, Table};
-use crate::tables::Dataset;
+use edifice_model::hierarchy::Group;
+use edifice_model::{Cell, ModelError, Table};
+use edifice_model::tables::Dataset;
 
 /// The 49 attributes of many buildings with the paper's 13 groups.
 ///

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::attributes::{AttributeRow, GROUPS};
 use super::coding::{Coding, attribute_rows, coded_evidence, decoded};
-use crate::model::hierarchy::{Draws, Group, Hierarchy};
-use crate::model::{ModelError, Table};
+use edifice_model::hierarchy::{Draws, Group, Hierarchy};
+use edifice_model::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/building_model";

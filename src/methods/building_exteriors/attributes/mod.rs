@@ -46,7 +46,7 @@ mod mass;
 
 pub use columns::{COLUMNS, GROUPS, Group, Level};
 
-use crate::shape::{Building, ElementStyle, Hidden, RoofStyle, Special};
+use edifice_shape::{Building, ElementStyle, Hidden, RoofStyle, Special};
 
 /// The attributes of one building, in the order of [`COLUMNS`]; `None` is missing.
 pub type AttributeRow = Vec<Option<f64>>;

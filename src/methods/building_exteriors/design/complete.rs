@@ -8,23 +8,19 @@ use rand::Rng;
 
 use super::observed::wanted_rows;
 use super::reconcile::{SAME, origins, reconciled};
-use crate::methods::building_exteriors::attributes::{AttributeRow, mass_attributes};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::facade::FixedPiece;
-use crate::methods::building_exteriors::house::walls::walls_of_pieces;
-use crate::methods::building_exteriors::house::{
-    Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft,
-};
-use crate::methods::building_exteriors::mass::contradiction::check_given;
-use crate::methods::building_exteriors::mass::repair::{changes, repair};
-use crate::methods::building_exteriors::mass::target::{PARTS, part_of};
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::methods::building_exteriors::mass::{
-    Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search,
-};
-use crate::model::ModelError;
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, MassBox};
+use crate::attributes::{AttributeRow, mass_attributes};
+use crate::data::table;
+use crate::facade::FixedPiece;
+use crate::house::walls::walls_of_pieces;
+use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft};
+use crate::mass::contradiction::check_given;
+use crate::mass::repair::{changes, repair};
+use crate::mass::target::{PARTS, part_of};
+use crate::model_file::ModelFile;
+use crate::mass::{Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search};
+use edifice_model::ModelError;
+use edifice_base::rng::stream;
+use edifice_shape::{BoxStyle, Building, MassBox};
 
 /// Why observed parts cannot be completed.
 #[derive(Debug, thiserror::Error)]

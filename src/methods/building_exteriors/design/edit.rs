@@ -4,15 +4,13 @@ use rand::Rng;
 
 use super::complete::{CompleteError, around};
 use super::observed::wanted_rows;
-use crate::methods::building_exteriors::attributes::{AttributeRow, COLUMNS, attributes};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::house::{
-    Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft,
-};
-use crate::methods::building_exteriors::mass::target::{PARTS, bounds};
-use crate::methods::building_exteriors::mass::{MASS, MassModel, Search, is_sound};
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
+use crate::attributes::{AttributeRow, COLUMNS, attributes};
+use crate::data::table;
+use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft};
+use crate::mass::target::{PARTS, bounds};
+use crate::mass::{MASS, MassModel, Search, is_sound};
+use crate::model_file::ModelFile;
+use edifice_shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
 
 /// One edit of a house.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,9 +2,7 @@
 
 use super::glaze::{DOOR, millimetres};
 use super::room::{CLEAR, Room, Strip, Walls};
-use crate::shape::{
-    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Rect, Side,
-};
+use edifice_shape::{BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Rect, Side};
 
 /// Least width of a strip with a door, and that of a wall that does not look like a stub (m).
 const NARROWEST: f64 = 1.3;

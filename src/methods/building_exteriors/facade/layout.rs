@@ -5,9 +5,9 @@ use super::doors::{completed, door_strip};
 use super::glaze::{Plan, WINDOW, glaze, holds_asymmetric, millimetres};
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
-use crate::methods::building_exteriors::attributes::facade_attributes;
-use crate::shape::solid::Faces;
-use crate::shape::{Building, ElementStyle, FacadePiece, Side};
+use crate::attributes::facade_attributes;
+use edifice_shape::solid::Faces;
+use edifice_shape::{Building, ElementStyle, FacadePiece, Side};
 
 /// The attributes that the facades are to reach.
 #[derive(Debug, Clone, PartialEq)]

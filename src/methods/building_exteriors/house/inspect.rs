@@ -6,17 +6,15 @@
 //! height, a porch without a door, windows of unusual size.
 //!
 //! # Deviations and readings
-//! - A house is incomplete, not at fault, in what it calls unobserved ([`crate::shape::Building::unobserved`]).
+//! - A house is incomplete, not at fault, in what it calls unobserved ([`edifice_shape::Building::unobserved`]).
 //! - Bounds of what is plausible hold 95 % of the real houses measured (Delft; window sizes: 101,549 windows of audited
 //!   Canadian houses), except that real houses have several pitches more often.
 
 use super::model::{expected_volume, model};
 use super::roofs::Joining;
 use super::walls::walls_of_pieces;
-use crate::methods::building_exteriors::mass::THINNEST;
-use crate::shape::{
-    BoxStyle, Building, ElementStyle, Hidden, MassBox, PlanUnion, RoofStyle, Side,
-};
+use crate::mass::THINNEST;
+use edifice_shape::{BoxStyle, Building, ElementStyle, Hidden, MassBox, PlanUnion, RoofStyle, Side};
 
 /// Largest relative difference between the volume of a surface and the integral over its plan.
 const VOLUME: f64 = 1e-9;

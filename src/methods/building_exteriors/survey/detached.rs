@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::walls::{is_wall, norm, normal, plan_area};
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// Walls nearer than this touch (m); neighbours of a smaller plan (square metres) are sheds, which do not count.
 const TOUCHES: f64 = 0.4;

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::heights::HeightMap;
 use super::walls::{ground, norm, normal, roof};
-use crate::shape::triangles::{Corners, TriangleMesh, plan_area};
-use crate::shape::{MassBox, PlanUnion, Rect, Ridge, RoofStyle};
+use edifice_shape::triangles::{Corners, TriangleMesh, plan_area};
+use edifice_shape::{MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 
 /// Nearness of a measured house.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -2,7 +2,7 @@
 
 use super::planes::Planes;
 use super::walls::{ground, is_wall, norm, normal};
-use crate::shape::triangles::{Corners, TriangleMesh};
+use edifice_shape::triangles::{Corners, TriangleMesh};
 
 /// Side of a sample (m).
 const STEP: f64 = 0.2;

@@ -28,8 +28,8 @@
 //! # Deviations and readings
 //! - The paper's authors modelled their 200 houses by hand; this takes their place.
 //! - A city model does not say which side is the front: the longer extent is the width, and of the two ways round that
-//!   one whose sheds rise as those of [`crate::shape::RoofStyle::Shed`] do. Porches, facades, chimneys and towers are
-//!   recorded as not observed ([`crate::shape::Building::unobserved`]).
+//!   one whose sheds rise as those of [`edifice_shape::RoofStyle::Shed`] do. Porches, facades, chimneys and towers are
+//!   recorded as not observed ([`edifice_shape::Building::unobserved`]).
 //! - A garage is told by proxy: a flat box below 3.4 m of 12 to 50 square metres on the outside of a house that has
 //!   another box at least twice as large.
 //! - Storeys come from the file's attributes, else from the highest eave over 2.8 m, rounded, at most 3
@@ -47,8 +47,8 @@ mod walls;
 
 use rayon::prelude::*;
 
-use crate::shape::triangles::TriangleMesh;
-use crate::shape::{BoxStyle, Building, BuildingError, Hidden, MassBox, RoofStyle};
+use edifice_shape::triangles::TriangleMesh;
+use edifice_shape::{BoxStyle, Building, BuildingError, Hidden, MassBox, RoofStyle};
 
 pub use detached::attached;
 pub use fit::Fit;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::walls::{is_wall, norm, normal};
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// Least cosine between the normals of one plane's triangles.
 const COPLANAR: f64 = 0.995;

@@ -2,7 +2,7 @@
 
 use super::boxes::Level;
 use super::heights::{HeightMap, Sample};
-use crate::shape::{BoxStyle, MassBox, Ridge, Roof, RoofStyle};
+use edifice_shape::{BoxStyle, MassBox, Ridge, Roof, RoofStyle};
 
 /// Rounds over all boxes.
 const ROUNDS: usize = 3;

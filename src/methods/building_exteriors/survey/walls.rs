@@ -1,7 +1,7 @@
 //! Axes and grid lines from the walls of a building.
 
 use super::heights::HeightMap;
-use crate::shape::triangles::{Corners, TriangleMesh, plan_area as signed_plan_area};
+use edifice_shape::triangles::{Corners, TriangleMesh, plan_area as signed_plan_area};
 
 /// Least share of the wall area within [`SLACK`] of the axes.
 pub(super) const RIGHT: f64 = 0.85;
