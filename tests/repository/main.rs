@@ -2,6 +2,8 @@
 
 mod datasets;
 mod experiments;
+#[cfg(unix)]
+mod help_examples;
 mod installed;
 mod prose;
 #[cfg(unix)]

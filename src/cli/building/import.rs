@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> Result<()> {
 struct Counts {
     refused: std::collections::BTreeMap<&'static str, usize>,
     houses: usize,
-    /// Of the right size and not attached.
+    /// Of the right size, not attached, and no halls or sheds.
     detached: usize,
     /// With plans of at least .95 intersection over union, and of these within 10 % of the volume.
     near: usize,
@@ -128,7 +128,14 @@ impl Counts {
             *refused.entry(why.reason()).or_default() += 1;
         }
         let apart = |why: &Refused| {
-            matches!(why, Refused::NoSurface | Refused::Size { .. } | Refused::Attached)
+            matches!(
+                why,
+                Refused::NoSurface
+                    | Refused::Size { .. }
+                    | Refused::Attached
+                    | Refused::NoDwelling { .. }
+                    | Refused::Use(_)
+            )
         };
         let outside = found.iter().filter(|f| f.as_ref().err().is_some_and(apart)).count();
         let near: Vec<&Surveyed> = found.iter().flatten().filter(|s| s.fit.iou >= 0.95).collect();

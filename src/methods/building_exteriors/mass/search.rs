@@ -5,7 +5,7 @@ use rand::Rng;
 use super::fit::{Fitted, fit};
 use super::random;
 use super::scheme::{Block, PLAIN, Scheme, donated};
-use super::target::{MassTarget, bounds};
+use super::target::{MassTarget, PARTS, bounds};
 use super::{MASS, is_sound};
 use crate::attributes::mass_attributes;
 use crate::house::Database;
@@ -291,7 +291,7 @@ fn has_boxes(building: &Building) -> bool {
     general.all(|b| b.width.min(b.depth) >= 0.3)
 }
 
-/// The nearest houses with the same floors, garage and porches, and whether they serve mirrored.
+/// The nearest houses with the same floors, garage and porches as far as they are known, and whether they serve mirrored.
 pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Vec<(usize, bool)> {
     let mut found: Vec<(f64, usize, bool)> = Vec::new();
     for (index, row) in database.rows.iter().enumerate() {
@@ -299,11 +299,16 @@ pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Ve
             continue;
         }
         let other = MassTarget::new(std::array::from_fn(|c| row[c].unwrap_or(0.0)));
-        if other.floors != target.floors || other.presence() != target.presence() {
+        // A part of which nobody knows whether the donor has one is no reason to pass the donor over.
+        let unlike = (0..PARTS.len()).any(|k| {
+            row[PARTS[k].1 + 2].is_some() && other.presence()[k] != target.presence()[k]
+        });
+        if other.floors != target.floors || unlike {
             continue;
         }
         for mirrored in [false, true] {
             let distance: f64 = (0..MASS)
+                .filter(|c| row[*c].is_some())
                 .map(|c| {
                     let is_x = matches!(c, 9 | 15 | 21) && other.wanted[c + 2] > 0.0;
                     let value = match mirrored && is_x {

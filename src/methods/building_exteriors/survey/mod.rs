@@ -295,8 +295,8 @@ pub fn survey(
     let low = |f: fn(&MassBox) -> f64| boxes.iter().map(f).fold(f64::INFINITY, f64::min);
     let (x, y) = (low(|b| b.x - b.width / 2.0), low(|b| b.y - b.depth / 2.0));
     for b in &mut boxes {
-        (b.x, b.y) = (b.x - x, b.y - y);
-        [&mut b.x, &mut b.y].map(|v| *v = (*v * 1e3).round() / 1e3);
+        let millimetres = |v: f64| (v * 1e3).round() / 1e3;
+        (b.x, b.y) = (millimetres(b.x - x), millimetres(b.y - y));
     }
     let highest = boxes.iter().map(|b| b.height).fold(0.0, f64::max);
     let floor_height = (highest / storeys as f64 * 1e3).round() / 1e3;
