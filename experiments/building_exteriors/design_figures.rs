@@ -3,17 +3,17 @@
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
 use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::coding::Coding;
 use edifice_building_exteriors::design::{Edit, completions, edited, observed, suggested};
 use edifice_building_exteriors::house::walls::walls_of_pieces;
 use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
 use edifice_building_exteriors::mass::iou;
-use edifice_building_exteriors::coding::Coding;
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
-use edifice_base::rng::stream;
 use edifice_shape::{BoxStyle, Building, Side};
-use edifice_base::{Error, Result};
 
 /// Houses of the shipped database that are held out of model and donors.
 const HELD_OUT: usize = 20;

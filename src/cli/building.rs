@@ -69,7 +69,7 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
   edifice building generate -n 4 --footprint datasets/building_exteriors/plot.geojson -o plot
   edifice building generate model.houses.json -n 6 --most-probable -o made
   edifice building generate -n 12 -o town --street
-Without a model houses are drawn from the one that ships, learned from real houses.")]
+Without a model houses are drawn from the one that ships.")]
     Generate(build::GenerateArgs),
     /// Make other houses with the attributes of a house, their plans at least 5 % apart.
     #[command(after_help = "Examples:

@@ -90,13 +90,16 @@ pub fn shipped_database() -> Result<&'static Database> {
     let path = Path::new(DATABASE);
     let mut buildings = Vec::new();
     for name in [REAL, DATABASE] {
-        buildings.extend(building_json::parse_lines(shipped_bytes(name)?, Path::new(name))?);
+        buildings.extend(building_json::parse_lines(
+            shipped_bytes(name)?,
+            Path::new(name),
+        )?);
     }
     let database = Database::new(buildings).map_err(|e| Error::content(path, e))?;
     Ok(READ.get_or_init(|| database))
 }
 
-/// The model that ships with the project, learned from real houses by `edifice building learn`.
+/// The model that ships with the project, learned from the made houses by `edifice building learn`.
 ///
 /// # Errors
 /// As [`shipped_database`].

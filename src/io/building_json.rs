@@ -23,8 +23,8 @@ use serde::{Deserialize, Serialize};
 use super::json::{check_header, parse_json};
 use super::packed::extension;
 use super::{read_bytes, write_atomic};
-use edifice_shape::{Building, FacadePiece, Hidden, MassBox, Special};
 use edifice_base::{Error, Result};
+use edifice_shape::{Building, FacadePiece, Hidden, MassBox, Special};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/building";

@@ -17,6 +17,7 @@ mod cuts;
 mod decompose;
 mod elements;
 mod facade;
+mod hidden;
 mod label_grid;
 mod labelled;
 mod photograph;
@@ -30,10 +31,11 @@ pub mod triangles;
 
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{
-    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, Hidden, MassBox, Ridge, Roof, RoofStyle,
-    Side, Special,
+    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof,
+    RoofStyle, Side, Special,
 };
 pub use building_error::BuildingError;
+pub use hidden::Hidden;
 pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
 pub use cleaning::{ToleranceError, absorb_specks, clean, straighten};
 pub use components::{Component, components};

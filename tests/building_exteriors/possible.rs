@@ -90,9 +90,13 @@ fn samples_are_truncated_to_possible_rows() {
     let free = [false; 49];
     let drawn = |count: usize| {
         let mut rng = stream(3, "tests/possible", 0);
-        possible_rows(count, &free, &database.deviations, |_| 0.0, || {
-            file.sample(count, &mut rng).map(|d| d.table)
-        })
+        possible_rows(
+            count,
+            &free,
+            &database.deviations,
+            |_| 0.0,
+            || file.sample(count, &mut rng).map(|d| d.table),
+        )
         .unwrap()
     };
     let possible = drawn(300);

@@ -49,7 +49,12 @@ fn a_village_of_known_boxes_is_measured_exactly() {
     ];
     for (name, style, [width, depth, eave, pitch], boxes, storeys) in truth {
         let own = house(&city, &found, name);
-        let main = own.building.boxes.iter().max_by(|a, b| a.height.total_cmp(&b.height)).unwrap();
+        let main = own
+            .building
+            .boxes
+            .iter()
+            .max_by(|a, b| a.height.total_cmp(&b.height))
+            .unwrap();
         assert_eq!(own.building.boxes.len(), boxes, "{name}");
         assert_eq!(own.building.floors(), storeys, "{name}");
         assert_eq!(main.roof.style, style, "{name}");
@@ -58,7 +63,11 @@ fn a_village_of_known_boxes_is_measured_exactly() {
         near(main.width.min(main.depth), depth, 0.03);
         near(main.height, eave, 0.1);
         near(main.roof.pitch, pitch, 1.0);
-        assert!(own.fit.iou > 0.99 && (own.fit.volume - 1.0).abs() < 0.01, "{name}: {:?}", own.fit);
+        assert!(
+            own.fit.iou > 0.99 && (own.fit.volume - 1.0).abs() < 0.01,
+            "{name}: {:?}",
+            own.fit
+        );
         assert!(own.building.is_unobserved(Hidden::Facades));
         assert!(own.year.is_some_and(|y| (1950..1960).contains(&y)));
         let row = attributes(&own.building).unwrap();
@@ -85,8 +94,16 @@ fn orientation_and_place_do_not_matter() {
     for (angle, shift) in [(0.37_f64, 1e5), (1.9, 4e6), (-2.6, -3e5)] {
         let mut other = city.clone();
         let (s, c) = angle.sin_cos();
-        for p in other.buildings.iter_mut().flat_map(|b| &mut b.mesh.positions) {
-            *p = [c * p[0] - s * p[1] + shift, s * p[0] + c * p[1] + shift, p[2] + 7.0];
+        for p in other
+            .buildings
+            .iter_mut()
+            .flat_map(|b| &mut b.mesh.positions)
+        {
+            *p = [
+                c * p[0] - s * p[1] + shift,
+                s * p[0] + c * p[1] + shift,
+                p[2] + 7.0,
+            ];
         }
         for (a, b) in first.iter().zip(surveyed(&other)) {
             match (a, b) {
@@ -111,7 +128,9 @@ fn broken_meshes_are_refused() {
     let city = village();
     let mut state = 7_u64;
     let mut random = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         (state >> 33) as usize
     };
     for round in 0..400 {
@@ -124,7 +143,10 @@ fn broken_meshes_are_refused() {
                 1 => mesh.triangles[random() % n].swap(0, 1),
                 2 => mesh.positions[random() % m] = mesh.positions[random() % m],
                 3 => mesh.positions[random() % m][random() % 3] += (random() % 40) as f64 - 20.0,
-                _ => mesh.positions.iter_mut().for_each(|p| p[random() % 3] = 0.0),
+                _ => mesh
+                    .positions
+                    .iter_mut()
+                    .for_each(|p| p[random() % 3] = 0.0),
             }
         }
         for s in surveyed(&broken).into_iter().flatten() {

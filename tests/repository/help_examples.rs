@@ -37,7 +37,8 @@ fn help(words: &[String]) -> String {
 fn examples(words: &[String], found: &mut Vec<String>) {
     let text = help(words);
     let lines = text.lines();
-    found.extend(lines.filter_map(|l| l.strip_prefix("  edifice ").map(|l| format!("edifice {l}"))));
+    found
+        .extend(lines.filter_map(|l| l.strip_prefix("  edifice ").map(|l| format!("edifice {l}"))));
     let commands = text.split("Commands:\n").nth(1).unwrap_or_default();
     for line in commands.lines().take_while(|l| l.starts_with("  ")) {
         let Some(name) = line.split_whitespace().next() else {
@@ -77,8 +78,8 @@ fn has_files(line: &str, folder: &Path) -> bool {
     (0..words.len()).all(|k| {
         let word = words[k].trim_matches('\'');
         let written = k > 0 && outputs.contains(&words[k - 1]);
-        let numeric = word.chars().any(|c| c == '=' || c == '@' || c == ',')
-            || word.parse::<f64>().is_ok();
+        let numeric =
+            word.chars().any(|c| c == '=' || c == '@' || c == ',') || word.parse::<f64>().is_ok();
         let is_file = (word.contains('.') || word.ends_with('/')) && !written && !numeric;
         if !is_file || word.starts_with('-') {
             return true;
@@ -102,7 +103,8 @@ fn every_example_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     #[cfg(unix)]
-    std::os::unix::fs::symlink(root.join("datasets"), folder.path().join("datasets")).expect("a link");
+    std::os::unix::fs::symlink(root.join("datasets"), folder.path().join("datasets"))
+        .expect("a link");
     let all = std::env::var_os("EDIFICE_ALL_EXAMPLES").is_some();
     // What a slow first line makes, from what ships.
     let made = [("default.houses.json", "model.houses.json")];
@@ -117,7 +119,10 @@ fn every_example_runs() {
     assert!(lines.len() > 80, "only {} examples of --help", lines.len());
     lines.extend(of_readme());
     let path = std::env::var("PATH").unwrap_or_default();
-    let bin = program().parent().map(Path::to_path_buf).unwrap_or_default();
+    let bin = program()
+        .parent()
+        .map(Path::to_path_buf)
+        .unwrap_or_default();
     let (mut ran, mut without, mut failed) = (0, Vec::new(), Vec::new());
     for line in &lines {
         if !all && SLOW.iter().any(|s| line.starts_with(s)) {
@@ -144,7 +149,16 @@ fn every_example_runs() {
         }
     }
     eprintln!("{ran} examples run, {} without their files", without.len());
-    assert!(failed.is_empty(), "{} of {ran} fail:\n{}", failed.len(), failed.join("\n"));
-    assert!(without.len() <= WITHOUT_FILES, "{} lines lack files: {without:#?}", without.len());
+    assert!(
+        failed.is_empty(),
+        "{} of {ran} fail:\n{}",
+        failed.len(),
+        failed.join("\n")
+    );
+    assert!(
+        without.len() <= WITHOUT_FILES,
+        "{} lines lack files: {without:#?}",
+        without.len()
+    );
     assert!(ran > 30, "only {ran} examples were run");
 }

@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice_editing::building_exteriors::{is_file_name, shipped_model};
-use edifice_io::building_csv::{self, TextTable};
-use edifice_io::footprint;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS};
 use edifice_building_exteriors::coding::attribute_rows;
 use edifice_building_exteriors::data::{self as rows_of, filled};
@@ -13,16 +12,17 @@ use edifice_building_exteriors::house::Options;
 use edifice_building_exteriors::mass::footprint::{decided, distance};
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_building_exteriors::observations::cell;
+use edifice_editing::building_exteriors::{is_file_name, shipped_model};
+use edifice_io::building_csv::{self, TextTable};
+use edifice_io::footprint;
 use edifice_model::Table;
-use edifice_base::rng::stream;
 use edifice_shape::Rect;
-use edifice_base::{Error, Result};
 
 use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
-use edifice_model::given::evidence;
 use crate::print;
+use edifice_model::given::evidence;
 
 /// Options of `build`.
 #[derive(clap::Args)]
@@ -74,7 +74,13 @@ pub fn build(args: &BuildArgs) -> Result<()> {
     let orders = orders(&table, args)?;
     let database = args.output.making.database()?;
     let options = args.output.making.options();
-    produce(&orders, &database, &options, &args.output, Some(&args.attributes))
+    produce(
+        &orders,
+        &database,
+        &options,
+        &args.output,
+        Some(&args.attributes),
+    )
 }
 
 /// The rows of a table; a column `name` names the houses, the model fills what is missing.

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
+use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::inspect::{faults, implausible};
 use edifice_building_exteriors::house::{Model, model};
+use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_shape::Building;
-use edifice_base::{Error, Result};
 
 use super::output::{street, write_png};
 use super::produce::RoofOption;

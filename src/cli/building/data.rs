@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice_io::{building_csv, building_json, json, read_bytes};
+use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{AttributeRow, attributes};
 use edifice_building_exteriors::coding::{Observation, coded};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_building_exteriors::observations::{observations, only, tells_of_houses};
+use edifice_io::{building_csv, building_json, json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
-use edifice_base::{Error, Result};
 
 /// The source of houses.
 #[derive(clap::Args)]
@@ -79,12 +79,15 @@ impl Input {
         } else {
             let houses = building_json::read(&self.input)?;
             let rows = houses.iter().map(|b| Ok(attributes(b)?.into()));
-            let rows: std::result::Result<Vec<_>, edifice_building_exteriors::attributes::AttributeError> =
-                rows.collect();
+            let rows: std::result::Result<
+                Vec<_>,
+                edifice_building_exteriors::attributes::AttributeError,
+            > = rows.collect();
             rows.map_err(|e| at(e.to_string()))?
         };
         if !self.groups.is_empty() {
-            only(&mut houses, &self.groups).map_err(|e| Error::option("--groups", e.to_string()))?;
+            only(&mut houses, &self.groups)
+                .map_err(|e| Error::option("--groups", e.to_string()))?;
         }
         Ok(houses)
     }

@@ -13,9 +13,9 @@ use edifice_model::{Cell, Table};
 
 use super::data::{self, Input};
 use super::produce::Making;
+use crate::print;
 use edifice_model::data::csv_lines;
 use edifice_model::given::evidence;
-use crate::print;
 
 /// Samples among which the most probable are sought.
 const POOL: usize = 2000;
@@ -147,7 +147,11 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
 fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Result<()> {
     let path = &args.input.input;
     let groups = file.attributes();
-    if let Some(name) = args.keep.iter().find(|k| groups.iter().all(|g| &g.name != *k)) {
+    if let Some(name) = args
+        .keep
+        .iter()
+        .find(|k| groups.iter().all(|g| &g.name != *k))
+    {
         return Err(Error::option("--keep", format!("no attribute `{name}`")));
     }
     let count = args.draw.count.unwrap_or(COMPLETED);
@@ -175,15 +179,7 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
             }
         }
         let seed = args.draw.seed;
-        let houses = completions(
-            &partial,
-            file,
-            &row,
-            count,
-            &database,
-            &options,
-            seed,
-        );
+        let houses = completions(&partial, file, &row, count, &database, &options, seed);
         let houses = houses.map_err(|e| named(e.to_string()))?;
         if houses.len() < count {
             print::message(&format!(

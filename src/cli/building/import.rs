@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use edifice_io::{building_json, city, write_atomic};
+use edifice_base::{Error, Result};
 use edifice_building_exteriors::survey::{Candidate, Limits, Refused, Surveyed, survey_all};
+use edifice_io::{building_json, city, write_atomic};
 use edifice_shape::Building;
 use edifice_shape::triangles::City;
-use edifice_base::{Error, Result};
 
 use crate::print;
 
@@ -79,7 +79,8 @@ pub fn run(args: &Args) -> Result<()> {
     let found = survey_all(&candidates, &limits);
     let houses: Vec<Building> = found.iter().flatten().map(|s| s.building.clone()).collect();
     if let Some(path) = &args.report {
-        let mut text = String::from("building,outcome,house,iou,volume,height_error,boxes,year,why\n");
+        let mut text =
+            String::from("building,outcome,house,iou,volume,height_error,boxes,year,why\n");
         for (own, outcome) in candidates.iter().zip(&found) {
             text.push_str(&line(own.name, outcome));
         }
@@ -137,14 +138,24 @@ impl Counts {
                     | Refused::Use(_)
             )
         };
-        let outside = found.iter().filter(|f| f.as_ref().err().is_some_and(apart)).count();
-        let near: Vec<&Surveyed> = found.iter().flatten().filter(|s| s.fit.iou >= 0.95).collect();
+        let outside = found
+            .iter()
+            .filter(|f| f.as_ref().err().is_some_and(apart))
+            .count();
+        let near: Vec<&Surveyed> = found
+            .iter()
+            .flatten()
+            .filter(|s| s.fit.iou >= 0.95)
+            .collect();
         Self {
             refused,
             houses: found.iter().flatten().count(),
             detached: found.len() - outside,
             near: near.len(),
-            volume: near.iter().filter(|s| (s.fit.volume - 1.0).abs() <= 0.1).count(),
+            volume: near
+                .iter()
+                .filter(|s| (s.fit.volume - 1.0).abs() <= 0.1)
+                .count(),
         }
     }
 

@@ -6,6 +6,7 @@ use super::super::CommandError;
 use super::super::work::{Stopped, Work};
 use super::shipped_model;
 use edifice_base::Result;
+use edifice_base::rng::stream;
 use edifice_building_exteriors::attributes::{AttributeError, AttributeRow, COLUMNS, attributes};
 use edifice_building_exteriors::data::table;
 use edifice_building_exteriors::design::wanted_rows;
@@ -14,7 +15,6 @@ use edifice_building_exteriors::mass::contradiction::{Contradiction, check_given
 use edifice_building_exteriors::mass::target::PARTS;
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_model::ModelError;
-use edifice_base::rng::stream;
 use edifice_shape::Building;
 
 /// First column that is yes or no.

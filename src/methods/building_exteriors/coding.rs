@@ -21,8 +21,8 @@ use super::attributes::{AttributeRow, COLUMNS, GROUPS, Level};
 use super::mass::repair::repair;
 use super::mass::target::{FLOOR_SHARE, PARTS};
 use edifice_model::hierarchy::Group;
-use edifice_model::{Cell, ModelError, Table};
 use edifice_model::tables::Dataset;
+use edifice_model::{Cell, ModelError, Table};
 
 /// Columns of presence, in the order of garage, front and back porch.
 pub const THERE: [&str; 3] = ["garage.there", "porch.front.there", "porch.back.there"];
@@ -139,7 +139,9 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
         groups.push(Group::new(PRESENCE, &own));
     }
     if houses.iter().any(|h| h.floors.is_some()) {
-        let counts = houses.iter().map(|h| h.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?)));
+        let counts = houses
+            .iter()
+            .map(|h| h.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?)));
         table = table.categorical(FLOORS, &COUNTS, counts.map(|c| c.copied()))?;
         groups.push(Group::new(FLOORS, &[FLOORS]));
     }
@@ -167,7 +169,9 @@ pub fn coded_evidence(given: &[AttributeRow], columns: &[String]) -> Result<Tabl
         table = table.binary(name, houses.iter().map(|h| h.there[k]))?;
     }
     if knows(FLOORS) {
-        let counts = houses.iter().map(|h| h.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?)));
+        let counts = houses
+            .iter()
+            .map(|h| h.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?)));
         table = table.categorical(FLOORS, &COUNTS, counts.map(|c| c.copied()))?;
     }
     Ok(table)

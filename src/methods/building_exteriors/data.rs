@@ -6,8 +6,8 @@ use super::attributes::{AttributeRow, GROUPS, Level};
 use super::coding::attribute_rows;
 use super::model_file::ModelFile;
 use edifice_model::hierarchy::Group;
-use edifice_model::{Cell, ModelError, Table};
 use edifice_model::tables::Dataset;
+use edifice_model::{Cell, ModelError, Table};
 
 /// The 49 attributes of many buildings with the paper's 13 groups.
 ///

@@ -70,7 +70,10 @@ impl ModelFile {
     }
 
     fn has(&self, column: &str) -> bool {
-        self.groups.iter().flat_map(|g| &g.columns).any(|c| c == column)
+        self.groups
+            .iter()
+            .flat_map(|g| &g.columns)
+            .any(|c| c == column)
     }
 
     /// Number of styles.
@@ -112,7 +115,9 @@ impl ModelFile {
     ) -> Result<Draws, ModelError> {
         let (evidence, rows) = self.evidence(given)?;
         let draws = self.model.complete(&evidence, count, rng)?;
-        let rows = rows.iter().flat_map(|row| std::iter::repeat_n(row.clone(), count));
+        let rows = rows
+            .iter()
+            .flat_map(|row| std::iter::repeat_n(row.clone(), count));
         self.decoded(draws, &rows.collect::<Vec<_>>())
     }
 

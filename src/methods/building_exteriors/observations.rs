@@ -99,7 +99,10 @@ pub fn observations(
 /// # Errors
 /// [`ObservationError::Group`].
 pub fn only(houses: &mut [Observation], groups: &[String]) -> Result<(), ObservationError> {
-    if let Some(name) = groups.iter().find(|n| GROUPS.iter().all(|g| g.name != n.as_str())) {
+    if let Some(name) = groups
+        .iter()
+        .find(|n| GROUPS.iter().all(|g| g.name != n.as_str()))
+    {
         return Err(ObservationError::Group(name.clone()));
     }
     let keeps = |name: &str| groups.iter().any(|g| g == name);

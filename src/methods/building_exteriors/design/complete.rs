@@ -16,10 +16,10 @@ use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, W
 use crate::mass::contradiction::check_given;
 use crate::mass::repair::{changes, repair};
 use crate::mass::target::{PARTS, part_of};
-use crate::model_file::ModelFile;
 use crate::mass::{Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search};
-use edifice_model::ModelError;
+use crate::model_file::ModelFile;
 use edifice_base::rng::stream;
+use edifice_model::ModelError;
 use edifice_shape::{BoxStyle, Building, MassBox};
 
 /// Why observed parts cannot be completed.

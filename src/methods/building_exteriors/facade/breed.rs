@@ -13,10 +13,10 @@
 
 use rand::{Rng, RngExt};
 
+use super::doors::door_strip;
 use super::elements::{Elements, SubStyle};
 use super::glaze::millimetres;
 use super::knapsack::widths;
-use super::doors::door_strip;
 use super::layout::{FacadeTarget, Facades};
 use super::room::{Room, Walls};
 use crate::attributes::facade_attributes;

@@ -2,7 +2,9 @@
 
 use super::glaze::{DOOR, millimetres};
 use super::room::{CLEAR, Room, Strip, Walls};
-use edifice_shape::{BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Rect, Side};
+use edifice_shape::{
+    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Rect, Side,
+};
 
 /// Least width of a strip with a door, and that of a wall that does not look like a stub (m).
 const NARROWEST: f64 = 1.3;
@@ -15,8 +17,13 @@ const SILL: f64 = 0.45;
 
 /// The porch on a side: the front one lies in the front half of the plan.
 fn porch(building: &Building, side: Side) -> Option<&MassBox> {
-    let ends = building.boxes.iter().flat_map(|b| [b.plan().y, b.plan().top()]);
-    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let ends = building
+        .boxes
+        .iter()
+        .flat_map(|b| [b.plan().y, b.plan().top()]);
+    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+        (l.min(v), h.max(v))
+    });
     let middle = (low + high) / 2.0;
     let porches = building.boxes.iter().filter(|b| b.style == BoxStyle::Porch);
     let mut own = porches.filter(|b| match side {
@@ -40,7 +47,10 @@ pub(super) fn door_strip(building: &Building, walls: &Walls, side: Side) -> Opti
         strips[*k].end.min(p.right()) - strips[*k].start.max(p.x)
     };
     if porch.is_some() {
-        let under = fitting.iter().copied().filter(|k| shared(k) > NARROWEST - 0.3);
+        let under = fitting
+            .iter()
+            .copied()
+            .filter(|k| shared(k) > NARROWEST - 0.3);
         let widest = under.max_by(|a, b| shared(a).total_cmp(&shared(b)));
         if widest.is_some() || side != Side::Front {
             return widest;
@@ -84,7 +94,10 @@ fn is_free(walls: &Walls, room: &Room, at: f64) -> bool {
 fn on_garage(building: &Building, room: &Room) -> bool {
     let wall = &room.piece;
     let middle = (wall.start + wall.end) / 2.0;
-    let garages = building.boxes.iter().filter(|b| b.style == BoxStyle::Garage);
+    let garages = building
+        .boxes
+        .iter()
+        .filter(|b| b.style == BoxStyle::Garage);
     let mut plans = garages.map(MassBox::plan);
     plans.any(|p| {
         let (at, low, high) = match wall.side {
@@ -121,9 +134,8 @@ fn has_door(pieces: &[FacadePiece], within: Option<(Side, [f64; 2])>) -> bool {
     pieces.iter().any(|p| {
         p.elements.iter().any(|e| {
             let middle = p.start + e.x + e.width / 2.0;
-            let here = within.is_none_or(|(side, span)| {
-                p.side == side && span[0] < middle && middle < span[1]
-            });
+            let here = within
+                .is_none_or(|(side, span)| p.side == side && span[0] < middle && middle < span[1]);
             e.style == ElementStyle::Door && here
         })
     })
@@ -140,7 +152,10 @@ fn put(
     for garages in [false, true] {
         for side in sides {
             for strip in &walls.strips[place(*side)] {
-                let grounds = strip.rooms.iter().filter(|r| r.piece.floor == 0 && r.fixed.is_none());
+                let grounds = strip
+                    .rooms
+                    .iter()
+                    .filter(|r| r.piece.floor == 0 && r.fixed.is_none());
                 for room in grounds.filter(|r| on_garage(building, r) == garages) {
                     let [low, high] = within.map_or([strip.start, strip.end], |w| {
                         [w[0].max(strip.start), w[1].min(strip.end)]
@@ -150,8 +165,9 @@ fn put(
                     if steps.is_nan() || steps < 0.0 {
                         continue;
                     }
-                    let mut places: Vec<f64> =
-                        (0..=steps as usize).map(|k| low + k as f64 * STEP).collect();
+                    let mut places: Vec<f64> = (0..=steps as usize)
+                        .map(|k| low + k as f64 * STEP)
+                        .collect();
                     let middle = (low + high) / 2.0;
                     places.push(middle);
                     places.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
@@ -170,7 +186,8 @@ fn put(
 fn hang(pieces: &mut [FacadePiece], side: Side, at: f64) -> bool {
     let half = DOOR[0] / 2.0;
     let here = |p: &&mut FacadePiece| {
-        let reach = p.start <= at - half - CLEAR / 2.0 && at + half + CLEAR / 2.0 <= p.start + p.width;
+        let reach =
+            p.start <= at - half - CLEAR / 2.0 && at + half + CLEAR / 2.0 <= p.start + p.width;
         p.side == side && p.base < 1e-6 && reach && p.height >= DOOR[1]
     };
     let mut own: Vec<&mut FacadePiece> = pieces.iter_mut().filter(here).collect();

@@ -159,7 +159,8 @@ impl SideSearch<'_> {
         let wanted = (1.0 - self.wanted[1]) * total - self.fixed_asymmetric();
         let enough = 0.01 * self.deviations[1] * total;
         // Windows of the usual size, so far apart, cover the wanted share of the walls.
-        let natural = WINDOW[0] * WINDOW[1] / (self.wanted[0].max(0.01) * self.building.floor_height);
+        let natural =
+            WINDOW[0] * WINDOW[1] / (self.wanted[0].max(0.01) * self.building.floor_height);
         let mut spacings = SPACINGS;
         let off = |s: f64| (s / natural).ln().abs();
         spacings.sort_by(|a, b| off(*a).total_cmp(&off(*b)));

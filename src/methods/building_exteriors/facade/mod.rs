@@ -28,8 +28,8 @@
 //! - Eq. 4 divides by wanted values that may be zero: distances are in standard deviations of the database here.
 
 mod breed;
-mod doors;
 mod cut;
+mod doors;
 mod elements;
 mod glaze;
 pub mod knapsack;

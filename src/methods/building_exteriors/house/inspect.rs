@@ -14,7 +14,9 @@ use super::model::{expected_volume, model};
 use super::roofs::Joining;
 use super::walls::walls_of_pieces;
 use crate::mass::THINNEST;
-use edifice_shape::{BoxStyle, Building, ElementStyle, Hidden, MassBox, PlanUnion, RoofStyle, Side};
+use edifice_shape::{
+    BoxStyle, Building, ElementStyle, Hidden, MassBox, PlanUnion, RoofStyle, Side,
+};
 
 /// Largest relative difference between the volume of a surface and the integral over its plan.
 const VOLUME: f64 = 1e-9;
@@ -56,7 +58,10 @@ fn general(building: &Building, found: &mut Vec<String>) {
         found.push("name is empty".into());
     }
     if building.unit != "m" {
-        found.push(format!("unit is {:?}: houses are built in m", building.unit));
+        found.push(format!(
+            "unit is {:?}: houses are built in m",
+            building.unit
+        ));
     }
     let [low, high] = FLOOR_HEIGHTS;
     if !(low..=high).contains(&building.floor_height) {
@@ -70,7 +75,9 @@ fn general(building: &Building, found: &mut Vec<String>) {
         let highest = (0..building.boxes.len())
             .max_by_key(|&i| building.floors_of(&building.boxes[i]))
             .unwrap_or(0);
-        found.push(format!("boxes[{highest}] has {floors} floors, expected at most 3"));
+        found.push(format!(
+            "boxes[{highest}] has {floors} floors, expected at most 3"
+        ));
     }
     for (k, special) in building.special.iter().enumerate() {
         if building.special[..k].contains(special) {
@@ -82,12 +89,17 @@ fn general(building: &Building, found: &mut Vec<String>) {
 fn box_faults(i: usize, b: &MassBox, found: &mut Vec<String>) {
     for (field, value) in [("width", b.width), ("depth", b.depth)] {
         if value < THIN {
-            found.push(format!("boxes[{i}].{field} is {value}, expected at least {THIN} m"));
+            found.push(format!(
+                "boxes[{i}].{field} is {value}, expected at least {THIN} m"
+            ));
         }
     }
     let [low, high] = HEIGHTS;
     if !(low..=high).contains(&b.height) {
-        found.push(format!("boxes[{i}].height is {}, expected {low} to {high} m", b.height));
+        found.push(format!(
+            "boxes[{i}].height is {}, expected {low} to {high} m",
+            b.height
+        ));
     }
     if b.roof.pitch > STEEPEST {
         found.push(format!(
@@ -109,7 +121,10 @@ fn mass(building: &Building, found: &mut Vec<String>) {
             !one.is_empty() && PlanUnion::new(&one).soundness().parts < ground.parts
         });
         let place = apart.map_or("boxes".into(), |i| format!("boxes[{i}]"));
-        found.push(format!("{place}: the boxes stand in {} pieces", ground.parts));
+        found.push(format!(
+            "{place}: the boxes stand in {} pieces",
+            ground.parts
+        ));
     }
     if ground.courtyard {
         found.push("boxes: the ground floor shuts in a courtyard".into());
@@ -133,7 +148,9 @@ fn mass(building: &Building, found: &mut Vec<String>) {
             let x = p.right().min(q.right()) - p.x.max(q.x);
             let y = p.top().min(q.top()) - p.y.max(q.y);
             if parts && a.style != b.style && x.min(y) > 1e-6 {
-                found.push(format!("boxes[{i}] and boxes[{j}], garage and porch, overlap"));
+                found.push(format!(
+                    "boxes[{i}] and boxes[{j}], garage and porch, overlap"
+                ));
             }
         }
     }
@@ -142,7 +159,9 @@ fn mass(building: &Building, found: &mut Vec<String>) {
 fn facades(building: &Building, found: &mut Vec<String>) {
     let hidden = building.is_unobserved(Hidden::Facades);
     if building.facades.is_empty() && !hidden {
-        found.push("facades: none; a house without them says `\"unobserved\": [\"facades\"]`".into());
+        found.push(
+            "facades: none; a house without them says `\"unobserved\": [\"facades\"]`".into(),
+        );
     }
     let sides = Side::ALL.map(|side| building.facades.iter().any(|p| p.side == side));
     let elements = || building.facades.iter().flat_map(|p| &p.elements);
@@ -152,14 +171,20 @@ fn facades(building: &Building, found: &mut Vec<String>) {
     let walls = walls_of_pieces(building);
     for (i, (piece, wall)) in building.facades.iter().zip(&walls).enumerate() {
         if wall.is_none() {
-            found.push(format!("facades[{i}] stands on no wall of the {}", piece.side.name()));
+            found.push(format!(
+                "facades[{i}] stands on no wall of the {}",
+                piece.side.name()
+            ));
         }
         let floor = piece.base / building.floor_height;
         if (floor - floor.round()).abs() > 0.1 {
             found.push(format!("facades[{i}].base is {}: on no floor", piece.base));
         }
         if piece.height > 1.5 * building.floor_height {
-            found.push(format!("facades[{i}].height is {}: more than a floor", piece.height));
+            found.push(format!(
+                "facades[{i}].height is {}: more than a floor",
+                piece.height
+            ));
         }
         if let Some(wall) = wall {
             let slack = 0.02;
@@ -174,7 +199,9 @@ fn facades(building: &Building, found: &mut Vec<String>) {
             let place = format!("facades[{i}].elements[{k}]");
             for (field, value) in [("width", e.width), ("height", e.height)] {
                 if value < SMALLEST {
-                    found.push(format!("{place}.{field} is {value}, expected at least {SMALLEST} m"));
+                    found.push(format!(
+                        "{place}.{field} is {value}, expected at least {SMALLEST} m"
+                    ));
                 }
             }
             if e.style != ElementStyle::Door {
@@ -184,7 +211,10 @@ fn facades(building: &Building, found: &mut Vec<String>) {
                 found.push(format!("{place}.y is {}: a door above its floor", e.y));
             }
             if e.width < DOOR[0] || e.height < DOOR[1] {
-                found.push(format!("{place} is a door of {} m x {} m", e.width, e.height));
+                found.push(format!(
+                    "{place} is a door of {} m x {} m",
+                    e.width, e.height
+                ));
             }
         }
     }
@@ -199,7 +229,9 @@ fn extent(building: &Building, side: Side) -> [f64; 2] {
             Side::Left | Side::Right => [p.y, p.top()],
         }
     });
-    ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+    ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
+        [l.min(v), h.max(v)]
+    })
 }
 
 fn surface(building: &Building, joining: Joining, found: &mut Vec<String>) {
@@ -213,7 +245,9 @@ fn surface(building: &Building, joining: Joining, found: &mut Vec<String>) {
     let expected = expected_volume(building, joining, made.openings);
     if (made.report.volume - expected).abs() > VOLUME * expected.abs() {
         let volume = made.report.volume;
-        found.push(format!("surface: encloses {volume} cubic metres, its plan {expected}"));
+        found.push(format!(
+            "surface: encloses {volume} cubic metres, its plan {expected}"
+        ));
     }
     for (piece, element) in made.unplaced {
         found.push(format!(
@@ -243,7 +277,10 @@ pub fn implausible(building: &Building) -> Vec<String> {
         ));
     }
     if building.boxes.len() > BOXES {
-        found.push(format!("boxes: {}, usual are at most {BOXES}", building.boxes.len()));
+        found.push(format!(
+            "boxes: {}, usual are at most {BOXES}",
+            building.boxes.len()
+        ));
     }
     let mut pitch: Option<(usize, f64)> = None;
     for (i, b) in building.boxes.iter().enumerate() {
@@ -257,7 +294,10 @@ pub fn implausible(building: &Building) -> Vec<String> {
         }
         let [low, high] = PITCHES;
         if !(low..=high).contains(&b.roof.pitch) {
-            found.push(format!("boxes[{i}].roof.pitch is {:.1} degrees", b.roof.pitch));
+            found.push(format!(
+                "boxes[{i}].roof.pitch is {:.1} degrees",
+                b.roof.pitch
+            ));
         }
         match pitch {
             Some((first, known)) if (known - b.roof.pitch).abs() > SAME_PITCH => {
@@ -277,7 +317,9 @@ pub fn implausible(building: &Building) -> Vec<String> {
 }
 
 fn openings(building: &Building, found: &mut Vec<String>) {
-    let sides = Side::ALL.iter().filter(|s| building.facades.iter().any(|p| p.side == **s));
+    let sides = Side::ALL
+        .iter()
+        .filter(|s| building.facades.iter().any(|p| p.side == **s));
     let whole = sides.count() == 4;
     let mut windows = 0;
     let mut doors: Vec<(Side, f64)> = Vec::new();
@@ -286,7 +328,9 @@ fn openings(building: &Building, found: &mut Vec<String>) {
             if e.style == ElementStyle::Door {
                 doors.push((piece.side, piece.start + e.x + e.width / 2.0));
                 if piece.width < 1.2 {
-                    found.push(format!("facades[{i}].elements[{k}]: a door on a stub of wall"));
+                    found.push(format!(
+                        "facades[{i}].elements[{k}]: a door on a stub of wall"
+                    ));
                 }
                 continue;
             }

@@ -66,7 +66,10 @@ pub(super) fn roof(boxes: &mut [MassBox], flags: [bool; 3], frozen: &[MassBox]) 
             && matches!(b.roof.style, RoofStyle::Gable | RoofStyle::Hip)
             && USUAL.contains(&b.roof.pitch)
     };
-    let known = frozen.iter().filter(sloped).chain(boxes.iter().filter(sloped));
+    let known = frozen
+        .iter()
+        .filter(sloped)
+        .chain(boxes.iter().filter(sloped));
     let largest = known.max_by(|a, b| area(a).total_cmp(&area(b)));
     let pitch = largest.map_or(PITCH, |b| b.roof.pitch);
     free(boxes, &|b| {

@@ -129,7 +129,11 @@ pub fn check_given(row: &[f64; N], given: &[bool; N]) -> Result<(), Contradictio
         }
     };
     for (c, value) in row.iter().enumerate().take(3) {
-        range(c, *value > 0.0 && *value <= LARGEST, "above zero, at most 200 m")?;
+        range(
+            c,
+            *value > 0.0 && *value <= LARGEST,
+            "above zero, at most 200 m",
+        )?;
     }
     range(
         3,

@@ -85,12 +85,7 @@ pub fn reconcile(row: &mut [f64; 49], given: &[bool; 49], plan: &[Rect]) -> Resu
 
 /// How far the house that [`stand`] puts on a plan is from a row, in standard deviations by the largest mass attribute;
 /// infinite where there is none.
-pub fn distance(
-    row: &[f64; 49],
-    given: &[bool; 49],
-    plan: &[Rect],
-    deviations: &[f64; 49],
-) -> f64 {
+pub fn distance(row: &[f64; 49], given: &[bool; 49], plan: &[Rect], deviations: &[f64; 49]) -> f64 {
     let (mut row, mut known) = (*row, *given);
     if reconcile(&mut row, given, plan).is_err() {
         return f64::INFINITY;

@@ -148,9 +148,7 @@ impl Found {
             true => complexity >= self.complexity,
             false => fitted.max_z >= self.max_z(),
         };
-        if worse
-            || !(is_sound(&fitted.building) && has_boxes(&fitted.building))
-        {
+        if worse || !(is_sound(&fitted.building) && has_boxes(&fitted.building)) {
             return;
         }
         self.complexity = complexity;
@@ -300,9 +298,8 @@ pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Ve
         }
         let other = MassTarget::new(std::array::from_fn(|c| row[c].unwrap_or(0.0)));
         // A part of which nobody knows whether the donor has one is no reason to pass the donor over.
-        let unlike = (0..PARTS.len()).any(|k| {
-            row[PARTS[k].1 + 2].is_some() && other.presence()[k] != target.presence()[k]
-        });
+        let unlike = (0..PARTS.len())
+            .any(|k| row[PARTS[k].1 + 2].is_some() && other.presence()[k] != target.presence()[k]);
         if other.floors != target.floors || unlike {
             continue;
         }

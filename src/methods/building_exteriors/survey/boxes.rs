@@ -60,9 +60,16 @@ pub(super) fn boxes(lines: &[Vec<f64>; 2], map: &HeightMap, planes: &Planes) -> 
         }
         let counts = by_plane[k].iter();
         let large = counts.filter(|(_, n)| **n as f64 > COVERS * covered[k] as f64);
-        let least = large.map(|(p, _)| planes.eave[*p]).fold(f64::INFINITY, f64::min);
+        let least = large
+            .map(|(p, _)| planes.eave[*p])
+            .fold(f64::INFINITY, f64::min);
         // Many small planes: the lowest of them all.
-        let any = || by_plane[k].keys().map(|p| planes.eave[*p]).fold(f64::INFINITY, f64::min);
+        let any = || {
+            by_plane[k]
+                .keys()
+                .map(|p| planes.eave[*p])
+                .fold(f64::INFINITY, f64::min)
+        };
         Some(if least.is_finite() { least } else { any() }.max(LEAST))
     };
     let eaves: Vec<Option<f64>> = (0..count).map(eave).collect();
@@ -113,7 +120,10 @@ fn levels(eaves: &[Option<f64>], area: &[f64]) -> Vec<f64> {
             _ => groups.push((eave * area, area)),
         }
     }
-    groups.into_iter().map(|(sum, weight)| sum / weight).collect()
+    groups
+        .into_iter()
+        .map(|(sum, weight)| sum / weight)
+        .collect()
 }
 
 impl Cells {

@@ -52,7 +52,10 @@ fn stretches(mesh: &TriangleMesh) -> Vec<Stretch> {
         let ends = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [[t[i][0], t[i][1]], [t[j][0], t[j][1]]]);
         let long = |s: &Stretch| (s[0][0] - s[1][0]).hypot(s[0][1] - s[1][1]);
         if let Some(stretch) = ends.into_iter().max_by(|a, b| long(a).total_cmp(&long(b))) {
-            let whole = stretch.iter().flatten().all(|v| v.is_finite() && v.abs() < 1e9);
+            let whole = stretch
+                .iter()
+                .flatten()
+                .all(|v| v.is_finite() && v.abs() < 1e9);
             if whole && long(&stretch) < 1e3 && !out.contains(&stretch) {
                 out.push(stretch);
             }
@@ -63,7 +66,9 @@ fn stretches(mesh: &TriangleMesh) -> Vec<Stretch> {
 
 /// Squares that a stretch, widened by the distance of touching, may lie in.
 fn squares(s: &Stretch) -> Vec<(i64, i64)> {
-    let pieces = ((s[0][0] - s[1][0]).hypot(s[0][1] - s[1][1]) / SQUARE).ceil().max(1.0);
+    let pieces = ((s[0][0] - s[1][0]).hypot(s[0][1] - s[1][1]) / SQUARE)
+        .ceil()
+        .max(1.0);
     let mut out = Vec::new();
     let at = |share: f64| [0, 1].map(|k| s[0][k] + share * (s[1][k] - s[0][k]));
     for i in 0..pieces as usize {
@@ -87,7 +92,12 @@ fn distance(a: &Stretch, b: &Stretch) -> f64 {
     if cross(a, b) {
         return 0.0;
     }
-    let ends = [to_point(a, b[0]), to_point(a, b[1]), to_point(b, a[0]), to_point(b, a[1])];
+    let ends = [
+        to_point(a, b[0]),
+        to_point(a, b[1]),
+        to_point(b, a[0]),
+        to_point(b, a[1]),
+    ];
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 

@@ -104,10 +104,7 @@ fn disjoint(plans: &[Rect]) -> Vec<Rect> {
         lines.dedup();
         lines
     };
-    let (xs, ys) = (
-        lines(|r| [r.x, r.right()]),
-        lines(|r| [r.y, r.top()]),
-    );
+    let (xs, ys) = (lines(|r| [r.x, r.right()]), lines(|r| [r.y, r.top()]));
     let mut cells = Vec::new();
     for x in xs.windows(2) {
         for y in ys.windows(2) {
@@ -124,7 +121,12 @@ fn disjoint(plans: &[Rect]) -> Vec<Rect> {
 /// Area of the part of a triangle's plan inside a rectangle (Sutherland and Hodgman 1974).
 fn clipped_area(t: &Corners, r: &Rect) -> f64 {
     let mut ring: Vec<[f64; 2]> = t.iter().map(|p| [p[0], p[1]]).collect();
-    let sides = [(0, r.x, 1.0), (0, r.right(), -1.0), (1, r.y, 1.0), (1, r.top(), -1.0)];
+    let sides = [
+        (0, r.x, 1.0),
+        (0, r.right(), -1.0),
+        (1, r.y, 1.0),
+        (1, r.top(), -1.0),
+    ];
     for (axis, at, sign) in sides {
         let inside = |p: &[f64; 2]| sign * (p[axis] - at);
         let mut kept = Vec::with_capacity(ring.len() + 2);

@@ -113,17 +113,15 @@ impl HeightMap {
 
     /// Samples of the plan.
     pub fn samples(&self) -> impl Iterator<Item = Sample> + '_ {
-        (0..self.inside.len())
-            .filter(|&k| self.inside[k])
-            .map(|k| {
-                let [x, y] = self.place(k / self.size[1], k % self.size[1]);
-                Sample {
-                    x,
-                    y,
-                    height: self.height[k],
-                    plane: self.plane[k],
-                }
-            })
+        (0..self.inside.len()).filter(|&k| self.inside[k]).map(|k| {
+            let [x, y] = self.place(k / self.size[1], k % self.size[1]);
+            Sample {
+                x,
+                y,
+                height: self.height[k],
+                plane: self.plane[k],
+            }
+        })
     }
 
     /// Area of one sample.
@@ -169,7 +167,9 @@ impl HeightMap {
                     continue;
                 }
                 all += 1.0;
-                let rise = around.iter().map(|&o| (self.height[o] - self.height[k]).abs());
+                let rise = around
+                    .iter()
+                    .map(|&o| (self.height[o] - self.height[k]).abs());
                 if rise.fold(0.0, f64::max) < most {
                     flat += 1.0;
                 }

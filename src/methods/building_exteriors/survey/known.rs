@@ -16,13 +16,34 @@ pub struct Known {
 }
 
 /// Names of attributes, in lower case without signs: CityGML and CityJSON, 3D BAG and PLATEAU.
-const STOREYS: [&str; 5] = ["storeysaboveground", "measuredstoreys", "b3bouwlagen", "storeys", "floors"];
-const YEARS: [&str; 5] = ["yearofconstruction", "bouwjaar", "oorspronkelijkbouwjaar", "yearbuilt", "year"];
+const STOREYS: [&str; 5] = [
+    "storeysaboveground",
+    "measuredstoreys",
+    "b3bouwlagen",
+    "storeys",
+    "floors",
+];
+const YEARS: [&str; 5] = [
+    "yearofconstruction",
+    "bouwjaar",
+    "oorspronkelijkbouwjaar",
+    "yearbuilt",
+    "year",
+];
 const USES: [&str; 4] = ["function", "usage", "gebruiksdoel", "use"];
 /// Words and codes of dwellings: code lists of the German surveys (31001_1000 to 1999, 9997 and 9998 unknown), PLATEAU
 /// (411 house, 412 flats), INSPIRE.
-const DWELLINGS: [&str; 7] = ["wohn", "woon", "resid", "dwelling", "house", "home", "31001_1"];
-const UNKNOWN: [&str; 6] = ["31001_9998", "9998", "unknown", "none", "null", "31001_9997"];
+const DWELLINGS: [&str; 7] = [
+    "wohn", "woon", "resid", "dwelling", "house", "home", "31001_1",
+];
+const UNKNOWN: [&str; 6] = [
+    "31001_9998",
+    "9998",
+    "unknown",
+    "none",
+    "null",
+    "31001_9997",
+];
 
 impl Known {
     /// Reads the attributes; names that are not known count for nothing.

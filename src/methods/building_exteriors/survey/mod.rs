@@ -219,8 +219,18 @@ pub fn survey_all(city: &[Candidate], limits: &Limits) -> Vec<Result<Surveyed, R
         })
         .collect();
     let mut seen = std::collections::HashSet::new();
-    for (number, house) in found.iter_mut().enumerate().filter_map(|(k, f)| Some((k, f.as_mut().ok()?))) {
-        let usual = |c: char| if c.is_ascii_alphanumeric() || "_-".contains(c) { c } else { '_' };
+    for (number, house) in found
+        .iter_mut()
+        .enumerate()
+        .filter_map(|(k, f)| Some((k, f.as_mut().ok()?)))
+    {
+        let usual = |c: char| {
+            if c.is_ascii_alphanumeric() || "_-".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
         let plain: String = house.building.name.chars().map(usual).take(80).collect();
         let is_new = !plain.is_empty() && seen.insert(plain.clone());
         house.building.name = match is_new {

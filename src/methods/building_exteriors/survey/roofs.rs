@@ -105,7 +105,10 @@ pub(super) fn fitted(levels: &[Level], map: &HeightMap) -> Vec<RoofedBox> {
     for round in 0..ROUNDS {
         for (i, own) in boxes.iter_mut().enumerate() {
             let seen = owners.iter().zip(&samples);
-            let seen: Vec<Sample> = seen.filter(|(o, _)| **o == Some(i)).map(|(_, s)| *s).collect();
+            let seen: Vec<Sample> = seen
+                .filter(|(o, _)| **o == Some(i))
+                .map(|(_, s)| *s)
+                .collect();
             if seen.len() >= 4 {
                 *own = best(own, &seen);
             }
@@ -113,7 +116,10 @@ pub(super) fn fitted(levels: &[Level], map: &HeightMap) -> Vec<RoofedBox> {
         if round + 1 < ROUNDS {
             reach(&mut boxes, &samples);
         }
-        owners = samples.iter().map(|s| top(&boxes, s).map(|t| t.0)).collect();
+        owners = samples
+            .iter()
+            .map(|s| top(&boxes, s).map(|t| t.0))
+            .collect();
     }
     let mut boxes = simplified(boxes, &samples);
     way_round(&mut boxes, &samples);
@@ -123,7 +129,8 @@ pub(super) fn fitted(levels: &[Level], map: &HeightMap) -> Vec<RoofedBox> {
 /// The highest box over a sample and its height there.
 fn top(boxes: &[RoofedBox], s: &Sample) -> Option<(usize, f64)> {
     let over = boxes.iter().enumerate().filter(|(_, b)| b.contains(s));
-    over.map(|(i, b)| (i, b.height(s.x, s.y))).max_by(|a, b| a.1.total_cmp(&b.1))
+    over.map(|(i, b)| (i, b.height(s.x, s.y)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Sum of the absolute differences of the heights; a sample that no box covers counts as its height.
@@ -140,7 +147,9 @@ fn best(own: &RoofedBox, samples: &[Sample]) -> RoofedBox {
             continue;
         };
         let n = samples.len() as f64;
-        let off = samples.iter().map(|s| (roofed.height(s.x, s.y) - s.height).abs());
+        let off = samples
+            .iter()
+            .map(|s| (roofed.height(s.x, s.y) - s.height).abs());
         let mean = off.sum::<f64>() / n;
         let handicap = match kind.0 {
             RoofStyle::Flat => 1.0 / (1.0 + FLAT / mean.max(1e-6)),
@@ -279,7 +288,11 @@ fn way_round(boxes: &mut [RoofedBox], samples: &[Sample]) {
             let [x0, x1, y0, y1] = b.plan;
             b.plan = [-x1, -x0, -y1, -y0];
             if b.kind.0 == RoofStyle::Shed {
-                let extent = if b.kind.1 == Ridge::X { y1 - y0 } else { x1 - x0 };
+                let extent = if b.kind.1 == Ridge::X {
+                    y1 - y0
+                } else {
+                    x1 - x0
+                };
                 b.eave += b.slope * extent;
                 b.slope = -b.slope;
             }
@@ -289,7 +302,9 @@ fn way_round(boxes: &mut [RoofedBox], samples: &[Sample]) {
             let kinds = KINDS.iter().filter(|k| k.0 != RoofStyle::Shed);
             let fitted = kinds.filter_map(|k| least_squares(b, *k, &seen));
             let off = |r: &RoofedBox| {
-                seen.iter().map(|s| (r.height(s.x, s.y) - s.height).abs()).sum::<f64>()
+                seen.iter()
+                    .map(|s| (r.height(s.x, s.y) - s.height).abs())
+                    .sum::<f64>()
             };
             if let Some(other) = fitted.min_by(|p, q| off(p).total_cmp(&off(q))) {
                 *b = other;

@@ -16,7 +16,10 @@ const LEAST: f64 = 0.8;
 /// Twice the area times the unit normal.
 pub(super) fn normal(t: &Corners) -> [f64; 3] {
     let [a, b, c] = t;
-    let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+    let (u, v) = (
+        [0, 1, 2].map(|k| b[k] - a[k]),
+        [0, 1, 2].map(|k| c[k] - a[k]),
+    );
     [
         u[1] * v[2] - u[2] * v[1],
         u[2] * v[0] - u[0] * v[2],
@@ -93,7 +96,11 @@ pub(super) fn axes(mesh: &TriangleMesh) -> Option<Axes> {
     };
     let slack = SLACK.to_radians();
     let total: f64 = walls.iter().map(|w| w.1).sum();
-    let right: f64 = walls.iter().filter(|w| off(w.0) <= slack).map(|w| w.1).sum();
+    let right: f64 = walls
+        .iter()
+        .filter(|w| off(w.0) <= slack)
+        .map(|w| w.1)
+        .sum();
     (total > 0.0).then(|| Axes {
         angle,
         share: right / total,
@@ -115,7 +122,9 @@ pub(super) fn turned(mesh: &TriangleMesh, angle: f64) -> TriangleMesh {
     };
     let (low, high) = out.bounds().unwrap_or_default();
     if high[1] - low[1] > high[0] - low[0] {
-        out.positions.iter_mut().for_each(|p| *p = [p[1], -p[0], p[2]]);
+        out.positions
+            .iter_mut()
+            .for_each(|p| *p = [p[1], -p[0], p[2]]);
     }
     out.welded(0.01)
 }
