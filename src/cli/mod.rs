@@ -3,6 +3,7 @@
 
 mod building;
 mod city;
+mod cleaning;
 mod facade;
 mod grammar;
 mod logic;
@@ -13,6 +14,7 @@ mod reproduce;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
+mod tolerance;
 
 use std::process::ExitCode;
 

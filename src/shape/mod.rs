@@ -37,7 +37,7 @@ pub use building::{
 pub use building_error::BuildingError;
 pub use hidden::Hidden;
 pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
-pub use cleaning::{ToleranceError, absorb_specks, clean, straighten};
+pub use cleaning::{ToleranceError, absorb_specks, clean, on_lattice, straighten};
 pub use components::{Component, components};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};

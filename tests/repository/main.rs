@@ -2,6 +2,7 @@
 
 mod datasets;
 mod experiments;
+mod formats;
 #[cfg(unix)]
 mod help_examples;
 mod installed;

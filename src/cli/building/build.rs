@@ -22,7 +22,7 @@ use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
 use crate::print;
-use edifice_model::given::evidence;
+use crate::model::given::evidence;
 
 /// Options of `build`.
 #[derive(clap::Args)]

@@ -14,8 +14,8 @@ use edifice_model::{Cell, Table};
 use super::data::{self, Input};
 use super::produce::Making;
 use crate::print;
-use edifice_model::data::csv_lines;
-use edifice_model::given::evidence;
+use crate::model::data::csv_lines;
+use crate::model::given::evidence;
 
 /// Samples among which the most probable are sought.
 const POOL: usize = 2000;

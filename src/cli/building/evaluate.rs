@@ -1,7 +1,9 @@
 //! `edifice building evaluate`.
 
+use edifice_model::tables::compare::Contender;
+
 use super::data::Input;
-use edifice_model::evaluate::Splits;
+use crate::model::evaluate::Splits;
 
 /// Options.
 #[derive(clap::Args)]
@@ -15,5 +17,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
     let data = args.input.known()?;
-    args.splits.evaluate(&data, &args.input.input)
+    // The rows are those of the model as published.
+    args.splits
+        .evaluate(&data, &args.input.input, Contender::Ours)
 }

@@ -8,7 +8,7 @@ use edifice_building_exteriors::model_file::ModelFile;
 
 use super::data::Input;
 use crate::print;
-use edifice_model::learning::Learning;
+use crate::model::learning::Learning;
 
 /// Options.
 #[derive(clap::Args)]
