@@ -87,7 +87,8 @@ fn fits(walls: &Walls, strip: &Strip) -> bool {
 fn is_free(walls: &Walls, room: &Room, at: f64) -> bool {
     let span = [at - DOOR[0] / 2.0, at + DOOR[0] / 2.0];
     let free = walls.free(room, span);
-    free.is_some_and(|f| f[1] >= DOOR[1] + 0.05 && f[0] <= SILL)
+    // What is clear over a window may be the door's casing.
+    free.is_some_and(|f| f[1] + CLEAR >= DOOR[1] + 0.02 && f[0] <= SILL)
 }
 
 /// Whether a wall is one of the garage.
