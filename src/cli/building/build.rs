@@ -1,6 +1,6 @@
 //! `edifice building build` and `generate`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
