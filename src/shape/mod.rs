@@ -31,11 +31,10 @@ pub mod triangles;
 
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{
-    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof,
-    RoofStyle, Side, Special,
+    BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof, RoofStyle,
+    Side, Special,
 };
 pub use building_error::BuildingError;
-pub use hidden::Hidden;
 pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
 pub use cleaning::{ToleranceError, absorb_specks, clean, on_lattice, straighten};
 pub use components::{Component, components};
@@ -43,6 +42,7 @@ pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};
 pub use elements::{BACKGROUND_LABELS, elements_of_facade, elements_of_grid, is_background};
 pub use facade::{Facade, LayoutError, Region};
+pub use hidden::Hidden;
 pub use label_grid::{GridError, LabelGrid};
 pub use labelled::Labelled;
 pub use photograph::{Photograph, PhotographError, PhotographFormat};

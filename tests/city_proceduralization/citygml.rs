@@ -93,23 +93,40 @@ fn solids_by_reference_are_read_once_with_attributes_and_system() {
 fn surfaces_without_a_solid_parts_and_rooms() {
     let shell = |id: &str, low: [f64; 3]| {
         let members: String = (faces(low, [4.0; 3]).iter().enumerate())
-            .map(|(k, f)| format!("<gml:surfaceMember>{}</gml:surfaceMember>", polygon(&format!("{id}{k}"), f)))
+            .map(|(k, f)| {
+                format!(
+                    "<gml:surfaceMember>{}</gml:surfaceMember>",
+                    polygon(&format!("{id}{k}"), f)
+                )
+            })
             .collect();
-        format!("<bldg:lod1MultiSurface><gml:MultiSurface>{members}</gml:MultiSurface></bldg:lod1MultiSurface>")
+        format!(
+            "<bldg:lod1MultiSurface><gml:MultiSurface>{members}</gml:MultiSurface></bldg:lod1MultiSurface>"
+        )
     };
     let part = |id: &str, low| {
         let own = shell(id, low);
-        format!("<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"{id}\">{own}</bldg:BuildingPart></bldg:consistsOfBuildingPart>")
+        format!(
+            "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"{id}\">{own}</bldg:BuildingPart></bldg:consistsOfBuildingPart>"
+        )
     };
-    let room = format!("<bldg:interiorRoom><bldg:Room>{}</bldg:Room></bldg:interiorRoom>", shell("r", [0.0; 3]));
+    let room = format!(
+        "<bldg:interiorRoom><bldg:Room>{}</bldg:Room></bldg:interiorRoom>",
+        shell("r", [0.0; 3])
+    );
     let parts = [part("p", [0.0; 3]), part("q", [9.0, 0.0, 0.0])].concat();
     let foot = "<bldg:lod0FootPrint><gml:MultiSurface/></bldg:lod0FootPrint>";
-    let whole = format!("<core:cityObjectMember><bldg:Building gml:id=\"w\">{foot}{parts}{room}</bldg:Building></core:cityObjectMember><core:cityObjectMember><Road/></core:cityObjectMember>");
+    let whole = format!(
+        "<core:cityObjectMember><bldg:Building gml:id=\"w\">{foot}{parts}{room}</bldg:Building></core:cityObjectMember><core:cityObjectMember><Road/></core:cityObjectMember>"
+    );
     let city = read(&document("EPSG:25832", &whole));
     assert_eq!(city.buildings.len(), 1);
     assert!((volume(&city, 0) - 128.0).abs() < 1e-9);
     let notes = city.notes.join("; ");
-    assert!(notes.contains("1 rooms") && notes.contains("1 city objects"), "{notes}");
+    assert!(
+        notes.contains("1 rooms") && notes.contains("1 city objects"),
+        "{notes}"
+    );
 }
 
 #[test]
@@ -129,16 +146,26 @@ fn degrees_become_metres_latitude_first() {
 #[test]
 fn wrong_files_say_where() {
     let whole = document("EPSG:25832", &building("b", [0.0; 3], [5.0; 3]));
-    let say = |text: &str| parse(text.as_bytes(), Path::new("a.gml")).unwrap_err().to_string();
+    let say = |text: &str| {
+        parse(text.as_bytes(), Path::new("a.gml"))
+            .unwrap_err()
+            .to_string()
+    };
     for (text, what) in [
-        (whole.replacen("5 0 0", "5 x 0", 1), "\"x\" is no coordinate"),
+        (
+            whole.replacen("5 0 0", "5 x 0", 1),
+            "\"x\" is no coordinate",
+        ),
         (whole.replacen("5 0 0", "5 0", 1), "coordinates"),
         (whole[..whole.len() - 40].to_owned(), "a.gml"),
         ("<a/>".to_owned(), "expected <CityModel>"),
         (String::new(), "expected <CityModel>"),
     ] {
         let message = say(&text);
-        assert!(message.starts_with("a.gml") && message.contains(what), "{message}");
+        assert!(
+            message.starts_with("a.gml") && message.contains(what),
+            "{message}"
+        );
     }
     let deep = "<a>".repeat(400);
     assert!(say(&document("x", &deep)).contains("deep"));

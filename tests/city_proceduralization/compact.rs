@@ -210,7 +210,11 @@ fn parametrize(rng: &mut Stream, rule: &mut InstanceRule, templates: &[Template]
     if rule.levels > 0 {
         for s in &mut rule.successors {
             let share = |rng: &mut Stream| f64::from(rng.random_range(1..2000)) / 1024.0;
-            s.at = [share(rng), -share(rng), rng.random_range(0..rule.levels) as f64];
+            s.at = [
+                share(rng),
+                -share(rng),
+                rng.random_range(0..rule.levels) as f64,
+            ];
             s.size = [0; 3].map(|_| share(rng));
         }
     }

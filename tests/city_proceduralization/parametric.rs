@@ -51,7 +51,11 @@ fn parts_follow_the_numbers() {
     assert_eq!(scaled.at, [10.0, -1.0, 9.0]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
     assert!(near(scaled.size[0], 5.0) && near(scaled.size[1], 10.0) && near(scaled.size[2], 3.0));
-    let plain = InstanceRule::new("N", 1.0, vec![Placement::new("T1", [1.0; 3], 3.0, [2.0; 3])]);
+    let plain = InstanceRule::new(
+        "N",
+        1.0,
+        vec![Placement::new("T1", [1.0; 3], 3.0, [2.0; 3])],
+    );
     assert_eq!(plain.part(0, &[]), plain.successors[0]);
 }
 
@@ -59,7 +63,11 @@ fn parts_follow_the_numbers() {
 fn numbers_that_do_not_fit_the_rule_are_refused() {
     let mut mesh = TriangleMesh::default();
     mesh.push([[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 1.0]]);
-    let mut rule = InstanceRule::new("B", 1.0, vec![Placement::new("T1", [0.0; 3], 0.0, [1.0; 3])]);
+    let mut rule = InstanceRule::new(
+        "B",
+        1.0,
+        vec![Placement::new("T1", [0.0; 3], 0.0, [1.0; 3])],
+    );
     rule.levels = 1;
     let mut placed = Placement::new("B", [0.0; 3], 0.0, [1.0; 3]);
     placed.numbers = vec![4.0, 3.0, 2.0];
@@ -75,7 +83,10 @@ fn numbers_that_do_not_fit_the_rule_are_refused() {
     };
     assert_eq!(grammar.derive().unwrap().instances[0].size, [4.0, 3.0, 2.0]);
     let text = grammar_json::to_string(&grammar).unwrap();
-    assert!(text.contains("\"parameters\":[\"w\",\"d\",\"h1\"]"), "{text}");
+    assert!(
+        text.contains("\"parameters\":[\"w\",\"d\",\"h1\"]"),
+        "{text}"
+    );
     let path = std::path::Path::new("g.city-grammar.json");
     assert_eq!(grammar_json::parse(text.as_bytes(), path).unwrap(), grammar);
     let fault = |change: &dyn Fn(&mut InstanceGrammar)| {
@@ -84,7 +95,10 @@ fn numbers_that_do_not_fit_the_rule_are_refused() {
         g.derive().unwrap_err().to_string()
     };
     let few = fault(&|g| g.rules[0].successors[0].numbers.truncate(2));
-    assert!(few.contains("2 numbers") && few.contains("3 parameters"), "{few}");
+    assert!(
+        few.contains("2 numbers") && few.contains("3 parameters"),
+        "{few}"
+    );
     let none = fault(&|g| g.rules[0].successors[0].numbers[1] = 0.0);
     assert!(none.contains("numbers[1]"), "{none}");
     let high = fault(&|g| g.rules[1].successors[0].at[2] = 1.0);
@@ -106,7 +120,11 @@ fn a_city_of_a_known_grammar_is_derived_by_the_rules_alone() {
         let rules = grammar.rules_only();
         assert_eq!(rules.residuals(), 0);
         let found = iou(&city, &derived(&rules));
-        println!("noise {noise}: {found:.4}, {} residuals of {}", grammar.residuals(), city.buildings.len());
+        println!(
+            "noise {noise}: {found:.4}, {} residuals of {}",
+            grammar.residuals(),
+            city.buildings.len()
+        );
         assert!(found >= least, "noise {noise}: {found}");
         // With residuals nothing is lost.
         assert!(iou(&city, &derived(&grammar)) >= found - 0.002);
@@ -132,7 +150,11 @@ fn residuals_stand_in_a_stream_of_their_own() {
     };
     let residuals = bytes.len() - part(part(10));
     let without = compact::to_bytes(&again.rules_only()).unwrap();
-    println!("{} bytes, {residuals} of residuals, {} without", bytes.len(), without.len());
+    println!(
+        "{} bytes, {residuals} of residuals, {} without",
+        bytes.len(),
+        without.len()
+    );
     assert!(residuals > 0 && bytes.len() - without.len() >= residuals / 2);
 }
 
@@ -143,7 +165,11 @@ fn edits_of_types_scale_what_they_name() {
     let before = volume(&derived(&grammar));
     let edits = |texts: &[&str]| texts.iter().map(|t| t.parse().unwrap()).collect::<Vec<_>>();
     let all = edits(&["scale B*=1,1,1.5", "scale E*=1,1,1.5"]);
-    let kinds = |g: &InstanceGrammar, start: &str| g.rules.iter().any(|r| r.symbol.starts_with(start) && r.levels > 0);
+    let kinds = |g: &InstanceGrammar, start: &str| {
+        g.rules
+            .iter()
+            .any(|r| r.symbol.starts_with(start) && r.levels > 0)
+    };
     let all: Vec<_> = match kinds(&grammar, "E") {
         true => all,
         false => all[..1].to_vec(),
@@ -155,13 +181,22 @@ fn edits_of_types_scale_what_they_name() {
             false => volume(&derived(&grammar.rules_only())),
         };
         let after = volume(&derived(&taller));
-        assert!((after / base - 1.5).abs() < 0.005, "{carry}: {after} {base}");
+        assert!(
+            (after / base - 1.5).abs() < 0.005,
+            "{carry}: {after} {base}"
+        );
         // Buildings stay where they stand.
         let low = |c: &City| c.buildings[5].mesh.bounds().unwrap().0;
         assert!((low(&derived(&taller))[2] - low(&derived(&grammar))[2]).abs() < 0.02);
     }
     // One type moves all of its instances, and no others.
-    let first = grammar.rules.iter().find(|r| r.levels > 0).unwrap().symbol.clone();
+    let first = grammar
+        .rules
+        .iter()
+        .find(|r| r.levels > 0)
+        .unwrap()
+        .symbol
+        .clone();
     let wider = edit(&grammar, &edits(&[&format!("scale {first}=2,1,1")]), true).unwrap();
     let (a, b) = (derived(&grammar), derived(&wider));
     let axiom = &grammar.rules[0].successors;

@@ -21,8 +21,8 @@ use edifice_shape::Rect;
 use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
-use crate::print;
 use crate::model::given::evidence;
+use crate::print;
 
 /// Options of `build`.
 #[derive(clap::Args)]

@@ -13,9 +13,9 @@ use edifice_model::{Cell, Table};
 
 use super::data::{self, Input};
 use super::produce::Making;
-use crate::print;
 use crate::model::data::csv_lines;
 use crate::model::given::evidence;
+use crate::print;
 
 /// Samples among which the most probable are sought.
 const POOL: usize = 2000;

@@ -7,8 +7,8 @@ use edifice_building_exteriors::coding::Coding;
 use edifice_building_exteriors::model_file::ModelFile;
 
 use super::data::Input;
-use crate::print;
 use crate::model::learning::Learning;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]

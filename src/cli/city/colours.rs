@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
 use edifice_io::city::picture::Legend;
 use edifice_shape::triangles::{City, CityBuilding};
-use edifice_base::{Error, Result};
 use rustc_hash::FxHashMap;
 
 use super::data;
@@ -74,13 +74,15 @@ pub fn colouring(colour: Colour, shown: &Read, beside: Option<&Read>) -> Result<
     let option = |text: &str| Error::option("--colour", text);
     let symbols = |read: &Read| -> Result<Vec<String>> {
         let grammar = read.grammar.as_ref();
-        let grammar = grammar.ok_or_else(|| option("types and levels are told of grammars only"))?;
+        let grammar =
+            grammar.ok_or_else(|| option("types and levels are told of grammars only"))?;
         Ok(symbols(grammar, &read.city))
     };
     match colour {
         Colour::Plain => Ok(Colouring::default()),
         Colour::Height => {
-            let heights = |read: &Read| read.city.buildings.iter().map(height).collect::<Vec<f64>>();
+            let heights =
+                |read: &Read| read.city.buildings.iter().map(height).collect::<Vec<f64>>();
             let own = heights(shown);
             let steps = steps(&own);
             let other = beside.map(|b| ramp(&heights(b), &steps));
@@ -113,8 +115,11 @@ pub fn colouring(colour: Colour, shown: &Read, beside: Option<&Read>) -> Result<
             let mut order: Vec<(&str, usize)> = counts.into_iter().collect();
             order.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));
             let last = TYPES.len() - 1;
-            let place: FxHashMap<&str, usize> =
-                order.iter().enumerate().map(|(k, o)| (o.0, k.min(last))).collect();
+            let place: FxHashMap<&str, usize> = order
+                .iter()
+                .enumerate()
+                .map(|(k, o)| (o.0, k.min(last)))
+                .collect();
             let named = order.iter().take(last).zip(TYPES);
             let mut legend: Legend = named
                 .map(|((symbol, count), colour)| (colour, format!("{symbol} {count}")))
@@ -158,12 +163,19 @@ fn symbols(grammar: &InstanceGrammar, city: &City) -> Vec<String> {
     let named: FxHashMap<&str, &str> = placed
         .filter_map(|p| Some((p.id.as_deref()?, p.symbol.as_str())))
         .collect();
-    let of = |b: &CityBuilding| named.get(b.id.as_str()).map_or_else(String::new, |s| (*s).to_owned());
+    let of = |b: &CityBuilding| {
+        named
+            .get(b.id.as_str())
+            .map_or_else(String::new, |s| (*s).to_owned())
+    };
     city.buildings.iter().map(of).collect()
 }
 
 fn height(building: &CityBuilding) -> f64 {
-    building.mesh.bounds().map_or(0.0, |(low, high)| high[2] - low[2])
+    building
+        .mesh
+        .bounds()
+        .map_or(0.0, |(low, high)| high[2] - low[2])
 }
 
 fn volume(building: &CityBuilding) -> f64 {
@@ -193,7 +205,10 @@ fn legend(steps: &[f64; 5], unit: &str) -> Legend {
         5 => format!("over {}{unit}", number(steps[4])),
         _ => format!("to {}{unit}", number(steps[k])),
     };
-    RAMP.into_iter().enumerate().map(|(k, c)| (c, text(k))).collect()
+    RAMP.into_iter()
+        .enumerate()
+        .map(|(k, c)| (c, text(k)))
+        .collect()
 }
 
 fn number(v: f64) -> String {

@@ -35,6 +35,8 @@ pub fn run(args: &Args) -> Result<()> {
         args.output.display(),
         city.buildings.len(),
         city.triangles(),
-        city.reference_system.as_deref().unwrap_or("no reference system")
+        city.reference_system
+            .as_deref()
+            .unwrap_or("no reference system")
     ))
 }

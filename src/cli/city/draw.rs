@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use edifice_io::city::picture::{self, Drawing, Drawn};
 use edifice_base::{Error, Result};
+use edifice_io::city::picture::{self, Drawing, Drawn};
 
 use super::colours::{Colouring, Read, colouring};
 

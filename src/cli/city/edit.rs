@@ -35,7 +35,8 @@ fn parse(text: &str) -> std::result::Result<CityEdit, String> {
 pub fn run(args: &Args) -> Result<()> {
     let grammar = data::grammar(&args.grammar)?;
     let carry = args.residuals == Residuals::Keep;
-    let edited = edit(&grammar, &args.edits, carry).map_err(|e| Error::content(&args.grammar, e))?;
+    let edited =
+        edit(&grammar, &args.edits, carry).map_err(|e| Error::content(&args.grammar, e))?;
     grammar_file::write(&edited, &args.output)?;
     print::line(&format!(
         "{}: {} rules",

@@ -147,7 +147,7 @@ pub fn run(args: &Args) -> Result<()> {
         _ => {
             let made = method::proceduralize_watched(&input, &settings, &print::message);
             Some(made.map_err(|e| failure(e.into(), args))?)
-        },
+        }
     };
     let option = if args.bytes.is_some() {
         "--bytes"

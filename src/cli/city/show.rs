@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement};
 use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement};
 use rustc_hash::FxHashMap;
 
 use super::data;
@@ -65,12 +65,18 @@ pub fn run(args: &Args) -> Result<()> {
         grammar.residuals()
     ))?;
     tell("types of buildings", types, |r| uses.text(r))?;
-    tell("escapes, buildings that no type explains", escapes, |r| uses.text(r))?;
+    tell("escapes, buildings that no type explains", escapes, |r| {
+        uses.text(r)
+    })?;
     tell("other rules", rest, fixed)
 }
 
 /// Prints the first rules of a kind, those of most instances first.
-fn tell(what: &str, mut rules: Vec<&InstanceRule>, text: impl Fn(&InstanceRule) -> String) -> Result<()> {
+fn tell(
+    what: &str,
+    mut rules: Vec<&InstanceRule>,
+    text: impl Fn(&InstanceRule) -> String,
+) -> Result<()> {
     if rules.is_empty() {
         return Ok(());
     }
@@ -149,7 +155,11 @@ fn fixed(rule: &InstanceRule) -> String {
             true => String::new(),
             false => format!("({})", shortened(&numbers, ", ")),
         };
-        format!("{}{given} at ({x:.1}, {y:.1}, {z:.1}){}", s.symbol, turned(s))
+        format!(
+            "{}{given} at ({x:.1}, {y:.1}, {z:.1}){}",
+            s.symbol,
+            turned(s)
+        )
     };
     format!("{} x {} -> {}", rule.symbol, rule.weight, parts(rule, one))
 }

@@ -58,7 +58,10 @@ impl VolumeRaster {
     pub fn fitted(&self, first: &[&TriangleMesh], second: &[&TriangleMesh]) -> Self {
         let (mut area, mut low, mut high) = (0.0, [f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for mesh in first.iter().chain(second) {
-            area += mesh.corners().map(|t| super::mesh::plan_area(&t).abs()).sum::<f64>();
+            area += mesh
+                .corners()
+                .map(|t| super::mesh::plan_area(&t).abs())
+                .sum::<f64>();
             if let Some((l, h)) = mesh.bounds() {
                 low = [0, 1].map(|k| low[k].min(l[k]));
                 high = [0, 1].map(|k| high[k].max(h[k]));
@@ -152,13 +155,7 @@ impl VolumeRaster {
 
     /// Crossings of a triangle with the columns of a strip. Each column crosses a closed surface's plan
     /// consistently: edges are half open, and computed from the same end in both of their triangles.
-    fn cross(
-        &self,
-        t: &super::Corners,
-        strip: i64,
-        within: &Range<i64>,
-        out: &mut Vec<Crossing>,
-    ) {
+    fn cross(&self, t: &super::Corners, strip: i64, within: &Range<i64>, out: &mut Vec<Crossing>) {
         let area = super::mesh::plan_area(t);
         if area == 0.0 {
             return;
