@@ -5,11 +5,13 @@ use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_building_exteriors::coding::Coding;
 use edifice_building_exteriors::design::{Edit, completions, edited, observed, suggested};
 use edifice_building_exteriors::house::walls::walls_of_pieces;
 use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
 use edifice_building_exteriors::mass::iou;
-use edifice_model::hierarchy::{Hierarchy, learn};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::{BoxStyle, Building, Side};
 
@@ -20,7 +22,7 @@ const COMPLETIONS: usize = 5;
 
 /// A model and a database of donors that have not seen the last houses.
 struct Learned {
-    model: Hierarchy,
+    model: ModelFile,
     database: Database,
     held_out: Vec<Building>,
 }
@@ -35,7 +37,11 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
         .select(&(0..buildings.len()).collect::<Vec<_>>());
     let found = learn(&seen.table, &seen.groups, &settings, ctx.seed()).map_err(Error::method)?;
     Ok(Learned {
-        model: found.model,
+        model: ModelFile {
+            groups: seen.groups,
+            coding: Coding::Published,
+            model: found.model,
+        },
         database: Database::new(buildings).map_err(Error::method)?,
         held_out,
     })

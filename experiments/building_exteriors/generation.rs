@@ -74,10 +74,16 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .model
         .sample(many, &mut rng)
         .map_err(Error::method)?;
-    let possible = possible_rows(many, &[false; 49], &database.deviations, || {
-        let draws = learned.model.sample(many, &mut rng);
-        draws.map(|d| d.table).map_err(Error::method)
-    })?;
+    let possible = possible_rows(
+        many,
+        &[false; 49],
+        &database.deviations,
+        |_| 0.0,
+        || {
+            let draws = learned.model.sample(many, &mut rng);
+            draws.map(|d| d.table).map_err(Error::method)
+        },
+    )?;
     ctx.setting("drawn_for_possible", possible.drawn);
     let probable = learned
         .model

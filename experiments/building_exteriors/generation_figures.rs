@@ -85,10 +85,16 @@ pub fn figure_15(ctx: &mut Context) -> Result<()> {
     // One house of each of the first six styles shows what the styles are.
     for k in 0..6 {
         let style = k % learned.model.styles();
-        let possible = possible_rows(1, &[false; 49], &database.deviations, || {
-            let draws = learned.model.sample_style(style, 1, &mut rng);
-            draws.map(|d| d.table).map_err(Error::method)
-        })?;
+        let possible = possible_rows(
+            1,
+            &[false; 49],
+            &database.deviations,
+            |_| 0.0,
+            || {
+                let draws = learned.model.sample_style(style, 1, &mut rng);
+                draws.map(|d| d.table).map_err(Error::method)
+            },
+        )?;
         let wanted = possible.rows[0];
         let name = format!("house_{}", k + 1);
         let made = generate(

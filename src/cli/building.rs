@@ -8,6 +8,7 @@ mod data;
 mod design;
 mod draw;
 mod evaluate;
+mod import;
 mod learn;
 mod output;
 mod produce;
@@ -18,6 +19,13 @@ use clap::Subcommand;
 /// Commands.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Measure the houses of city models (LoD2): detached buildings as boxes with roofs.
+    #[command(after_help = "Examples:
+  edifice building import datasets/building_exteriors/village.city.json -o village.buildings.jsonl --report village.csv
+  edifice building learn village.buildings.jsonl -o village.houses.json
+A city model shows no windows, porches and chimneys: they are left unobserved, for models to fill in. The report has a line for
+each building: why it is no house, or intersection over union of the plans, volume over volume, mean error of the heights.")]
+    Import(import::Args),
     /// Measure the 49 attributes of buildings; prints CSV.
     #[command(after_help = "Examples:
   edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv")]
@@ -25,7 +33,9 @@ pub enum Command {
     /// Learn the hierarchical model from a database of buildings or a CSV with a schema.
     #[command(after_help = "Examples:
   edifice building learn datasets/building_exteriors/houses.buildings.jsonl -o model.houses.json
-  edifice building learn ames_raw.csv.gz --schema datasets/building_exteriors/ames.schema.json --max-styles 8 -o ames.houses.json")]
+  edifice building learn datasets/building_exteriors/real.houses.csv --max-styles 3 --max-kinds 3 -o real.houses.json
+  edifice building learn datasets/building_exteriors/delft.buildings.jsonl --groups bbox,bcr,arf,roof --max-styles 3 -o plain.houses.json
+A CSV of other columns needs a schema: --schema datasets/building_exteriors/h2k.schema.json.")]
     Learn(learn::Args),
     /// Show styles, cardinalities and lateral edges of a model, and draw its network.
     #[command(after_help = "Examples:
@@ -39,9 +49,8 @@ pub enum Command {
     Sample(draw::SampleArgs),
     /// Complete houses whose attributes are partly missing; prints CSV.
     #[command(after_help = "Examples:
-  edifice building complete model.houses.json partial.building.json -n 5 --most-probable
-  edifice building complete model.houses.json partial.building.json -n 5 -o completed --format json,png
-  edifice building complete ames.houses.json some.csv --schema datasets/building_exteriors/ames.schema.json
+  edifice building complete model.houses.json village.buildings.jsonl -n 2 --most-probable
+  edifice building complete model.houses.json village.buildings.jsonl -n 1 -o completed --format json,glb
 A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
     Complete(draw::CompleteArgs),
     /// Compare houses with the true ones: attributes, soundness, closed surfaces.
@@ -53,39 +62,42 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
     /// Build houses that have given attributes.
     #[command(after_help = "Examples:
   edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv
-  edifice building build houses.csv -o houses --format json,glb,png
+  head -n 4 houses.csv > few.csv && edifice building build few.csv -o houses --format json,obj,glb,png
   edifice building sample model.houses.json -n 5 > sampled.csv && edifice building build sampled.csv --repair -o sampled")]
     Build(build::BuildArgs),
     /// Sample attributes from a model and build the houses.
     #[command(after_help = "Examples:
-  edifice building generate model.houses.json -n 6 --most-probable -o houses --format json,obj,glb,svg,png
-  edifice building generate model.houses.json -n 3 --given garage=none --given roof.hip=yes -o houses --json
-  edifice building generate model.houses.json -n 4 --footprint plot.geojson -o houses
-  edifice building generate model.houses.json -n 50 -o town --street")]
+  edifice building generate -n 3 -o generated --format json,obj,glb,svg,png
+  edifice building generate -n 3 --given garage=none --given roof.hip=yes -o without_garage --json
+  edifice building generate -n 4 --footprint datasets/building_exteriors/plot.geojson -o plot
+  edifice building generate model.houses.json -n 6 --most-probable -o made
+  edifice building generate -n 12 -o town --street
+Without a model houses are drawn from the one that ships.")]
     Generate(build::GenerateArgs),
     /// Make other houses with the attributes of a house, their plans at least 5 % apart.
     #[command(after_help = "Examples:
-  edifice building variations house_0001.building.json -n 8 -o variations --format json,png")]
+  edifice building variations houses/house_0001.building.json -n 4 -o variations --format json,png")]
     Variations(design::VariationsArgs),
     /// Add, move, resize and remove boxes of a house; with a model, a house around the edited boxes is suggested.
     #[command(after_help = "Examples:
-  edifice building edit house.building.json --resize 0=9,7,2.9 -o edited --format json,png
-  edifice building edit house.building.json --add garage@2,3,3.5,6,2.5 --suggest -o edited")]
+  edifice building edit houses/house_0001.building.json --resize 0=9,7,2.9 -o edited --format json,png
+  edifice building edit houses/house_0001.building.json --add garage@2,3,3.5,6,2.5 --suggest -o edited")]
     Edit(design::EditArgs),
     /// Make a house of wished attributes, the rest as it is or as the model that ships has it.
     #[command(after_help = "Examples:
-  edifice building wish house.building.json --given bbox.w=14 --given roof.hip=yes --keep -o wished
-  edifice building wish house.building.json --style 2 --given garage.w=6 -o wished --format json,png
+  edifice building wish houses/house_0001.building.json --given bbox.w=14 --given roof.hip=yes --keep -o wished
+  edifice building wish houses/house_0001.building.json --style 2 --given garage.w=6 -o wished --format json,png
 Columns are those of `building attributes`. Wishes that no house can have together are named.")]
     Wish(design::WishArgs),
     /// Check that houses are closed, in one shell, and that nothing overlaps or is hidden; exit code 1 names what is wrong.
     #[command(after_help = "Examples:
   edifice building check houses/*.building.json
-  edifice building check house.obj")]
+  edifice building check houses/house_0001.obj
+  edifice building check --plausible generated/*.building.json")]
     Check(check::CheckArgs),
     /// Draw houses: a view (PNG), elevations and plan (SVG), a scene (GLB).
     #[command(after_help = "Examples:
-  edifice building draw house_0001.building.json -o house.png
+  edifice building draw houses/house_0001.building.json -o house.png
   edifice building draw houses/*.building.json -o street.glb")]
     Draw(check::DrawArgs),
 }
@@ -93,6 +105,7 @@ Columns are those of `building attributes`. Wishes that no house can have togeth
 /// Runs the command.
 pub fn run(command: Command) -> edifice_base::Result<()> {
     match command {
+        Command::Import(args) => import::run(&args),
         Command::Attributes(args) => attributes::run(&args),
         Command::Learn(args) => learn::run(&args),
         Command::Show(args) => show::run(&args),

@@ -28,11 +28,12 @@ use edifice_building_exteriors::house::{
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_datasets::shipped_bytes;
 use edifice_io::{building_json, gltf, scene_svg, surface_obj};
-use edifice_model::hierarchy::Hierarchy;
 use edifice_shape::Building;
 
 /// The name of the shipped houses in the program; that of the model learned from them follows.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";
+/// Real houses of Delft, measured from the 3D BAG by `edifice building import`.
+const REAL: &str = "building_exteriors/delft.buildings.jsonl";
 const MODEL: &str = "building_exteriors/default.houses.json";
 const ENDING: &str = ".building.json";
 const FORMATS: &[&str] = &["glb", "obj", "svg"];
@@ -76,7 +77,8 @@ pub fn is_file_name(name: &str) -> bool {
     !name.is_empty() && name.len() <= 100 && name.chars().all(usual)
 }
 
-/// The houses that ship with the project, read once.
+/// The houses that ship with the project and donate boxes, read once: real ones measured from a city model, then those
+/// made by the project, which have porches and facades too.
 ///
 /// # Errors
 /// When the data that ships cannot be read; a test keeps it readable.
@@ -86,12 +88,18 @@ pub fn shipped_database() -> Result<&'static Database> {
         return Ok(database);
     }
     let path = Path::new(DATABASE);
-    let buildings = building_json::parse_lines(shipped_bytes(DATABASE)?, path)?;
+    let mut buildings = Vec::new();
+    for name in [REAL, DATABASE] {
+        buildings.extend(building_json::parse_lines(
+            shipped_bytes(name)?,
+            Path::new(name),
+        )?);
+    }
     let database = Database::new(buildings).map_err(|e| Error::content(path, e))?;
     Ok(READ.get_or_init(|| database))
 }
 
-/// The model that ships with the project, learned from the shipped houses by `edifice building learn`.
+/// The model that ships with the project, learned from the made houses by `edifice building learn`.
 ///
 /// # Errors
 /// As [`shipped_database`].
@@ -113,7 +121,7 @@ pub fn shipped_model() -> Result<&'static ModelFile> {
 pub fn edit(
     house: &Building,
     edits: &[Edit],
-    model: Option<&Hierarchy>,
+    model: Option<&ModelFile>,
     database: &Database,
     options: &Options,
     seed: u64,

@@ -12,7 +12,8 @@
 //! `x`, `y` of a box are its centre; those of an element its lower-left corner on its piece. Box
 //! styles: main, garage, porch; roofs: flat, gable, hip, shed, cone; elements: sash, sliding,
 //! casement, bay, fixed, door; special: chimney, tower. `facades` and `special` may be left out: a
-//! side without facade pieces was not observed.
+//! side without facade pieces was not observed. `"unobserved": ["garage", "porch", "facades", "roof",
+//! "special"]`, each optional, names parts that nobody looked at: their attributes are missing, not zero.
 
 use std::path::Path;
 
@@ -23,7 +24,7 @@ use super::json::{check_header, parse_json};
 use super::packed::extension;
 use super::{read_bytes, write_atomic};
 use edifice_base::{Error, Result};
-use edifice_shape::{Building, FacadePiece, MassBox, Special};
+use edifice_shape::{Building, FacadePiece, Hidden, MassBox, Special};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/building";
@@ -44,6 +45,8 @@ struct File {
     facades: Vec<FacadePiece>,
     #[serde(default)]
     special: Vec<Special>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    unobserved: Vec<Hidden>,
 }
 
 impl File {
@@ -107,6 +110,7 @@ fn file(building: &Building) -> File {
         boxes: building.boxes.clone(),
         facades: building.facades.clone(),
         special: building.special.clone(),
+        unobserved: building.unobserved.clone(),
     }
 }
 
@@ -124,15 +128,17 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<Building> {
             parse_json(bytes, path)?
         }
     };
-    Building::new(
+    let building = Building::new(
         f.name,
         f.unit,
         f.floor_height,
         f.boxes,
         f.facades,
         f.special,
-    )
-    .map_err(|e| Error::content(path, e))
+    );
+    let mut building = building.map_err(|e| Error::content(path, e))?;
+    building.unobserved = f.unobserved;
+    Ok(building)
 }
 
 /// Parses the bytes of a database; empty lines are skipped.

@@ -324,6 +324,22 @@ impl Table {
         Ok(table)
     }
 
+    /// The same table with the numbers that `known` has in real columns of the same name, to the bit; each row of
+    /// `known` belongs to `times` rows of this table, one after the other. Categories stay: they are exact anyhow.
+    pub(crate) fn overlaid(mut self, known: &Self, times: usize) -> Self {
+        for column in &mut self.columns {
+            let Ok(own) = known.column(&column.name) else {
+                continue;
+            };
+            if let (Values::Real(to), Values::Real(from)) = (&mut column.values, &own.values) {
+                let from = from.iter().flat_map(|v| std::iter::repeat_n(*v, times));
+                let known = to.iter_mut().zip(from).filter(|(_, v)| v.is_finite());
+                known.for_each(|(to, v)| *to = v);
+            }
+        }
+        self
+    }
+
     /// The same table where every column not called one of `names` is missing in every row: what
     /// is left is evidence to condition on.
     ///

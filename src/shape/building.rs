@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Rect;
 use super::building_error::BuildingError;
+use super::hidden::Hidden;
 
 /// The kind of a box of the mass model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -207,15 +208,17 @@ pub struct Building {
     pub facades: Vec<FacadePiece>,
     /// Special elements that are present.
     pub special: Vec<Special>,
+    /// Parts that have not been looked at, for example in a city model without windows; none for a whole house.
+    pub unobserved: Vec<Hidden>,
 }
 
 impl Building {
     /// Checks and builds a building.
     ///
     /// # Errors
-    /// [`BuildingError`] for no box at all, a floor height or a size that is not positive, a number
-    /// that is not finite, a pitch outside `[0, 90)`, a facade piece below the ground, an element
-    /// that reaches outside its piece.
+    /// [`BuildingError`] for a unit that is none of m, cm, mm, ft and in, no box at all, a floor height or a size that
+    /// is not positive, a number that is not finite or beyond 500 m, more than 100 floors, a pitch outside `[0, 90)`, a
+    /// facade piece below the ground, an element that reaches outside its piece.
     pub fn new(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -224,24 +227,42 @@ impl Building {
         facades: Vec<FacadePiece>,
         special: Vec<Special>,
     ) -> Result<Self, BuildingError> {
-        positive(|| "floor_height".into(), floor_height)?;
+        let unit = unit.into();
+        let known = UNITS.iter().find(|(name, _)| *name == unit);
+        let Some((_, in_metre)) = known else {
+            return Err(BuildingError::Unit { unit });
+        };
+        let bounds = Bounds {
+            most: LARGEST * in_metre,
+        };
+        bounds.positive(|| "floor_height".into(), floor_height)?;
         if boxes.is_empty() {
             return Err(BuildingError::NoBoxes);
         }
         for (i, b) in boxes.iter().enumerate() {
-            check_box(i, b)?;
+            check_box(i, b, &bounds)?;
+            let floors = b.height / floor_height;
+            if floors > MOST_FLOORS {
+                return Err(BuildingError::Floors { index: i, floors });
+            }
         }
         for (i, piece) in facades.iter().enumerate() {
-            check_piece(i, piece)?;
+            check_piece(i, piece, &bounds)?;
         }
         Ok(Self {
             name: name.into(),
-            unit: unit.into(),
+            unit,
             floor_height,
             boxes,
             facades,
             special,
+            unobserved: Vec::new(),
         })
+    }
+
+    /// Whether a part has not been looked at.
+    pub fn is_unobserved(&self, part: Hidden) -> bool {
+        self.unobserved.contains(&part)
     }
 
     /// Number of floors the box reaches, at least 1.
@@ -263,13 +284,60 @@ impl Building {
     }
 }
 
-fn check_box(i: usize, b: &MassBox) -> Result<(), BuildingError> {
+/// Units of length and how many of them a metre has.
+const UNITS: [(&str, f64); 5] = [
+    ("m", 1.0),
+    ("cm", 100.0),
+    ("mm", 1000.0),
+    ("ft", 3.280_84),
+    ("in", 39.370_1),
+];
+/// Largest size and coordinate of a building (m), and most floors of a box.
+const LARGEST: f64 = 500.0;
+const MOST_FLOORS: f64 = 100.0;
+
+/// What numbers may be.
+struct Bounds {
+    /// Largest size or coordinate.
+    most: f64,
+}
+
+impl Bounds {
+    fn finite(&self, place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
+        if !value.is_finite() {
+            return Err(BuildingError::NotFinite {
+                place: place(),
+                value,
+            });
+        }
+        if value.abs() > self.most {
+            return Err(BuildingError::TooLarge {
+                place: place(),
+                value,
+                most: self.most,
+            });
+        }
+        Ok(())
+    }
+
+    fn positive(&self, place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(BuildingError::NotPositive {
+                place: place(),
+                value,
+            });
+        }
+        self.finite(place, value)
+    }
+}
+
+fn check_box(i: usize, b: &MassBox, bounds: &Bounds) -> Result<(), BuildingError> {
     let at = |field: &str| format!("boxes[{i}].{field}");
-    finite(|| at("x"), b.x)?;
-    finite(|| at("y"), b.y)?;
-    positive(|| at("width"), b.width)?;
-    positive(|| at("depth"), b.depth)?;
-    positive(|| at("height"), b.height)?;
+    bounds.finite(|| at("x"), b.x)?;
+    bounds.finite(|| at("y"), b.y)?;
+    bounds.positive(|| at("width"), b.width)?;
+    bounds.positive(|| at("depth"), b.depth)?;
+    bounds.positive(|| at("height"), b.height)?;
     if !(0.0..90.0).contains(&b.roof.pitch) {
         return Err(BuildingError::Pitch {
             index: i,
@@ -279,12 +347,12 @@ fn check_box(i: usize, b: &MassBox) -> Result<(), BuildingError> {
     Ok(())
 }
 
-fn check_piece(i: usize, piece: &FacadePiece) -> Result<(), BuildingError> {
+fn check_piece(i: usize, piece: &FacadePiece, bounds: &Bounds) -> Result<(), BuildingError> {
     let at = |field: &str| format!("facades[{i}].{field}");
-    finite(|| at("start"), piece.start)?;
-    finite(|| at("base"), piece.base)?;
-    positive(|| at("width"), piece.width)?;
-    positive(|| at("height"), piece.height)?;
+    bounds.finite(|| at("start"), piece.start)?;
+    bounds.finite(|| at("base"), piece.base)?;
+    bounds.positive(|| at("width"), piece.width)?;
+    bounds.positive(|| at("height"), piece.height)?;
     if piece.base < 0.0 {
         return Err(BuildingError::Underground {
             index: i,
@@ -295,10 +363,10 @@ fn check_piece(i: usize, piece: &FacadePiece) -> Result<(), BuildingError> {
     let slack = 1e-6 * piece.width.max(piece.height);
     for (k, e) in piece.elements.iter().enumerate() {
         let at = |field: &str| format!("facades[{i}].elements[{k}].{field}");
-        finite(|| at("x"), e.x)?;
-        finite(|| at("y"), e.y)?;
-        positive(|| at("width"), e.width)?;
-        positive(|| at("height"), e.height)?;
+        bounds.finite(|| at("x"), e.x)?;
+        bounds.finite(|| at("y"), e.y)?;
+        bounds.positive(|| at("width"), e.width)?;
+        bounds.positive(|| at("height"), e.height)?;
         let r = e.rect();
         if r.x < -slack
             || r.y < -slack
@@ -314,24 +382,4 @@ fn check_piece(i: usize, piece: &FacadePiece) -> Result<(), BuildingError> {
         }
     }
     Ok(())
-}
-
-fn finite(place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(BuildingError::NotFinite {
-        place: place(),
-        value,
-    })
-}
-
-fn positive(place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(BuildingError::NotPositive {
-        place: place(),
-        value,
-    })
 }

@@ -3,6 +3,30 @@
 /// One variant per way to be wrong, with the culprit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildingError {
+    /// A unit of length that nobody knows.
+    #[error("unit is {unit:?}, expected m, cm, mm, ft or in")]
+    Unit {
+        /// The unit found.
+        unit: String,
+    },
+    /// A size or coordinate that no building has.
+    #[error("{place} is {value}: more than {most:.0}, which no house reaches")]
+    TooLarge {
+        /// Path of the field.
+        place: String,
+        /// The value found.
+        value: f64,
+        /// The largest allowed, in the building's unit.
+        most: f64,
+    },
+    /// A box of more floors than any house has.
+    #[error("boxes[{index}].height is {floors:.0} floor heights, expected at most 100")]
+    Floors {
+        /// Index of the box.
+        index: usize,
+        /// Its height over the floor height.
+        floors: f64,
+    },
     /// The mass model is empty.
     #[error("the building has no boxes")]
     NoBoxes,

@@ -1,6 +1,8 @@
 //! Houses: attributes, learning, generation, design, files and commands.
 
 mod attributes;
+mod broken;
+mod coding;
 mod commands;
 mod contradictions;
 mod design;
@@ -10,3 +12,4 @@ mod generation;
 mod io;
 mod possible;
 mod shipped;
+mod survey;

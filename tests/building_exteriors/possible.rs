@@ -90,9 +90,13 @@ fn samples_are_truncated_to_possible_rows() {
     let free = [false; 49];
     let drawn = |count: usize| {
         let mut rng = stream(3, "tests/possible", 0);
-        possible_rows(count, &free, &database.deviations, || {
-            file.model.sample(count, &mut rng).map(|d| d.table)
-        })
+        possible_rows(
+            count,
+            &free,
+            &database.deviations,
+            |_| 0.0,
+            || file.sample(count, &mut rng).map(|d| d.table),
+        )
         .unwrap()
     };
     let possible = drawn(300);
@@ -105,7 +109,7 @@ fn samples_are_truncated_to_possible_rows() {
     }
     // A model of impossible rows only: what is nearest to possible comes, and is called what it is.
     let mut rng = stream(4, "tests/possible", 0);
-    let table = file.model.sample(40, &mut rng).unwrap().table;
+    let table = file.sample(40, &mut rng).unwrap().table;
     let rows = wanted_rows(&table);
     let far: Vec<usize> = (0..rows.len())
         .filter(|&r| least_z(&rows[r], &database.deviations) > 0.3)

@@ -3,6 +3,8 @@
 mod datasets;
 mod experiments;
 mod formats;
+#[cfg(unix)]
+mod help_examples;
 mod installed;
 mod prose;
 #[cfg(unix)]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_building_exteriors::house::model::expected_volume;
+use edifice_building_exteriors::house::inspect::{faults, implausible};
 use edifice_building_exteriors::house::{Model, model};
 use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_shape::Building;
@@ -11,9 +11,6 @@ use edifice_shape::Building;
 use super::output::{street, write_png};
 use super::produce::RoofOption;
 use crate::print;
-
-/// Largest relative difference between the volume of a surface and the integral over its plan.
-const VOLUME: f64 = 1e-9;
 
 /// Options of `check`.
 #[derive(clap::Args)]
@@ -24,6 +21,10 @@ pub struct CheckArgs {
     /// Roofs of each box, or one joined roof.
     #[arg(long, value_enum, default_value = "boxes")]
     roof: RoofOption,
+    /// Also list what a house may have but hardly any has: stubs, several pitches, porches without a door, windows of
+    /// unusual size.
+    #[arg(long)]
+    plausible: bool,
     /// Print a line of JSON for each house.
     #[arg(long)]
     json: bool,
@@ -67,8 +68,15 @@ pub fn check(args: &CheckArgs) -> Result<()> {
             tell(&path.display().to_string(), &faults, args.json)?;
             continue;
         }
+        let mut names = std::collections::HashSet::new();
         for building in building_json::read(path)? {
-            let faults = faults(&building, args.roof);
+            let mut faults = faults(&building, args.roof.joining());
+            if !names.insert(building.name.clone()) {
+                faults.push("name: another house of the file has it".into());
+            }
+            if args.plausible {
+                faults.extend(implausible(&building));
+            }
             all += 1;
             bad += usize::from(!faults.is_empty());
             tell(
@@ -82,7 +90,8 @@ pub fn check(args: &CheckArgs) -> Result<()> {
         return Err(Error::method(Faults { bad, all }));
     }
     print::message(&format!(
-        "{all} closed, one shell each, nothing overlapping or hidden"
+        "{all} closed, one shell each, nothing overlapping or hidden{}",
+        if args.plausible { ", plausible" } else { "" }
     ));
     Ok(())
 }
@@ -96,35 +105,6 @@ fn tell(name: &str, faults: &[String], json: bool) -> Result<()> {
     faults
         .iter()
         .try_for_each(|fault| print::line(&format!("{name}: {fault}")))
-}
-
-/// The faults of a house, one sentence each; none for a sound one.
-fn faults(building: &Building, roof: RoofOption) -> Vec<String> {
-    let mut faults = Vec::new();
-    if !edifice_building_exteriors::mass::is_sound(building) {
-        faults.push("the boxes are not in one piece, shut in a courtyard, are thinner than 0.5 m, touch in a corner only, or parts overlap".into());
-    }
-    match model(building, roof.joining()) {
-        Err(e) => faults.push(e.to_string()),
-        Ok(made) => {
-            if made.report.shells != 1 {
-                faults.push(format!("{} shells", made.report.shells));
-            }
-            let expected = expected_volume(building, roof.joining(), made.openings);
-            if (made.report.volume - expected).abs() > VOLUME * expected.abs() {
-                let volume = made.report.volume;
-                faults.push(format!(
-                    "encloses {volume} cubic metres, its plan {expected}"
-                ));
-            }
-            for (piece, element) in made.unplaced {
-                faults.push(format!(
-                    "facades[{piece}].elements[{element}] is hidden behind a roof, over a corner, or overlaps another"
-                ));
-            }
-        }
-    }
-    faults
 }
 
 /// Runs `draw`.

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_building_exteriors::attributes::attributes;
-use edifice_building_exteriors::data::dataset;
+use edifice_building_exteriors::attributes::{AttributeRow, attributes};
+use edifice_building_exteriors::coding::{Observation, coded};
+use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::model_file::ModelFile;
+use edifice_building_exteriors::observations::{observations, only, tells_of_houses};
 use edifice_io::{building_csv, building_json, json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
@@ -13,38 +15,82 @@ use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 /// The source of houses.
 #[derive(clap::Args)]
 pub struct Input {
-    /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`.
+    /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`. A CSV
+    /// whose columns are attributes, as `building attributes` prints them, needs no schema; empty cells are missing.
     pub input: PathBuf,
     /// Which columns of a CSV are which attributes (`*.schema.json`).
     #[arg(long)]
     pub schema: Option<PathBuf>,
+    /// Attributes to read, for example `bbox,bcr,arf,roof`; all others are taken for missing. All by default.
+    #[arg(long, value_delimiter = ',')]
+    pub groups: Vec<String>,
 }
 
 impl Input {
-    /// Reads the houses.
+    /// The houses with all attributes of the paper, or with those of the schema.
     pub fn read(&self) -> Result<Dataset> {
-        let name = self.input.to_string_lossy();
-        if !(name.ends_with(".csv") || name.ends_with(".csv.gz")) {
-            return buildings(&self.input);
+        match &self.schema {
+            Some(schema) => self.by_schema(schema),
+            None => {
+                let houses = self.observed()?;
+                let rows: Vec<AttributeRow> = houses.into_iter().map(|h| h.row).collect();
+                dataset(&rows).map_err(|e| Error::content(&self.input, e))
+            }
         }
-        let Some(schema) = &self.schema else {
-            return Err(Error::option("--schema", "a CSV table needs a schema"));
-        };
-        let bytes = read_bytes(schema)?;
-        json::check_header(&bytes, schema, FORMAT, VERSION)?;
-        let schema: Schema = json::parse_json(&bytes, schema)?;
+    }
+
+    /// The same without columns of which nothing is known.
+    pub fn known(&self) -> Result<Dataset> {
+        known(self.read()?).map_err(|e| Error::content(&self.input, e))
+    }
+
+    /// The houses as a coded model reads them; those read by a schema are as they are.
+    pub fn coded(&self) -> Result<Dataset> {
+        match &self.schema {
+            Some(schema) => self.by_schema(schema),
+            None => coded(&self.observed()?).map_err(|e| Error::content(&self.input, e)),
+        }
+    }
+
+    fn by_schema(&self, path: &Path) -> Result<Dataset> {
+        if !self.groups.is_empty() {
+            let problem = "the schema says which attributes there are";
+            return Err(Error::option("--groups", problem));
+        }
+        let bytes = read_bytes(path)?;
+        json::check_header(&bytes, path, FORMAT, VERSION)?;
+        let schema: Schema = json::parse_json(&bytes, path)?;
         let text = building_csv::read(&self.input)?;
         let read = schema.read(&text.header, &text.rows);
         read.map_err(|e| Error::content(&self.input, e))
     }
-}
 
-fn buildings(path: &Path) -> Result<Dataset> {
-    let mut rows = Vec::new();
-    for building in building_json::read(path)? {
-        rows.push(attributes(&building).map_err(|e| Error::content(path, e))?);
+    /// What is known of each house.
+    fn observed(&self) -> Result<Vec<Observation>> {
+        let name = self.input.to_string_lossy();
+        let at = |e: String| Error::content(&self.input, e);
+        let mut houses = if name.ends_with(".csv") || name.ends_with(".csv.gz") {
+            let text = building_csv::read(&self.input)?;
+            if !tells_of_houses(&text.header) {
+                let problem = "the table has no columns of attributes, and needs a schema";
+                return Err(Error::option("--schema", problem));
+            }
+            observations(&text.header, &text.rows).map_err(|e| at(e.to_string()))?
+        } else {
+            let houses = building_json::read(&self.input)?;
+            let rows = houses.iter().map(|b| Ok(attributes(b)?.into()));
+            let rows: std::result::Result<
+                Vec<_>,
+                edifice_building_exteriors::attributes::AttributeError,
+            > = rows.collect();
+            rows.map_err(|e| at(e.to_string()))?
+        };
+        if !self.groups.is_empty() {
+            only(&mut houses, &self.groups)
+                .map_err(|e| Error::option("--groups", e.to_string()))?;
+        }
+        Ok(houses)
     }
-    dataset(&rows).map_err(|e| Error::content(path, e))
 }
 
 /// Reads a learned model.

@@ -145,8 +145,8 @@ pub fn edit(args: &EditArgs) -> Result<()> {
     let (database, options) = (args.making.database()?, args.making.options());
     let own = args.model.as_deref().map(data::model).transpose()?;
     let model = match (&own, args.suggest) {
-        (Some(file), _) => Some(&file.model),
-        (None, true) => Some(&editing::shipped_model()?.model),
+        (Some(file), _) => Some(file),
+        (None, true) => Some(editing::shipped_model()?),
         (None, false) => None,
     };
     let made = editing::edit(&house, &edits, model, &database, &options, args.seed);
@@ -167,7 +167,7 @@ pub fn wish(args: &WishArgs) -> Result<()> {
     }
     let house = house(&args.house)?;
     let (database, options) = (args.making.database()?, args.making.options());
-    let known = (&editing::shipped_model()?.model, &database);
+    let known = (editing::shipped_model()?, &database);
     let made = editing::wished(
         &house,
         &wishes,

@@ -106,12 +106,12 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
         let index = style
             .checked_sub(1)
             .ok_or_else(|| Error::option("--style", "the first style is 1"))?;
-        let draws = file.model.sample_style(index, args.draw.count(), &mut rng);
+        let draws = file.sample_style(index, args.draw.count(), &mut rng);
         let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
         return print::line(&csv_lines(&draws.table).join("\n"));
     }
-    let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&file.groups, &kinds.table, &args.given)
+    let kinds = file.sample(1, &mut rng).map_err(Error::method)?;
+    let given = evidence(&file.attributes(), &kinds.table, &args.given)
         .map_err(|e| Error::option("--given", e.to_string()))?;
     print::line(&drawn(&file, &given, &args.draw, 0)?.join("\n"))
 }
@@ -124,9 +124,10 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
     }
     let mut table = args.input.read()?.table;
     if !args.keep.is_empty() {
+        let known = file.attributes();
         let mut columns: Vec<&str> = Vec::new();
         for name in &args.keep {
-            let group = file.groups.iter().find(|g| &g.name == name);
+            let group = known.iter().find(|g| &g.name == name);
             let group =
                 group.ok_or_else(|| Error::option("--keep", format!("no attribute `{name}`")))?;
             columns.extend(group.columns.iter().map(String::as_str));
@@ -145,8 +146,12 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
 /// Builds the completions of partial houses.
 fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Result<()> {
     let path = &args.input.input;
-    let groups = || file.groups.iter().map(|g| g.name.as_str());
-    if let Some(name) = args.keep.iter().find(|k| groups().all(|g| g != k.as_str())) {
+    let groups = file.attributes();
+    if let Some(name) = args
+        .keep
+        .iter()
+        .find(|k| groups.iter().all(|g| &g.name != *k))
+    {
         return Err(Error::option("--keep", format!("no attribute `{name}`")));
     }
     let count = args.draw.count.unwrap_or(COMPLETED);
@@ -154,8 +159,8 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
         return Err(Error::option("--count", "must be at least 1"));
     }
     let mut rng = stream(args.draw.seed, "building/kinds", 0);
-    let kinds = file.model.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&file.groups, &kinds.table, &args.given)
+    let kinds = file.sample(1, &mut rng).map_err(Error::method)?;
+    let given = evidence(&file.attributes(), &kinds.table, &args.given)
         .map_err(|e| Error::option("--given", e.to_string()))?;
     let database = args.making.database()?;
     let options = args.making.options();
@@ -174,15 +179,7 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
             }
         }
         let seed = args.draw.seed;
-        let houses = completions(
-            &partial,
-            &file.model,
-            &row,
-            count,
-            &database,
-            &options,
-            seed,
-        );
+        let houses = completions(&partial, file, &row, count, &database, &options, seed);
         let houses = houses.map_err(|e| named(e.to_string()))?;
         if houses.len() < count {
             print::message(&format!(
@@ -206,14 +203,13 @@ fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<S
 /// Completions of one row.
 pub fn drawn_table(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Table> {
     let mut rng = stream(draw.seed, "building/draw", row);
-    let model = &file.model;
     let draws = if draw.most_probable {
         let pool = POOL.max(draw.count());
-        model.most_probable(given, draw.count(), pool, APART, None, &mut rng)
+        file.most_probable(given, draw.count(), pool, APART, &mut rng)
     } else if given.columns().is_empty() {
-        model.sample(draw.count(), &mut rng)
+        file.sample(draw.count(), &mut rng)
     } else {
-        model.complete(given, draw.count(), &mut rng)
+        file.complete(given, draw.count(), &mut rng)
     };
     // Each row was asked about on its own; the message names its place in the input.
     let draws = draws.map_err(|e| Error::method(e.in_row(row as usize)))?;

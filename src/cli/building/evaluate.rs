@@ -16,8 +16,8 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
-    let data = args.input.read()?;
-    // `building learn` learns the model as published.
+    let data = args.input.known()?;
+    // The rows are those of the model as published.
     args.splits
         .evaluate(&data, &args.input.input, Contender::Ours)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::Error;
+use edifice_building_exteriors::coding::Coding;
 use edifice_building_exteriors::model_file::ModelFile;
 
 use super::data::Input;
@@ -19,6 +20,10 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     learning: Learning,
+    /// The paper's model: every attribute a Gaussian variable, absent parts zeros, derived numbers drawn. Without it the
+    /// presence of parts and the number of floors are discrete variables, and what follows from others is computed.
+    #[arg(long)]
+    as_published: bool,
     /// Print a line of JSON.
     #[arg(long)]
     json: bool,
@@ -26,7 +31,10 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
-    let data = args.input.read()?;
+    let (data, coding) = match args.as_published || args.input.schema.is_some() {
+        true => (args.input.known()?, Coding::Published),
+        false => (args.input.coded()?, Coding::Presence),
+    };
     let start = args
         .learning
         .from
@@ -40,7 +48,11 @@ pub fn run(args: &Args) -> edifice_base::Result<()> {
     let (styles, edges) = (model.styles(), model.lateral_edges().len());
     let cardinalities = model.cardinalities();
     let groups = data.groups;
-    let file = ModelFile { groups, model };
+    let file = ModelFile {
+        groups,
+        coding,
+        model,
+    };
     let text = file.to_json().map_err(Error::method)?;
     edifice_io::write_atomic(&args.output, text.as_bytes())?;
     let houses = data.table.rows();

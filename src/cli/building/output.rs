@@ -1,19 +1,17 @@
 //! Files of houses.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::{Database, Model};
-use edifice_editing::building_exteriors::scene_of;
+use edifice_editing::building_exteriors::{scene_of, shipped_database};
 use edifice_io::scene_png::picture_png;
 use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_scene::Scene;
 use edifice_scene::trace::{framing, trace};
 use edifice_shape::Building;
 
-/// The name of the shipped database in the program.
-const SHIPPED: &str = "building_exteriors/houses.buildings.jsonl";
 /// Pixels of a picture.
 const PICTURE: [usize; 2] = [800, 500];
 /// Room between houses of one scene (m).
@@ -36,15 +34,10 @@ pub enum Format {
 
 /// Reads the database of donors: a file, or the shipped houses.
 pub fn database(path: Option<&Path>) -> Result<Database> {
-    let (buildings, path) = match path {
-        Some(path) => (building_json::read(path)?, path.to_path_buf()),
-        None => {
-            let path = PathBuf::from(SHIPPED);
-            let bytes = edifice_datasets::shipped_bytes(SHIPPED)?;
-            (building_json::parse_lines(bytes, &path)?, path)
-        }
+    let Some(path) = path else {
+        return shipped_database().cloned();
     };
-    Database::new(buildings).map_err(|e| Error::content(&path, e))
+    Database::new(building_json::read(path)?).map_err(|e| Error::content(path, e))
 }
 
 fn placed<'a>(building: &'a Building, model: &'a Model, at: [f64; 2]) -> Placed<'a> {

@@ -138,16 +138,21 @@ impl Output {
     }
 }
 
-/// Makes and writes the houses. Those whose report is there with the same attributes are left as they are.
+/// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same attributes are left as they are.
 pub fn produce(
     orders: &[Order],
     database: &Database,
     options: &Options,
     output: &Output,
+    source: Option<&Path>,
 ) -> Result<()> {
+    let named = |house: &str, e: String| match source {
+        Some(path) => Error::content(path, format!("{house}: {e}")),
+        None => Error::method(format!("{house}: {e}")),
+    };
     // Nothing is written when some row cannot be a house.
     for order in orders {
-        let named = |e: String| Error::method(format!("{}: {e}", order.name));
+        let named = |e: String| named(&order.name, e);
         check_given(&order.wanted, &order.given).map_err(|e| named(e.to_string()))?;
         if let Some(plan) = &options.footprint {
             reconcile(&mut order.wanted.clone(), &order.given, plan)
@@ -174,7 +179,7 @@ pub fn produce(
                     options,
                     &mut rng,
                 )
-                .map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
+                .map_err(|e| named(&order.name, e.to_string()))?;
                 let seconds = start.elapsed().as_secs_f64();
                 output::write(
                     &house.building,

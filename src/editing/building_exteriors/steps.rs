@@ -20,7 +20,7 @@ impl House {
         let edits = text::parse_all(texts)?;
         let database = shipped_database()?;
         let learned = match suggest {
-            true => Some(&shipped_model()?.model),
+            true => Some(shipped_model()?),
             false => None,
         };
         let made = edit(
@@ -96,7 +96,7 @@ impl House {
         if texts.is_empty() && style.is_none() {
             return Err(CommandError::Nothing.into());
         }
-        let known = (&shipped_model()?.model, shipped_database()?);
+        let known = (shipped_model()?, shipped_database()?);
         let options = Options::default();
         let made =
             wished(&self.building, &wishes, known, &options, seed, work).map_err(Error::method)?;

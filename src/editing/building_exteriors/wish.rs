@@ -13,8 +13,8 @@ use edifice_building_exteriors::design::wanted_rows;
 use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
 use edifice_building_exteriors::mass::contradiction::{Contradiction, check_given};
 use edifice_building_exteriors::mass::target::PARTS;
+use edifice_building_exteriors::model_file::ModelFile;
 use edifice_model::ModelError;
-use edifice_model::hierarchy::Hierarchy;
 use edifice_shape::Building;
 
 /// First column that is yes or no.
@@ -104,7 +104,7 @@ pub fn given(texts: &[String]) -> std::result::Result<AttributeRow, CommandError
 pub fn wished(
     house: &Building,
     wishes: &Wishes,
-    (model, database): (&Hierarchy, &Database),
+    (model, database): (&ModelFile, &Database),
     options: &Options,
     seed: u64,
     work: &Work,
@@ -145,7 +145,7 @@ pub fn wished(
             let evidence = table(std::slice::from_ref(&wishes.given))?;
             wanted_rows(
                 &model
-                    .most_probable(&evidence, TRIES, POOL, 0.0, None, &mut rng)?
+                    .most_probable(&evidence, TRIES, POOL, 0.0, &mut rng)?
                     .table,
             )
         }
@@ -205,7 +205,7 @@ pub fn ranges() -> Result<&'static [[f64; 2]; 49]> {
     if let Some(known) = KNOWN.get() {
         return Ok(known);
     }
-    let model = &shipped_model()?.model;
+    let model = shipped_model()?;
     let draws = model.sample(DRAWS, &mut stream(0, "building/ranges", 0));
     let rows = wanted_rows(&draws.map_err(edifice_base::Error::method)?.table);
     let between = |c: usize| {

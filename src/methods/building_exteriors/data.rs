@@ -1,9 +1,13 @@
 //! From attribute rows to the tables and groups of the model layer.
 
+use rand::Rng;
+
 use super::attributes::{AttributeRow, GROUPS, Level};
+use super::coding::attribute_rows;
+use super::model_file::ModelFile;
 use edifice_model::hierarchy::Group;
 use edifice_model::tables::Dataset;
-use edifice_model::{ModelError, Table};
+use edifice_model::{Cell, ModelError, Table};
 
 /// The 49 attributes of many buildings with the paper's 13 groups.
 ///
@@ -13,6 +17,37 @@ pub fn dataset(rows: &[AttributeRow]) -> Result<Dataset, ModelError> {
     Ok(Dataset {
         table: table(rows)?,
         groups: groups(),
+    })
+}
+
+/// The dataset without columns of which nothing is known, and without attributes that have no other.
+///
+/// # Errors
+/// [`ModelError::Empty`] when nothing is known at all.
+pub fn known(data: Dataset) -> Result<Dataset, ModelError> {
+    let tells = |name: &str| -> Result<bool, ModelError> {
+        let column = data.table.column(name)?;
+        Ok((0..data.table.rows()).any(|row| column.cell(row) != Cell::Missing))
+    };
+    let (mut groups, mut names) = (Vec::new(), Vec::new());
+    for group in &data.groups {
+        let mut own: Vec<&str> = Vec::new();
+        for column in &group.columns {
+            if tells(column)? {
+                own.push(column);
+            }
+        }
+        if !own.is_empty() {
+            groups.push(Group::new(&group.name, &own));
+            names.extend(own);
+        }
+    }
+    if groups.is_empty() {
+        return Err(ModelError::Empty { what: "columns" });
+    }
+    Ok(Dataset {
+        table: data.table.in_order(&names)?,
+        groups,
     })
 }
 
@@ -35,6 +70,30 @@ pub fn table(rows: &[AttributeRow]) -> Result<Table, ModelError> {
         }
     }
     Ok(table)
+}
+
+/// The rows with what is missing drawn from a model given the rest; columns that the model does not know stay missing.
+///
+/// # Errors
+/// As [`ModelFile::complete`].
+pub fn filled(
+    mut rows: Vec<AttributeRow>,
+    model: &ModelFile,
+    rng: &mut impl Rng,
+) -> Result<Vec<AttributeRow>, ModelError> {
+    let holes = |row: &AttributeRow| row.iter().any(Option::is_none);
+    for row in rows.iter_mut().filter(|row| holes(row)) {
+        let drawn = match row.iter().all(Option::is_none) {
+            true => model.sample(1, rng)?,
+            false => model.complete(&table(std::slice::from_ref(row))?, 1, rng)?,
+        };
+        for own in attribute_rows(&drawn.table) {
+            for (value, drawn) in row.iter_mut().zip(own) {
+                *value = value.or(drawn);
+            }
+        }
+    }
+    Ok(rows)
 }
 
 /// The 13 attributes of the paper as groups of columns: seven of the mass model and three of the

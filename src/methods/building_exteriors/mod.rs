@@ -6,6 +6,7 @@
 
 pub mod agreement;
 pub mod attributes;
+pub mod coding;
 pub mod data;
 pub mod design;
 pub mod facade;
@@ -13,3 +14,5 @@ pub mod house;
 pub mod mass;
 pub mod model_file;
 pub mod network;
+pub mod observations;
+pub mod survey;

@@ -204,7 +204,8 @@ impl Hierarchy {
             log_density.push(scratch.log_likelihood - self.log_scale(drawn.real(i)));
         }
         Ok(Draws {
-            table: self.schema.decode(&drawn)?,
+            // What is given does not pass through the scale of the model.
+            table: self.schema.decode(&drawn)?.overlaid(given, count),
             styles,
             log_density,
         })

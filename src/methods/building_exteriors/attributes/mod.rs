@@ -35,7 +35,8 @@
 //!   that tolerance, both with elements centred in the overlap; they are aligned when every such
 //!   element of the piece with fewer of them has the centre, left or right edge of one of the other.
 //!   No pair: 0, as for absent garages.
-//! - A side without any facade piece was not observed: its three attributes are missing, not zero.
+//! - A side without any facade piece was not observed: its three attributes are missing, not zero; so are the window
+//!   styles of a house without any piece, and the columns of parts that the house calls unobserved.
 //! - Shed and cone roofs (Sec. 6.1) have no attribute, as in the paper. Doors count as facade
 //!   elements for `wwr`, symmetry and alignment and have no style attribute.
 
@@ -45,7 +46,7 @@ mod mass;
 
 pub use columns::{COLUMNS, GROUPS, Group, Level};
 
-use edifice_shape::{Building, ElementStyle, RoofStyle, Special};
+use edifice_shape::{Building, ElementStyle, Hidden, RoofStyle, Special};
 
 /// The attributes of one building, in the order of [`COLUMNS`]; `None` is missing.
 pub type AttributeRow = Vec<Option<f64>>;
@@ -83,7 +84,24 @@ pub fn attributes(building: &Building) -> Result<AttributeRow, AttributeError> {
             .map(|p| Some(f64::from(u8::from(p)))),
     );
     debug_assert_eq!(row.len(), COLUMNS.len());
+    for part in Hidden::ALL {
+        let windowless = part == Hidden::Facades && building.facades.is_empty();
+        if building.is_unobserved(part) || windowless {
+            hidden_columns(part).for_each(|c| row[c] = None);
+        }
+    }
     Ok(row)
+}
+
+/// Columns that an unobserved part leaves missing.
+fn hidden_columns(part: Hidden) -> Box<dyn Iterator<Item = usize>> {
+    match part {
+        Hidden::Garage => Box::new(9..15),
+        Hidden::Porch => Box::new(15..27),
+        Hidden::Facades => Box::new((27..39).chain(42..47)),
+        Hidden::Roof => Box::new(39..42),
+        Hidden::Special => Box::new(47..49),
+    }
 }
 
 /// The 27 mass model attributes alone (Appendix A.1): what [`attributes`] begins with, for any number

@@ -17,9 +17,9 @@ use crate::mass::contradiction::check_given;
 use crate::mass::repair::{changes, repair};
 use crate::mass::target::{PARTS, part_of};
 use crate::mass::{Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search};
+use crate::model_file::ModelFile;
 use edifice_base::rng::stream;
 use edifice_model::ModelError;
-use edifice_model::hierarchy::Hierarchy;
 use edifice_shape::{BoxStyle, Building, MassBox};
 
 /// Why observed parts cannot be completed.
@@ -98,7 +98,7 @@ const APART: f64 = 0.05;
 /// [`CompleteError`]; when some answers can be built, the others are passed over.
 pub fn completions(
     partial: &Building,
-    model: &Hierarchy,
+    model: &ModelFile,
     given: &AttributeRow,
     count: usize,
     database: &Database,
@@ -116,7 +116,7 @@ pub fn completions(
         ..options.clone()
     };
     let evidence = table(std::slice::from_ref(given))?;
-    let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, None, &mut rng)?;
+    let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, &mut rng)?;
     let is_given: [bool; 49] = std::array::from_fn(|c| given[c].is_some());
     let mut houses = Vec::new();
     let mut first = None;

@@ -9,7 +9,7 @@ use crate::data::table;
 use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft};
 use crate::mass::target::{PARTS, bounds};
 use crate::mass::{MASS, MassModel, Search, is_sound};
-use edifice_model::hierarchy::Hierarchy;
+use crate::model_file::ModelFile;
 use edifice_shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
 
 /// One edit of a house.
@@ -189,7 +189,7 @@ fn sound(boxes: &Building) -> Result<(), EditError> {
 pub fn suggested(
     house: &Building,
     edits: &[Edit],
-    model: &Hierarchy,
+    model: &ModelFile,
     database: &Database,
     options: &Options,
     rng: &mut impl Rng,
@@ -203,7 +203,7 @@ pub fn suggested(
         .collect();
     let table = table(&[evidence]).map_err(CompleteError::from)?;
     let draws = model
-        .most_probable(&table, TRIES, POOL, 0.0, None, rng)
+        .most_probable(&table, TRIES, POOL, 0.0, rng)
         .map_err(CompleteError::from)?;
     let mut own = boxes.clone();
     own.boxes = boxes

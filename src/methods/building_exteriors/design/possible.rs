@@ -32,7 +32,8 @@ pub struct Possible {
 }
 
 /// `count` rows that a house can have, from batches of `count` rows that `draw` makes; `given` columns are not
-/// repaired. Where 20 batches have too few of them, the rows nearest to possible ones fill the rest.
+/// repaired. `reach` is a further distance in standard deviations, of a row from what can be built on a footprint, 0
+/// without one. Where 20 batches have too few of them, the rows nearest to possible ones fill the rest.
 ///
 /// # Errors
 /// Those of `draw`.
@@ -40,6 +41,7 @@ pub fn possible_rows<E>(
     count: usize,
     given: &[bool; 49],
     deviations: &[f64; 49],
+    reach: impl Fn(&[f64; 49]) -> f64,
     mut draw: impl FnMut() -> Result<Table, E>,
 ) -> Result<Possible, E> {
     let (mut rows, mut others) = (Vec::with_capacity(count), Vec::new());
@@ -53,6 +55,7 @@ pub fn possible_rows<E>(
             let mut repaired = row;
             repair(&mut repaired, given, deviations);
             let moved = max_z(&repaired[..NUMBERS], &row[..NUMBERS], deviations);
+            let moved = moved.max(reach(&row));
             let low = row[2] <= MOST_STOREY * floors(&row) as f64;
             match moved <= MOVED && low {
                 true => rows.push(row),

@@ -13,10 +13,11 @@
 
 use rand::{Rng, RngExt};
 
+use super::doors::door_strip;
 use super::elements::{Elements, SubStyle};
 use super::glaze::millimetres;
 use super::knapsack::widths;
-use super::layout::{FacadeTarget, Facades, door_strip};
+use super::layout::{FacadeTarget, Facades};
 use super::room::{Room, Walls};
 use crate::attributes::facade_attributes;
 use edifice_optim::Step;
@@ -46,7 +47,7 @@ pub fn breed(
     seed: u64,
 ) -> Result<(Facades, Vec<Step>), GeneticError> {
     let walls = Walls::new(building, shell, &target.fixed);
-    let door = door_strip(building, &walls);
+    let door = door_strip(building, &walls, Side::Front);
     let mut places = Vec::new();
     for (s, strips) in walls.strips.iter().enumerate() {
         for (k, strip) in strips.iter().enumerate() {
@@ -100,6 +101,7 @@ fn measured(pieces: &[FacadePiece], floor_height: f64) -> Vec<f64> {
         boxes: Vec::new(),
         facades: pieces.to_vec(),
         special: Vec::new(),
+        unobserved: Vec::new(),
     };
     let measured = facade_attributes(&walls).into_iter();
     measured.map(|v| v.unwrap_or(0.0)).collect()

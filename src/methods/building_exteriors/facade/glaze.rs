@@ -3,9 +3,9 @@
 use super::room::{CLEAR, EYE, Room, Strip, Walls};
 use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 
-/// Width and height of a window at scale 1 and of a door (m).
-const WINDOW: [f64; 2] = [1.1, 1.3];
-const DOOR: [f64; 2] = [1.0, 2.1];
+/// Width and height of a window at scale 1, the medians of 101,549 windows of audited Canadian houses, and of a door (m).
+pub(super) const WINDOW: [f64; 2] = [0.91, 1.22];
+pub(super) const DOOR: [f64; 2] = [1.0, 2.1];
 /// Tallest window (m).
 const TALLEST: f64 = 2.2;
 /// Narrowest piece with a window, and narrowest window (m).

@@ -1,12 +1,13 @@
 //! The four sides of a house, each by the search of method `best`.
 
 use super::cut::{Candidate, Choice, NARROWEST, choices};
-use super::glaze::{Plan, glaze, holds_asymmetric, millimetres};
+use super::doors::{completed, door_strip};
+use super::glaze::{Plan, WINDOW, glaze, holds_asymmetric, millimetres};
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
 use crate::attributes::facade_attributes;
 use edifice_shape::solid::Faces;
-use edifice_shape::{BoxStyle, Building, ElementStyle, FacadePiece, Side};
+use edifice_shape::{Building, ElementStyle, FacadePiece, Side};
 
 /// The attributes that the facades are to reach.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,12 +33,13 @@ pub struct Facades {
     pub evaluations: u64,
 }
 
-/// Usual distances between windows to try (m), the most natural first.
-const SPACINGS: [f64; 7] = [2.4, 2.0, 3.0, 1.6, 3.8, 1.25, 5.0];
+/// Distances between windows to try (m); those come first at which windows of the usual size have the wanted ratio.
+const SPACINGS: [f64; 9] = [2.4, 2.0, 3.0, 1.6, 3.8, 1.25, 5.0, 6.5, 8.5];
 /// Choices of asymmetric strips tried.
 const CHOICES: usize = 10;
-/// Distance in standard deviations at which to stop.
+/// Distance in standard deviations at which to stop, and what a missing door counts.
 const ENOUGH: f64 = 0.02;
+const NO_DOOR: f64 = 100.0;
 
 /// Puts windows and doors on the walls of a building; `deviations` are those of the twelve attributes.
 pub fn furnish(
@@ -65,8 +67,8 @@ pub fn furnish(
             cuts: target.cuts,
             evaluations: 0,
         };
-        let door = (side == Side::Front && !has_door(&target.fixed))
-            .then(|| door_strip(building, &walls))
+        let door = (!has_door(&target.fixed))
+            .then(|| door_strip(building, &walls, side))
             .flatten();
         let (pieces, z) = search.run(door);
         out.evaluations += search.evaluations;
@@ -74,7 +76,15 @@ pub fn furnish(
         out.pieces.extend(pieces);
     }
     missing_styles(&mut out.pieces, &styles, &target.fixed);
+    if !has_door(&target.fixed) {
+        completed(building, &walls, &mut out.pieces);
+    }
     out
+}
+
+fn is_entered(pieces: &[FacadePiece]) -> bool {
+    let mut elements = pieces.iter().flat_map(|p| &p.elements);
+    elements.any(|e| e.style == ElementStyle::Door)
 }
 
 fn has_door(fixed: &[FixedPiece]) -> bool {
@@ -124,38 +134,6 @@ fn missing_styles(pieces: &mut [FacadePiece], styles: &[ElementStyle], fixed: &[
     }
 }
 
-/// The front strip for the door: behind the front porch, else the narrowest that a door fits into with room.
-pub(super) fn door_strip(building: &Building, walls: &Walls) -> Option<usize> {
-    let strips = &walls.strips[0];
-    let porch = building
-        .boxes
-        .iter()
-        .filter(|b| b.style == BoxStyle::Porch)
-        .min_by(|a, b| a.y.total_cmp(&b.y))
-        .map(|b| b.x);
-    let fits = |k: &usize| {
-        let strip = &strips[*k];
-        let middle = (strip.start + strip.end) / 2.0;
-        let ground = strip.rooms.iter().find(|r| r.piece.floor == 0);
-        strip.width() >= 1.3
-            && ground.is_some_and(|r| {
-                walls
-                    .free(r, [middle - 0.5, middle + 0.5])
-                    .is_some_and(|f| f[1] > 2.15)
-            })
-    };
-    let fitting: Vec<usize> = (0..strips.len()).filter(fits).collect();
-    let under = fitting
-        .iter()
-        .copied()
-        .find(|&k| porch.is_some_and(|x| strips[k].start < x && x < strips[k].end));
-    under.or_else(|| {
-        fitting
-            .into_iter()
-            .min_by(|&a, &b| strips[a].width().total_cmp(&strips[b].width()))
-    })
-}
-
 struct SideSearch<'a> {
     building: &'a Building,
     walls: &'a Walls<'a>,
@@ -180,7 +158,13 @@ impl SideSearch<'_> {
             .sum();
         let wanted = (1.0 - self.wanted[1]) * total - self.fixed_asymmetric();
         let enough = 0.01 * self.deviations[1] * total;
-        for spacing in SPACINGS {
+        // Windows of the usual size, so far apart, cover the wanted share of the walls.
+        let natural =
+            WINDOW[0] * WINDOW[1] / (self.wanted[0].max(0.01) * self.building.floor_height);
+        let mut spacings = SPACINGS;
+        let off = |s: f64| (s / natural).ln().abs();
+        spacings.sort_by(|a, b| off(*a).total_cmp(&off(*b)));
+        for spacing in spacings {
             let candidates = self.strips.iter().map(|s| self.candidate(s, spacing));
             let candidates: Vec<Candidate> = candidates.collect();
             let choices = choices(&candidates, wanted, enough, self.cuts, CHOICES);
@@ -189,7 +173,9 @@ impl SideSearch<'_> {
                 for plans in self.alignments(&strips, plans) {
                     let ratio = self.wanted[0];
                     let pieces = glaze(self.walls, &strips, &plans, ratio, spacing);
-                    let (z, sum) = self.distance(&pieces);
+                    let (mut z, sum) = self.distance(&pieces);
+                    let missing = door.is_some() && !is_entered(&pieces);
+                    z += if missing { NO_DOOR } else { 0.0 };
                     if best
                         .as_ref()
                         .is_none_or(|(_, least, all)| (z, sum) < (*least - 1e-9, *all))
@@ -208,7 +194,7 @@ impl SideSearch<'_> {
                 break;
             }
         }
-        best.map_or((Vec::new(), 0.0), |(pieces, z, _)| (pieces, z))
+        best.map_or((Vec::new(), 0.0), |(pieces, z, _)| (pieces, z % NO_DOOR))
     }
 
     /// Asymmetric width of the fixed pieces.
@@ -341,6 +327,7 @@ impl SideSearch<'_> {
             boxes: Vec::new(),
             facades: pieces.to_vec(),
             special: Vec::new(),
+            unobserved: Vec::new(),
         };
         let measured = facade_attributes(&side);
         [0, 1, 2].map(|k| measured[4 * k + self.column])

@@ -2,6 +2,7 @@
 
 mod database;
 mod generate;
+pub mod inspect;
 pub mod model;
 mod roof_styles;
 pub mod roofs;

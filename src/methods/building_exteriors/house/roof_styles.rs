@@ -2,6 +2,11 @@
 
 use edifice_shape::{BoxStyle, MassBox, Ridge, RoofStyle};
 
+/// Pitches that a donor may give, the pitch without one, and the steepest of a porch or garage without a donor (degrees).
+const USUAL: std::ops::RangeInclusive<f64> = 12.0..=60.0;
+const PITCH: f64 = 35.0;
+const LOW: f64 = 22.0;
+
 /// Gives every box a roof so that the flagged styles (flat, gable, hip), and no others, occur: the one that most of
 /// the area has already is the main one, the others go to porches, the garage and small boxes. Ridges run along the
 /// longer side. Without any flag all roofs are sheds, which no attribute tells. Frozen boxes keep their roofs.
@@ -55,12 +60,25 @@ pub(super) fn roof(boxes: &mut [MassBox], flags: [bool; 3], frozen: &[MassBox]) 
     for (style, i) in others.into_iter().zip(order) {
         boxes[i].roof.style = style;
     }
+    // One pitch for the house: that of its largest sloped box, a donor's.
+    let sloped = |b: &&MassBox| {
+        b.style == BoxStyle::Main
+            && matches!(b.roof.style, RoofStyle::Gable | RoofStyle::Hip)
+            && USUAL.contains(&b.roof.pitch)
+    };
+    let known = frozen
+        .iter()
+        .filter(sloped)
+        .chain(boxes.iter().filter(sloped));
+    let largest = known.max_by(|a, b| area(a).total_cmp(&area(b)));
+    let pitch = largest.map_or(PITCH, |b| b.roof.pitch);
     free(boxes, &|b| {
         b.roof.pitch = match b.roof.style {
             RoofStyle::Flat => 0.0,
             RoofStyle::Shed => 12.0,
-            _ if b.roof.pitch > 5.0 => b.roof.pitch,
-            _ => 30.0,
+            _ if b.style == BoxStyle::Main => pitch,
+            _ if b.roof.pitch > 5.0 => b.roof.pitch.min(pitch),
+            _ => pitch.min(LOW),
         };
     });
 }

@@ -99,6 +99,7 @@ fn building(boxes: Vec<MassBox>, target: &MassTarget) -> Building {
         boxes,
         facades: Vec::new(),
         special: Vec::new(),
+        unobserved: Vec::new(),
     }
 }
 

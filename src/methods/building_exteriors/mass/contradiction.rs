@@ -8,6 +8,10 @@ const N: usize = COLUMNS.len();
 /// Slack of comparisons (m, or shares).
 const SLACK: f64 = 0.005;
 
+/// Largest size of a house (m), and what rounding may leave of a zero.
+const LARGEST: f64 = 200.0;
+const ROUNDING: f64 = 1e-9;
+
 /// Two attributes that no house can have together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Contradiction {
@@ -125,7 +129,11 @@ pub fn check_given(row: &[f64; N], given: &[bool; N]) -> Result<(), Contradictio
         }
     };
     for (c, value) in row.iter().enumerate().take(3) {
-        range(c, *value > 0.0, "above zero")?;
+        range(
+            c,
+            *value > 0.0 && *value <= LARGEST,
+            "above zero, at most 200 m",
+        )?;
     }
     range(
         3,
@@ -133,7 +141,11 @@ pub fn check_given(row: &[f64; N], given: &[bool; N]) -> Result<(), Contradictio
         "above 0, at most 1 (coverage)",
     )?;
     for (c, value) in row.iter().enumerate().skip(4) {
-        range(c, *value >= 0.0, "not below zero")?;
+        range(
+            c,
+            *value >= -ROUNDING && *value <= LARGEST,
+            "not below zero, at most 200",
+        )?;
     }
     for (c, value) in row.iter().enumerate().take(39).skip(27) {
         range(c, *value <= 1.0 + 1e-9, "at most 1")?;

@@ -5,6 +5,7 @@
 //! rectangles, boxes of one floor. Upper floors stand on the largest of these that overlap, the last one cut to the
 //! wanted share of the floor.
 
+use super::repair::repair;
 use super::target::{MassTarget, PARTS, floors};
 use super::{MassModel, is_sound};
 use crate::attributes::{COLUMNS, mass_attributes};
@@ -82,6 +83,19 @@ pub fn reconcile(row: &mut [f64; 49], given: &[bool; 49], plan: &[Rect]) -> Resu
     Ok(())
 }
 
+/// How far the house that [`stand`] puts on a plan is from a row, in standard deviations by the largest mass attribute;
+/// infinite where there is none.
+pub fn distance(row: &[f64; 49], given: &[bool; 49], plan: &[Rect], deviations: &[f64; 49]) -> f64 {
+    let (mut row, mut known) = (*row, *given);
+    if reconcile(&mut row, given, plan).is_err() {
+        return f64::INFINITY;
+    }
+    DECIDED.iter().for_each(|c| known[*c] = true);
+    repair(&mut row, &known, deviations);
+    let found = stand(&row, given, plan, &deviations[..super::MASS]);
+    found.map_or(f64::INFINITY, |model| model.max_z)
+}
+
 /// The mass model on the plan with the wanted floors and, where there is room, parts. `row` is free of contradictions.
 ///
 /// # Errors
@@ -141,6 +155,7 @@ pub fn stand(
         boxes,
         facades: Vec::new(),
         special: Vec::new(),
+        unobserved: Vec::new(),
     };
     if !is_sound(&building) {
         return Err(PlanError::Floors);

@@ -11,6 +11,8 @@ const ABSENT: [f64; 2] = [0.8, 1.2];
 /// Least height of a floor and of a part (m).
 pub(super) const LEAST_FLOOR: f64 = 2.1;
 const LEAST_PART: f64 = 1.8;
+/// Largest extent of a house (m).
+const LARGEST: f64 = 100.0;
 /// Alignment nearer than this to none or all is none or all.
 const NEARLY: f64 = 0.12;
 /// Room between parts that overlapped (m).
@@ -72,7 +74,7 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N], deviations: &[f64; N]) -> V
         (35..39).for_each(|c| set(row, c, 0.0));
     }
     for (c, least) in [(0, 4.0), (1, 4.0), (2, LEAST_FLOOR * floors)] {
-        let value = row[c].max(least);
+        let value = row[c].max(least).min(LARGEST.max(least));
         set(row, c, value);
     }
     let storey = row[2] / floors;

@@ -162,6 +162,7 @@ impl Scheme {
             boxes: boxes.collect(),
             facades: Vec::new(),
             special: Vec::new(),
+            unobserved: Vec::new(),
         }
     }
 

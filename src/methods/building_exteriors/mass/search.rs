@@ -5,7 +5,7 @@ use rand::Rng;
 use super::fit::{Fitted, fit};
 use super::random;
 use super::scheme::{Block, PLAIN, Scheme, donated};
-use super::target::{MassTarget, bounds};
+use super::target::{MassTarget, PARTS, bounds};
 use super::{MASS, is_sound};
 use crate::attributes::mass_attributes;
 use crate::house::Database;
@@ -58,6 +58,8 @@ pub struct MassError {
 
 /// Random arrangements looked at for one that is fitted.
 const GLANCES: usize = 30;
+/// A mass model as plain as this is taken at once.
+const SIMPLE: f64 = 3.0;
 /// Rounds of wholly random arrangements at first.
 const OPENING: usize = 8;
 
@@ -73,7 +75,10 @@ pub fn search(
     rng: &mut impl Rng,
 ) -> Result<MassModel, MassError> {
     let deviations = &database.deviations[..MASS];
-    let mut found = Found::default();
+    let mut found = Found {
+        enough: options.enough,
+        ..Found::default()
+    };
     for (index, mirrored) in nearest(target, database, options) {
         let (mut blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         replace(&mut blocks, frozen);
@@ -82,7 +87,7 @@ pub fn search(
             fit(&scheme, target, deviations, options.enough),
             Some(index),
         );
-        if found.max_z() <= options.enough {
+        if found.max_z() <= options.enough && found.complexity <= SIMPLE {
             break;
         }
     }
@@ -107,10 +112,24 @@ pub fn search(
     })
 }
 
-/// The best so far.
+/// How unlike a plain house a mass model is: its boxes, thin ones threefold or more.
+fn complexity(building: &Building) -> f64 {
+    let general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
+    general
+        .map(|b| match b.width.min(b.depth) {
+            w if w < 1.2 => 9.0,
+            w if w < 2.4 => 3.0,
+            _ => 1.0,
+        })
+        .sum()
+}
+
+/// The best so far: among those that are near enough the plainest.
 #[derive(Default)]
 struct Found {
     best: Option<MassModel>,
+    enough: f64,
+    complexity: f64,
     evaluations: u64,
     /// General boxes of the best.
     nearest: Option<Vec<Block>>,
@@ -123,11 +142,16 @@ impl Found {
 
     fn add(&mut self, fitted: Fitted, donor: Option<usize>) {
         self.evaluations += fitted.evaluations;
-        if fitted.max_z >= self.max_z()
-            || !(is_sound(&fitted.building) && has_boxes(&fitted.building))
-        {
+        let complexity = complexity(&fitted.building);
+        let both = fitted.max_z.max(self.max_z()) <= self.enough;
+        let worse = match both {
+            true => complexity >= self.complexity,
+            false => fitted.max_z >= self.max_z(),
+        };
+        if worse || !(is_sound(&fitted.building) && has_boxes(&fitted.building)) {
             return;
         }
+        self.complexity = complexity;
         self.nearest = Some(fitted.blocks);
         self.best = Some(MassModel {
             building: fitted.building,
@@ -265,7 +289,7 @@ fn has_boxes(building: &Building) -> bool {
     general.all(|b| b.width.min(b.depth) >= 0.3)
 }
 
-/// The nearest houses with the same floors, garage and porches, and whether they serve mirrored.
+/// The nearest houses with the same floors, garage and porches as far as they are known, and whether they serve mirrored.
 pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Vec<(usize, bool)> {
     let mut found: Vec<(f64, usize, bool)> = Vec::new();
     for (index, row) in database.rows.iter().enumerate() {
@@ -273,11 +297,15 @@ pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Ve
             continue;
         }
         let other = MassTarget::new(std::array::from_fn(|c| row[c].unwrap_or(0.0)));
-        if other.floors != target.floors || other.presence() != target.presence() {
+        // A part of which nobody knows whether the donor has one is no reason to pass the donor over.
+        let unlike = (0..PARTS.len())
+            .any(|k| row[PARTS[k].1 + 2].is_some() && other.presence()[k] != target.presence()[k]);
+        if other.floors != target.floors || unlike {
             continue;
         }
         for mirrored in [false, true] {
             let distance: f64 = (0..MASS)
+                .filter(|c| row[*c].is_some())
                 .map(|c| {
                     let is_x = matches!(c, 9 | 15 | 21) && other.wanted[c + 2] > 0.0;
                     let value = match mirrored && is_x {
