@@ -41,6 +41,7 @@ pub mod baselines;
 pub mod best;
 pub mod completion;
 pub mod layout;
+pub mod made;
 pub mod measure;
 pub mod method;
 pub mod model;

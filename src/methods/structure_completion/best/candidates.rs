@@ -101,6 +101,17 @@ impl Candidates {
         candidates
     }
 
+    /// Adds a candidate that no draw has.
+    pub fn add(&mut self, element: Element, reason: Reason) {
+        self.alike.push(vec![(self.all.len(), 1.0)]);
+        self.all.push(Candidate {
+            element,
+            support: [0.0; Origin::ALL.len()],
+            reason,
+            features: Vec::new(),
+        });
+    }
+
     fn add_features(&mut self, scene: &Scene, index: &Index) {
         let context = Context::new(scene);
         let total = |c: &Candidate| c.support[..5].iter().sum::<f64>();
