@@ -11,7 +11,9 @@ use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
 use edifice::shape::Rect;
 
-fn added(completion: &edifice::methods::structure_completion::completion::Completion) -> Vec<Element> {
+fn added(
+    completion: &edifice::methods::structure_completion::completion::Completion,
+) -> Vec<Element> {
     completion.added.iter().map(|a| a.element).collect()
 }
 
@@ -26,7 +28,12 @@ fn made_grids_are_completed_perfectly() {
             let done = complete(Method::Best, &partial, &model, 1, &mut rng);
             perfect += usize::from(agreement(&added(&done[0]), &hidden, 0.9).f1 == 1.0);
         }
-        assert!(perfect >= least, "{}: {perfect} of {}", sight.name(), grids::COUNT);
+        assert!(
+            perfect >= least,
+            "{}: {perfect} of {}",
+            sight.name(),
+            grids::COUNT
+        );
     }
 }
 
@@ -87,7 +94,10 @@ fn a_thing_that_is_drawn_twice_counts_once() {
         forbidden: Vec::new(),
     };
     let overlaps = partial.overlaps();
-    let found: Vec<_> = overlaps.iter().map(|o| (o.first, o.second, o.twice)).collect();
+    let found: Vec<_> = overlaps
+        .iter()
+        .map(|o| (o.first, o.second, o.twice))
+        .collect();
     assert_eq!(found, [(0, 1, true), (2, 3, false)]);
     let merged = partial.without_duplicates();
     assert_eq!(merged.observed, [window(0.0), window(30.0), window(38.0)]);

@@ -120,7 +120,11 @@ impl PartialLayout {
                     let a = &self.observed[first];
                     let least = a.rect.area().min(b.rect.area());
                     let twice = a.class == b.class && a.rect.overlap(&b.rect) > TWICE * least;
-                    Overlap { first, second, twice }
+                    Overlap {
+                        first,
+                        second,
+                        twice,
+                    }
                 }));
             }
             places.insert(second as u32, &b.rect);
@@ -132,7 +136,11 @@ impl PartialLayout {
     pub fn without_duplicates(&self) -> Self {
         let twice = self.overlaps().into_iter().filter(|o| o.twice);
         let dropped: Vec<usize> = twice.map(|o| o.second).collect();
-        let kept = self.observed.iter().enumerate().filter(|(k, _)| !dropped.contains(k));
+        let kept = self
+            .observed
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !dropped.contains(k));
         Self {
             observed: kept.map(|(_, e)| *e).collect(),
             ..self.clone()

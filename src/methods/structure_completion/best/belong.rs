@@ -88,8 +88,9 @@ pub fn placed(
         own.map(|&k| (k, added[k].0.rect)).collect::<Vec<_>>()
     };
     let is_wide = |r: &Rect| r.width > WIDE * scene.size.0;
-    let (wide, narrow): (Vec<_>, Vec<_>) =
-        of_class(Class::Balcony).into_iter().partition(|(_, r)| is_wide(r));
+    let (wide, narrow): (Vec<_>, Vec<_>) = of_class(Class::Balcony)
+        .into_iter()
+        .partition(|(_, r)| is_wide(r));
     let mut out = hanging(scene, hosts, &narrow);
     out.extend(running(scene, rows, &wide));
     for class in [Class::Door, Class::Shop] {
@@ -145,15 +146,24 @@ fn running(scene: &Scene, rows: &Lines, drawn: &[(usize, Rect)]) -> Vec<(usize, 
     let place = |r: &Rect| {
         let (row, own) = above(r)?;
         let distance = |s: &&(f64, Rect)| (s.0 - own).abs();
-        let like = seen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let like = seen
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         let shared = r.right().min(like.1.right()) - r.x.max(like.1.x);
         let ends = shared > 0.7 * r.width.max(like.1.width);
-        let (x, width) = if ends { (like.1.x, like.1.width) } else { (r.x, r.width) };
+        let (x, width) = if ends {
+            (like.1.x, like.1.width)
+        } else {
+            (r.x, r.width)
+        };
         let near = (like.0 - own).abs() < 0.5 * scene.size.1;
         let up = if near { like.0 } else { own };
         Some(Rect::new(x, row + up, width, like.1.height))
     };
-    drawn.iter().map(|&(k, r)| (k, place(&r).unwrap_or(r))).collect()
+    drawn
+        .iter()
+        .map(|&(k, r)| (k, place(&r).unwrap_or(r)))
+        .collect()
 }
 
 fn standing(
@@ -178,12 +188,18 @@ fn standing(
     widths.extend(median(drawn.iter().map(|(_, r)| r.width)));
     let place = |r: &Rect| {
         let ratio = |w: &f64| (w / r.width).ln().abs();
-        let nearest = widths.iter().copied().min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        let nearest = widths
+            .iter()
+            .copied()
+            .min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
         let same = nearest.filter(|w| ratio(w) <= SAME_WIDTH.ln());
         let width = same.unwrap_or(r.width);
         let x = r.centre().0;
         let way = |rule: &f64| (rule - x).abs();
-        let rule = rules.iter().copied().min_by(|a, b| way(a).total_cmp(&way(b)));
+        let rule = rules
+            .iter()
+            .copied()
+            .min_by(|a, b| way(a).total_cmp(&way(b)));
         let x = rule.filter(|rule| way(rule) < REACH * r.width).unwrap_or(x);
         Rect::new(x - width / 2.0, bottom, width, height)
     };

@@ -52,7 +52,9 @@ fn columns(scene: &Scene, draws: &[Draw]) -> Vec<f64> {
             _ => groups.push((x, weight * x, weight)),
         }
     }
-    let enough = groups.into_iter().filter(|g| g.2 >= SHARE * total && g.2 > 0.0);
+    let enough = groups
+        .into_iter()
+        .filter(|g| g.2 >= SHARE * total && g.2 > 0.0);
     enough.map(|g| g.1 / g.2).collect()
 }
 
@@ -134,7 +136,10 @@ impl<'a> Around<'a> {
             columns,
             gap: gaps.fold(f64::INFINITY, f64::min).min(scene.partial.width),
             rows,
-            lowest: scene.rows.first().map_or(scene.partial.height, |r| r.at - r.size / 2.0),
+            lowest: scene
+                .rows
+                .first()
+                .map_or(scene.partial.height, |r| r.at - r.size / 2.0),
             per_window: Class::ALL.map(|c| of(&scene.elements, c).count() as f64 / windows),
             hidden: hidden.unwrap_or(1.0),
             masked: f64::from(u8::from(hidden.is_some())),
@@ -150,10 +155,16 @@ impl<'a> Around<'a> {
         let before = self.columns.iter().filter(|c| **c < x - 1e-9).count();
         let after = self.columns.iter().filter(|c| **c > x + 1e-9).count();
         let like = self.doors.iter().filter(|(d, _)| d.iou(r) >= 0.4);
-        let near = self.doors.iter().filter(|(d, _)| (d.centre().0 - x).abs() < 0.5 * r.width);
+        let near = self
+            .doors
+            .iter()
+            .filter(|(d, _)| (d.centre().0 - x).abs() < 0.5 * r.width);
         let most = |found: &mut dyn Iterator<Item = f64>| found.fold(0.0, f64::max);
         let met = |class: Class| {
-            let met = self.others.iter().filter(|o| o.0 == class && o.1.overlap(r) > 0.2 * o.1.area().min(r.area()));
+            let met = self
+                .others
+                .iter()
+                .filter(|o| o.0 == class && o.1.overlap(r) > 0.2 * o.1.area().min(r.area()));
             most(&mut met.map(|o| o.2))
         };
         let image = Rect::new(facade - r.right(), r.y, r.width, r.height);
@@ -191,7 +202,9 @@ impl<'a> Around<'a> {
             seen_ground(Class::Window),
             seen_ground(Class::Shop),
             top.min(5.0),
-            f64::from(u8::from(scene.partial.is_unknown(image.centre().0, image.centre().1))),
+            f64::from(u8::from(
+                scene.partial.is_unknown(image.centre().0, image.centre().1),
+            )),
             scene.size.0 / scene.size.1,
         ];
         debug_assert_eq!(features.len(), FEATURES);

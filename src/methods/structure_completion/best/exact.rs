@@ -54,7 +54,10 @@ fn lattice_of(scene: &Scene, seen: &[Rect], axis: Axis) -> Option<(Vec<f64>, f64
     let length = scene.length(axis);
     let size = seen[0].extent(axis);
     let tolerance = EXACT * size;
-    if seen.iter().any(|r| (r.extent(axis) - size).abs() > tolerance) {
+    if seen
+        .iter()
+        .any(|r| (r.extent(axis) - size).abs() > tolerance)
+    {
         return None;
     }
     let mut at: Vec<f64> = seen.iter().map(|r| r.start(axis) + size / 2.0).collect();
@@ -93,13 +96,13 @@ fn lattice_of(scene: &Scene, seen: &[Rect], axis: Axis) -> Option<(Vec<f64>, f64
     };
     let room = |from: f64, space: f64, step: f64| {
         let most = (((space - size / 2.0) / gap + 1e-9).floor()).max(0.0) as usize;
-        (1..=most).take_while(|&k| open(from + step * k as f64)).count()
+        (1..=most)
+            .take_while(|&k| open(from + step * k as f64))
+            .count()
     };
     let (before, after) = (room(first, first, -gap), room(last, length - last, gap));
     // Equal margins: as many lines as there is room for on one side fix those of the other.
-    let margins = |b: usize, a: usize| {
-        (first - b as f64 * gap) - (length - last - a as f64 * gap)
-    };
+    let margins = |b: usize, a: usize| (first - b as f64 * gap) - (length - last - a as f64 * gap);
     let pairs = (0..=before).flat_map(|b| (0..=after).map(move |a| (b, a)));
     let equal = pairs.filter(|&(b, a)| margins(b, a).abs() <= tolerance.max(EXACT * gap));
     let (b, a) = equal.max_by_key(|&(b, a)| b + a)?;
@@ -143,7 +146,11 @@ mod tests {
             for c in 0..5 {
                 let window = window(c, r);
                 let found = hidden.iter().any(|h| h.rect.iou(&window.rect) > 0.999);
-                assert_eq!(found, !((1..3).contains(&c) && (1..3).contains(&r)), "{c} {r}");
+                assert_eq!(
+                    found,
+                    !((1..3).contains(&c) && (1..3).contains(&r)),
+                    "{c} {r}"
+                );
             }
         }
     }

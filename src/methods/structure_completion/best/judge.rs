@@ -107,12 +107,16 @@ impl<'a> Judge<'a> {
     /// The coherent layout of some candidates.
     fn coherent(&self, chosen: &[usize]) -> Layout {
         let all = &self.candidates.all;
-        let given: Vec<(Element, Reason)> =
-            chosen.iter().map(|&c| (all[c].element, all[c].reason)).collect();
+        let given: Vec<(Element, Reason)> = chosen
+            .iter()
+            .map(|&c| (all[c].element, all[c].reason))
+            .collect();
         let made: Regular = regular(self.scene, &given);
         let added = without_loners(self.scene, made);
-        let added: Vec<(Element, Reason, usize)> =
-            added.into_iter().map(|(e, r, k)| (e, r, chosen[k])).collect();
+        let added: Vec<(Element, Reason, usize)> = added
+            .into_iter()
+            .map(|(e, r, k)| (e, r, chosen[k]))
+            .collect();
         let whole: Vec<(Element, Reason)> = added.iter().map(|(e, r, _)| (*e, *r)).collect();
         let lines = regular(self.scene, &whole).lines;
         Layout {
@@ -129,9 +133,8 @@ impl<'a> Judge<'a> {
             let k = lines.partition_point(|&x| x < at - reach);
             lines.get(k).is_some_and(|&x| x <= at + reach)
         };
-        let seen = Axis::BOTH.map(|axis| -> Vec<f64> {
-            self.scene.lines(axis).iter().map(|l| l.at).collect()
-        });
+        let seen = Axis::BOTH
+            .map(|axis| -> Vec<f64> { self.scene.lines(axis).iter().map(|l| l.at).collect() });
         let on = |axis: Axis, at: f64| {
             let k = axis as usize;
             // Windows of a seen line may differ among themselves.

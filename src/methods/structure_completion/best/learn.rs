@@ -69,13 +69,7 @@ type Rows = (Vec<Vec<f64>>, Vec<[f64; 2]>);
 type DoorRows = (Vec<Vec<f64>>, Vec<f64>);
 
 /// Features and truth of all candidates of one layout with a part hidden.
-fn rows(
-    model: &Model,
-    index: usize,
-    without: &[usize],
-    task: Task,
-    seed: u64,
-) -> (Rows, DoorRows) {
+fn rows(model: &Model, index: usize, without: &[usize], task: Task, seed: u64) -> (Rows, DoorRows) {
     let layout = &model.examples[index].layout;
     let stream_index = (index * Task::ALL.len() + task as usize) as u64;
     let mut rng = stream(seed, "structure completion: learning", stream_index);
@@ -93,7 +87,9 @@ fn rows(
     let places = doors::places(&scene, &draws, &candidates);
     let is_door = |p: &doors::Place| {
         let mut own = hidden.iter().filter(|h| h.class == Class::Door);
-        f64::from(u8::from(own.any(|h| h.rect.iou(&p.element.rect) >= OVERLAPS[0])))
+        f64::from(u8::from(
+            own.any(|h| h.rect.iou(&p.element.rect) >= OVERLAPS[0]),
+        ))
     };
     let of_doors = places.iter().map(is_door).collect();
     let rows = candidates.all.into_iter().map(|c| c.features).collect();
@@ -115,7 +111,9 @@ pub struct Learnt {
 fn thinned<T>(parts: Vec<(Vec<Vec<f64>>, Vec<T>)>, most: usize) -> (Vec<Vec<f64>>, Vec<T>) {
     let total: usize = parts.iter().map(|p| p.1.len()).sum();
     let every = total.div_ceil(most).max(1);
-    let rows = parts.into_iter().flat_map(|(rows, truth)| rows.into_iter().zip(truth));
+    let rows = parts
+        .into_iter()
+        .flat_map(|(rows, truth)| rows.into_iter().zip(truth));
     rows.step_by(every).unzip()
 }
 

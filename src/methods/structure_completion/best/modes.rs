@@ -65,7 +65,11 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     let judge = Judge::new(&scene, &candidates, value, door, expected(&draws, &weights));
     let windows = windows(partial, &draws);
     let mut modes = Modes::default();
-    for (draw, weight) in draws.iter().zip(&weights).filter(|(d, _)| d.origin.is_whole()) {
+    for (draw, weight) in draws
+        .iter()
+        .zip(&weights)
+        .filter(|(d, _)| d.origin.is_whole())
+    {
         modes.add(judge.on_lattice(&draw.lines), *weight, draw.lattice);
     }
     let freely = judge.freely();
@@ -121,7 +125,9 @@ fn door(
     }
     if let Some(learnt) = &model.doors {
         let places = doors::places(scene, draws, candidates);
-        let each = places.into_iter().map(|p| (learnt.probability(&p.features), p.element));
+        let each = places
+            .into_iter()
+            .map(|p| (learnt.probability(&p.features), p.element));
         let (probability, element) = each.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         candidates.add(element, Reason::Database);
         loose.push(probability);
@@ -145,7 +151,9 @@ fn windows(partial: &PartialLayout, draws: &[Draw]) -> Vec<(usize, f64)> {
         let windows = draw.added.iter().filter(|(e, _)| e.class == Class::Window);
         windows.count()
     };
-    let each = draws.iter().map(|d| (count(d), d.weight * shares[d.origin as usize]));
+    let each = draws
+        .iter()
+        .map(|d| (count(d), d.weight * shares[d.origin as usize]));
     each.collect()
 }
 
@@ -187,9 +195,8 @@ impl Modes {
             }
         }
         for (lattice, mass) in lost {
-            let distance = |other: &(usize, usize)| {
-                lattice.0.abs_diff(other.0) + lattice.1.abs_diff(other.1)
-            };
+            let distance =
+                |other: &(usize, usize)| lattice.0.abs_diff(other.0) + lattice.1.abs_diff(other.1);
             if let Some(nearest) = kept.iter_mut().min_by_key(|k| distance(&k.0)) {
                 nearest.2 += mass;
             }

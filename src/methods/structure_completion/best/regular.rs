@@ -87,7 +87,12 @@ pub fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
         if kept.add(Element::new(Class::Window, rect), added[k].1, k) {
             taken[cell] = true;
             let seen = false;
-            hosts.push(Host { column, row, rect, seen });
+            hosts.push(Host {
+                column,
+                row,
+                rect,
+                seen,
+            });
         }
     }
     let others: Vec<usize> = (0..added.len()).filter(|k| !is_window(k)).collect();
@@ -139,7 +144,8 @@ pub fn without_loners(scene: &Scene, layout: Regular) -> Vec<(Element, Reason, u
         let single = [&in_column, &in_row].map(|counts| counts.iter().all(|n| *n <= 1));
         let before = hosts.len();
         hosts.retain(|h| {
-            let alone = (in_column[h.column] < 2 && !single[0]) || (in_row[h.row] < 2 && !single[1]);
+            let alone =
+                (in_column[h.column] < 2 && !single[0]) || (in_row[h.row] < 2 && !single[1]);
             h.seen || !alone
         });
         if hosts.len() == before {

@@ -57,8 +57,16 @@ impl Shared {
             });
             high - low > SPREAD * self.size
         };
-        let at = if spread(|m| m.at) { nearest.at } else { self.at };
-        let size = if spread(|m| m.size) { nearest.size } else { self.size };
+        let at = if spread(|m| m.at) {
+            nearest.at
+        } else {
+            self.at
+        };
+        let size = if spread(|m| m.size) {
+            nearest.size
+        } else {
+            self.size
+        };
         (at, size)
     }
 }
@@ -156,7 +164,8 @@ impl Lines {
 fn tied(seen: &[Shared], own: f64, at: f64, length: f64) -> f64 {
     let nearest = |place: f64| {
         let distance = |line: &&Shared| (line.at - place).abs();
-        seen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        seen.iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
     let same = |size: f64| size.max(own) <= SAME_SIZE * size.min(own);
     let image = nearest(length - at).filter(|l| (l.at - (length - at)).abs() < SPREAD * l.size);

@@ -126,13 +126,19 @@ mod tests {
         let placed = by_rule(&seen, &[61.0, 78.5, 119.0, 142.0], 160.0, size);
         assert_eq!(placed, [60.0, 80.0, 120.0, 140.0]);
         // Before the first one too.
-        assert_eq!(by_rule(&[60.0, 80.0], &[22.0, 39.0], 200.0, size), [20.0, 40.0]);
+        assert_eq!(
+            by_rule(&[60.0, 80.0], &[22.0, 39.0], 200.0, size),
+            [20.0, 40.0]
+        );
         // Gaps in turn.
         let placed = by_rule(&[10.0, 30.0, 60.0, 80.0], &[111.0, 129.0], 300.0, size);
         assert_eq!(placed, [110.0, 130.0]);
         // Nothing near: as drawn.
         assert_eq!(by_rule(&[60.0, 80.0], &[93.0], 400.0, size), [93.0]);
-        assert_eq!(by_rule(&[], &[21.0, 40.0, 61.0], 80.0, size), [20.0, 40.0, 60.0]);
+        assert_eq!(
+            by_rule(&[], &[21.0, 40.0, 61.0], 80.0, size),
+            [20.0, 40.0, 60.0]
+        );
         assert!(by_rule(&[1.0], &[], 80.0, size).is_empty());
     }
 
@@ -140,7 +146,8 @@ mod tests {
     fn a_mirrored_facade_gives_mirrored_lines() {
         let (seen, new) = ([31.0, 50.0, 71.0], [11.0, 89.0, 112.0]);
         let length = 130.0;
-        let mirror = |lines: &[f64]| -> Vec<f64> { lines.iter().rev().map(|x| length - x).collect() };
+        let mirror =
+            |lines: &[f64]| -> Vec<f64> { lines.iter().rev().map(|x| length - x).collect() };
         let placed = by_rule(&seen, &new, length, 10.0);
         let other = by_rule(&mirror(&seen), &mirror(&new), length, 10.0);
         for (a, b) in placed.iter().zip(mirror(&other)) {

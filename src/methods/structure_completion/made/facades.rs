@@ -9,7 +9,7 @@
 use rand::RngExt;
 
 use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::rng::{Stream, categorical};
+use crate::rng::{Stream, categorical, stream};
 use crate::shape::Rect;
 
 /// The bays of a facade: centres and widths of their windows.
@@ -28,7 +28,9 @@ fn bays(rng: &mut Stream) -> Bays {
     let mut wide = vec![window; count];
     match categorical(&[0.45, 0.15, 0.15, 0.15, 0.1], rng) {
         // In turn, in pairs.
-        1 => (0..count - 1).filter(|k| k % 2 == 1).for_each(|k| gaps[k] = other),
+        1 => (0..count - 1)
+            .filter(|k| k % 2 == 1)
+            .for_each(|k| gaps[k] = other),
         // Wider gaps about the middle.
         2 => {
             let middle = count / 2;
@@ -66,7 +68,11 @@ fn bays(rng: &mut Stream) -> Bays {
         true => margin,
         false => window * rng.random_range(0.25..1.6),
     };
-    Bays { at, wide, width: x + right }
+    Bays {
+        at,
+        wide,
+        width: x + right,
+    }
 }
 
 /// How the balconies of a floor are.
@@ -77,6 +83,12 @@ enum Balconies {
     Running,
     /// Before the windows of the middle.
     Middle,
+}
+
+/// So many facades; the first ones do not depend on how many there are.
+pub fn several(count: usize, seed: u64) -> Vec<Layout> {
+    let one = |k: usize| facade(k, &mut stream(seed, "made facades", k as u64));
+    (0..count).map(one).collect()
 }
 
 /// A facade drawn by the rules of this module; `index` only names it.
@@ -104,7 +116,11 @@ pub fn facade(index: usize, rng: &mut Stream) -> Layout {
     let mut high = window_high;
     for floor in 0..floors {
         let top = floor + 1 == floors;
-        let by = if attic && top { rng.random_range(0.55..0.9) } else { 1.0 };
+        let by = if attic && top {
+            rng.random_range(0.55..0.9)
+        } else {
+            1.0
+        };
         let tall = high * by;
         let low = y + sill;
         let kind = match (floor, top) {
@@ -174,14 +190,24 @@ fn ground_floor(bays: &Bays, ground: f64, elements: &mut Vec<Element>, rng: &mut
     for k in 0..bays.at.len() {
         match kind {
             0 => {
-                let rect = Rect::new(bays.at[k] - bays.wide[k] / 2.0, low, bays.wide[k], high - low);
+                let rect = Rect::new(
+                    bays.at[k] - bays.wide[k] / 2.0,
+                    low,
+                    bays.wide[k],
+                    high - low,
+                );
                 elements.push(Element::new(Class::Window, rect));
             }
             1 if !pair || k % 2 == 0 => {
                 let next = if pair { bays.at.get(k + 1) } else { None };
                 let left = bays.at[k] - 0.65 * bays.wide[k];
                 let end = next.map_or(bays.at[k] + 0.65 * bays.wide[k], |x| x + 0.6 * bays.wide[k]);
-                let rect = Rect::new(left.max(0.0), 0.0, end.min(bays.width) - left.max(0.0), high);
+                let rect = Rect::new(
+                    left.max(0.0),
+                    0.0,
+                    end.min(bays.width) - left.max(0.0),
+                    high,
+                );
                 elements.push(Element::new(Class::Shop, rect));
             }
             _ => {}
@@ -194,41 +220,64 @@ fn ground_floor(bays: &Bays, ground: f64, elements: &mut Vec<Element>, rng: &mut
 }
 
 /// The facade with errors of an annotation: each edge is off by about a hundredth of the element, for some not at all.
-fn annotated(name: String, width: f64, height: f64, elements: Vec<Element>, rng: &mut Stream) -> Layout {
+fn annotated(
+    name: String,
+    width: f64,
+    height: f64,
+    elements: Vec<Element>,
+    rng: &mut Stream,
+) -> Layout {
+    let (width, height) = (rounded(width), rounded(height));
     let error = [0.0, 0.008, 0.02][categorical(&[0.35, 0.4, 0.25], rng)];
     let mut kept: Vec<Element> = Vec::new();
     for element in elements {
         let r = element.rect;
-        let mut off = |extent: f64| extent * error * (rng.random::<f64>() + rng.random::<f64>() - 1.0);
-        let (x, y) = ((r.x + off(r.width)).max(0.0), (r.y + off(r.height)).max(0.0));
+        let mut off =
+            |extent: f64| extent * error * (rng.random::<f64>() + rng.random::<f64>() - 1.0);
+        let (x, y) = (
+            (r.x + off(r.width)).max(0.0),
+            (r.y + off(r.height)).max(0.0),
+        );
         let (right, top) = (r.right() + off(r.width), r.top() + off(r.height));
-        let rect = Rect::new(x, y, right.min(width) - x, top.min(height) - y);
+        let [x, y, right, top] = [x, y, right.min(width), top.min(height)].map(rounded);
+        let rect = Rect::new(x, y, rounded(right - x), rounded(top - y));
         let own = Element::new(element.class, rect);
         let room = rect.width > 0.0 && rect.height > 0.0;
         if room && !kept.iter().any(|k| k.excludes(&own)) {
             kept.push(own);
         }
     }
-    Layout { name, width, height, elements: kept }
+    Layout {
+        name,
+        width,
+        height,
+        elements: kept,
+    }
+}
+
+/// To ten thousandths of a floor: short in files.
+fn rounded(length: f64) -> f64 {
+    (length * 1e4).round() / 1e4
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::methods::structure_completion::layout::scope::in_scope;
-    use crate::rng::stream;
 
     #[test]
     fn facades_are_whole_layouts_and_differ() {
-        let made: Vec<Layout> = (0..200)
-            .map(|k| facade(k, &mut stream(3, "made", k as u64)))
-            .collect();
+        let made = several(200, 3);
         for layout in &made {
             for (k, e) in layout.elements.iter().enumerate() {
                 let r = e.rect;
                 assert!(r.x >= 0.0 && r.y >= 0.0 && r.width > 0.0 && r.height > 0.0);
                 assert!(r.right() <= layout.width + 1e-9 && r.top() <= layout.height + 1e-9);
-                assert!(!layout.elements[..k].iter().any(|o| o.excludes(e)), "{}", layout.name);
+                assert!(
+                    !layout.elements[..k].iter().any(|o| o.excludes(e)),
+                    "{}",
+                    layout.name
+                );
             }
         }
         let share = |test: &dyn Fn(&Layout) -> bool| {

@@ -9,7 +9,13 @@ use crate::rng::{Stream, stream};
 use crate::shape::Rect;
 
 /// A perfect grid: equal windows, equal gaps, equal margins on both sides.
-pub fn grid(columns: usize, rows: usize, window: (f64, f64), gap: (f64, f64), margin: (f64, f64)) -> Layout {
+pub fn grid(
+    columns: usize,
+    rows: usize,
+    window: (f64, f64),
+    gap: (f64, f64),
+    margin: (f64, f64),
+) -> Layout {
     let at = |k: usize, size: f64, gap: f64, margin: f64| margin + k as f64 * (size + gap);
     let extent = |n: usize, size: f64, gap: f64, margin: f64| {
         2.0 * margin + n as f64 * size + n.saturating_sub(1) as f64 * gap
@@ -17,8 +23,14 @@ pub fn grid(columns: usize, rows: usize, window: (f64, f64), gap: (f64, f64), ma
     let mut elements = Vec::with_capacity(columns * rows);
     for r in 0..rows {
         for c in 0..columns {
-            let (x, y) = (at(c, window.0, gap.0, margin.0), at(r, window.1, gap.1, margin.1));
-            elements.push(Element::new(Class::Window, Rect::new(x, y, window.0, window.1)));
+            let (x, y) = (
+                at(c, window.0, gap.0, margin.0),
+                at(r, window.1, gap.1, margin.1),
+            );
+            elements.push(Element::new(
+                Class::Window,
+                Rect::new(x, y, window.0, window.1),
+            ));
         }
     }
     Layout {
@@ -58,7 +70,12 @@ impl Sight {
 
     /// The grid as a partial layout, and the windows that are hidden. `columns` and `rows` are those of the grid, whose
     /// windows are listed row by row.
-    pub fn of(self, grid: &Layout, (columns, rows): (usize, usize), rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
+    pub fn of(
+        self,
+        grid: &Layout,
+        (columns, rows): (usize, usize),
+        rng: &mut Stream,
+    ) -> (PartialLayout, Vec<Element>) {
         let mut unknown = None;
         let cell = |k: usize| (k % columns, k / columns);
         let seen: Vec<bool> = match self {
@@ -91,7 +108,11 @@ impl Sight {
             }
         };
         let side = |wanted: bool| {
-            let own = grid.elements.iter().zip(&seen).filter(|(_, seen)| **seen == wanted);
+            let own = grid
+                .elements
+                .iter()
+                .zip(&seen)
+                .filter(|(_, seen)| **seen == wanted);
             own.map(|(e, _)| *e).collect::<Vec<Element>>()
         };
         let partial = PartialLayout {
@@ -157,7 +178,10 @@ mod tests {
         let made = grid(4, 3, (10.0, 16.0), (8.0, 12.0), (6.0, 9.0));
         assert_eq!(made.elements.len(), 12);
         let last = made.elements[11].rect;
-        assert_eq!((made.width - last.right(), made.height - last.top()), (6.0, 9.0));
+        assert_eq!(
+            (made.width - last.right(), made.height - last.top()),
+            (6.0, 9.0)
+        );
         assert_eq!(all(1).last().map(|g| g.1), Some((9, 7)));
     }
 
@@ -169,7 +193,12 @@ mod tests {
                 let (partial, hidden) = sight.of(layout, (*columns, *rows), &mut rng);
                 assert_eq!(partial.observed.len() + hidden.len(), columns * rows);
                 let mut at: Vec<[i64; 2]> = Vec::new();
-                at.extend(partial.observed.iter().map(|e| [e.rect.x as i64, e.rect.y as i64]));
+                at.extend(
+                    partial
+                        .observed
+                        .iter()
+                        .map(|e| [e.rect.x as i64, e.rect.y as i64]),
+                );
                 for (axis, lines) in [*columns, *rows].into_iter().enumerate() {
                     let mut own: Vec<i64> = at.iter().map(|p| p[axis]).collect();
                     own.sort_unstable();

@@ -105,7 +105,9 @@ impl ScoreModel {
             }
             _ => {
                 let (area, door) = global::symmetry(grids, facade);
-                let doors = door.map_or("no door".into(), |at| format!("doors at {at:.2} of the width"));
+                let doors = door.map_or("no door".into(), |at| {
+                    format!("doors at {at:.2} of the width")
+                });
                 format!("{area:.3} of the area is symmetric, {doors}")
             }
         }
