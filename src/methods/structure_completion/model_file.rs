@@ -1,6 +1,6 @@
 //! A learnt model as JSON text: `*.completion.json`.
 
-use super::best::candidates::FEATURES;
+use super::best::candidates::{FEATURES, FEATURES_BEFORE};
 use super::best::doors;
 use super::model::{Example, Model, Stored};
 
@@ -111,7 +111,8 @@ impl Model {
             }
         }
         for elements in [&stored.elements, &stored.tight].into_iter().flatten() {
-            elements.check(FEATURES)?;
+            let before = elements.features() == FEATURES_BEFORE;
+            elements.check(if before { FEATURES_BEFORE } else { FEATURES })?;
         }
         if let Some(trees) = &stored.doors {
             trees.check(doors::FEATURES)?;

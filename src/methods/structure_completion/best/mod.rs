@@ -24,6 +24,7 @@ mod shared;
 mod spacing;
 pub mod symmetry;
 pub mod transfer;
+mod votes;
 
 use rand::{Rng, RngExt};
 

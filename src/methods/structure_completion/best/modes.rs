@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::candidates::Candidates;
+use super::candidates::{Candidate, Candidates};
 use super::doors;
 use super::exact;
 use super::judge::{Judge, Layout};
@@ -48,10 +48,7 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     let weights = weights(&draws);
     let mut loose = probabilities(model, &candidates);
     let mut tight: Vec<f64> = match &model.tight {
-        Some(learnt) => {
-            let all = candidates.all.iter();
-            all.map(|c| learnt.probability(&c.features)).collect()
-        }
+        Some(learnt) => candidates.probabilities(learnt),
         None => loose.iter().map(|p| TIGHT * p).collect(),
     };
     let door = door(model, &scene, &draws, &mut candidates, &mut loose);
@@ -101,13 +98,13 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
 
 /// Probability of each candidate within an intersection over union of a half.
 fn probabilities(model: &Model, candidates: &Candidates) -> Vec<f64> {
-    let probability = |c: &super::candidates::Candidate| match &model.elements {
-        Some(learnt) => learnt.probability(&c.features),
-        // The shares sum to 1, up to rounding.
-        None => {
-            let terms = c.support.iter().zip(SHARES).map(|(s, share)| s * share);
-            terms.sum::<f64>().min(1.0)
-        }
+    if let Some(learnt) = &model.elements {
+        return candidates.probabilities(learnt);
+    }
+    // The shares sum to 1, up to rounding.
+    let probability = |c: &Candidate| {
+        let terms = c.support.iter().zip(SHARES).map(|(s, share)| s * share);
+        terms.sum::<f64>().min(1.0)
     };
     candidates.all.iter().map(probability).collect()
 }
