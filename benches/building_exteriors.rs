@@ -3,7 +3,6 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use edifice::experiments::building_exteriors::houses::houses;
 use edifice::io::gltf;
 use edifice::methods::building_exteriors::attributes::attributes;
 use edifice::methods::building_exteriors::data::dataset;
@@ -15,6 +14,7 @@ use edifice::methods::building_exteriors::mass::{MassTarget, Search, search};
 use edifice::model::hierarchy::{Constant, Settings, learn};
 use edifice::rng::stream;
 use edifice::shape::solid::faces;
+use edifice_experiments::building_exteriors::houses::houses;
 use rayon::prelude::*;
 
 fn of_houses(c: &mut Criterion) {

@@ -1,9 +1,9 @@
 //! Inference of facade grammars: the number of terminals stands in the id.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use edifice::experiments::facade_grammar::made;
 use edifice::grammar::derive;
 use edifice::methods::facade_grammar::{Method, Settings, infer};
+use edifice_experiments::facade_grammar::made;
 
 fn settings(method: Method, iterations: u64) -> Settings {
     Settings {

@@ -7,12 +7,12 @@ use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use edifice::experiments::layouts;
-use edifice::experiments::procedural_logic::data::{label_images, shipped_source};
 use edifice::methods::procedural_logic::{
     Alphabet, Canvas, Coefficients, Inference, Parameters, Profile, learn_affinity, parse,
 };
 use edifice::shape::LabelGrid;
+use edifice_experiments::layouts;
+use edifice_experiments::procedural_logic::data::{label_images, shipped_source};
 
 const PARAMETERS: Parameters = Parameters::COMPRESSION;
 

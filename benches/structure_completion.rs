@@ -98,7 +98,7 @@ fn paper(c: &mut Criterion) {
     group.finish();
 }
 
-/// So many columns and rows of windows.
+/// A lattice of `side` columns and rows of windows.
 fn lattice(side: u32) -> Layout {
     let windows = (0..side * side).map(|k| {
         let (x, y) = (f64::from(k % side), f64::from(k / side));

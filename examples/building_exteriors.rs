@@ -1,5 +1,5 @@
-//! How houses look (Fan and Wonka 2016): a model with hidden styles of the attributes of houses, asked what goes with a garage.
-//! `cargo run --example building_exteriors --no-default-features`
+//! The looks of houses (Fan and Wonka 2016): a model with hidden styles of the attributes of houses, asked what goes
+//! with a garage. `cargo run --example building_exteriors --no-default-features`
 
 use edifice::methods::building_exteriors::attributes::{COLUMNS, attributes};
 use edifice::model::Table;

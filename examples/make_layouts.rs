@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use edifice::experiments::facade_grammar::data;
+use edifice_experiments::facade_grammar::data;
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);

@@ -21,7 +21,7 @@ pub mod study;
 mod views;
 
 use super::{Artefact, Context, Experiment};
-use crate::model::hierarchy::{Constant, Settings, Sweep};
+use edifice_model::hierarchy::{Constant, Settings, Sweep};
 
 /// The paper's tables and figures.
 pub const EXPERIMENT: Experiment = Experiment {

@@ -34,7 +34,7 @@ mod table_4;
 mod table_5;
 
 use super::{Artefact, Budget, Experiment, picture};
-use crate::methods::facade_grammar::Method;
+use edifice_facade_grammar::Method;
 
 /// This project's configuration of approximate dynamic programming.
 const BEST: Method = Method::AdpBest;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::Context;
-use crate::io::facade_json;
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::facade_json;
+use edifice_shape::Facade;
 
 /// Name of the facade of Wu et al. 2014, Fig. 9: facade (i) of their Table 1.
 pub const FIGURE_9: &str = "wu2014_fig9";

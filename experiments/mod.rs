@@ -4,7 +4,7 @@
 //! 1. Write `experiments/<slug>.rs` with a `pub const EXPERIMENT: Experiment` that lists its artefacts: the name of a
 //!    table or figure (`table_1`, `figure_14`), a title, and a function `fn(&mut Context) -> Result<()>`.
 //! 2. Add `pub mod <slug>;` and `&<slug>::EXPERIMENT` to [`ALL`] below.
-//! 3. Write `src/bin/<slug>.rs`: `fn main() -> std::process::ExitCode { edifice::experiments::main(&edifice::experiments::<slug>::EXPERIMENT) }`.
+//! 3. Write `src/bin/<slug>.rs`: `fn main() -> std::process::ExitCode { edifice_experiments::main(&edifice_experiments::<slug>::EXPERIMENT) }`.
 //!
 //! # What an artefact's function does
 //! ```ignore
@@ -42,7 +42,6 @@ pub mod structure_completion;
 
 use std::process::ExitCode;
 
-pub use frame::datasets::shipped_bytes;
 use sweep::Study;
 
 pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};

@@ -1,9 +1,9 @@
 //! Methods that find a grammar of one facade and are compared with those of Wu et al. 2014: the list that both sides know, so
 //! that neither names the other.
 
-use crate::grammar::Grammar;
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::Grammar;
+use edifice_shape::Facade;
 
 /// Finds a grammar of one facade.
 type Infer = fn(&Facade) -> Result<Grammar>;

@@ -1,8 +1,8 @@
 //! Layouts as pictures.
 
-use crate::io::palette::leading_word;
-use crate::report::{Colour, Tile, Tiles, category};
-use crate::shape::Facade;
+use edifice_io::palette::leading_word;
+use edifice_report::{Colour, Tile, Tiles, category};
+use edifice_shape::Facade;
 
 /// Colour of a material, muted so that elements stand out from the wall.
 pub fn material(label: &str) -> Colour {

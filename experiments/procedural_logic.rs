@@ -21,11 +21,11 @@ pub mod trivial;
 pub mod words;
 
 use super::{Artefact, Experiment};
-use crate::grammar::Grammar;
-use crate::methods::procedural_logic::{Parameters, baseline_grammar};
-use crate::report::{Align, Row, Table};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::Grammar;
+use edifice_procedural_logic::{Parameters, baseline_grammar};
+use edifice_report::{Align, Row, Table};
+use edifice_shape::Facade;
 
 /// The paper's figures and the numbers of its text.
 pub const EXPERIMENT: Experiment = Experiment {

@@ -19,7 +19,7 @@ mod timing;
 mod weights;
 
 use super::{Artefact, Experiment};
-use crate::report::Row;
+use edifice_report::Row;
 
 /// The benchmark, and the paper's figures and numbers.
 pub const EXPERIMENT: Experiment = Experiment {

@@ -33,32 +33,29 @@
 //!
 //! [linfa]: https://docs.rs/linfa
 
-pub mod cluster;
-#[cfg(feature = "cli")]
-pub mod editing;
-pub mod error;
-#[cfg(feature = "cli")]
-#[path = "../experiments/mod.rs"]
-pub mod experiments;
-#[cfg(feature = "file")]
-pub mod file;
-pub mod grammar;
+pub use edifice_base::{Error, Result, error, rng};
+pub use edifice_cluster as cluster;
+pub use edifice_grammar as grammar;
 #[cfg(feature = "io")]
-pub mod io;
-pub mod layout;
-pub mod methods;
-pub mod model;
-pub mod optim;
+pub use edifice_io as io;
+pub use edifice_layout as layout;
+pub use edifice_model as model;
+pub use edifice_optim as optim;
 #[cfg(feature = "report")]
-pub mod report;
-pub mod rng;
-pub mod scene;
-pub mod shape;
-#[cfg(feature = "studio")]
-pub mod studio;
-pub mod tables;
+pub use edifice_report as report;
+pub use edifice_scene as scene;
+pub use edifice_shape as shape;
+pub use nalgebra;
+pub use rand;
 
-pub use error::{Error, Result};
+/// The papers' methods, one crate for each paper; no method imports another.
+pub mod methods {
+    pub use edifice_building_exteriors as building_exteriors;
+    pub use edifice_city_proceduralization as city_proceduralization;
+    pub use edifice_facade_grammar as facade_grammar;
+    pub use edifice_procedural_logic as procedural_logic;
+    pub use edifice_structure_completion as structure_completion;
+}
 
 /// The examples of the README, compiled and run with the documentation tests.
 #[cfg(doctest)]

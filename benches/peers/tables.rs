@@ -15,12 +15,12 @@ use std::time::Instant;
 
 use edifice::io::{building_csv, json, read_bytes};
 use edifice::model::hierarchy::{Constant, Settings, Sweep};
+use edifice::model::tables::Dataset;
+use edifice::model::tables::compare::{BACKGROUND, Contender, held_out, split};
+use edifice::model::tables::encoding::Encoding;
+use edifice::model::tables::schema::Schema;
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
-use edifice::tables::Dataset;
-use edifice::tables::compare::{BACKGROUND, Contender, held_out, split};
-use edifice::tables::encoding::Encoding;
-use edifice::tables::schema::Schema;
 use rand::{Rng, RngExt};
 
 /// Points drawn in the box of a row.

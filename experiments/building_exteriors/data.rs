@@ -2,18 +2,18 @@
 
 use serde::Deserialize;
 
-use crate::experiments::Context;
-use crate::io::{building_csv, building_json, json, read_bytes};
-use crate::methods::building_exteriors::attributes::attributes;
-use crate::methods::building_exteriors::data::dataset;
-use crate::model::{Cell, Table};
-use crate::shape::Building;
-use crate::tables::Dataset;
-use crate::tables::compare::split;
-use crate::tables::schema::{FORMAT, Schema, VERSION};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::attributes;
+use edifice_building_exteriors::data::dataset;
+use edifice_io::{building_csv, building_json, json, read_bytes};
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::split;
+use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
+use edifice_model::{Cell, Table};
+use edifice_shape::Building;
 
-/// What the generator knows.
+/// The generator's own knowledge of the houses, which learning does not see.
 #[derive(Deserialize)]
 pub struct Truth {
     /// Hidden style of each house.

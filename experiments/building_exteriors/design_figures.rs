@@ -2,16 +2,16 @@
 
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::methods::building_exteriors::design::{Edit, completions, edited, observed, suggested};
-use crate::methods::building_exteriors::house::walls::walls_of_pieces;
-use crate::methods::building_exteriors::house::{Database, Generated, Joining, Options, model};
-use crate::methods::building_exteriors::mass::iou;
-use crate::model::hierarchy::{Hierarchy, learn};
-use crate::report::{Align, Row, Table};
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, Side};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::design::{Edit, completions, edited, observed, suggested};
+use edifice_building_exteriors::house::walls::walls_of_pieces;
+use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
+use edifice_building_exteriors::mass::iou;
+use edifice_model::hierarchy::{Hierarchy, learn};
+use edifice_report::{Align, Row, Table};
+use edifice_shape::{BoxStyle, Building, Side};
 
 /// Houses of the shipped database that are held out of model and donors.
 const HELD_OUT: usize = 20;
@@ -41,7 +41,8 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
     })
 }
 
-/// What a photograph from the front shows: the boxes whose walls face the street, and the facade pieces on them.
+/// The part of a house that a photograph from the front shows: the boxes whose walls face the street, and the facade
+/// pieces on them.
 fn seen_from_the_street(house: &Building) -> Building {
     let walls = walls_of_pieces(house);
     let front = house.facades.iter().zip(&walls);
@@ -81,7 +82,7 @@ fn cell(ctx: &Context) -> [usize; 2] {
     ctx.budget().choose([60, 44], [320, 232], [320, 232])
 }
 
-fn watched(building: &Building) -> Result<crate::methods::building_exteriors::house::Model> {
+fn watched(building: &Building) -> Result<edifice_building_exteriors::house::Model> {
     model(building, Joining::Boxes).map_err(Error::method)
 }
 
@@ -265,7 +266,7 @@ pub fn figure_19(ctx: &mut Context) -> Result<()> {
         .unwrap_or(&learned.held_out[0]);
     let options = Options::default();
     let mut rng = stream(ctx.seed(), "building_exteriors/figure_19", 0);
-    let mut stages: Vec<(String, Building, Vec<crate::shape::MassBox>, f64)> =
+    let mut stages: Vec<(String, Building, Vec<edifice_shape::MassBox>, f64)> =
         vec![("initial".into(), start.clone(), Vec::new(), 0.0)];
     let (w, d) = (extent(start)[0], extent(start)[1]);
     // Beside the left wall, half a metre inside it.
@@ -373,6 +374,6 @@ fn find(house: &Building, style: BoxStyle) -> usize {
 }
 
 fn extent(house: &Building) -> [f64; 2] {
-    let bounds = crate::methods::building_exteriors::mass::target::bounds(house);
+    let bounds = edifice_building_exteriors::mass::target::bounds(house);
     bounds.map(|[low, high]| high - low)
 }

@@ -2,24 +2,22 @@
 
 use super::data;
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
-use crate::experiments::Context;
-use crate::methods::building_exteriors::attributes::{GROUPS, Level, attributes};
-use crate::methods::building_exteriors::facade::{
-    FacadeTarget, Facades, breed, elements, energy, furnish,
-};
-use crate::methods::building_exteriors::house::solids::prisms;
-use crate::methods::building_exteriors::house::{
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::{GROUPS, Level, attributes};
+use edifice_building_exteriors::facade::{FacadeTarget, Facades, breed, elements, energy, furnish};
+use edifice_building_exteriors::house::solids::prisms;
+use edifice_building_exteriors::house::{
     Database, Generated, Joining, Method, Model, Options, generate, model,
 };
-use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use crate::methods::building_exteriors::mass::{MASS, MassTarget, Search, is_sound};
-use crate::optim::Step;
-use crate::optim::genetic::Settings;
-use crate::report::{Align, Chart, Figure, Row, Scale, Series, Table};
-use crate::rng::stream;
-use crate::shape::Building;
-use crate::shape::solid::faces;
-use crate::{Error, Result};
+use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
+use edifice_building_exteriors::mass::{MASS, MassTarget, Search, is_sound};
+use edifice_optim::Step;
+use edifice_optim::genetic::Settings;
+use edifice_report::{Align, Chart, Figure, Row, Scale, Series, Table};
+use edifice_shape::Building;
+use edifice_shape::solid::faces;
 
 /// Houses of Fig. 7, as in Fig. 6, and the house of Fig. 8 and 9.
 const HOUSES: [usize; 2] = [2, 40];

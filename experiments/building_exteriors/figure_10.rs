@@ -2,17 +2,17 @@
 
 use super::views::{FRONT, Panel, sheet};
 use super::{data, settings};
-use crate::cluster::adjusted_rand_index;
-use crate::experiments::Context;
-use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::methods::building_exteriors::design::wanted_rows;
-use crate::methods::building_exteriors::house::{Database, Generated, Options, generate};
-use crate::model::hierarchy::{Hierarchy, learn};
-use crate::model::{Cell, Table as Data};
-use crate::report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, PlanUnion, Rect};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::design::wanted_rows;
+use edifice_building_exteriors::house::{Database, Generated, Options, generate};
+use edifice_cluster::adjusted_rand_index;
+use edifice_model::hierarchy::{Hierarchy, learn};
+use edifice_model::{Cell, Table as Data};
+use edifice_report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};
+use edifice_shape::{BoxStyle, Building, PlanUnion, Rect};
 
 /// Learns from the shipped houses and shows the styles, their most typical houses and means.
 pub fn run(ctx: &mut Context) -> Result<()> {

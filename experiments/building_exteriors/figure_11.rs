@@ -3,15 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::{data, houses, settings};
-use crate::experiments::{Budget, Context};
-use crate::methods::building_exteriors::agreement::edge_agreement;
-use crate::methods::building_exteriors::attributes::{GROUPS, Level};
-use crate::methods::building_exteriors::network;
-use crate::model::hierarchy::{Settings, learn};
-use crate::model::{Cell, Table as Data};
-use crate::report::{Align, Chart, Figure, HeatMap, Row, Scale, Series, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::agreement::edge_agreement;
+use edifice_building_exteriors::attributes::{GROUPS, Level};
+use edifice_building_exteriors::network;
+use edifice_model::hierarchy::{Settings, learn};
+use edifice_model::{Cell, Table as Data};
+use edifice_report::{Align, Chart, Figure, HeatMap, Row, Scale, Series, Table};
 
 #[derive(Serialize, Deserialize)]
 struct Edges {
@@ -192,7 +192,7 @@ pub fn right(ctx: &mut Context) -> Result<()> {
         format!("{mean:.1}"),
     );
     let categories = (0..histogram.len()).map(|c| c.to_string()).collect();
-    let bars = crate::report::Bars::new("", "training houses", Scale::new("samples"), categories)
+    let bars = edifice_report::Bars::new("", "training houses", Scale::new("samples"), categories)
         .group("samples", histogram.into_iter().map(Some).collect());
     ctx.figure(
         "figure_11_right",

@@ -3,12 +3,12 @@
 use super::averages::mean_and_error;
 use super::reasons::{self, Means};
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::model::hierarchy::Settings;
-use crate::report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
-use crate::tables::Dataset;
-use crate::tables::compare::{BACKGROUND, Contender, held_out, split};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_model::hierarchy::Settings;
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split};
+use edifice_report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
 
 /// Fig. 12 left: five models over five splits of 80/20, on all three sets.
 pub fn left(ctx: &mut Context) -> Result<()> {

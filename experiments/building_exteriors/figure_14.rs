@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::model::hierarchy::learn;
-use crate::report::{Align, Bars, Figure, Row, Scale, Table};
-use crate::rng::stream;
-use crate::tables::compare::split;
-use crate::tables::mixture::Baseline;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_model::hierarchy::learn;
+use edifice_model::tables::compare::split;
+use edifice_model::tables::mixture::Baseline;
+use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// Columns that are given: the bounding box and the garage.
 const GIVEN: [usize; 9] = [0, 1, 2, 9, 10, 11, 12, 13, 14];

@@ -6,20 +6,20 @@ use serde::{Deserialize, Serialize};
 
 use super::houses::wild;
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::methods::building_exteriors::attributes::{COLUMNS, mass_attributes};
-use crate::methods::building_exteriors::design::possible_rows;
-use crate::methods::building_exteriors::house::{Database, Options, generate, model};
-use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use crate::methods::building_exteriors::mass::{
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::{COLUMNS, mass_attributes};
+use edifice_building_exteriors::design::possible_rows;
+use edifice_building_exteriors::house::{Database, Options, generate, model};
+use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
+use edifice_building_exteriors::mass::{
     MASS, MassModel, MassTarget, Search, is_sound, least_z, max_z, nearest, search,
 };
-use crate::model::hierarchy::learn;
-use crate::model::{Cell, Table as Data};
-use crate::report::{Align, Row, Table};
-use crate::rng::stream;
-use crate::shape::Building;
-use crate::{Error, Result};
+use edifice_model::hierarchy::learn;
+use edifice_model::{Cell, Table as Data};
+use edifice_report::{Align, Row, Table};
+use edifice_shape::Building;
 
 /// Seed of the wild houses.
 const WILD_SEED: u64 = 1;
@@ -37,7 +37,7 @@ pub(super) struct Unit {
     pub wanted: Vec<f64>,
 }
 
-/// What came of it.
+/// The result of one generation.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Answer {
     /// Mass columns from those wanted.
@@ -168,11 +168,7 @@ pub(super) fn answer(unit: &Unit, database: &Database, seed: u64) -> Result<Answ
     row[..unit.wanted.len()].copy_from_slice(&unit.wanted);
     if unit.dataset != "wild" && unit.dataset != "shipped" {
         let free = [false; 49];
-        crate::methods::building_exteriors::mass::repair::repair(
-            &mut row,
-            &free,
-            &database.deviations,
-        );
+        edifice_building_exteriors::mass::repair::repair(&mut row, &free, &database.deviations);
     }
     let target = MassTarget::new(std::array::from_fn(|c| row[c]));
     let mass = mass_model(unit, &target, database, leave_out, seed, &mut rng)?;
@@ -201,7 +197,7 @@ fn mass_model(
     database: &Database,
     leave_out: Option<usize>,
     seed: u64,
-    rng: &mut crate::rng::Stream,
+    rng: &mut edifice_base::rng::Stream,
 ) -> Result<MassModel> {
     let options = Search {
         leave_out,

@@ -1,18 +1,18 @@
 //! Figures of generated houses: Fig. 6 and 15 of Fan and Wonka 2016.
 
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::io::scene_png::picture_png;
-use crate::methods::building_exteriors::design::possible_rows;
-use crate::methods::building_exteriors::house::scene::{Placed, scene};
-use crate::methods::building_exteriors::house::{Database, Options, generate};
-use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use crate::methods::building_exteriors::mass::{MASS, MassTarget, Search, search};
-use crate::model::hierarchy::learn;
-use crate::report::{Align, Chart, Figure, Scale, Series, Table};
-use crate::rng::stream;
-use crate::scene::trace::{framing, trace};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::design::possible_rows;
+use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::house::{Database, Options, generate};
+use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
+use edifice_building_exteriors::mass::{MASS, MassTarget, Search, search};
+use edifice_io::scene_png::picture_png;
+use edifice_model::hierarchy::learn;
+use edifice_report::{Align, Chart, Figure, Scale, Series, Table};
+use edifice_scene::trace::{framing, trace};
 
 /// Fig. 6: energy of mass models against iterations.
 pub fn figure_6(ctx: &mut Context) -> Result<()> {
@@ -37,7 +37,7 @@ pub fn figure_6(ctx: &mut Context) -> Result<()> {
         let (model, steps) = anneal(&target, &database.deviations[..MASS], &settings, seed)
             .map_err(Error::method)?;
         let run = steps.iter().min_by(|a, b| {
-            let last = |s: &[crate::optim::Step]| s.last().map_or(f64::INFINITY, |s| s.best);
+            let last = |s: &[edifice_optim::Step]| s.last().map_or(f64::INFINITY, |s| s.best);
             last(a).total_cmp(&last(b))
         });
         let points = run
@@ -123,7 +123,7 @@ pub fn figure_15(ctx: &mut Context) -> Result<()> {
     let picture = trace(&scene, &camera, size[0], size[1]);
     let bytes = picture_png(&picture).map_err(Error::method)?;
     ctx.attach("figure_15.png", &bytes, "six synthesized houses")?;
-    let glb = crate::io::gltf::to_bytes(&scene).map_err(Error::method)?;
+    let glb = edifice_io::gltf::to_bytes(&scene).map_err(Error::method)?;
     ctx.attach("figure_15.glb", &glb, "the same as a scene")?;
     let mut out = Table::new("Six houses drawn from the model, one of each of the first styles")
         .column("house", Align::Left)

@@ -1,21 +1,21 @@
-//! How long mass models, roofs, facades and whole houses take (Sec. 7: 12 minutes and 1 minute).
+//! Processor seconds of mass models, roofs, facades and whole houses (Sec. 7: 12 minutes and 1 minute).
 
 use std::time::Instant;
 
 use rayon::prelude::*;
 
 use super::data;
-use crate::experiments::Context;
-use crate::io::gltf;
-use crate::methods::building_exteriors::facade::{FacadeTarget, furnish};
-use crate::methods::building_exteriors::house::scene::{Placed, scene};
-use crate::methods::building_exteriors::house::solids::prisms;
-use crate::methods::building_exteriors::house::{Database, Joining, Options, generate};
-use crate::methods::building_exteriors::mass::{MASS, MassTarget, Search, search};
-use crate::report::{Align, Row, Table};
-use crate::rng::stream;
-use crate::shape::solid::faces;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::facade::{FacadeTarget, furnish};
+use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::house::solids::prisms;
+use edifice_building_exteriors::house::{Database, Joining, Options, generate};
+use edifice_building_exteriors::mass::{MASS, MassTarget, Search, search};
+use edifice_io::gltf;
+use edifice_report::{Align, Row, Table};
+use edifice_shape::solid::faces;
 
 /// Times the parts of every shipped house, the house itself left out of the donors, and many whole houses.
 pub fn run(ctx: &mut Context) -> Result<()> {

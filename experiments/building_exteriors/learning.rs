@@ -1,10 +1,10 @@
-//! How long the whole structure search takes (Sec. 7: 40 minutes for 200 buildings).
+//! Seconds of the whole structure search (Sec. 7: 40 minutes for 200 buildings).
 
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::model::hierarchy::{Settings, learn};
-use crate::report::{Chart, Corner, Figure, Row, Scale, Series};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_model::hierarchy::{Settings, learn};
+use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 
 /// Learns from the first 50, 100, 150 and 200 shipped houses, S from 2 to 25 as in the paper.
 pub fn run(ctx: &mut Context) -> Result<()> {

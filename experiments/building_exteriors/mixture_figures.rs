@@ -2,15 +2,15 @@
 
 use super::views::{BACK, FRONT, Panel, plan, sheet};
 use super::{data, settings};
-use crate::experiments::Context;
-use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::methods::building_exteriors::design::wanted_rows;
-use crate::methods::building_exteriors::house::{Database, Generated, Options, generate};
-use crate::model::hierarchy::learn;
-use crate::report::{Align, Table};
-use crate::rng::stream;
-use crate::tables::mixture::Baseline;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::design::wanted_rows;
+use edifice_building_exteriors::house::{Database, Generated, Options, generate};
+use edifice_model::hierarchy::learn;
+use edifice_model::tables::mixture::Baseline;
+use edifice_report::{Align, Table};
 
 /// Columns that are given in Fig. 14: the bounding box and the garage.
 const GIVEN: [usize; 9] = [0, 1, 2, 9, 10, 11, 12, 13, 14];
@@ -88,10 +88,10 @@ fn write(ctx: &mut Context, name: &str, what: &str, all: &[Shown]) -> Result<()>
     Ok(())
 }
 
-fn part(row: &[f64; 49], c: usize) -> Option<crate::shape::Rect> {
+fn part(row: &[f64; 49], c: usize) -> Option<edifice_shape::Rect> {
     let [w, d] = [row[c + 2], row[c + 3]];
     let (x, y) = (row[c] * row[0], row[c + 1] * row[1]);
-    (w.min(d) >= 0.5).then(|| crate::shape::Rect::new(x - w / 2.0, y - d / 2.0, w, d))
+    (w.min(d) >= 0.5).then(|| edifice_shape::Rect::new(x - w / 2.0, y - d / 2.0, w, d))
 }
 
 /// Fig. 13: houses of the means of the mixture's components.

@@ -2,12 +2,12 @@
 //! whether the loss goes when both models are learned without that attribute.
 
 use super::averages::mean_and_error;
-use crate::experiments::Context;
-use crate::model::hierarchy::Settings;
-use crate::report::{Align, Table};
-use crate::tables::Dataset;
-use crate::tables::compare::{Contender, Judged, held_out, judge, split};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_model::hierarchy::Settings;
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{Contender, Judged, held_out, judge, split};
+use edifice_report::{Align, Table};
 
 /// Mean losses of all contenders on one set, in their order.
 pub struct Means {

@@ -3,13 +3,13 @@
 use rand::RngExt;
 
 use super::data;
-use crate::experiments::Context;
-use crate::experiments::frame::memory::{peak_megabytes, reset_peak};
-use crate::model::em::Stopping;
-use crate::model::hierarchy::{Priors, fit};
-use crate::report::{Chart, Corner, Figure, Row, Scale, Series, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use crate::frame::memory::{peak_megabytes, reset_peak};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::em::Stopping;
+use edifice_model::hierarchy::{Priors, fit};
+use edifice_report::{Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// Cardinalities of the hidden variables: those of the generator.
 const KINDS: [usize; 10] = [5, 3, 2, 4, 4, 3, 4, 3, 3, 3];

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use super::averages::mean_and_error;
 use super::data::measure;
 use super::generation::{Unit, answer, rows_of};
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::building_json;
-use crate::methods::building_exteriors::house::Database;
-use crate::model::hierarchy::{Constant, Settings};
-use crate::tables::Dataset;
-use crate::tables::compare::{Contender, held_out, split};
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::Database;
+use edifice_io::building_json;
+use edifice_model::hierarchy::{Constant, Settings};
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{Contender, held_out, split};
 
 /// A model of Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,7 +44,7 @@ struct Learn {
     restarts: usize,
     /// Share of the houses that is learnt from.
     share: f64,
-    /// At most so many houses are learnt from; 0 for all of the share.
+    /// Most houses that are learnt from; 0 for all of the share.
     houses: usize,
     /// Seed of learning and of the shuffle; the sweep's seeds number the splits of it.
     seed: u64,
@@ -117,7 +117,7 @@ fn run_learn(settings: &Learn, given: &Given) -> Result<Outcome> {
     Ok(found)
 }
 
-/// How a house is made of its attributes.
+/// The method that makes a house of its attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum GeneratorName {

@@ -1,15 +1,15 @@
 //! Sheets of pictures: houses in perspective and boxes from above.
 
-use crate::io::scene_png::picture_png;
-use crate::methods::building_exteriors::house::Model;
-use crate::methods::building_exteriors::house::scene::{Placed, scene};
-use crate::methods::building_exteriors::mass::target::{PARTS, part};
-use crate::scene::render::Picture;
-use crate::scene::trace::{framing, trace};
-use crate::shape::{BoxStyle, Building, MassBox, Rect};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::Model;
+use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::mass::target::{PARTS, part};
+use edifice_io::scene_png::picture_png;
+use edifice_scene::render::Picture;
+use edifice_scene::trace::{framing, trace};
+use edifice_shape::{BoxStyle, Building, MassBox, Rect};
 
-/// From where a house is seen.
+/// Directions of the views of a house.
 pub const FRONT: [f32; 3] = [0.45, -0.42, -0.9];
 pub const RIGHT: [f32; 3] = [-0.95, -0.42, -0.35];
 pub const BACK: [f32; 3] = [-0.45, -0.42, 0.9];

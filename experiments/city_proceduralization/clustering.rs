@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::cluster::{kmeans, lloyd, means, sum_of_squares, ward};
-use crate::experiments::Context;
-use crate::methods::city_proceduralization::{decompose, features};
-use crate::report::{Align, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{decompose, features};
+use edifice_cluster::{kmeans, lloyd, means, sum_of_squares, ward};
+use edifice_report::{Align, Table};
 
 #[derive(Serialize, Deserialize)]
 struct Sums {

@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::cluster::{girvan_newman, louvain};
-use crate::experiments::Context;
-use crate::methods::city_proceduralization::{
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{
     Mode,
     emission::placed_components,
     parse_tree::{Detection, grow},
     proceduralize,
     type_graph::DistanceWeights,
 };
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use edifice_cluster::{girvan_newman, louvain};
+use edifice_report::{Align, Table};
 
 #[derive(Serialize, Deserialize)]
 struct Found {

@@ -3,15 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ingolstadt, synthetic};
-use crate::experiments::Context;
-use crate::grammar::instance::Kept;
-use crate::io::city;
-use crate::methods::city_proceduralization::{
-    Budget, Mode, Proceduralized, Settings, proceduralize,
-};
-use crate::report::Row;
-use crate::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{Budget, Mode, Proceduralized, Settings, proceduralize};
+use edifice_grammar::instance::Kept;
+use edifice_io::city;
+use edifice_report::Row;
+use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
 
 /// Cells of the raster that judges, in metres.
 pub const RESOLUTION: f64 = 1.0;
@@ -42,7 +40,7 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
         "synthetic".to_owned(),
         synthetic::city(motifs, 0.0, ctx.seed()).0,
     )];
-    if ctx.budget() > crate::experiments::Budget::Smoke {
+    if ctx.budget() > crate::Budget::Smoke {
         for (name, file) in &REAL[..real] {
             if let Some(path) = ctx.real(file)? {
                 let city = match *name {
@@ -58,7 +56,7 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
 
 /// The city with textures, with `--data`.
 pub fn chiba(ctx: &mut Context) -> Result<Option<City>> {
-    if ctx.budget() == crate::experiments::Budget::Smoke {
+    if ctx.budget() == crate::Budget::Smoke {
         return Ok(None);
     }
     let path = ctx.real(REAL[1].1)?;

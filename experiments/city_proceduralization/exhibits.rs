@@ -1,6 +1,6 @@
 //! Bodies set up side by side, for pictures.
 
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh};
+use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
 /// A city of bodies in rows, the first row behind; each body stands on the ground in the middle of its place.
 pub fn rows(rows: &[Vec<TriangleMesh>]) -> City {

@@ -2,13 +2,13 @@
 
 use super::photographs::Streets;
 use super::{data, judge};
-use crate::experiments::Context;
-use crate::io::city;
-use crate::methods::city_proceduralization::localization::{Landmark, landmarks};
-use crate::methods::city_proceduralization::{Mode, proceduralize};
-use crate::report::{Chart, Corner, Figure, Scale, Series};
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::localization::{Landmark, landmarks};
+use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_io::city;
+use edifice_report::{Chart, Corner, Figure, Scale, Series};
+use edifice_shape::triangles::City;
 
 /// Noise in standard deviations of the features.
 const NOISE: [f64; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];

@@ -1,19 +1,19 @@
 //! Fig. 3: buildings taken apart into their components.
 
 use super::{data, exhibits};
-use crate::experiments::Context;
-use crate::io::city::picture::side_by_side;
-use crate::methods::city_proceduralization::{Component, decompose};
-use crate::report::{Align, Table};
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{Component, decompose};
+use edifice_io::city::picture::side_by_side;
+use edifice_report::{Align, Table};
+use edifice_shape::triangles::TriangleMesh;
 
 /// Most components of a building that is shown.
 const MOST: usize = 6;
-/// Components are lifted by so many metres each.
+/// Gap between components, in metres.
 const GAP: f64 = 4.0;
 
-/// Draws for each number of components the largest building that has so many, and counts them all.
+/// Draws for each number of components the largest building with that number, and counts them all.
 pub fn run(ctx: &mut Context) -> Result<()> {
     let width = ctx.budget().choose(120, 480, 640);
     let mut table = Table::new("Buildings by their number of components")

@@ -1,15 +1,15 @@
 //! Fig. 4: clusters of buildings, and what weights of features do to clusters of components.
 
 use super::{data, exhibits};
-use crate::experiments::Context;
-use crate::io::city::picture::side_by_side;
-use crate::methods::city_proceduralization::types::paper_types;
-use crate::methods::city_proceduralization::{
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::types::paper_types;
+use edifice_city_proceduralization::{
     Component, Mode, PAPER_FEATURES, Representative, Structure, proceduralize,
 };
-use crate::report::{Align, Table};
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use edifice_io::city::picture::side_by_side;
+use edifice_report::{Align, Table};
+use edifice_shape::triangles::TriangleMesh;
 
 /// Clusters, and members of each, that are shown.
 const SHOWN: (usize, usize) = (4, 6);

@@ -1,11 +1,11 @@
 //! Fig. 5: a rule, its mean transforms, and what it derives to.
 
 use super::data;
-use crate::experiments::Context;
-use crate::io::city::picture::side_by_side;
-use crate::methods::city_proceduralization::{Mode, proceduralize};
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_io::city::picture::side_by_side;
+use edifice_report::{Align, Table};
 
 /// Draws the pattern that holds the most buildings, and lists its successors.
 pub fn run(ctx: &mut Context) -> Result<()> {
@@ -17,8 +17,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let mut grammar = made.grammar;
         // Patterns are what the axiom does not lead to.
         let patterns = grammar.rules.iter().filter(|r| r.symbol.starts_with('P'));
-        let size =
-            |r: &crate::grammar::instance::InstanceRule| r.weight * (r.successors.len() - 1) as f64;
+        let size = |r: &edifice_grammar::instance::InstanceRule| {
+            r.weight * (r.successors.len() - 1) as f64
+        };
         let largest = patterns.max_by(|a, b| size(a).total_cmp(&size(b)));
         let Some(rule) = largest.cloned() else {
             ctx.note(format!("{name}: no pattern repeats."));

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::experiments::Context;
-use crate::methods::city_proceduralization::{Detection, Mode, Structure, proceduralize};
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{Detection, Mode, Structure, proceduralize};
+use edifice_report::{Align, Table};
 
 /// Nodes, edges, communities, modularity and tolerance of a level.
 #[derive(Serialize, Deserialize)]
@@ -35,7 +35,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let Structure::Tree(tree) = made.structure else {
             return Ok(Vec::new());
         };
-        let level = |l: &crate::methods::city_proceduralization::parse_tree::Level| Grown {
+        let level = |l: &edifice_city_proceduralization::parse_tree::Level| Grown {
             tolerance: l.tolerance,
             nodes: l.size.0,
             edges: l.size.1,

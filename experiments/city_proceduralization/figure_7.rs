@@ -1,10 +1,10 @@
 //! Fig. 7: quality against compression, for both representatives and for `best`.
 
 use super::data::{self, Measures};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::city_proceduralization::{Mode, Representative};
-use crate::report::{Chart, Corner, Figure, Scale, Series};
+use crate::Context;
+use edifice_base::Result;
+use edifice_city_proceduralization::{Mode, Representative};
+use edifice_report::{Chart, Corner, Figure, Scale, Series};
 
 /// Runs all levels of each curve.
 pub fn run(ctx: &mut Context) -> Result<()> {

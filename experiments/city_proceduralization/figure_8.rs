@@ -1,10 +1,10 @@
 //! Fig. 8: a city beside what its grammar derives to.
 
 use super::data;
-use crate::experiments::Context;
-use crate::io::city::picture::side_by_side;
-use crate::methods::city_proceduralization::{Mode, proceduralize};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_io::city::picture::side_by_side;
 
 /// Draws each city beside its level 4.
 pub fn run(ctx: &mut Context) -> Result<()> {

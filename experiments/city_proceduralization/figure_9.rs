@@ -1,12 +1,12 @@
 //! Fig. 9: a new city in the shape of letters, from a grammar's buildings.
 
 use super::{data, judge};
-use crate::experiments::Context;
-use crate::io::city::picture::side_by_side;
-use crate::methods::city_proceduralization::synthesis::{Shape, synthesize};
-use crate::methods::city_proceduralization::{Mode, proceduralize};
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::synthesis::{Shape, synthesize};
+use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_io::city::picture::side_by_side;
+use edifice_report::{Align, Table};
 
 /// Fills the shape "3DV" with each city's buildings, draws it beside the city, and judges it.
 pub fn run(ctx: &mut Context) -> Result<()> {

@@ -5,11 +5,11 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use crate::io::city::cityjson;
-use crate::io::json::parse_json;
-use crate::io::read_bytes;
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::city::cityjson;
+use edifice_io::json::parse_json;
+use edifice_io::read_bytes;
+use edifice_shape::triangles::City;
 
 /// The file.
 #[derive(Deserialize)]

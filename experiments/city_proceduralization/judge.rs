@@ -1,4 +1,4 @@
-//! How synthesis and localization are judged: by measures of the derived triangles, not by what the methods say of
+//! The judges of synthesis and localization: measures of the derived triangles, not numbers that the methods report
 //! themselves.
 
 use std::collections::BTreeMap;
@@ -7,19 +7,19 @@ use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::grammar::instance::InstanceGrammar;
-use crate::methods::city_proceduralization::localization::{
+use edifice_base::rng::stream;
+use edifice_city_proceduralization::localization::{
     Landmark, Seen, deviations, features, landmarks, locate,
 };
-use crate::methods::city_proceduralization::synthesis::Shape;
-use crate::rng::stream;
-use crate::shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples};
+use edifice_city_proceduralization::synthesis::Shape;
+use edifice_grammar::instance::InstanceGrammar;
+use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, surface_samples};
 
 /// Cells in which plans are measured, in metres.
 const CELL: f64 = 0.5;
 /// Points on plans that tell what lies inside a shape.
 const POINTS: usize = 100_000;
-/// Buildings stand together within so many metres.
+/// Greatest distance of buildings that stand together, in metres.
 const TOGETHER: f64 = 30.0;
 
 /// Measures of a city against the one that its grammar was made from.
@@ -155,7 +155,7 @@ fn distance(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
 
 type Frequencies = BTreeMap<(String, String), f64>;
 
-/// How often types stand together, among some of the buildings.
+/// The share of each pair of types among all pairs that stand together, of some of the buildings.
 fn together(marks: &[Landmark], kinds: &[String], members: &[usize]) -> Frequencies {
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     let cell = |i: usize| marks[i].at.map(|v| (v / TOGETHER).floor() as i64);
@@ -226,7 +226,7 @@ fn plan_areas(city: &City, shape: Option<&Shape>) -> Plans {
 fn flattened(mesh: &TriangleMesh) -> TriangleMesh {
     let mut out = TriangleMesh::default();
     for t in mesh.corners() {
-        if crate::shape::triangles::plan_area(&t) > 0.0 {
+        if edifice_shape::triangles::plan_area(&t) > 0.0 {
             out.push(t.map(|p| [p[0], p[1], 1.0]));
         }
     }
@@ -249,7 +249,7 @@ fn extent(marks: &[Landmark]) -> f64 {
 }
 
 /// Share of views whose place is found first. A view is a building of `truth` with those nearest to it, `seen` in all,
-/// in any order; its features carry noise of so many standard deviations. It is looked up among `known`, the same buildings
+/// in any order; its features carry `noise`, in standard deviations. It is looked up among `known`, the same buildings
 /// as the grammar gives them.
 pub fn rank_one(
     truth: &[Landmark],

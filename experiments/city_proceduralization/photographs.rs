@@ -3,10 +3,10 @@
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::methods::city_proceduralization::facades::{Facade, facades, photographed};
-use crate::methods::city_proceduralization::localization::{Landmark, landmarks, locate_facades};
-use crate::rng::{Stream, stream};
-use crate::shape::triangles::{City, OrientedBox, SideView, view_size};
+use edifice_base::rng::{Stream, stream};
+use edifice_city_proceduralization::facades::{Facade, facades, photographed};
+use edifice_city_proceduralization::localization::{Landmark, landmarks, locate_facades};
+use edifice_shape::triangles::{City, OrientedBox, SideView, view_size};
 
 /// Least side of a pixel of a photograph, in metres.
 const PIXEL: f64 = 0.1;
@@ -59,7 +59,7 @@ impl<'a> Streets<'a> {
     }
 
     /// Share of `views` views, each of the `count` buildings nearest to a random one, of which the first place found is one of
-    /// them. A photograph is of one of a building's facades, with noise of so many greys.
+    /// them. A photograph is of one of a building's facades, with `noise` in greys.
     pub fn rank_one(
         &self,
         known: &[Vec<Facade>],

@@ -1,16 +1,16 @@
-//! What is found again of a known grammar, without and with noise.
+//! The parts of a known grammar that are found again, without and with noise.
 
 use serde::{Deserialize, Serialize};
 
 use super::{data, synthetic};
-use crate::cluster::adjusted_rand_index;
-use crate::experiments::Context;
-use crate::grammar::instance::Repeated;
-use crate::methods::city_proceduralization::{
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{
     Budget, Component, Mode, Settings, Structure, decompose, from_components,
 };
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use edifice_cluster::adjusted_rand_index;
+use edifice_grammar::instance::Repeated;
+use edifice_report::{Align, Table};
 
 #[derive(Serialize, Deserialize)]
 struct Found {
@@ -24,7 +24,7 @@ struct Found {
 
 /// Noise in per cent.
 const NOISE: [u32; 3] = [0, 1, 3];
-/// A cut found is right within so many metres.
+/// Greatest distance, in metres, at which a cut found is right.
 const CLOSE: f64 = 0.3;
 
 /// Runs both modes at each noise.

@@ -5,17 +5,17 @@ use std::time::Instant;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::{data, synthetic};
-use crate::experiments::frame::Progress;
-use crate::experiments::frame::memory::{peak_megabytes, reset_peak};
-use crate::experiments::{Budget, Context};
-use crate::io::city;
-use crate::methods::city_proceduralization::{
+use crate::frame::Progress;
+use crate::frame::memory::{peak_megabytes, reset_peak};
+use crate::{Budget, Context};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{
     Decomposition, Mode, decompose, from_components, proceduralize,
 };
-use crate::report::{Align, Chart, Corner, Figure, Scale, Series, Table};
-use crate::rng::stream;
-use crate::shape::triangles::{City, CityBuilding};
-use crate::{Error, Result};
+use edifice_io::city;
+use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
+use edifice_shape::triangles::{City, CityBuilding};
 
 /// Standard deviation of the factors of a copy's width, depth and height.
 const JITTER: f64 = 0.03;
@@ -94,7 +94,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.figure("scaling", &Figure::single("seconds by buildings", chart))
 }
 
-/// What a city took.
+/// The size of a city, and the time and memory that it took.
 struct Found {
     buildings: usize,
     components: usize,

@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::data::{self, Measures};
 use super::synthetic;
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::{city, json, read_bytes};
-use crate::methods::city_proceduralization::{self as proceduralization, Budget};
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization as proceduralization;
+use edifice_city_proceduralization::Budget;
+use edifice_io::{city, json, read_bytes};
+use edifice_shape::triangles::City;
 
-/// How types are found.
+/// The method that finds types.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Mode {
@@ -19,7 +20,7 @@ enum Mode {
     Paper,
 }
 
-/// What represents a type, of `paper`.
+/// The representative of a type, of `paper`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Representative {
@@ -31,9 +32,9 @@ enum Representative {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Proceduralize {
-    /// How types are found.
+    /// Method that finds types.
     mode: Mode,
-    /// What represents a type, of `paper`.
+    /// Representative of a type, of `paper`.
     representative: Representative,
     /// The number of templates is that of the components, halved so many times; 0 for one of each distinct component.
     level: u32,

@@ -8,8 +8,8 @@
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::rng::stream;
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
+use edifice_base::rng::stream;
+use edifice_shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
 
 /// Types of buildings.
 pub const TYPES: usize = 48;
@@ -20,7 +20,7 @@ const MEMBERS: usize = TYPES / MOTIFS;
 /// Side of a motif's plot, in metres.
 const PLOT: f64 = 150.0;
 
-/// What is known of a building.
+/// The known truth about a building.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// Its type.

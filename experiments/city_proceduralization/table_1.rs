@@ -1,12 +1,12 @@
 //! Table 1: polygons, components, terminals and non-terminals of four levels.
 
 use super::data::{self, Measures};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::city_proceduralization::{Detection, Mode};
-use crate::report::{Align, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_city_proceduralization::{Detection, Mode};
+use edifice_report::{Align, Table};
 
-/// Levels: the components' number is halved so many times.
+/// Levels: numbers of halvings of the components' number.
 const LEVELS: [u32; 5] = [0, 1, 2, 3, 4];
 
 /// Cities of more buildings are large: of their levels only some are run.

@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
-use crate::experiments::Context;
-use crate::grammar::{Derivation, Grammar, Sampler, combine};
-use crate::io::gltf;
-use crate::methods::facade_grammar::city::{Settings, city};
-use crate::report::{Figure, Row};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::city::{Settings, city};
+use edifice_grammar::{Derivation, Grammar, Sampler, combine};
+use edifice_io::gltf;
+use edifice_report::{Figure, Row};
 
 /// Layouts whose grammars are combined, group by group of similar structure.
 type Groups = &'static [&'static [&'static str]];
@@ -55,7 +55,7 @@ fn build(
                 .iter()
                 .map(|name| {
                     let path = folder.join(format!("{name}.facade.json"));
-                    let facade = crate::io::facade_json::read(&path)?;
+                    let facade = edifice_io::facade_json::read(&path)?;
                     let question = Question::new(Solver::Infer(BEST, few), ctx.seed());
                     solve(std::slice::from_ref(&facade), &question).map(|(grammar, _)| grammar)
                 })

@@ -2,12 +2,12 @@
 
 use super::data::{self, Instance};
 use super::runs::{Answer, Question, Solver, least, mean, solve};
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::facade_grammar::Operations;
-use crate::report::{Align, Row, Table};
+use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_facade_grammar::Operations;
+use edifice_report::{Align, Row, Table};
 
-/// What a comparison runs.
+/// The methods, operations and metrics of a comparison.
 pub struct Plan {
     /// Methods in the order of the columns.
     pub solvers: Vec<Solver>,

@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::experiments::facade_grammar::made;
-use crate::experiments::{Budget, Context, layouts};
-use crate::grammar::{Grammar, derive};
-use crate::io::{facade_json, grammar_cga, grammar_json, read_label_grid};
-use crate::layout::regularize::regularize_grid;
-use crate::shape::{Facade, LabelGrid, decompose, splittable};
-use crate::{Error, Result, file};
+use crate::facade_grammar::made;
+use crate::{Budget, Context, layouts};
+use edifice_base::{Error, Result, file};
+use edifice_grammar::{Grammar, derive};
+use edifice_io::{facade_json, grammar_cga, grammar_json, read_label_grid};
+use edifice_layout::regularize::regularize_grid;
+use edifice_shape::{Facade, LabelGrid, decompose, splittable};
 
-pub use crate::experiments::layouts::{FIGURE_9, files, folder};
+pub use crate::layouts::{FIGURE_9, files, folder};
 
 /// Seed of the shipped layouts.
 pub const LAYOUT_SEED: u64 = 1;

@@ -1,9 +1,9 @@
 //! Fig. 10: the facades.
 
 use super::{data, picture};
-use crate::Result;
-use crate::experiments::Context;
-use crate::report::{Figure, Row};
+use crate::Context;
+use edifice_base::Result;
+use edifice_report::{Figure, Row};
 
 /// Shows every shipped facade with its number of terminals.
 pub fn run(ctx: &mut Context) -> Result<()> {

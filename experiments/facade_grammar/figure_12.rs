@@ -4,12 +4,12 @@ use rand::SeedableRng;
 
 use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
-use crate::experiments::Context;
-use crate::grammar::{derivation, derive_at, size_independent};
-use crate::layout::resize::{ALIGN_REACH, ALIGN_TOLERANCE, Aligned, align};
-use crate::report::{Align, Figure, Row, Table};
-use crate::shape::{Facade, is_background};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_grammar::{derivation, derive_at, size_independent};
+use edifice_layout::resize::{ALIGN_REACH, ALIGN_TOLERANCE, Aligned, align};
+use edifice_report::{Align, Figure, Row, Table};
+use edifice_shape::{Facade, is_background};
 
 /// Facade to resize.
 const FACADE: &str = "boulevard_1";
@@ -21,7 +21,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("tolerance", ALIGN_TOLERANCE);
     ctx.setting("iterations", few);
     let path = data::folder(ctx)?.join(format!("layouts/{FACADE}.facade.json"));
-    let facade = crate::io::facade_json::read(&path)?;
+    let facade = edifice_io::facade_json::read(&path)?;
     let question = Question::new(Solver::Infer(BEST, few), ctx.seed());
     let (grammar, _) = solve(std::slice::from_ref(&facade), &question)?;
     let free = size_independent(&grammar);
@@ -48,7 +48,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             (facade.height * high).round(),
         );
         // The grammar is deterministic: nothing is drawn from this stream.
-        let mut stream = crate::rng::Stream::seed_from_u64(ctx.seed());
+        let mut stream = edifice_base::rng::Stream::seed_from_u64(ctx.seed());
         let derived = derive_at(&free, 0, width, height, &mut stream).map_err(Error::method)?;
         let Aligned {
             facade: aligned,
@@ -116,7 +116,7 @@ fn lines(facade: &Facade) -> usize {
             .collect::<std::collections::BTreeSet<_>>()
             .len()
     };
-    let of = |edge: fn(&crate::shape::Rect) -> [f64; 2]| {
+    let of = |edge: fn(&edifice_shape::Rect) -> [f64; 2]| {
         let edges = facade.regions.iter().flat_map(|r| edge(&r.rect));
         count(edges.map(rounded).collect())
     };

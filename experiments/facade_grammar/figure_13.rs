@@ -3,10 +3,10 @@
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, solve};
 use super::{BEST, PAPER, data, joint_real, picture};
-use crate::Result;
-use crate::experiments::Context;
-use crate::report::{Align, Figure, Row, Table};
-use crate::shape::Facade;
+use crate::Context;
+use edifice_base::Result;
+use edifice_report::{Align, Figure, Row, Table};
+use edifice_shape::Facade;
 
 /// Joint extraction from the four terraces, beside separate extraction.
 pub fn run(ctx: &mut Context) -> Result<()> {
@@ -18,7 +18,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let folder = data::folder(ctx)?.join("layouts");
     let facades: Result<Vec<Facade>> = ["a", "b", "c", "d"]
         .iter()
-        .map(|k| crate::io::facade_json::read(&folder.join(format!("terrace_{k}.facade.json"))))
+        .map(|k| edifice_io::facade_json::read(&folder.join(format!("terrace_{k}.facade.json"))))
         .collect();
     let facades = facades?;
     // Each facade alone, then all of them.

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER, data};
-use crate::experiments::Context;
-use crate::methods::facade_grammar::{Method, Settings, infer_observed};
-use crate::report::{Chart, Corner, Figure, Row, Scale, Series};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Method, Settings, infer_observed};
+use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
+use edifice_shape::Facade;
 
 /// State of a run after some iterations.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let folder = data::folder(ctx)?.join("layouts");
     let facades: Result<Vec<Facade>> = FACADES[..count]
         .iter()
-        .map(|name| crate::io::facade_json::read(&folder.join(format!("{name}.facade.json"))))
+        .map(|name| edifice_io::facade_json::read(&folder.join(format!("{name}.facade.json"))))
         .collect();
     let facades = facades?;
     let methods = [BEST, PAPER, Method::Importance];
@@ -95,7 +95,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// How the first and the last part of a run compare.
+/// Sets the first part of a run beside the last.
 fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>], few: u64) {
     let of = |method: Method, pick: &dyn Fn(&Vec<Point>) -> Option<f64>| -> f64 {
         let mine = units
@@ -122,7 +122,7 @@ fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>]
     );
 }
 
-/// Runs and notes the state every so many iterations.
+/// Runs and notes the state at regular intervals of iterations.
 fn trace(
     facade: &Facade,
     method: Method,
@@ -139,7 +139,7 @@ fn trace(
     let points = Rc::new(RefCell::new(Vec::new()));
     let last = Rc::new(RefCell::new((ThreadTime::now(), 0u64, f64::INFINITY)));
     let (seen, clock) = (Rc::clone(&points), Rc::clone(&last));
-    let observer = move |step: crate::optim::Step| {
+    let observer = move |step: edifice_optim::Step| {
         let mut clock = clock.borrow_mut();
         clock.2 = clock.2.min(step.best);
         clock.1 += 1;

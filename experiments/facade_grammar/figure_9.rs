@@ -4,21 +4,21 @@ use super::data::{self, FIGURE_9};
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, least, mean, solve};
 use super::{BEST, PAPER, picture};
-use crate::Result;
-use crate::experiments::Context;
-use crate::grammar::{Costs, Grammar, derivation, evaluate};
-use crate::io::grammar_cga;
-use crate::methods::facade_grammar::Operations;
-use crate::report::{Align, Figure, Outline, Row, Table, category};
-use crate::shape::Facade;
+use crate::Context;
+use edifice_base::Result;
+use edifice_facade_grammar::Operations;
+use edifice_grammar::{Costs, Grammar, derivation, evaluate};
+use edifice_io::grammar_cga;
+use edifice_report::{Align, Figure, Outline, Row, Table, category};
+use edifice_shape::Facade;
 
 /// Fig. 9: split and repeat.
 pub fn figure_9(ctx: &mut Context) -> Result<()> {
     let facade = data::figure_9(ctx)?;
     let printed = grammar_cga::read(&data::folder(ctx)?.join(format!("{FIGURE_9}.cga")))?;
     let costs = Costs::default();
-    let theirs =
-        evaluate(&printed, std::slice::from_ref(&facade), &costs).map_err(crate::Error::method)?;
+    let theirs = evaluate(&printed, std::slice::from_ref(&facade), &costs)
+        .map_err(edifice_base::Error::method)?;
     let best = example(ctx, &facade, Operations::default())?;
     let numbers = Published::read(ctx)?;
     ctx.compare(
@@ -112,7 +112,7 @@ fn example(
                 ..Question::new(solver, seed)
             };
             let (grammar, answer) = solve(std::slice::from_ref(facade), &question)?;
-            Ok((crate::io::grammar_json::to_string(&grammar), answer))
+            Ok((edifice_io::grammar_json::to_string(&grammar), answer))
         },
     )?;
     let mut table = Table::new(format!("Cost of facade (i), {label}, {seeds} seeds"))
@@ -150,16 +150,16 @@ fn example(
     }
     let best = found.iter().min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
     let Some((text, answer)) = best else {
-        return Err(crate::Error::method("no run was asked for"));
+        return Err(edifice_base::Error::method("no run was asked for"));
     };
-    let grammar = crate::io::grammar_json::parse(text.as_bytes(), "grammar".as_ref())?;
+    let grammar = edifice_io::grammar_json::parse(text.as_bytes(), "grammar".as_ref())?;
     Ok((grammar, *answer))
 }
 
 /// The facade with its non-terminal regions outlined, one colour for each symbol that occurs more
 /// than once.
-fn regions(title: &str, facade: &Facade, grammar: &Grammar) -> Result<crate::report::Tiles> {
-    let derived = derivation(grammar, 0).map_err(crate::Error::method)?;
+fn regions(title: &str, facade: &Facade, grammar: &Grammar) -> Result<edifice_report::Tiles> {
+    let derived = derivation(grammar, 0).map_err(edifice_base::Error::method)?;
     let mut count = vec![0usize; grammar.rules.len()];
     for n in &derived.non_terminals {
         count[n.rule] += 1;

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::data::{self, Instance};
 use super::runs::{Question, Solver, mean, solve};
 use super::{BEST, iterations};
-use crate::experiments::Context;
-use crate::grammar::{Costs, Grammar, derivation};
-use crate::report::{Align, Row, Table};
-use crate::rng::stream;
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_grammar::{Costs, Grammar, derivation};
+use edifice_report::{Align, Row, Table};
+use edifice_shape::Facade;
 
 /// Facades in a set.
 const SIZES: [usize; 4] = [2, 3, 4, 5];
@@ -21,7 +21,7 @@ const SIZES: [usize; 4] = [2, 3, 4, 5];
 /// Lengths within this part of the longer side are equal.
 const NOISE: f64 = 1e-7;
 
-/// What is found for one set of facades.
+/// The costs found for one set of facades.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Answer {
     /// Sum of the costs of the separate grammars.
@@ -148,7 +148,7 @@ fn names(facades: &[Facade]) -> String {
     names.join("+")
 }
 
-/// How much less `cost` is than `sum`, in per cent.
+/// The saving of `cost` against `sum`, in per cent.
 fn saving(sum: f64, cost: f64) -> f64 {
     100.0 * (1.0 - cost / sum)
 }
@@ -171,7 +171,7 @@ fn compare(facades: &[Facade], question: Question) -> Result<Answer> {
     })
 }
 
-/// What a non-terminal region contains: labels, offsets and sizes, in order.
+/// The content of a non-terminal region: labels, offsets and sizes, in order.
 type Contents = Vec<(String, [i64; 4])>;
 
 /// Cost of the union of deterministic grammars: of each region, whatever its symbol, the cheapest rule that one of them

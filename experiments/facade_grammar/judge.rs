@@ -3,15 +3,15 @@
 use super::likeness::{Likeness, likeness};
 use super::references::{self, Judged};
 use super::runs::{Question, mean, solve};
-use crate::Result;
-use crate::experiments::Context;
-use crate::grammar::Costs;
-use crate::report::{Align, Bars, Figure, Row, Scale, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_grammar::Costs;
+use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// A row of a table: a name, and what to run.
 pub type Case = (String, Question);
 
-/// How alike the grammars of all cases are to all references.
+/// The likeness of the grammars of all cases to all references.
 pub struct Scores {
     /// The facades with their references.
     pub judged: Vec<Judged>,
@@ -97,12 +97,12 @@ impl Measure {
     }
 }
 
-/// Which layouts a mean is over.
+/// The layouts that a mean is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layouts {
-    /// Those designed for the reference's kind.
+    /// Layouts designed for the reference's kind.
     Own,
-    /// All that have a reference of the kind.
+    /// All layouts that have a reference of the kind.
     All,
 }
 
@@ -191,7 +191,7 @@ impl Scores {
         table
     }
 
-    /// What the references of each kind cost on average on the layouts of their own, by the paper's costs.
+    /// The mean cost of the references of each kind on the layouts of their own, by the paper's costs.
     pub fn costs(&self, kind: &str) -> f64 {
         let own = self.judged.iter().filter(|j| j.own == kind);
         let grammars = own.flat_map(|j| j.references.iter().filter(|(k, _)| *k == kind));

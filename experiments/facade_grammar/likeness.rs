@@ -1,11 +1,11 @@
-//! How alike two grammars of one facade are: the regions that both keep whole (Sec. 6.1, Table 4).
+//! The likeness of two grammars of one facade: the regions that both keep whole (Sec. 6.1, Table 4).
 
 use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
-use crate::grammar::{Grammar, derivation};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::{Grammar, derivation};
 
 /// Precision, recall and F-score.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -21,8 +21,8 @@ pub struct Likeness {
 /// Left, bottom, width, height in thousandths of a unit.
 type Key = [i64; 4];
 
-/// Where the non-terminals of a grammar stand. The whole facade, which every grammar has, counts as
-/// in the paper: "all non-terminal regions".
+/// The rectangles of the non-terminals of a grammar. The whole facade, which every grammar has, counts as in the paper:
+/// "all non-terminal regions".
 fn regions(grammar: &Grammar) -> Result<HashSet<Key>> {
     let derived = derivation(grammar, 0).map_err(Error::method)?;
     let key = |v: f64| (v * 1000.0).round() as i64;
@@ -61,7 +61,7 @@ pub fn likeness(grammar: &Grammar, reference: &Grammar) -> Result<Likeness> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::grammar_cga::from_str;
+    use edifice_io::grammar_cga::from_str;
 
     #[test]
     fn shares_of_common_regions() {

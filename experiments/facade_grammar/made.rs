@@ -22,9 +22,9 @@ mod elements;
 pub mod references;
 mod theme;
 
-use crate::grammar::{Grammar, GrammarError, derive};
-use crate::rng::{Stream, stream};
-use crate::shape::Facade;
+use edifice_base::rng::{Stream, stream};
+use edifice_grammar::{Grammar, GrammarError, derive};
+use edifice_shape::Facade;
 
 use composition::compose;
 use draft::Draft;
@@ -72,7 +72,7 @@ pub fn sized(seed: u64, terminals: usize) -> Result<Synthetic, GrammarError> {
     near(seed, &name, &theme, terminals, Some(&style))
 }
 
-/// Which facade of its theme this is, from 1.
+/// The number of this facade among those of its theme, from 1.
 fn number(k: usize) -> usize {
     1 + PLAN[..k]
         .iter()

@@ -1,4 +1,4 @@
-//! How far from optimal: lower bounds and proofs for small facades.
+//! The distance from the optimum: lower bounds and proofs for small facades.
 
 use cpu_time::ThreadTime;
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::data::{self, FIGURE_9, Instance};
 use super::runs::{Question, Solver, solve};
 use super::{BEST, iterations};
-use crate::experiments::{Budget, Context};
-use crate::methods::facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
-use crate::report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
+use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// The two sets of operations of Tables 1 and 2.
 const OPERATIONS: [&str; 2] = ["split", "split_repeat"];
@@ -21,13 +21,13 @@ const FEW_NODES: u64 = 100;
 /// Facades of each real set, evenly spread, among which the smallest are taken.
 const LOOKED_AT: usize = 40;
 
-/// What is known of one facade under one set of operations.
+/// The bounds known for one facade under one set of operations.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Answer {
     terminals: usize,
     /// Cost of the grammar that the best configuration finds.
     cost: f64,
-    /// No grammar costs less.
+    /// Lower bound: no grammar costs less.
     lower: f64,
     /// Cost of the best grammar known after branch and bound.
     upper: f64,
@@ -40,7 +40,7 @@ struct Answer {
 }
 
 impl Answer {
-    /// How much less than `cost` a grammar may still cost, in per cent of the bound.
+    /// The most that a grammar may still cost less than `cost`, in per cent of the bound.
     fn gap(&self) -> f64 {
         100.0 * (self.cost - self.lower).max(0.0) / self.lower
     }
@@ -110,7 +110,7 @@ const NOTE: &str = "Not in the paper, which proves nothing. *cost* is that of th
     The search stops after a number of branches (fewer above 100 terminals), never by the clock. A *weak* bound only counts labels: \
     there the facade has more rules and places than are taken on.";
 
-/// Facade (i) and the shipped and real facades of at most so many terminals, the smallest first;
+/// Facade (i) and the shipped and real facades of at most `terminals` terminals, the smallest first;
 /// `real` of each real set, out of [`LOOKED_AT`].
 fn instances(ctx: &mut Context, terminals: usize, real: usize) -> Result<Vec<Instance>> {
     let small = |instance: &Instance| instance.facade.regions.len() <= terminals;

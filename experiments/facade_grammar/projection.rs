@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::experiments::{Budget, Context};
-use crate::grammar::{Costs, evaluate};
-use crate::io::read_label_grid;
-use crate::layout::regularize::{regularize_facade, regularize_grid};
-use crate::methods::facade_grammar::{Settings, infer};
-use crate::report::{Align, Table};
-use crate::shape::{Facade, decompose, splittable};
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Settings, infer};
+use edifice_grammar::{Costs, evaluate};
+use edifice_io::read_label_grid;
+use edifice_layout::regularize::{regularize_facade, regularize_grid};
+use edifice_report::{Align, Table};
+use edifice_shape::{Facade, decompose, splittable};
 
 /// A layout to regularize.
 enum Source {
@@ -20,7 +20,7 @@ enum Source {
     Picture(PathBuf),
 }
 
-/// What one tolerance did to one layout.
+/// The effect of one tolerance on one layout.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Effect {
     /// Distinct sizes of the regions, summed over labels.

@@ -1,12 +1,12 @@
-//! How much more than approximate dynamic programming the other methods cost.
+//! The costs of the other methods, relative to approximate dynamic programming.
 
 use super::compare::Comparison;
 use super::published::Published;
 use super::runs::Solver;
 use super::{BEST, PAPER};
-use crate::experiments::Context;
-use crate::methods::facade_grammar::Method;
-use crate::report::{Align, Row, Table};
+use crate::Context;
+use edifice_facade_grammar::Method;
+use edifice_report::{Align, Row, Table};
 
 /// Sets the ratio of average costs of each method to both configurations of ADP beside the ratio
 /// of the paper's printed averages. `(name, random)`; random methods have `many` iterations.
@@ -48,7 +48,7 @@ pub fn compare(
     }
 }
 
-/// How often the best configuration is lowest, on each data set.
+/// Counts the facades on which the best configuration is lowest, for each data set.
 pub fn wins(ctx: &mut Context, found: &Comparison, many: u64) {
     let name = Solver::Infer(BEST, many).name();
     let Some(best) = found.column(&name) else {

@@ -1,13 +1,14 @@
-//! What the text leaves open in its algorithm: facade (i) and what `best` saves, under each reading.
+//! The readings of the points that the text of the algorithm leaves open: facade (i), and the saving of `best`, under
+//! each reading.
 
 use super::data::{self, FIGURE_9, Instance};
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, least, mean, solve};
 use super::{BEST, PAPER, iterations};
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::facade_grammar::{Exploit, Method, Protect, Readings};
-use crate::report::{Align, Bars, Figure, Row, Scale, Table};
+use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_facade_grammar::{Exploit, Method, Protect, Readings};
+use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// Facades of each real set, evenly spread.
 const LOOKED_AT: usize = 40;
@@ -205,7 +206,7 @@ fn categories(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| name.to_string()).collect()
 }
 
-/// By how much `best` is cheaper, facade by facade, on each set of the others.
+/// The saving of `best`, facade by facade, on each set of the others.
 fn savings(ctx: &mut Context, found: &Found, names: &[&str], many: u64) -> Bars {
     let mut sets: Vec<&str> = found.instances.iter().map(|i| i.dataset).collect();
     sets.dedup();

@@ -1,12 +1,12 @@
 //! Facades with grammars that people made, or could have made: what Tables 4 and 5 compare with.
 
 use super::data::{self, FIGURE_9};
-use crate::experiments::Context;
-use crate::experiments::facade_grammar::made::references::{Kind, referenced};
-use crate::grammar::Grammar;
-use crate::io::grammar_cga;
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::Context;
+use crate::facade_grammar::made::references::{Kind, referenced};
+use edifice_base::{Error, Result};
+use edifice_grammar::Grammar;
+use edifice_io::grammar_cga;
+use edifice_shape::Facade;
 
 /// The grammars that the shipped layouts were derived from.
 pub const SHIPPED: &str = "shipped";
@@ -62,7 +62,7 @@ pub fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
     Ok(all)
 }
 
-/// What the pages say of the references.
+/// The paragraph on the references for the pages.
 pub const NOTE: &str = "**References.** The paper compares with grammars of four experts and three other people. Without people, the \
     references are of several kinds, none of which any method sees. *shipped*: the grammars that the 34 shipped layouts were \
     derived from, mostly all floors of a wing at once and then all elements of a floor at once. *printed*: the grammar that the paper \

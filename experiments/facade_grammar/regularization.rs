@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::{data, projection};
-use crate::experiments::Context;
-use crate::io::{LabelMap, label_image};
-use crate::layout::regularize::regularize_grid;
-use crate::report::{Align, Row, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_io::{LabelMap, label_image};
+use edifice_layout::regularize::regularize_grid;
+use edifice_report::{Align, Row, Table};
 
-/// What regularization did to one facade.
+/// The effect of regularization on one facade.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Effect {
     lines: (usize, usize),
@@ -20,8 +20,8 @@ struct Effect {
     seconds: f64,
 }
 
-/// What regularization keeps on every set; then distinct sizes of windows and cut lines before and after,
-/// by tolerance, on the ECP labels.
+/// The properties that regularization keeps, on every set; then distinct sizes of windows and cut lines before and
+/// after, by tolerance, on the ECP labels.
 pub fn run(ctx: &mut Context) -> Result<()> {
     projection::table(ctx)?;
     let Some(folder) = ctx.real("facades/ecp2011/labels")? else {

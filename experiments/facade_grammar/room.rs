@@ -1,14 +1,14 @@
-//! What real facades leave to gain: how far below `paper` any grammar could come.
+//! The room that real facades leave: the greatest saving below `paper` that any grammar could have.
 
 use serde::{Deserialize, Serialize};
 
 use super::compare::Comparison;
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER};
-use crate::experiments::Context;
-use crate::methods::facade_grammar::{BoundLimits, Settings, lower_bound};
-use crate::report::{Align, Row, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{BoundLimits, Settings, lower_bound};
+use edifice_report::{Align, Row, Table};
 
 /// Saving that the table asks about, in per cent.
 const ASKED: f64 = 5.0;
@@ -32,13 +32,13 @@ struct Lower {
     weak: bool,
 }
 
-/// One facade's per cent below `paper`.
+/// The savings on one facade, in per cent of the cost of `paper`.
 struct Room {
-    /// What `best` saves.
+    /// The saving of `best`.
     saved: f64,
-    /// What no grammar exceeds.
+    /// The saving that no grammar exceeds.
     most: f64,
-    /// Whether `best` is proven optimal.
+    /// True if `best` is proven optimal.
     optimal: bool,
 }
 

@@ -4,11 +4,11 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::peers;
-use crate::grammar::{Costs, Grammar, evaluate};
-use crate::methods::facade_grammar::{Method, Operations, Readings, Settings, infer};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::peers;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Method, Operations, Readings, Settings, infer};
+use edifice_grammar::{Costs, Grammar, evaluate};
+use edifice_shape::Facade;
 
 /// A method with its number of iterations.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ impl Solver {
         }
     }
 
-    /// Whether chance has a part in it, so that more than one seed says more.
+    /// True if the result depends on the seed, so that more than one seed says more.
     pub fn random(self) -> bool {
         matches!(
             self,
@@ -61,7 +61,7 @@ impl Solver {
     }
 }
 
-/// What a run is asked.
+/// The question of a run: a method and its settings.
 #[derive(Debug, Clone, Copy)]
 pub struct Question {
     /// The method.
@@ -72,7 +72,7 @@ pub struct Question {
     pub costs: Costs,
     /// Operations allowed.
     pub operations: Operations,
-    /// What the text leaves open.
+    /// The readings of the points that the text leaves open.
     pub readings: Readings,
 }
 
@@ -89,7 +89,7 @@ impl Question {
     }
 }
 
-/// What a run found, as the independent evaluator says.
+/// The result of a run, by the independent evaluator.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Answer {
     /// Cost of the grammar (Eq. 1).

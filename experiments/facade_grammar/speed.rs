@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::made;
 use super::{BEST, PAPER};
-use crate::experiments::Context;
-use crate::grammar::derive;
-use crate::methods::facade_grammar::{Method, Settings, infer};
-use crate::report::{Chart, Corner, Figure, Row, Scale, Series};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Method, Settings, infer};
+use edifice_grammar::derive;
+use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 
 /// Times of one facade, processor seconds.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]

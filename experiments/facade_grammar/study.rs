@@ -8,15 +8,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::likeness::likeness;
-use crate::experiments::sweep::{Better, Given, Outcome, Study};
-use crate::grammar::{Costs, Grammar, evaluate};
-use crate::io::{ReadOptions, read_facade, read_grammar};
-use crate::methods::facade_grammar::{
-    self, Exploit, Method, Operations, Protect, Readings, infer_observed,
-};
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::{Error, Result};
+use edifice_facade_grammar as facade_grammar;
+use edifice_facade_grammar::{Exploit, Method, Operations, Protect, Readings, infer_observed};
+use edifice_grammar::{Costs, Grammar, evaluate};
+use edifice_io::{ReadOptions, read_facade, read_grammar};
 
-/// How to search.
+/// The method of search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum MethodName {
@@ -38,7 +37,7 @@ enum Operation {
     GridSplit,
 }
 
-/// Whether important regions are protected (Sec. 4.7).
+/// The protection of important regions (Sec. 4.7).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Protection {
@@ -134,7 +133,7 @@ fn run(settings: &Infer, given: &Given) -> Result<Outcome> {
     for restart in 0..settings.restarts.max(1) {
         let trace: Rc<RefCell<Vec<[f64; 2]>>> = Rc::default();
         let told = Rc::clone(&trace);
-        let observer = move |step: crate::optim::Step| {
+        let observer = move |step: edifice_optim::Step| {
             told.borrow_mut().push([step.iteration as f64, step.best])
         };
         let seed = given

@@ -5,10 +5,10 @@ use super::data::FIGURE_9;
 use super::published::Published;
 use super::runs::Solver;
 use super::{BEST, PAPER, ratios, room};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::facade_grammar::{Method, Operations};
-use crate::report::{Align, Bars, Figure, Scale, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_facade_grammar::{Method, Operations};
+use edifice_report::{Align, Bars, Figure, Scale, Table};
 
 /// Costs, rules and times of the methods with 2,000 and 10,000 iterations.
 pub fn run(ctx: &mut Context) -> Result<()> {

@@ -5,10 +5,10 @@ use super::data::FIGURE_9;
 use super::published::{AUTOMATIC, Published};
 use super::runs::Solver;
 use super::{BEST, PAPER, ratios};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::facade_grammar::{Method, Operations};
-use crate::report::{Align, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_facade_grammar::{Method, Operations};
+use edifice_report::{Align, Table};
 
 /// Costs of five methods with splits alone.
 pub fn run(ctx: &mut Context) -> Result<()> {
@@ -56,7 +56,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// Where PL and BGL print one number, and why.
+/// Notes the facades on which PL and BGL print one number, and the reason.
 fn coincidence(ctx: &mut Context, found: &Comparison) {
     let (Some(pl), Some(bgl)) = (found.column(AUTOMATIC[0]), found.column(AUTOMATIC[1])) else {
         return;

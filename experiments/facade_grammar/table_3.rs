@@ -1,9 +1,9 @@
 //! Table 3: scores that people gave. It needs people: only the printed row is shown.
 
 use super::published::{AUTOMATIC, Published};
-use crate::Result;
-use crate::experiments::Context;
-use crate::report::{Align, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_report::{Align, Table};
 
 /// Shows the printed numbers.
 pub fn run(ctx: &mut Context) -> Result<()> {

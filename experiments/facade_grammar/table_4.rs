@@ -5,11 +5,11 @@ use super::published::Published;
 use super::references::{self, Judged, NOTE};
 use super::runs::{Question, Solver};
 use super::{BEST, PAPER, picture};
-use crate::experiments::Context;
-use crate::grammar::derivation;
-use crate::methods::facade_grammar::Method;
-use crate::report::{Align, Figure, Outline, Table, Tiles, category};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::Method;
+use edifice_grammar::derivation;
+use edifice_report::{Align, Figure, Outline, Table, Tiles, category};
 
 /// Five automatic methods, and greedy, against references of every kind.
 pub fn run(ctx: &mut Context) -> Result<()> {
@@ -50,7 +50,7 @@ fn beside(ctx: &mut Context, scores: &Scores, solvers: &[Solver]) -> Result<()> 
     Ok(())
 }
 
-/// Which of the paper's statements hold for references of which kind.
+/// Notes the paper's statements that hold, for references of each kind.
 fn follows(ctx: &mut Context, scores: &Scores, solvers: &[Solver]) {
     let kinds = references::kinds();
     let automatic: Vec<usize> = (0..solvers.len())

@@ -5,10 +5,10 @@ use super::published::Published;
 use super::references::{self, NOTE};
 use super::runs::{Question, Solver};
 use super::{BEST, PAPER};
-use crate::Result;
-use crate::experiments::Context;
-use crate::grammar::Costs;
-use crate::report::{Align, Table};
+use crate::Context;
+use edifice_base::Result;
+use edifice_grammar::Costs;
+use edifice_report::{Align, Table};
 
 /// The models by name, as in `published.csv`; the paper's choice is the third.
 fn models() -> [(&'static str, Costs); 6] {
@@ -68,7 +68,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// Which of the paper's statements hold for references of which kind.
+/// Notes the paper's statements that hold, for references of each kind.
 fn follows(ctx: &mut Context, scores: &Scores) {
     let kinds = references::kinds();
     let count = models().len();

@@ -1,4 +1,4 @@
-//! What an artefact's function is given.
+//! The context that an artefact's function is given.
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -9,14 +9,15 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
-use super::datasets;
 use super::document::Document;
 use super::journal::Journal;
 use super::options::{Budget, Options};
 use super::progress::{self, Progress};
 use super::provenance::{self, Comparison};
-use crate::report::{self, Figure, Row, Table};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_datasets as datasets;
+use edifice_report as report;
+use edifice_report::{Figure, Row, Table};
 
 /// Set when the user asked to stop; units under way finish, no new one starts.
 pub(super) static STOP: AtomicBool = AtomicBool::new(false);
@@ -72,7 +73,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// How much to run.
+    /// The budget of the run.
     pub fn budget(&self) -> Budget {
         self.options.budget
     }
@@ -232,9 +233,9 @@ impl<'a> Context<'a> {
         let path = self.folder.join(name);
         if name.ends_with(".png") {
             let few = report::few_colours(bytes).map_err(|e| Error::content(&path, e))?;
-            crate::file::write_atomic(&path, &few)?;
+            edifice_base::file::write_atomic(&path, &few)?;
         } else {
-            crate::file::write_atomic(&path, bytes)?;
+            edifice_base::file::write_atomic(&path, bytes)?;
         }
         self.files.push(name.to_string());
         self.document.block(format!("[{name}]({name}): {what}"));

@@ -1,7 +1,7 @@
 //! `<artefact>.md`: what an artefact shows, in order.
 
 use super::provenance::Comparison;
-use crate::report::{Align, Table};
+use edifice_report::{Align, Table};
 
 /// The page of one artefact.
 pub struct Document {

@@ -14,7 +14,7 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 
 use super::lock;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 #[derive(Serialize, Deserialize)]
 struct Entry {

@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::progress;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// Name of the file that is locked. It is empty and stays: two processes could lock a file of this
 /// name at once if one removed it while the other waits for it.

@@ -1,7 +1,6 @@
 //! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
 
 mod context;
-pub mod datasets;
 mod document;
 mod journal;
 pub(super) mod lock;
@@ -21,10 +20,10 @@ pub(super) use run::{SWEEPS, write_index};
 pub struct Artefact {
     /// Name of its files: `table_1`, `figure_14`.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// Its subject, in a line.
     pub title: &'static str,
     /// Makes it.
-    pub run: fn(&mut Context) -> crate::Result<()>,
+    pub run: fn(&mut Context) -> edifice_base::Result<()>,
 }
 
 /// One paper's experiments.

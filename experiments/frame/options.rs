@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
-/// How much to run.
+/// The budget of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Budget {
@@ -12,7 +12,7 @@ pub enum Budget {
     Smoke,
     /// Minutes on two cores, on the data that ships with the project.
     Default,
-    /// What the paper ran, for example ten seeds.
+    /// The paper's own budget, for example ten seeds.
     Paper,
 }
 
@@ -32,17 +32,17 @@ impl Budget {
 // The command that these are flattened into has a group of the default name, `Args`.
 #[group(id = "experiment")]
 pub struct Args {
-    /// Run only these tables and figures, for example table_1,figure_14
+    /// Run only these tables and figures, for example `table_1,figure_14`
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub only: Vec<String>,
-    /// Folder with the real data sets; without it, the environment variable EDIFICE_DATA; without
-    /// both, only what ships with the project is used
+    /// Folder with the real data sets; without it, the environment variable `EDIFICE_DATA`; without both, only what
+    /// ships with the project is used
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
     /// Seed of all random streams
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// How much to run
+    /// Budget of the run
     #[arg(long, value_enum, default_value_t = Budget::Default)]
     pub budget: Budget,
     /// Folder of the report
@@ -62,7 +62,7 @@ pub struct Options {
     pub data: Option<PathBuf>,
     /// Seed of all random streams.
     pub seed: u64,
-    /// How much to run.
+    /// Budget of the run.
     pub budget: Budget,
     /// Folder of the report.
     pub out: PathBuf,

@@ -1,4 +1,4 @@
-//! Where a result comes from: `run.json`.
+//! The provenance of a result: `run.json`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// Provenance of the artefacts of one paper, `OUT/<paper>/run.json`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -21,10 +21,10 @@ pub struct Run {
     pub order: Vec<String>,
 }
 
-/// How an artefact was made.
+/// The way in which an artefact was made.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Made {
-    /// What it shows.
+    /// Its subject.
     pub title: String,
     /// The command.
     pub command: String,
@@ -59,7 +59,7 @@ pub struct Machine {
     pub threads: usize,
     /// Operating system and processor family.
     pub system: String,
-    /// Whether the build is optimized.
+    /// True if the build is optimized.
     pub optimized: bool,
 }
 
@@ -78,11 +78,11 @@ impl Machine {
 /// A quantity, what the paper printed, what this run found.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Comparison {
-    /// What is compared.
+    /// Name of the quantity.
     pub quantity: String,
     /// The paper's number as printed.
     pub printed: String,
-    /// Ours.
+    /// The number that this run found.
     pub ours: String,
 }
 
@@ -99,7 +99,7 @@ impl Run {
     pub fn write(&self, path: &Path) -> Result<()> {
         let mut bytes = serde_json::to_vec_pretty(self).map_err(Error::method)?;
         bytes.push(b'\n');
-        crate::file::write_atomic(path, &bytes)
+        edifice_base::file::write_atomic(path, &bytes)
     }
 }
 

@@ -15,10 +15,11 @@ use super::options::{Args, Options};
 use super::progress::line;
 use super::provenance::{Machine, Made, Run};
 use super::{Artefact, Experiment};
-use crate::report::{self, Page, Section};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_report as report;
+use edifice_report::{Page, Section};
 
-/// What was run.
+/// The outcome of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// The report's first page.
@@ -168,7 +169,7 @@ fn make(
     let text = ctx
         .document
         .markdown(&ctx.comparisons, ctx.skipped.as_deref());
-    crate::file::write_atomic(&folder.join(&page), text.as_bytes())?;
+    edifice_base::file::write_atomic(&folder.join(&page), text.as_bytes())?;
     ctx.files.insert(0, page);
 
     let path = folder.join("run.json");
@@ -212,7 +213,7 @@ pub fn write_index(out: &Path) -> Result<PathBuf> {
         .map(|folder| page(folder, &Run::read(&folder.join("run.json"))))
         .collect();
     let path = out.join("index.html");
-    crate::file::write_atomic(&path, report::index(&pages).as_bytes())?;
+    edifice_base::file::write_atomic(&path, report::index(&pages).as_bytes())?;
     Ok(path)
 }
 

@@ -1,20 +1,20 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
-use crate::report::Row;
+use edifice_report::Row;
 
 static RUNS: AtomicUsize = AtomicUsize::new(0);
 static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 
 /// Five units; the run breaks off at the limit, as a kill would.
-fn squares(ctx: &mut Context) -> crate::Result<()> {
+fn squares(ctx: &mut Context) -> edifice_base::Result<()> {
     let units = [1u64, 2, 3, 4, 5];
     let answers: Vec<f64> = ctx.units(
         &units,
         |u| format!("square/{u}"),
         |u| {
             if RUNS.fetch_add(1, Ordering::SeqCst) >= LIMIT.load(Ordering::SeqCst) {
-                return Err(crate::Error::Interrupted);
+                return Err(edifice_base::Error::Interrupted);
             }
             Ok((u * u) as f64 + 0.1)
         },
@@ -31,7 +31,7 @@ fn squares(ctx: &mut Context) -> crate::Result<()> {
     Ok(())
 }
 
-fn nothing(ctx: &mut Context) -> crate::Result<()> {
+fn nothing(ctx: &mut Context) -> edifice_base::Result<()> {
     ctx.skip("there is no data");
     Ok(())
 }
@@ -76,7 +76,7 @@ fn a_run_that_was_stopped_goes_on_where_it_was() {
     RUNS.store(0, Ordering::SeqCst);
     LIMIT.store(3, Ordering::SeqCst);
     let stopped = run(&[&FAKE], &options(parts.path()));
-    assert!(matches!(stopped, Err(crate::Error::Interrupted)));
+    assert!(matches!(stopped, Err(edifice_base::Error::Interrupted)));
     assert!(parts.path().join("fake/.work").exists());
 
     // Another artefact's run, which goes on with nothing of this one, takes nothing from it.

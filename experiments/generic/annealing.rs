@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::knapsack::{Knapsack, Solved};
-use crate::experiments::sweep::{Better, Given, Outcome, Study};
-use crate::optim::annealing::{Annealing, Cooling, Landscape};
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::{Error, Result};
+use edifice_optim::annealing::{Annealing, Cooling, Landscape};
 
 /// Settings of annealing.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -65,7 +65,7 @@ fn run(settings: &Settings, given: &Given) -> Result<Outcome> {
     Ok(found)
 }
 
-/// What is packed; a move packs an item or takes one out, and makes room by taking out others by chance.
+/// The items that are packed; a move packs an item or takes one out, and makes room by taking out others by chance.
 struct Packing<'a> {
     problem: &'a Knapsack,
     packed: Vec<bool>,

@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::knapsack::{Knapsack, Solved};
-use crate::experiments::sweep::{Better, Given, Outcome, Study};
-use crate::optim::genetic::{self, Breed, Genetic};
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::{Error, Result};
+use edifice_optim::genetic::{self, Breed, Genetic};
 
 /// Settings of the genetic algorithm.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]

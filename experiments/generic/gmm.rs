@@ -6,12 +6,12 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::sweep::{Better, Given, Outcome, Study};
-use crate::model::gmm::{self, Criterion, Mixture, Points, select};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::gmm::{self, Criterion, Mixture, Points, select};
 
-/// What the number of components minimizes.
+/// The criterion that the number of components minimizes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum CriterionName {
@@ -32,7 +32,7 @@ enum Covariance {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Settings {
-    /// What the number of components minimizes.
+    /// Criterion that the number of components minimizes.
     criterion: CriterionName,
     /// Shape of the covariances: full, diagonal, or one for all components.
     covariance: Covariance,
@@ -63,7 +63,7 @@ pub fn study() -> Study {
     Study::new("model/gmm", about, "model", METRICS, run)
 }
 
-/// What is wrong with a table or a setting.
+/// The errors of a table or a setting.
 #[derive(Debug, thiserror::Error)]
 enum GmmError {
     #[error("`{0}` is no number")]
@@ -137,7 +137,7 @@ fn loss(mixture: &Mixture, rows: &[&Vec<f64>]) -> Option<f64> {
 
 /// The rows of a CSV file with a header.
 fn read(path: &Path) -> Result<Vec<Vec<f64>>> {
-    let table = crate::io::building_csv::read(path)?;
+    let table = edifice_io::building_csv::read(path)?;
     let number = |(row, cell): (usize, &String)| {
         cell.trim().parse::<f64>().map_err(|_| {
             let place = format!("row {}", row + 1);

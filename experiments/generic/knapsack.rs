@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 
-use crate::experiments::sweep::{Outcome, Shared};
-use crate::io::{json, read_bytes};
-use crate::{Error, Result};
+use crate::sweep::{Outcome, Shared};
+use edifice_base::{Error, Result};
+use edifice_io::{json, read_bytes};
 
 /// A problem.
 #[derive(Debug, Clone, Deserialize)]
@@ -28,7 +28,7 @@ pub struct Knapsack {
 
 const FORMAT: &str = "edifice/knapsack";
 
-/// What is wrong with a problem or a solution.
+/// The errors of a problem or a solution.
 #[derive(Debug, thiserror::Error)]
 enum KnapsackError {
     #[error("there are no items")]
@@ -74,7 +74,7 @@ impl Solved {
         })
     }
 
-    /// What is known of a solution, computed from the problem alone.
+    /// The outcome of a solution, computed from the problem alone.
     ///
     /// # Errors
     /// [`Error::Method`] for one that does not fit.

@@ -4,13 +4,13 @@ use rand::{Rng, RngExt};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::read_bytes;
-use crate::model::conjugate::Priors;
-use crate::model::network::{Evidence, FitSettings, Network};
-use crate::model::{Cell, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_io::read_bytes;
+use edifice_model::conjugate::Priors;
+use edifice_model::network::{Evidence, FitSettings, Network};
+use edifice_model::{Cell, Table};
 
 /// Settings of learning.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -51,7 +51,7 @@ pub fn study() -> Study {
     Study::new("model/network", about, "model", METRICS, run)
 }
 
-/// What is wrong with a setting.
+/// The errors of a setting.
 #[derive(Debug, thiserror::Error)]
 enum NetworkError {
     #[error("missing is {0}, expected 0 to less than 1")]

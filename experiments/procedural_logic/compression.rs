@@ -2,13 +2,13 @@
 
 use super::data::{Source, sources};
 use super::{data_table, row};
-use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
-use crate::optim::grid::points;
-use crate::report::{Figure, HeatMap};
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::{Error, Result};
+use edifice_optim::grid::points;
+use edifice_procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
+use edifice_report::{Figure, HeatMap};
 
-/// What the paper says of every value of its ranges.
+/// The number of rules that the paper prints for every value of its ranges.
 const PRINTED: f64 = 68.0;
 
 /// Searches the grid for the fewest rules, on each set.

@@ -13,7 +13,7 @@
 
 use rand::{Rng, RngExt};
 
-use crate::shape::{LabelGrid, Span, components};
+use edifice_shape::{LabelGrid, Span, components};
 
 /// Label of windows.
 const WINDOW: &str = "window";
@@ -24,7 +24,7 @@ const SPECK: std::ops::RangeInclusive<i64> = 1..=3;
 /// Width of gaps, in pixels.
 const GAP: std::ops::RangeInclusive<usize> = 2..=4;
 
-/// How strong each fault is; the default is none.
+/// The strength of each fault; zero by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Corruption {
     /// Largest displacement of a side, in pixels.

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::gold::{Annotations, Architecture};
 use super::{outline, shipped};
-use crate::experiments::{Budget, Context, layouts};
-use crate::io::{ReadOptions, read_label_grid};
-use crate::shape::{Facade, LabelGrid};
-use crate::{Error, Result};
+use crate::{Budget, Context, layouts};
+use edifice_base::{Error, Result};
+use edifice_io::{ReadOptions, read_label_grid};
+use edifice_shape::{Facade, LabelGrid};
 
 /// Sizes at which each shipped house stands: as shipped, and others.
 const SIZES: u64 = 5;
@@ -20,7 +20,7 @@ pub struct Source {
     pub grids: Vec<LabelGrid>,
     /// Their architecture, in the same order.
     pub architecture: Vec<Architecture>,
-    /// What the hand annotation alone says of it; empty where there is none.
+    /// The architecture by hand annotation alone; empty without one.
     pub by_hand: Vec<Architecture>,
     /// `shipped_blocks` or `graz50`.
     pub other_dataset: &'static str,
@@ -38,7 +38,7 @@ impl Source {
         sets.into_iter().filter(|(_, grids)| !grids.is_empty())
     }
 
-    /// Whether it is the set that the paper reports on.
+    /// True if it is the set that the paper reports on.
     pub fn is_paper(&self) -> bool {
         self.dataset == "ecp2011"
     }

@@ -2,13 +2,14 @@
 
 use super::data::{Source, sources};
 use super::{data_table, row};
-use crate::cluster::{Dendrogram, Linkage, agglomerate, purity};
-use crate::experiments::Context;
-use crate::experiments::picture::tiles;
-use crate::methods::procedural_logic::{Measure, Model, Parameters};
-use crate::report::{self, Figure, HeatMap, Merge, Table};
-use crate::shape::{Facade, LabelGrid};
-use crate::{Error, Result};
+use crate::Context;
+use crate::picture::tiles;
+use edifice_base::{Error, Result};
+use edifice_cluster::{Dendrogram, Linkage, agglomerate, purity};
+use edifice_procedural_logic::{Measure, Model, Parameters};
+use edifice_report as report;
+use edifice_report::{Figure, HeatMap, Merge, Table};
+use edifice_shape::{Facade, LabelGrid};
 
 /// Facades shown beside the matrix.
 const THUMBNAILS: usize = 12;

@@ -3,11 +3,13 @@
 use super::data::{Source, sources};
 use super::gold::{Architecture, Doors};
 use super::{RANKS, row, trivial};
-use crate::cluster::{MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve};
-use crate::experiments::Context;
-use crate::methods::procedural_logic::{Measure, Model, Parameters};
-use crate::report::{Align, Chart, Corner, Figure, Scale, Series, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_cluster::{
+    MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve,
+};
+use edifice_procedural_logic::{Measure, Model, Parameters};
+use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
 use nalgebra::DMatrix;
 
 /// A distance by name, its curve under the protocol of the figure, and its matrix.
@@ -314,7 +316,7 @@ fn describe(a: &Architecture) -> String {
     )
 }
 
-/// Where two architectures differ.
+/// The differences of two architectures, in words.
 fn difference(own: &Architecture, other: &Architecture) -> String {
     let mut parts = Vec::new();
     if own.floors != other.floors {

@@ -4,15 +4,15 @@ use std::time::Instant;
 
 use super::data::{Source, sources};
 use super::{data_table, row};
-use crate::experiments::frame::memory::peak_megabytes;
-use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{
+use crate::frame::memory::peak_megabytes;
+use crate::{Budget, Context};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_procedural_logic::{
     Alphabet, Canvas, Coefficients, Inference, NaryTree, Parameters, learn_affinity, parse,
 };
-use crate::report::{Chart, Corner, Figure, Scale, Series, Table};
-use crate::rng::stream;
-use crate::shape::LabelGrid;
-use crate::{Error, Result};
+use edifice_report::{Chart, Corner, Figure, Scale, Series, Table};
+use edifice_shape::LabelGrid;
 use rand::RngExt;
 
 const PARAMETERS: Parameters = Parameters::COMPRESSION;

@@ -3,14 +3,12 @@
 use super::data::sources;
 use super::words::Structure;
 use super::{data_table, row};
-use crate::experiments::Context;
-use crate::experiments::picture::tiles;
-use crate::methods::procedural_logic::{
-    Instance, Known, Model, Parameters, Style, starting_rules, vector,
-};
-use crate::report::Figure;
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use crate::picture::tiles;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_procedural_logic::{Instance, Known, Model, Parameters, Style, starting_rules, vector};
+use edifice_report::Figure;
 use nalgebra::{DMatrix, DVector};
 
 /// Scales of the deviations, one column of the figure each.

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::data::sources;
 use super::row;
 use super::words::{Structure, rule_text};
-use crate::experiments::Context;
-use crate::methods::procedural_logic::{Model, Parameters, starting_rules};
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_procedural_logic::{Model, Parameters, starting_rules};
+use edifice_report::{Align, Table};
 
 /// Starting rules and other rules listed.
 const LISTED: usize = 12;

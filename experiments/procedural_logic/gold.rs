@@ -21,10 +21,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::shape::LabelGrid;
-use crate::{Error, Result, file};
+use edifice_base::{Error, Result, file};
+use edifice_shape::LabelGrid;
 
-/// What "door placement" means.
+/// The meaning of "door placement".
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Doors {
     /// The place in the layout of the ground floor: at its left end, at its right end, or between
@@ -51,7 +51,7 @@ impl Doors {
     }
 }
 
-/// What the gold standard knows of a facade.
+/// The facts of the gold standard about a facade.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Architecture {
     /// Number of floors annotated, the ground floor included.
@@ -181,7 +181,7 @@ pub struct Annotations {
     balconies: BTreeMap<String, Vec<f64>>,
 }
 
-/// A running balcony ends at least so far below the window's own balcony, as a fraction of the height:
+/// Least distance of a running balcony's end below the window's own balcony, as a fraction of the height:
 /// equal numbers say that there is none, and the annotation repeats a number to about 0.001.
 const RUNNING: f64 = 0.01;
 
@@ -250,13 +250,12 @@ impl Annotations {
         Ok(annotations)
     }
 
-    /// Whether balconies are annotated.
+    /// True if balconies are annotated.
     pub fn has_balconies(&self) -> bool {
         !self.balconies.is_empty()
     }
 
-    /// What the hand annotation alone says of a facade: floors, window columns and running balconies; it
-    /// has no doors.
+    /// The hand annotation alone of a facade: floors, window columns and running balconies; it has no doors.
     ///
     /// # Errors
     /// [`Error::Method`] when the facade is not annotated.

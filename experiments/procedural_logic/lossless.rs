@@ -2,12 +2,12 @@
 
 use super::data::{shipped_layouts, sources};
 use super::{data_table, row, shipped};
-use crate::experiments::Context;
-use crate::grammar::derive;
-use crate::methods::procedural_logic::{Model, NaryTree, Parameters, split_grammar};
-use crate::report::Table;
-use crate::shape::{Facade, LabelGrid};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_grammar::derive;
+use edifice_procedural_logic::{Model, NaryTree, Parameters, split_grammar};
+use edifice_report::Table;
+use edifice_shape::{Facade, LabelGrid};
 
 /// Derives every facade from its own grammar and from the rules of all, and compares the pixels.
 pub fn run(ctx: &mut Context) -> Result<()> {

@@ -9,13 +9,13 @@ use super::data::{Source, sources};
 use super::figure_4::retrieve;
 use super::gold::Doors;
 use super::{data_table, row, trivial};
-use crate::cluster::{Linkage, agglomerate, purity};
-use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{Measure, Model, Parameters};
-use crate::report::{Chart, Corner, Figure, Scale, Series};
-use crate::rng::stream;
-use crate::shape::{LabelGrid, clean};
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_cluster::{Linkage, agglomerate, purity};
+use edifice_procedural_logic::{Measure, Model, Parameters};
+use edifice_report::{Chart, Corner, Figure, Scale, Series};
+use edifice_shape::{LabelGrid, clean};
 
 /// Tolerance of the cleaning in pixels, whatever the faults: that of `edifice logic --clean`.
 const TOLERANCE: f64 = 3.0;
@@ -96,7 +96,7 @@ struct Unit<'a> {
     seed: u64,
 }
 
-/// What is measured.
+/// The measured numbers.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Outcome {
     /// Rules at the parameters of Sec. 5.3.

@@ -14,7 +14,7 @@
 use std::collections::BTreeMap;
 
 use super::gold::{Architecture, runs};
-use crate::shape::LabelGrid;
+use edifice_shape::LabelGrid;
 
 /// Labels of openings.
 const OPENINGS: [&str; 3] = ["window", "door", "shop"];

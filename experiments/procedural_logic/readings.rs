@@ -1,13 +1,13 @@
-//! What the text leaves open: rules and retrieval under each reading.
+//! The readings of the points that the text leaves open: rules and retrieval under each.
 
 use super::data::sources;
 use super::figure_4::retrieve;
 use super::gold::Doors;
 use super::{data_table, row};
-use crate::Error;
-use crate::Result;
-use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{Extent, Facing, Measure, Model, Parameters};
+use crate::{Budget, Context};
+use edifice_base::Error;
+use edifice_base::Result;
+use edifice_procedural_logic::{Extent, Facing, Measure, Model, Parameters};
 
 /// Tries each reading of `W` in Eq. 3 with each reading of Eq. 6.
 pub fn run(ctx: &mut Context) -> Result<()> {

@@ -4,10 +4,10 @@ use super::data::{Source, sources};
 use super::figure_4::retrieve;
 use super::gold::Doors;
 use super::{data_table, row};
-use crate::experiments::{Budget, Context};
-use crate::methods::procedural_logic::{Measure, Model, Parameters, search_axes};
-use crate::optim::grid::{minimize, points};
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::{Error, Result};
+use edifice_optim::grid::{minimize, points};
+use edifice_procedural_logic::{Measure, Model, Parameters, search_axes};
 
 /// Searches the grid for the best curve of each measure.
 pub fn run(ctx: &mut Context) -> Result<()> {

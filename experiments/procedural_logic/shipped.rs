@@ -9,9 +9,9 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::experiments::layouts::FIGURE_9;
-use crate::rng::stream;
-use crate::shape::{Facade, GridError, LabelGrid, Region};
+use crate::layouts::FIGURE_9;
+use edifice_base::rng::stream;
+use edifice_shape::{Facade, GridError, LabelGrid, Region};
 
 /// Families of small buildings, with facade (i).
 const HOUSES: [&str; 5] = ["cottage", "shophouse", "terrace", "townhouse", FIGURE_9];
@@ -22,7 +22,7 @@ const SEED: u64 = 1;
 /// Deviation of the logarithm of all sizes along an axis, and of each single one.
 const DEVIATION: [f64; 2] = [0.15, 0.1];
 
-/// Whether a layout is of the group of houses.
+/// True if a layout is of the group of houses.
 pub fn is_house(facade: &Facade) -> bool {
     HOUSES.iter().any(|family| facade.name.starts_with(family))
 }
@@ -69,7 +69,7 @@ fn class<'a>(region: &'a Region, facade: &Facade) -> &'a str {
     }
 }
 
-/// Whether two regions of one height stand side by side.
+/// True if two regions of one height stand side by side.
 fn level(one: &Region, other: &Region) -> bool {
     let (a, b) = (one.rect, other.rect);
     a.y == b.y && a.height == b.height && (a.x == b.right() || a.right() == b.x)

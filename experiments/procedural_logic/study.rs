@@ -6,12 +6,13 @@ use serde::{Deserialize, Serialize};
 use super::figure_4::retrieve;
 use super::gold::{Architecture, Doors};
 use super::{outline, shipped};
-use crate::cluster::MatchCurve;
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::{ReadOptions, read_facade, read_label_grid};
-use crate::methods::procedural_logic::{self as logic, Model, Parameters};
-use crate::shape::LabelGrid;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::{Error, Result};
+use edifice_cluster::MatchCurve;
+use edifice_io::{ReadOptions, read_facade, read_label_grid};
+use edifice_procedural_logic as logic;
+use edifice_procedural_logic::{Model, Parameters};
+use edifice_shape::LabelGrid;
 
 /// Distance between facades.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

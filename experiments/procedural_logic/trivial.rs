@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::shape::{LabelGrid, Span, components};
+use edifice_shape::{LabelGrid, Span, components};
 
 /// Name in files.
 pub const NAME: &str = "component_counts";

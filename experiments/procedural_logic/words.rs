@@ -1,9 +1,9 @@
 //! Starting rules in words: floors, columns, running balconies, shops.
 
-use crate::methods::procedural_logic::{Alphabet, Call, RuleSet};
-use crate::shape::Axis;
+use edifice_procedural_logic::{Alphabet, Call, RuleSet};
+use edifice_shape::Axis;
 
-/// What a starting rule says about a facade, read from its parts from the bottom up.
+/// The structure of a facade, read from the parts of a starting rule from the bottom up.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Structure {
     /// Floors, the ground floor and a roof floor included.
@@ -12,11 +12,11 @@ pub struct Structure {
     pub columns: usize,
     /// Floors with a running balcony, the ground floor being 0.
     pub balconies: Vec<usize>,
-    /// Whether there are shops on the ground floor.
+    /// True if there are shops on the ground floor.
     pub shops: bool,
     /// Number of doors on the ground floor.
     pub doors: usize,
-    /// Whether the top floor is in the roof.
+    /// True if the top floor is in the roof.
     pub roof: bool,
 }
 

@@ -275,8 +275,8 @@ fn added(completion: Option<&Completion>) -> Vec<Element> {
         .collect()
 }
 
-/// Whether the true number of windows lies between the 10 % and the 90 % quantile of the pool; `None` where the pool
-/// has no layout to count.
+/// 1 if the true number of windows lies between the 10 % and the 90 % quantile of the pool, otherwise 0; `None` if the
+/// pool has no layout to count.
 fn inside(windows: &[(usize, f64)], hidden: &[Element]) -> Option<f64> {
     let truth = hidden.iter().filter(|e| e.class == Class::Window).count();
     let weight = |test: &dyn Fn(usize) -> bool| -> f64 {

@@ -1,12 +1,12 @@
 //! The element layouts that the experiments run on.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::experiments::{Budget, Context, layouts};
-use crate::io::{ReadOptions, Source, read_source};
-use crate::methods::structure_completion::layout::{Layout, extract, scope};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use crate::{Budget, Context, layouts};
+use edifice_io::{ReadOptions, Source, read_source};
+use edifice_structure_completion::layout::{Layout, extract, scope};
+
+use edifice_base::{Error, Result};
 
 /// A facade of a data set.
 #[derive(Debug, Clone)]
@@ -15,21 +15,8 @@ pub struct Item {
     pub dataset: &'static str,
     /// Its elements.
     pub layout: Layout,
-    /// Whether it has a lattice of windows, and is one facade.
+    /// True if it has a lattice of windows, and is one facade.
     pub in_scope: bool,
-}
-
-/// The element layout of a facade of any source; `path` names the file in errors.
-///
-/// # Errors
-/// [`Error::Content`] for a source that has no elements as it cannot be read as a grid.
-pub fn elements(source: Source, path: &Path) -> Result<Layout> {
-    match source {
-        Source::Layout(facade) => extract::of_facade(&facade),
-        Source::Picture(grid) => extract::of_picture(&grid),
-        Source::Cmp(cmp, width, height) => extract::of_facade(&cmp.layout(width, height)?),
-    }
-    .map_err(|e| Error::content(path, e))
 }
 
 /// The real facades of ECP, Graz and CMP that the user has; without them the shipped layouts. Fewer at the smoke
@@ -72,7 +59,7 @@ fn read(dataset: &'static str, files: &[PathBuf]) -> Result<Vec<Item>> {
             Source::Cmp(cmp, ..) => cmp.objects.iter().filter(|o| o.label == "facade").count() == 1,
             _ => true,
         };
-        let layout = elements(source, path)?;
+        let layout = extract::elements(&source.labelled()?).map_err(|e| Error::content(path, e))?;
         let in_scope = one && scope::in_scope(&layout);
         Ok(Item {
             dataset,
@@ -81,15 +68,4 @@ fn read(dataset: &'static str, files: &[PathBuf]) -> Result<Vec<Item>> {
         })
     };
     files.iter().map(item).collect()
-}
-
-/// A layout as a facade of element regions.
-pub fn facade(layout: &Layout) -> Result<Facade> {
-    let regions = layout.elements.iter().map(|e| crate::shape::Region {
-        label: e.class.name().to_string(),
-        rect: e.rect,
-    });
-    let name = layout.name.clone();
-    Facade::new(name, "px", layout.width, layout.height, regions.collect())
-        .map_err(|e| Error::content(layout.name.as_ref(), e))
 }

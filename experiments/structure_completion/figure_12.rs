@@ -2,13 +2,13 @@
 
 use super::picture::panel;
 use super::{data, folds, row};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::method::{Method, complete};
-use crate::methods::structure_completion::task::Task;
-use crate::report::Figure;
-use crate::rng::stream;
+use crate::Context;
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_report::Figure;
+use edifice_structure_completion::layout::{Class, Element};
+use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::task::Task;
 
 /// Completes a few facades in five ways.
 pub fn run(ctx: &mut Context) -> Result<()> {

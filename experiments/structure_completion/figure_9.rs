@@ -5,14 +5,14 @@ use rand::seq::SliceRandom;
 
 use super::picture::panel;
 use super::{data, folds, row};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::method::{Method, complete};
-use crate::methods::structure_completion::task::Task;
-use crate::report::Figure;
-use crate::rng::stream;
+use crate::Context;
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_report::Figure;
+use edifice_structure_completion::layout::{Class, Element};
+use edifice_structure_completion::measure::agreement;
+use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::task::Task;
 
 /// Pairs in a row of the picture.
 const PAIRS: usize = 5;

@@ -3,11 +3,11 @@
 use rand::seq::SliceRandom;
 
 use super::data::Item;
-use crate::methods::structure_completion::best::learn::twins;
-use crate::methods::structure_completion::layout::Layout;
-use crate::methods::structure_completion::model::Model;
-use crate::rng::stream;
-use crate::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_structure_completion::best::learn::twins;
+use edifice_structure_completion::layout::Layout;
+use edifice_structure_completion::model::Model;
 
 /// The fold of each item: groups of near-twins in random order, dealt in turn.
 pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {

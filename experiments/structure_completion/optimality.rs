@@ -3,18 +3,18 @@
 use rand::RngExt;
 
 use super::{data, row};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::structure_completion::best::chain::{Chain, LineProblem, log_weight};
-use crate::methods::structure_completion::best::density::Spacing;
-use crate::methods::structure_completion::best::pool::line_problem;
-use crate::methods::structure_completion::best::scene::Scene;
-use crate::methods::structure_completion::layout::{Class, Layout};
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::task::Task;
-use crate::report::{Align, Table};
-use crate::rng::stream;
-use crate::shape::Axis;
+use crate::Context;
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_report::{Align, Table};
+use edifice_shape::Axis;
+use edifice_structure_completion::best::chain::{Chain, LineProblem, log_weight};
+use edifice_structure_completion::best::density::Spacing;
+use edifice_structure_completion::best::pool::line_problem;
+use edifice_structure_completion::best::scene::Scene;
+use edifice_structure_completion::layout::{Class, Layout};
+use edifice_structure_completion::model::Model;
+use edifice_structure_completion::task::Task;
 
 /// Evaluations of annealing.
 const EVALUATIONS: usize = 10_000;
@@ -99,7 +99,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 }
 
 /// Annealing over sets of lines: add, remove or shift a line.
-fn anneal(problem: &LineProblem, spacing: &Spacing, rng: &mut crate::rng::Stream) -> f64 {
+fn anneal(problem: &LineProblem, spacing: &Spacing, rng: &mut edifice_base::rng::Stream) -> f64 {
     // Start from any lines that the chain can draw.
     let start = Chain::new(problem, spacing, false)
         .draw(1, rng)

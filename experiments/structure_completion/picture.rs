@@ -1,8 +1,8 @@
 //! Layouts of elements as panels.
 
-use crate::experiments::picture::material;
-use crate::methods::structure_completion::layout::Element;
-use crate::report::{Colour, Outline, Tile, Tiles};
+use crate::picture::material;
+use edifice_report::{Colour, Outline, Tile, Tiles};
+use edifice_structure_completion::layout::Element;
 
 /// A panel of a wall with elements; the outlined ones were added.
 pub fn panel(

@@ -1,12 +1,13 @@
-//! How well a classifier tells completions from true facades, by statistics that no method optimizes.
+//! The skill of a classifier that tells completions from true facades (area under its curve, 0.5 for chance), by
+//! statistics that no method optimizes.
 
 use rand::seq::SliceRandom;
 
-use crate::methods::structure_completion::layout::lines::lines;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::model::boosting::{Boosting, BoostingError, Settings};
-use crate::rng::stream;
-use crate::shape::{Axis, Rect};
+use edifice_base::rng::stream;
+use edifice_model::boosting::{Boosting, BoostingError, Settings};
+use edifice_shape::{Axis, Rect};
+use edifice_structure_completion::layout::lines::lines;
+use edifice_structure_completion::layout::{Class, Element};
 
 /// Folds of the classifier.
 const FOLDS: usize = 5;

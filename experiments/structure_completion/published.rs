@@ -1,8 +1,8 @@
 //! The numbers that the paper printed, `datasets/structure_completion/published.csv`.
 
-use crate::experiments::Context;
-use crate::io::read_bytes;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_io::read_bytes;
 
 /// The printed numbers.
 pub struct Published(Vec<Record>);

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::plausibility::auc;
 use super::row;
-use crate::experiments::Context;
-use crate::methods::structure_completion::method::Method;
-use crate::methods::structure_completion::task::Task;
-use crate::report::{Align, Table};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_report::{Align, Table};
+use edifice_structure_completion::method::Method;
+use edifice_structure_completion::task::Task;
 
 /// The default method, learnt from the other data sets only.
 pub const OTHER_SETS: &str = "best_other_sets";

@@ -3,19 +3,19 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::data::{self, Item};
+use super::data::Item;
 use super::figures::{drawn, in_size, without};
-use crate::experiments::sweep::{Better, Given, Outcome, Shared, Study};
-use crate::io::{ReadOptions, read_source};
-use crate::methods::structure_completion::layout::{Class, Element, Layout, scope};
-use crate::methods::structure_completion::measure::{agreement, area_iou};
-use crate::methods::structure_completion::method::{self, Method};
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::policy::{Budget, PaperModel};
-use crate::methods::structure_completion::score::Term;
-use crate::methods::structure_completion::task::Task;
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_io::{ReadOptions, read_source};
+use edifice_structure_completion::layout::{Class, Element, Layout, extract, scope};
+use edifice_structure_completion::measure::{agreement, area_iou};
+use edifice_structure_completion::method::{self, Method};
+use edifice_structure_completion::model::Model;
+use edifice_structure_completion::policy::{Budget, PaperModel};
+use edifice_structure_completion::score::Term;
+use edifice_structure_completion::task::Task;
 
 /// Settings of completion.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -23,7 +23,7 @@ use crate::{Error, Result};
 struct Complete {
     /// Method of completion.
     method: Method,
-    /// What is hidden.
+    /// Part that is hidden.
     task: Task,
     /// Scoring functions whose weight is set to 0, of `paper`.
     left_out: Vec<Term>,
@@ -130,7 +130,8 @@ fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
 }
 
 fn item(path: &std::path::Path) -> Result<Item> {
-    let layout = data::elements(read_source(path, &ReadOptions::default())?, path)?;
+    let source = read_source(path, &ReadOptions::default())?.labelled()?;
+    let layout = extract::elements(&source).map_err(|e| Error::content(path, e))?;
     Ok(Item {
         dataset: "sweep",
         in_scope: scope::in_scope(&layout),

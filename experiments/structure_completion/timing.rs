@@ -4,15 +4,15 @@ use std::time::Instant;
 
 use super::published::Published;
 use super::{data, row};
-use crate::experiments::{Budget, Context};
-use crate::methods::structure_completion::layout::{Class, Layout};
-use crate::methods::structure_completion::method::{Method, complete};
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::policy::{self, PaperModel, Scene, WEIGHTS, optimize};
-use crate::methods::structure_completion::task::Task;
-use crate::report::{Align, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::{Budget, Context};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_report::{Align, Table};
+use edifice_structure_completion::layout::{Class, Layout};
+use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::model::Model;
+use edifice_structure_completion::policy::{self, PaperModel, Scene, WEIGHTS, optimize};
+use edifice_structure_completion::task::Task;
 
 /// Facades that are learnt from.
 const LEARNT: usize = 100;

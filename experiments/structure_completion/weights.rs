@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::published::Published;
 use super::row;
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::Layout;
-use crate::methods::structure_completion::policy::{PaperModel, WEIGHTS, weight_states};
-use crate::methods::structure_completion::score::{ScoreModel, Sites, TERMS, Term};
-use crate::model::factor_graph::Settings;
-use crate::report::{Align, BarGroup, Bars, Figure, Scale, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::factor_graph::Settings;
+use edifice_report::{Align, BarGroup, Bars, Figure, Scale, Table};
+use edifice_structure_completion::layout::Layout;
+use edifice_structure_completion::policy::{PaperModel, WEIGHTS, weight_states};
+use edifice_structure_completion::score::{ScoreModel, Sites, TERMS, Term};
 
 /// Sweeps of the chain from a random state to a layout.
 const SWEEPS: usize = 40;
@@ -20,7 +20,7 @@ const SIZES: [usize; 2] = [100, 300];
 /// Candidates of which Eq. 20's completion is the best.
 const CANDIDATES: usize = 20;
 
-/// How negatives are made.
+/// The ways in which negatives are made.
 const SAMPLERS: [&str; 3] = [
     "block resampled",
     "Eq. 20, best of 20",

@@ -14,10 +14,10 @@ use super::journal::{Keep, read_all};
 use super::plan::{Head, PLAN, Plan, Task, program};
 use super::run::entry;
 use super::study::Study;
-use crate::experiments::frame::provenance::{self, Machine};
-use crate::{Error, Result, file};
+use crate::frame::provenance::{self, Machine};
+use edifice_base::{Error, Result, file};
 
-/// What is in a bundle.
+/// The contents of a bundle.
 #[derive(Debug, Serialize, Deserialize)]
 struct Manifest {
     format: String,
@@ -28,7 +28,7 @@ struct Manifest {
     files: Vec<(String, String)>,
 }
 
-/// What is wrong with a bundle.
+/// The faults of a bundle.
 #[derive(Debug, thiserror::Error)]
 enum BundleError {
     #[error("this is no bundle of a sweep: {0}")]
@@ -39,12 +39,12 @@ enum BundleError {
     Program { made: String, ours: String },
 }
 
-/// What a check found.
+/// The result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verified {
     /// Tasks that were run again.
     pub rerun: usize,
-    /// Those that found something else: arm, instance, seed.
+    /// Tasks that found something else: arm, instance, seed.
     pub different: Vec<String>,
 }
 

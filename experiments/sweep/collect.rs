@@ -1,4 +1,4 @@
-//! What is known of a sweep: its state, and its results as tables.
+//! The state of a sweep, and its results as tables.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::journal::{Damaged, Entry, Keep, Known, read_all};
 use super::plan::Plan;
 use super::study::Outcome;
-use crate::{Error, Result, file};
+use edifice_base::{Error, Result, file};
 
 /// Name of the table of results in a sweep's folder.
 pub const RESULTS: &str = "results.csv";
@@ -32,7 +32,7 @@ pub struct ArmState {
 /// State of a sweep.
 #[derive(Debug)]
 pub struct State {
-    /// By arm.
+    /// The state of each arm.
     pub arms: Vec<ArmState>,
     /// First message of each kind of failure, and how often it occurred.
     pub failures: BTreeMap<String, usize>,
@@ -97,7 +97,7 @@ pub struct Record {
     pub instance: usize,
     /// Seed as the file counts it.
     pub seed: u64,
-    /// What it found; none where it failed or is missing.
+    /// Its outcome; `None` if it failed or is missing.
     pub outcome: Option<Outcome>,
     /// Why there is none.
     pub failure: Option<String>,

@@ -3,7 +3,7 @@
 use include_dir::{Dir, include_dir};
 
 /// `experiments/sweeps/` of the checkout that the program was built from.
-static SWEEPS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/experiments/sweeps");
+static SWEEPS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/sweeps");
 
 /// A sweep file that ships.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub struct Example {
 }
 
 impl Example {
-    /// What it shows: the first line of its comment.
+    /// Its subject: the first line of its comment.
     pub fn about(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.trim_start_matches('#').trim()

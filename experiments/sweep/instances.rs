@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::study::Study;
-use crate::experiments::frame::{datasets, provenance};
-use crate::{Error, Result};
+use crate::frame::provenance;
+use edifice_base::{Error, Result};
+use edifice_datasets as datasets;
 
 /// Folder of unpacked data sets in a sweep's folder.
 const DATA: &str = "data";
@@ -19,13 +20,13 @@ const DATA: &str = "data";
 pub struct Instance {
     /// Its file name up to the first dot, with the folder where two have one name.
     pub name: String,
-    /// Where it is; relative paths are relative to the sweep's folder.
+    /// Its path; relative paths are relative to the sweep's folder.
     pub path: PathBuf,
     /// SHA-256 of its bytes and of those of the files that belong to it.
     pub digest: String,
 }
 
-/// What is wrong with a pattern.
+/// The faults of a pattern.
 #[derive(Debug, thiserror::Error)]
 enum InstanceError {
     #[error(

@@ -13,20 +13,20 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::program;
 use super::study::Outcome;
-use crate::experiments::frame::lock;
-use crate::{Error, Result};
+use crate::frame::lock;
+use edifice_base::{Error, Result};
 
 /// Folder of the journals in a sweep's folder.
 const FOLDER: &str = "journal";
 
-/// What became of a task.
+/// The end of a task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// The task's key.
     pub key: String,
     /// Version of the program that ran it.
     pub program: String,
-    /// What it found; none where it failed.
+    /// Its outcome; `None` if it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
     /// Why it failed.
@@ -110,7 +110,7 @@ pub struct Damaged {
 /// Everything that is known of a sweep's tasks, by key; of several entries of a task a success counts, of several such the first.
 #[derive(Debug, Default)]
 pub struct Known {
-    /// By key.
+    /// Entries by key.
     pub entries: HashMap<String, Entry>,
     /// Lines that could not be read.
     pub damaged: Vec<Damaged>,
@@ -118,14 +118,14 @@ pub struct Known {
     pub foreign: usize,
 }
 
-/// What of the outcomes is kept in memory.
+/// The part of the outcomes that is kept in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
-    /// That there is one.
+    /// Only the presence of an outcome.
     Presence,
     /// Metrics and bounds.
     Metrics,
-    /// Everything.
+    /// All outcomes, with traces.
     All,
 }
 

@@ -10,9 +10,9 @@ use sha2::{Digest, Sha256};
 use super::definition::{Arm, ReportOptions, TaskOptions, arms, read};
 use super::instances::{Instance, files};
 use super::study::Study;
-use crate::experiments::frame::lock::Lock;
-use crate::experiments::frame::provenance;
-use crate::{Error, Result, file};
+use crate::frame::lock::Lock;
+use crate::frame::provenance;
+use edifice_base::{Error, Result, file};
 
 /// Name of the plan in a sweep's folder.
 pub const PLAN: &str = "plan.jsonl";
@@ -41,11 +41,11 @@ pub struct Head {
     pub study: String,
     /// SHA-256 of the sweep file.
     pub sweep: String,
-    /// Whether all arms meet the same chance on an instance and seed.
+    /// True if all arms meet the same chance on an instance and seed.
     pub paired_seeds: bool,
-    /// What the report is about.
+    /// The options of the report.
     pub report: ReportOptions,
-    /// What a task needs.
+    /// The needs of a task.
     pub task: TaskOptions,
     /// Arms.
     pub arms: Vec<Arm>,
@@ -61,13 +61,13 @@ pub struct Head {
 /// All tasks of a sweep, in the order of its results: arm by arm, instance by instance, seed by seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What they have in common.
+    /// The part that all tasks have in common.
     pub head: Head,
     /// The tasks.
     pub tasks: Vec<Task>,
 }
 
-/// What is wrong with a plan.
+/// The faults of a plan.
 #[derive(Debug, thiserror::Error)]
 enum PlanError {
     #[error(
@@ -102,7 +102,7 @@ impl Plan {
     /// is waited for.
     ///
     /// # Errors
-    /// What reading the file says, [`Error::Content`] where there is no instance.
+    /// Those of reading the file; [`Error::Content`] if there is no instance.
     pub fn make(sweep: &Path, out: &Path, studies: &[Study]) -> Result<Self> {
         let definition = read(sweep, studies)?;
         let _lock = Lock::wait(out)?;
@@ -256,12 +256,12 @@ impl Plan {
         study.ok_or_else(|| Error::method(PlanError::Study(self.head.study.clone())))
     }
 
-    /// Where the instance of a task is.
+    /// The path of a task's instance.
     pub fn path(&self, out: &Path, task: &Task) -> PathBuf {
         out.join(&self.head.instances[task.instance].path)
     }
 
-    /// Where the files are that a task of a study that learns may learn from.
+    /// The paths of the files that a task may learn from, if its study learns.
     pub fn database(&self, out: &Path, task: &Task) -> Vec<PathBuf> {
         let head = &self.head;
         let place = |file: &Instance| out.join(&file.path);

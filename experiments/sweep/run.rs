@@ -10,20 +10,20 @@ use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task, program};
 use super::study::{Given, Study};
-use crate::experiments::frame::Progress;
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::frame::Progress;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
 
-/// Which tasks of a shard to run.
+/// The tasks of a shard that are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wanted {
-    /// Those without a result.
+    /// Tasks without a result.
     Missing,
-    /// Those without a result, and those that failed.
+    /// Tasks without a result, and those that failed.
     MissingAndFailed,
 }
 
-/// What a run did.
+/// The counts of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ran {
     /// Tasks that were run and found something.

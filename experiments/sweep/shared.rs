@@ -1,9 +1,9 @@
-//! What several tasks of one process need and is dear to make, such as a model that all arms share.
+//! Values that several tasks of one process need and that are dear to make, such as a model that all arms share.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::Result;
+use edifice_base::Result;
 
 /// The last values made, by key. A value depends on its key alone, so that results do not depend on which task made it.
 pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
@@ -12,7 +12,7 @@ pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
 const KEPT: usize = 64;
 
 impl<V> Shared<V> {
-    /// Nothing yet.
+    /// A store without any value.
     pub const fn new() -> Self {
         Self(Mutex::new(VecDeque::new()))
     }

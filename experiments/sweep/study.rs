@@ -8,9 +8,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
-/// Which values of a metric are better.
+/// The values of a metric that are better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Better {
@@ -20,12 +20,12 @@ pub enum Better {
     Higher,
 }
 
-/// What one task found.
+/// The outcome of one task.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Value of each metric; the same task gives the same values, so times do not belong here.
     pub metrics: BTreeMap<String, f64>,
-    /// The best value of the first metric after so many evaluations, where the method says so: `[evaluations, value]`, rising.
+    /// The best value of the first metric by evaluations, if the method reports it: `[evaluations, value]`, rising.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trace: Vec<[f64; 2]>,
     /// No value of the first metric is better, as far as it is proven.
@@ -42,11 +42,11 @@ pub struct Setting {
     pub kind: String,
     /// Value when nothing is said.
     pub default: Value,
-    /// What it means.
+    /// Its meaning.
     pub meaning: String,
 }
 
-/// What a task is given beside its settings.
+/// The input of a task beside its settings.
 #[derive(Debug, Clone, Copy)]
 pub struct Given<'a> {
     /// File of the instance. Files beside it that have its name up to the first dot belong to it.
@@ -65,13 +65,13 @@ type Check = Box<dyn Fn(&Map<String, Value>) -> std::result::Result<(), String> 
 pub struct Study {
     /// `<paper>/<method>`.
     pub name: &'static str,
-    /// What it does, in a line.
+    /// Its task, in a line.
     pub about: &'static str,
     /// Folder of `datasets/` that `data` is relative to.
     pub data: &'static str,
     /// Its metrics; the first is what a report is about unless the file says otherwise.
     pub metrics: &'static [(&'static str, Better)],
-    /// Whether it learns from files beside the instance.
+    /// True if it learns from files beside the instance.
     pub learns: bool,
     settings: Vec<Setting>,
     defaults: Map<String, Value>,
@@ -139,7 +139,7 @@ impl Study {
         all
     }
 
-    /// Whether one setting has a value of its type; else why not.
+    /// Checks that one setting has a value of its type; the error says why not.
     pub fn check(&self, name: &str, value: &Value) -> std::result::Result<(), String> {
         let one = Map::from_iter([(name.to_owned(), value.clone())]);
         (self.check)(&self.complete(&one))
@@ -148,7 +148,7 @@ impl Study {
     /// Runs one task.
     ///
     /// # Errors
-    /// What the method says.
+    /// Those of the method.
     pub fn run(&self, settings: &Map<String, Value>, given: &Given) -> Result<Outcome> {
         (self.run)(settings, given)
     }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use edifice::io::building_csv;
-use edifice::tables::schema::Schema;
+use edifice::model::tables::schema::Schema;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     if let Ok(table) = building_csv::parse(bytes, Path::new("input"))

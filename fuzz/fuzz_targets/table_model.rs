@@ -1,7 +1,7 @@
 //! Model files of tables: no panic, and what is read is written and read back.
 #![no_main]
 
-use edifice::tables::table_model::TableModel;
+use edifice::model::tables::table_model::TableModel;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
     if let Ok(file) = TableModel::from_json(text) {

@@ -88,7 +88,7 @@ Columns are those of `building attributes`. Wishes that no house can have togeth
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice::Result<()> {
+pub fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Attributes(args) => attributes::run(&args),
         Command::Learn(args) => learn::run(&args),

@@ -66,7 +66,7 @@ The view lists buildings near each other: { \"format\": \"edifice/city-view\", \
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice::Result<()> {
+pub fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Proceduralize(args) => proceduralize::run(&args),
         Command::Derive(args) => derive::run(&args),

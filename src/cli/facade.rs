@@ -12,10 +12,12 @@ mod train;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use edifice::io::{self, Source};
-use edifice::layout::regularize::{RegularizeError, Report, regularize_facade, regularize_grid};
-use edifice::shape::{self, Decomposition, Facade, LabelGrid};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io as io;
+use edifice_io::Source;
+use edifice_layout::regularize::{RegularizeError, Report, regularize_facade, regularize_grid};
+use edifice_shape as shape;
+use edifice_shape::{Decomposition, Facade, LabelGrid};
 
 use super::print;
 use super::reading::{self, Reading};

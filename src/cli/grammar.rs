@@ -7,7 +7,7 @@ mod merge;
 mod show;
 
 use clap::Subcommand;
-use edifice::grammar::Costs;
+use edifice_grammar::Costs;
 
 /// Commands.
 #[derive(Subcommand)]
@@ -25,7 +25,7 @@ pub enum Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice::Result<()> {
+pub fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Infer(args) => infer::run(&args),
         Command::Derive(args) => derive::run(&args),

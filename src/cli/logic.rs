@@ -27,7 +27,7 @@ pub enum Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice::Result<()> {
+pub fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Fit(args) => fit::run(&args),
         Command::Parse(args) => parse::run(&args),

@@ -14,11 +14,11 @@ mod tables;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use edifice::file::read_bytes;
-use edifice::io::json::parse_json;
-use edifice::model::ModelError;
-use edifice::model::network::{Evidence, FORMAT, Network};
-use edifice::{Error, Result};
+use edifice_base::file::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_io::json::parse_json;
+use edifice_model::ModelError;
+use edifice_model::network::{Evidence, FORMAT, Network};
 
 use super::{MODELS, print};
 

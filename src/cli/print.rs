@@ -3,14 +3,12 @@
 use std::io::Write;
 
 /// Prints one line of result to standard output; a reader that has gone away is not an error.
-pub fn line(text: &str) -> edifice::Result<()> {
+pub fn line(text: &str) -> edifice_base::Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(edifice::Error::io(
-            "standard output".as_ref(),
-            "write",
-            error,
-        )),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(
+            edifice_base::Error::io("standard output".as_ref(), "write", error),
+        ),
         _ => Ok(()),
     }
 }
@@ -22,6 +20,6 @@ pub fn message(text: &str) {
 }
 
 /// Prints an error.
-pub fn error(error: &edifice::Error) {
+pub fn error(error: &edifice_base::Error) {
     message(&format!("error: {error}"));
 }

@@ -1,16 +1,17 @@
-//! How facades are read, for every command that reads them.
+//! The reading of facades, for every command that reads them.
 
 use std::path::{Path, PathBuf};
 
-use edifice::Result;
-use edifice::io::{self, LabelMap, ReadOptions, Source};
+use edifice_base::Result;
+use edifice_io as io;
+use edifice_io::{LabelMap, ReadOptions, Source};
 
 use super::print;
 
 /// Options of reading.
 #[derive(clap::Args)]
 pub struct Reading {
-    /// What the colours or numbers of label images and text matrices stand for, as JSON
+    /// Meaning of the colours or numbers of label images and text matrices, as JSON
     #[arg(long, value_name = "FILE")]
     label_map: Option<PathBuf>,
     /// Read a colour that the label map does not name as the nearest one (blended colours, JPEG)

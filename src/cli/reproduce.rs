@@ -1,6 +1,7 @@
 //! Running the experiments.
 
-use edifice::experiments::{self, ALL};
+use edifice_experiments as experiments;
+use edifice_experiments::ALL;
 
 /// Options of `edifice reproduce`.
 #[derive(clap::Args)]
@@ -15,11 +16,11 @@ pub struct Args {
 }
 
 /// Runs the experiments.
-pub fn run(args: Args) -> edifice::Result<()> {
+pub fn run(args: Args) -> edifice_base::Result<()> {
     for name in &args.papers {
         if ALL.iter().all(|experiment| experiment.slug != name) {
             let known: Vec<_> = ALL.iter().map(|experiment| experiment.slug).collect();
-            return Err(edifice::Error::option(
+            return Err(edifice_base::Error::option(
                 "PAPERS",
                 format!("no paper {name:?}; known are {}", known.join(", ")),
             ));

@@ -4,8 +4,8 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use edifice::Result;
-use edifice::studio::{Settings, start};
+use edifice_base::Result;
+use edifice_studio::{Settings, start};
 
 use super::print;
 

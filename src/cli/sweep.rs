@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
-use edifice::experiments::studies as all_studies;
-use edifice::experiments::sweep::collect::{ArmState, RESULTS, collect, state};
-use edifice::experiments::sweep::plan::{PLAN, Plan};
-use edifice::experiments::sweep::run::{Wanted, run as run_shard, shard};
-use edifice::experiments::sweep::{Study, bundle, report};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_experiments::studies as all_studies;
+use edifice_experiments::sweep::collect::{ArmState, RESULTS, collect, state};
+use edifice_experiments::sweep::plan::{PLAN, Plan};
+use edifice_experiments::sweep::run::{Wanted, run as run_shard, shard};
+use edifice_experiments::sweep::{Study, bundle, report};
 
 use super::print;
 
@@ -46,7 +46,7 @@ pub enum Command {
     Verify(Verify),
 }
 
-/// What all commands are told.
+/// The options of all commands.
 #[derive(Args)]
 pub struct Common {
     /// Sweep file

@@ -223,7 +223,7 @@ impl Dendrogram {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
     use rand::RngExt;
 
     fn random(n: usize, index: u64) -> DMatrix<f64> {

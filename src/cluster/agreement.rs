@@ -1,4 +1,4 @@
-//! How well two partitions of the same items agree.
+//! Measures of the agreement of two partitions of the same items.
 
 /// Adjusted Rand index (Hubert and Arabie 1985) of two labelings of the same items: 1 for equal
 /// partitions, 0 on average for unrelated ones. One item, or two trivial partitions, agree: 1.

@@ -10,7 +10,7 @@ pub struct Histogram<K> {
 }
 
 impl<K: Ord + Clone + Debug> Histogram<K> {
-    /// How often each key occurs.
+    /// Counts the occurrences of each key.
     pub fn count(keys: impl IntoIterator<Item = K>) -> Self {
         let mut bins: BTreeMap<K, f64> = BTreeMap::new();
         for key in keys {
@@ -62,7 +62,7 @@ impl<K: Ord + Clone + Debug> Histogram<K> {
 ///
 /// # Examples
 /// ```
-/// use edifice::cluster::{Histogram, chi_square};
+/// use edifice_cluster::{Histogram, chi_square};
 /// let a = Histogram::count(["wall", "wall", "door"]);
 /// let b = Histogram::count(["wall", "window"]);
 /// assert_eq!(chi_square(&a, &b), 0.5 * (1.0 / 3.0 + 1.0 + 1.0));

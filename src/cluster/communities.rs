@@ -105,7 +105,7 @@ pub fn girvan_newman(graph: &WeightedGraph) -> Communities {
     }
 }
 
-/// Sources are taken in so many groups; sums are over groups in order, the same for any number of threads.
+/// Number of groups of sources; sums are over groups in order, the same for any number of threads.
 const SOURCE_GROUPS: usize = 16;
 
 /// Edge betweenness inside a connected part (Brandes 2001), each pair of nodes counted once.

@@ -1,9 +1,8 @@
-//! How many clusters the points themselves ask for: the cut of a hierarchy with the shortest description
-//! (Rissanen 1978).
+//! The number of clusters by description length: the cut of a hierarchy with the shortest description (Rissanen 1978).
 //!
 //! Points are told to a precision ε, as a cluster's label, the cluster's mean, and what is left:
 //! - labels: n log2 n - Σ_c n_c log2 n_c bits;
-//! - means: for each cluster Σ_j log2(1 + range_j / ε_j) bits;
+//! - means: for each cluster `Σ_j log2(1 + range_j / ε_j)` bits;
 //! - rest: n/2 log2 det(I + W / n) bits, W the scatter within clusters in units of ε: one Gaussian for all
 //!   clusters. With the whole matrix, and not its diagonal, a noise that several coordinates share is paid once,
 //!   so that it does not split clusters.
@@ -96,8 +95,8 @@ fn log2_det(scatter: &DMatrix<f64>, n: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cluster::ward;
-    use crate::rng::stream;
+    use crate::ward;
+    use edifice_base::rng::stream;
     use rand::RngExt;
     use rand_distr::{Distribution, StandardNormal};
 

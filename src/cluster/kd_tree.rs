@@ -4,7 +4,7 @@
 const LEAF: usize = 8;
 
 /// A kd-tree over some rows of a table of points; rows can be removed.
-pub(crate) struct KdTree {
+pub struct KdTree {
     dimension: usize,
     /// Rows, leaf by leaf.
     order: Vec<u32>,

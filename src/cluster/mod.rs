@@ -25,7 +25,7 @@ pub use communities::{
     Communities, WeightedGraph, girvan_newman, louvain, modularity, weighted_graph,
 };
 pub use description::shortest_description;
-pub(crate) use kd_tree::KdTree;
+pub use kd_tree::KdTree;
 pub use kmeans::{KMeans, kmeans, lloyd, means, sum_of_squares};
 pub use retrieval::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,

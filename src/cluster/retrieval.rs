@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-/// Whether the query itself stands among the items to be ranked.
+/// The part of the query itself among the items to be ranked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Query {
     /// Ranked are all other items.
@@ -22,19 +22,19 @@ pub enum Ties {
     Against,
 }
 
-/// What happens to a query without any relevant item.
+/// The treatment of a query without any relevant item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unmatched {
-    /// It is no query.
+    /// It does not count as a query.
     LeftOut,
     /// It counts as never found.
     Missed,
 }
 
-/// How a cumulative match characteristic is taken.
+/// The conventions of a cumulative match characteristic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Protocol {
-    /// Whether the query is ranked too.
+    /// The part of the query itself in the ranking.
     pub query: Query,
     /// The order of equal distances.
     pub ties: Ties,
@@ -145,7 +145,7 @@ fn matches(ranked: &[(f64, bool)], ranks: usize, ties: Ties) -> Vec<f64> {
 ///
 /// # Examples
 /// ```
-/// assert_eq!(edifice::cluster::purity(&[0, 0, 1, 1], &['a', 'a', 'a', 'b']), 0.75);
+/// assert_eq!(edifice_cluster::purity(&[0, 0, 1, 1], &['a', 'a', 'a', 'b']), 0.75);
 /// ```
 pub fn purity<C: Ord>(clusters: &[usize], classes: &[C]) -> f64 {
     let mut counts: BTreeMap<usize, BTreeMap<&C, usize>> = BTreeMap::new();
@@ -164,7 +164,7 @@ pub fn purity<C: Ord>(clusters: &[usize], classes: &[C]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
     use rand::RngExt;
     use rand::seq::SliceRandom;
 

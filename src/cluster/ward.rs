@@ -1,7 +1,7 @@
 //! Ward's hierarchy of weighted points in near-linear time.
 //!
 //! Clusters a, b with weights w and centroids c cost Δ(a, b) = w_a w_b / (w_a + w_b) |c_a - c_b|² to
-//! merge: by so much the weighted sum of squared errors grows (Ward 1963). Δ is reducible, so all pairs
+//! merge, by which the weighted sum of squared errors grows (Ward 1963). Δ is reducible, so all pairs
 //! that are each other's nearest neighbours may merge at once and the hierarchy is the one of the
 //! greedy algorithm (Murtagh 1983, Bruynooghe 1978), up to ties. Nearest neighbours are found exactly in a
 //! kd-tree whose boxes carry the least weight below them, which bounds Δ from below; a cluster's

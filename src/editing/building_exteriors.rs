@@ -19,19 +19,19 @@ pub use wish::{WishError, Wishes, given, ranges, wished};
 use super::examples::{Example, Source};
 use super::work::Work;
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
-use crate::experiments::shipped_bytes;
-use crate::io::{building_json, gltf, scene_svg, surface_obj};
-use crate::methods::building_exteriors::design::{Edit, EditError, edited, suggested, variants};
-use crate::methods::building_exteriors::house::{
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::design::{Edit, EditError, edited, suggested, variants};
+use edifice_building_exteriors::house::{
     Database, GenerateError, Generated, HouseReport, Joining, Model, Options, model,
 };
-use crate::methods::building_exteriors::model_file::ModelFile;
-use crate::model::hierarchy::Hierarchy;
-use crate::rng::stream;
-use crate::shape::Building;
-use crate::{Error, Result};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_datasets::shipped_bytes;
+use edifice_io::{building_json, gltf, scene_svg, surface_obj};
+use edifice_model::hierarchy::Hierarchy;
+use edifice_shape::Building;
 
-/// What the shipped houses and the model learned from them are called in the program.
+/// The name of the shipped houses in the program; that of the model learned from them follows.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";
 const MODEL: &str = "building_exteriors/default.houses.json";
 const ENDING: &str = ".building.json";
@@ -70,7 +70,7 @@ fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
     })
 }
 
-/// Whether a house's name can name its files.
+/// True if a house's name can name its files.
 pub fn is_file_name(name: &str) -> bool {
     let usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     !name.is_empty() && name.len() <= 100 && name.chars().all(usual)
@@ -146,13 +146,13 @@ pub struct House {
     building: Building,
     /// Its surface.
     model: Model,
-    /// How it came about; none for a house that was opened.
+    /// The report on its making; `None` for a house that was opened.
     report: Option<HouseReport>,
     /// Boxes that the last edit touched: they stay where the user put them.
     locked: Vec<bool>,
     answers: Vec<Generated>,
     chosen: Option<usize>,
-    /// What was wished last.
+    /// The wishes of the last edit.
     wishes: Vec<String>,
     style: Option<usize>,
     keep: bool,

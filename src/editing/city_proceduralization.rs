@@ -21,10 +21,10 @@ use super::examples::{Example, Source};
 use super::script::{Shell, Word};
 use super::work::Work;
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
-use crate::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use crate::io::city::{self, cityjson, glb, grammar_json, obj};
-use crate::methods::city_proceduralization::synthesis::{Shape, synthesize};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::synthesis::{Shape, synthesize};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
+use edifice_io::city::{self, cityjson, glb, grammar_json, obj};
 
 const ENDING: &str = ".city-grammar.json";
 const FORMATS: &[&str] = &["glb", "obj", "city.json"];
@@ -62,15 +62,15 @@ fn open(path: &Path, bytes: &[u8], work: &Work) -> Opened {
 /// Why a shape is not filled.
 #[derive(Debug, thiserror::Error)]
 pub enum FillError {
-    /// Fewer than three corners.
+    /// The shape has fewer than three corners.
     #[error("a shape of {0} corners: expected at least 3")]
     Corners(usize),
-    /// Nothing fits.
+    /// No building fits.
     #[error("no building fits into the shape")]
     Full,
     /// The grammar.
     #[error(transparent)]
-    Grammar(#[from] crate::grammar::instance::InstanceGrammarError),
+    Grammar(#[from] edifice_grammar::instance::InstanceGrammarError),
 }
 
 /// A new city of a grammar's buildings in a shape of rings in metres.
@@ -113,7 +113,8 @@ struct Made {
     derivation: Arc<InstanceDerivation>,
     /// Halvings of the number of components, of a grammar that was made here and not edited since.
     level: Option<u32>,
-    /// By how much the volume of each building differs from that of the original, as a share, once it was asked for.
+    /// The difference of each building's volume from the original's, as a share of the original's; unset until it is
+    /// asked for.
     errors: Arc<OnceLock<Vec<Option<f64>>>>,
 }
 
@@ -126,7 +127,7 @@ enum CityError {
     /// Its triangles are not known.
     #[error("the triangles of this city are not known: open the city itself to choose a level")]
     NoOriginal,
-    /// No such level.
+    /// There is no such level.
     #[error("level {0}: expected 0 to {DEEPEST}")]
     Level(u32),
 }

@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::work::Work;
 use super::{EDITORS, State, open};
-use crate::experiments::shipped_bytes;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_datasets::shipped_bytes;
 
-/// Something to begin with.
+/// A document to begin with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Example {
-    /// What it is asked for by.
+    /// The name that it is asked for by.
     pub id: &'static str,
     /// Kind of document.
     pub kind: &'static str,
@@ -19,12 +19,12 @@ pub struct Example {
     pub title: &'static str,
     /// A sentence.
     pub about: &'static str,
-    /// Where it is.
+    /// Its source.
     #[serde(skip)]
     pub source: Source,
 }
 
-/// Where an example is.
+/// The source of an example.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// A file that ships.

@@ -15,11 +15,11 @@ use super::script::{Shell, Word};
 use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit, glb};
 use super::work::{Work, stoppable};
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
-use crate::grammar::{Costs, Grammar, Operation, Rule, Size, check, listing};
-use crate::io::palette::Palette;
-use crate::io::{draw, facade_json, grammar_cga, grammar_json};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::{Costs, Grammar, Operation, Rule, Size, check, listing};
+use edifice_io::palette::Palette;
+use edifice_io::{draw, facade_json, grammar_cga, grammar_json};
+use edifice_shape::Facade;
 
 /// Most regions of a facade that is shown.
 const SHOWN: usize = 50_000;
@@ -74,7 +74,7 @@ fn open(path: &Path, bytes: &[u8], work: &Work) -> Opened {
 /// The grammar of a whole facade, and the least cost that any grammar of it can have.
 fn inferred(path: &Path, facade: &Facade, work: &Work) -> Result<(Grammar, Option<f64>)> {
     facade.check_tiling().map_err(|e| Error::content(path, e))?;
-    crate::shape::splittable(facade).map_err(|e| Error::content(path, e))?;
+    edifice_shape::splittable(facade).map_err(|e| Error::content(path, e))?;
     work.tell("inferring the grammar", None)?;
     let found = stoppable(|| merge::observed(std::slice::from_ref(facade), work))?;
     let found = found.map_err(Error::method)?;
@@ -302,7 +302,7 @@ impl State for Editing {
     }
 }
 
-/// Without the dust of adding tenths.
+/// The cost, rounded to nine decimals: sums of tenths without their errors.
 fn tidy(cost: f64) -> f64 {
     (cost * 1e9).round() / 1e9
 }

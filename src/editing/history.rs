@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::script::{Shell, script};
 use super::work::Work;
 use super::{CommandError, State, Step};
-use crate::Result;
+use edifice_base::Result;
 
 /// Commands that were done at once, and are undone at once.
 struct Entry {
@@ -23,7 +23,7 @@ pub struct Document {
     revision: u64,
 }
 
-/// What commands in turn come to, from a state.
+/// The steps that commands make, one after another, from a state.
 ///
 /// # Errors
 /// As [`State::apply`]; [`CommandError::Nothing`] without commands.
@@ -45,11 +45,11 @@ pub fn steps(state: &Arc<dyn State>, commands: &[Value], work: &Work) -> Result<
 /// An entry of the log.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Logged {
-    /// In words.
+    /// The edit, in words.
     pub said: String,
     /// The commands, without the files that they hold.
     pub commands: Vec<Value>,
-    /// Whether it is done, or was undone.
+    /// True if it is done, false if it was undone.
     pub done: bool,
 }
 
@@ -134,7 +134,7 @@ impl Document {
         true
     }
 
-    /// Whether there is something to undo, and to redo.
+    /// True if there is something to undo; true if there is something to redo.
     pub fn can(&self) -> (bool, bool) {
         (self.at > 0, self.at < self.entries.len())
     }
@@ -154,7 +154,7 @@ impl Document {
         self.entries.iter().enumerate().map(logged).collect()
     }
 
-    /// What the last edit wants the user to know.
+    /// The warnings of the last edit.
     pub fn warnings(&self) -> Vec<String> {
         let last = self.entries[..self.at].last();
         let steps = last.into_iter().flat_map(|e| &e.steps);

@@ -39,12 +39,12 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 use examples::Example;
 use script::Shell;
 use work::{Stopped, Work};
 
-/// What can be opened, tried in this order.
+/// The kinds of documents that can be opened, tried in this order.
 pub const EDITORS: &[Editor] = &[
     building_exteriors::EDITOR,
     city_proceduralization::EDITOR,
@@ -52,7 +52,7 @@ pub const EDITORS: &[Editor] = &[
     facade_grammar::EDITOR,
 ];
 
-/// What an editor makes of a file; `None` where it is for another one.
+/// The result of an editor that was offered a file; `None` if the file is for another editor.
 pub type Opened = Option<Result<Arc<dyn State>>>;
 
 /// A kind of document.
@@ -73,7 +73,7 @@ pub trait State: Send + Sync {
     /// The document's name.
     fn name(&self) -> &str;
 
-    /// How the names of its files end, for example `.building.json`.
+    /// The ending of the names of its files, for example `.building.json`.
     fn ending(&self) -> &'static str;
 
     /// Its file.
@@ -116,7 +116,7 @@ pub trait State: Send + Sync {
 #[derive(serde::Deserialize)]
 enum NoQuestion {}
 
-/// What a command came to.
+/// The result of a command.
 pub struct Step {
     /// The new state.
     pub state: Arc<dyn State>,
@@ -124,7 +124,7 @@ pub struct Step {
     pub said: String,
     /// The same as a line of shell.
     pub shell: Shell,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -139,7 +139,7 @@ pub enum CommandError {
     Edit {
         /// The edit.
         edit: String,
-        /// What is wrong with it.
+        /// The reason.
         message: String,
     },
     /// There is no such answer.
@@ -147,7 +147,7 @@ pub enum CommandError {
     Answer {
         /// Number of the answer, from 1.
         wanted: usize,
-        /// How many there are.
+        /// Number of answers.
         count: usize,
     },
     /// A count out of range.
@@ -169,7 +169,7 @@ pub enum CommandError {
     /// A document has no such format.
     #[error("this document cannot be written as {0:?}")]
     Format(String),
-    /// Nothing was asked for.
+    /// The list of commands is empty.
     #[error("nothing to edit")]
     Nothing,
     /// The work was stopped.
@@ -238,7 +238,7 @@ fn count_of_answers(count: usize, most: usize) -> Result<usize> {
     }
 }
 
-/// Whether a file's name, without `.gz`, ends so.
+/// True if a file's name, without `.gz`, ends with this ending.
 fn ends(path: &Path, ending: &str) -> bool {
     let name = path.to_string_lossy().to_lowercase();
     name.trim_end_matches(".gz").ends_with(ending)

@@ -5,11 +5,11 @@ use std::fmt::Write;
 /// A word of a command line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Word {
-    /// As it is.
+    /// A text that stands for itself.
     Text(String),
     /// The file of the state before.
     Input,
-    /// Where the command writes.
+    /// The file or folder that the command writes.
     Output,
     /// A file that the script holds: how its name ends, and its text.
     File(&'static str, String),
@@ -22,9 +22,9 @@ pub enum Word {
 pub struct Shell {
     /// The arguments of `edifice`; none for a command that only picks an answer.
     pub words: Vec<Word>,
-    /// How the name of the output ends; a folder has no ending.
+    /// The ending of the output's name; empty for a folder.
     pub ending: &'static str,
-    /// Where the new state is: a file below the last output, or the output itself when empty; `None` leaves the
+    /// The place of the new state: a file below the last output, or the output itself when empty; `None` leaves the
     /// state where it was.
     pub result: Option<String>,
 }
@@ -55,7 +55,7 @@ impl Shell {
         self.arg(format!("{name}={}", value.to_string()))
     }
 
-    /// Where the new state is.
+    /// Sets the place of the new state.
     pub fn gives(mut self, ending: &'static str, result: Option<String>) -> Self {
         (self.ending, self.result) = (ending, result);
         self

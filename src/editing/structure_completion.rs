@@ -21,14 +21,13 @@ use super::work::Work;
 use super::{
     CommandError, Editor, Opened, State, Step, answer, count_of_answers, ends, parse, written,
 };
-use crate::experiments::structure_completion::data;
-use crate::io::{Source, draw, facade_json};
-use crate::methods::structure_completion::completion::Completion;
-use crate::methods::structure_completion::layout::scope;
-use crate::methods::structure_completion::method::{self, Method};
-use crate::methods::structure_completion::model::{self, Model};
-use crate::shape::{AnnotatedFacade, Note, Rect, is_background};
-use crate::{Error, Result, rng};
+use edifice_base::{Error, Result, rng};
+use edifice_io::{Source, draw, facade_json};
+use edifice_shape::{AnnotatedFacade, Note, Rect, is_background};
+use edifice_structure_completion::completion::Completion;
+use edifice_structure_completion::layout::{extract, scope};
+use edifice_structure_completion::method::{self, Method};
+use edifice_structure_completion::model::{self, Model};
 
 /// Most answers at once.
 const MOST: usize = 100;
@@ -104,8 +103,9 @@ pub fn annotated(source: Source, bytes: &[u8], path: &Path) -> Result<AnnotatedF
             return Ok(annotated);
         }
     }
-    let elements = data::elements(source, path)?;
-    Ok(AnnotatedFacade::plain(data::facade(&elements)?))
+    let elements = extract::elements(&source.labelled()?).map_err(|e| Error::content(path, e))?;
+    let facade = elements.facade().map_err(|e| Error::content(path, e))?;
+    Ok(AnnotatedFacade::plain(facade))
 }
 
 /// The model that ships with the project, read once.
@@ -123,11 +123,11 @@ pub fn shipped_model() -> Result<&'static Model> {
 
 /// Completions of a layout.
 pub struct Answers {
-    /// What was completed.
+    /// The input that was completed.
     pub given: Given,
     /// The completions, the best first.
     pub completions: Vec<Completion>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

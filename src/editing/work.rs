@@ -14,12 +14,12 @@ struct Shared {
     told: Mutex<Told>,
 }
 
-/// What work says of itself.
+/// The progress of work, as it was told last.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 pub struct Told {
-    /// What it does.
+    /// The present step, in words.
     pub step: String,
-    /// How much of it is done, from 0 to 1, where that is known.
+    /// The share that is done, from 0 to 1, if it is known.
     pub part: Option<f64>,
 }
 
@@ -62,12 +62,12 @@ impl Work {
         self.0.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was asked to stop.
+    /// True if it was asked to stop.
     pub fn is_stopped(&self) -> bool {
         self.0.stopped.load(Ordering::Relaxed)
     }
 
-    /// What it said last.
+    /// The progress that it told last.
     pub fn told(&self) -> Told {
         let told = self.0.told.lock().unwrap_or_else(PoisonError::into_inner);
         told.clone()

@@ -6,7 +6,7 @@ use super::derive::REGION_LIMIT;
 use super::place::{Fit, place};
 use super::table::Table;
 use super::{Grammar, GrammarError, Operation, Rule, Size, Successor, Warning};
-use crate::shape::Rect;
+use edifice_shape::Rect;
 
 /// Lengths are equal when they differ by at most this fraction of the facade's larger side.
 pub const TOLERANCE: f64 = 1e-6;

@@ -24,7 +24,7 @@ use super::resize::size_independent;
 use super::{
     Derivation, Grammar, GrammarError, Operation, Rule, Size, Start, Successor, derivation,
 };
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Parts less similar than this do not play the same role.
 pub const LEAST_SIMILARITY: f64 = 0.3;
@@ -96,12 +96,12 @@ struct Source<'g> {
     looks: BTreeMap<&'g str, Look>,
 }
 
-/// What a non-terminal region looks like.
+/// The look of a non-terminal region.
 struct Look {
     height: f64,
     /// Share of the area by label.
     labels: BTreeMap<String, f64>,
-    /// Whether something in it repeats along y.
+    /// True if something in it repeats along y.
     stretches: bool,
 }
 
@@ -154,7 +154,7 @@ impl<'g> Source<'g> {
 }
 
 impl Look {
-    /// How well one part could play the role of another, from 0 to 1.
+    /// The similarity of two parts that could play the same role, from 0 to 1.
     fn similarity(&self, other: &Self) -> f64 {
         let shared = self.labels.iter().map(|(label, share)| {
             let of_other = other.labels.get(label).copied().unwrap_or(0.0);

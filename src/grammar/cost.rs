@@ -53,7 +53,7 @@ impl Costs {
     /// Greatest cost.
     pub const GREATEST: f64 = 1e3;
 
-    /// Whether an operation or a successor may cost so much.
+    /// True if an operation or a successor may have this cost.
     pub fn allows(cost: f64) -> bool {
         cost == 0.0 || (Self::LEAST..=Self::GREATEST).contains(&cost)
     }

@@ -7,7 +7,7 @@ pub(super) use super::place::Fit;
 use super::place::place;
 use super::table::Table;
 use super::{Grammar, GrammarError};
-use crate::shape::{Facade, Rect, Region};
+use edifice_shape::{Facade, Rect, Region};
 
 /// A derivation of more regions than this, terminals and non-terminals, is refused: a grammar of a
 /// few lines can describe more regions than there is memory.
@@ -18,7 +18,7 @@ pub const REGION_LIMIT: usize = 5_000_000;
 pub struct NonTerminal {
     /// Index of the rule that split it; its symbol is that rule's left-hand side.
     pub rule: usize,
-    /// Where it is, in the facade's coordinates.
+    /// Its place, in the facade's coordinates.
     pub rect: Rect,
     /// Number of regions around it: 0 for the whole facade.
     pub depth: usize,
@@ -32,8 +32,8 @@ pub struct Derivation {
     pub facade: Facade,
     /// The non-terminal regions, depth first, each before what is inside it.
     pub non_terminals: Vec<NonTerminal>,
-    /// Where the grammar writes each terminal region: the rule and the place in its right-hand side;
-    /// `None` for a facade that is one terminal.
+    /// The origin of each terminal region: the rule that writes it, and the place in the rule's right-hand side; `None`
+    /// for a facade that is one terminal.
     pub origins: Vec<Option<(usize, usize)>>,
     /// Rules whose absolute sizes left too little for the relative ones and shrank, by their index: the
     /// least factor. Empty when all absolute sizes are as written.
@@ -50,8 +50,8 @@ pub struct Derivation {
 ///
 /// # Examples
 /// ```
-/// use edifice::grammar::{Grammar, Operation, Rule, Start, Successor, derive};
-/// use edifice::shape::Axis;
+/// use edifice_grammar::{Grammar, Operation, Rule, Start, Successor, derive};
+/// use edifice_shape::Axis;
 /// let grammar = Grammar {
 ///     unit: "m".into(),
 ///     starts: vec![Start { name: "row".into(), symbol: "Row".into(), width: 12.0, height: 3.0 }],
@@ -67,7 +67,7 @@ pub struct Derivation {
 /// let facade = derive(&grammar, 0)?;
 /// assert_eq!(facade.regions.len(), 8);
 /// assert_eq!(facade.regions[7].rect.right(), 12.0);
-/// # Ok::<(), edifice::grammar::GrammarError>(())
+/// # Ok::<(), edifice_grammar::GrammarError>(())
 /// ```
 pub fn derive(grammar: &Grammar, start_index: usize) -> Result<Facade, GrammarError> {
     derivation(grammar, start_index).map(|d| d.facade)

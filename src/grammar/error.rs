@@ -1,6 +1,6 @@
 //! Ways for a grammar to be wrong.
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Why a grammar is not valid, or cannot be derived. Rules are named by their index in
 /// [`Grammar::rules`](super::Grammar::rules), as in the path `rules[3]` of a grammar file.
@@ -40,7 +40,7 @@ pub enum GrammarError {
     /// A start symbol, a left-hand side or a successor is the empty string.
     #[error("{place} is empty, expected a symbol")]
     EmptySymbol {
-        /// Where, for example `rules[3].successors[0].symbol`.
+        /// Its place, for example `rules[3].successors[0].symbol`.
         place: String,
     },
     /// A rule writes no successor.
@@ -58,7 +58,7 @@ pub enum GrammarError {
         rule: usize,
         /// Its left-hand side.
         symbol: String,
-        /// Where in the rule, for example `successors[2].size`.
+        /// Its place in the rule, for example `successors[2].size`.
         field: String,
         /// The value found.
         value: f64,
@@ -92,7 +92,7 @@ pub enum GrammarError {
         rule: usize,
         /// Its left-hand side.
         symbol: String,
-        /// Which list, for example `cells[2]`.
+        /// The list, for example `cells[2]`.
         place: String,
         /// Entries found.
         found: usize,
@@ -218,7 +218,7 @@ impl GrammarError {
         }
     }
 
-    /// Whether the grammar may be right at another size of its facade.
+    /// True if the grammar may be right at another size of its facade.
     pub fn depends_on_size(&self) -> bool {
         matches!(
             self,

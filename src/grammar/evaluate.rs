@@ -5,9 +5,9 @@ use rustc_hash::FxHashMap;
 use super::check::TOLERANCE;
 use super::tiling::{Difference, tiling_difference};
 use super::{Costs, Grammar, GrammarError, derivation};
-use crate::shape::Facade;
+use edifice_shape::Facade;
 
-/// What a grammar that explains its input costs.
+/// The cost of a grammar that explains its input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evaluation {
     /// Eq. 1: sum of the costs of the rules.

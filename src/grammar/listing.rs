@@ -1,7 +1,7 @@
 //! A grammar as the paper prints one (Wu et al. 2014, Sec. 4.6 and 4.7).
 
 use super::{Grammar, Operation, Size, Successor, summable};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// One line a rule: `NT1 → split(y){Wall1 | NT2 | Wall1}`; with `sizes`, `8: Wall1 | ...`, a weight
 /// marked by `~`. A mirrored split without a middle part is written `symsplit(x, even)`.
@@ -71,31 +71,5 @@ fn sized(size: Size, symbol: &str, sizes: bool) -> String {
         (_, false) => symbol.to_owned(),
         (Size::Absolute(v), true) => format!("{v}: {symbol}"),
         (Size::Relative(v), true) => format!("~{v}: {symbol}"),
-    }
-}
-
-#[cfg(all(test, feature = "io"))]
-mod tests {
-    use crate::grammar::{Costs, listing};
-    use crate::io::grammar_cga::from_str;
-
-    #[test]
-    fn reads_like_the_paper() {
-        let text = "//@ facade NT1 36 x 9\nNT1 --> split(x) { 8 : NT8 | { 6 : T | 8 : NT8 }* }\n\
-                    NT8 -->\n//@ sym_split\nsplit(x) { 3 : Window1 | 2 : Wall1 | 3 : Window1 }\n\
-                    NT9 --> 25% : split(x) { ~1 : a } else : split(x) { ~1 : b }";
-        let grammar = from_str(text).unwrap();
-        let expected = [
-            "NT1 → repeatABA(x){NT8 | T}",
-            "NT8 → symsplit(x){Window1 | Wall1}",
-            "NT9 → [25%] split(x){a}",
-            "NT9 → [75%] split(x){b}",
-        ];
-        assert_eq!(listing(&grammar, false), expected);
-        assert_eq!(
-            listing(&grammar, true)[0],
-            "NT1 → repeatABA(x){8: NT8 | 6: T}"
-        );
-        assert!((Costs::default().grammar(&grammar) - 6.8).abs() < 1e-9);
     }
 }

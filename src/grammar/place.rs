@@ -1,16 +1,16 @@
-//! Where the successors of a rule go in its rectangle.
+//! The places of a rule's successors in its rectangle.
 
 use super::check::TOLERANCE;
 use super::derive::REGION_LIMIT;
 use super::{Grammar, GrammarError, Operation, Rule, Size, summable};
-use crate::shape::{Axis, Rect};
+use edifice_shape::{Axis, Rect};
 
 /// Absolute sizes keep what is written while they leave the relative ones beside them this share of the region, or
 /// of what is written for them if that is less. Else all sizes of the rule, relative ones as they are written, divide the
 /// region in proportion, so that parts of parts of parts never vanish.
 pub const LEAST_SHARE: f64 = 0.5;
 
-/// What happens where absolute sizes leave nothing for the relative ones.
+/// The treatment of regions in which absolute sizes leave nothing for the relative ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fit {
     /// The grammar is wrong.
@@ -129,7 +129,7 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// How many periods of `sizes` fit beside `fixed` (the closing A of `repeat_aba`).
+    /// The number of periods of `sizes` that fit beside `fixed` (the closing A of `repeat_aba`).
     fn periods(&self, sizes: &[Size], fixed: &[Size], least: u32) -> Result<usize, GrammarError> {
         let period: f64 = sizes.iter().map(|s| s.value()).sum();
         let room = self.extent - fixed.iter().map(|s| s.value()).sum::<f64>();

@@ -1,7 +1,7 @@
 //! Size-independent grammars, for derivation at any size (Wu et al. 2014, Sec. 5), and changes of unit.
 
 use super::{Grammar, Operation, Size};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// A part is thin when it takes at most this fraction of the facade along its axis ...
 pub const THIN_OF_FACADE: f64 = 0.025;
@@ -56,7 +56,7 @@ pub fn size_independent(grammar: &Grammar) -> Grammar {
     out
 }
 
-/// Whether the first and last of a list of parts touch.
+/// The ends of a list of parts: `Cyclic` if the first and the last touch.
 #[derive(PartialEq)]
 enum Ends {
     Open,

@@ -1,6 +1,6 @@
 //! The nouns of split grammars.
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// A size along the split axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ impl Successor {
     }
 }
 
-/// What a rule does to its rectangle (Wu et al. 2014, Sec. 3.1 and 4.7).
+/// The operation of a rule on its rectangle (Wu et al. 2014, Sec. 3.1 and 4.7).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Operation {
     /// Successors in order along the axis (x: left to right, y: bottom to top).
@@ -62,7 +62,7 @@ pub enum Operation {
         axis: Axis,
         /// The outer element.
         a: Successor,
-        /// What stands between.
+        /// The element between two outer ones.
         b: Successor,
     },
     /// The half from the outside in, and its mirror image.
@@ -71,7 +71,7 @@ pub enum Operation {
         axis: Axis,
         /// From the outside in.
         successors: Vec<Successor>,
-        /// Whether the last successor stands once in the middle.
+        /// True if the last successor stands once in the middle.
         center: bool,
     },
     /// Columns and rows at once.
@@ -153,7 +153,7 @@ pub struct Start {
 pub struct Grammar {
     /// Unit of absolute sizes.
     pub unit: String,
-    /// Where derivation starts: one entry, or one per facade for a joint grammar. Never empty.
+    /// The starts of derivation: one entry, or one per facade for a joint grammar. Never empty.
     pub starts: Vec<Start>,
     /// The rules. The order carries no meaning; writers keep it.
     pub rules: Vec<Rule>,

@@ -7,7 +7,7 @@ use super::check::check_structure;
 use super::derive::{Fit, walk};
 use super::table::Table;
 use super::{Derivation, Grammar, GrammarError, Operation, summable};
-use crate::rng::categorical;
+use edifice_base::rng::categorical;
 
 /// Derives a grammar in a region of `width` x `height`, in the grammar's unit.
 ///
@@ -97,9 +97,9 @@ impl<'g> Sampler<'g> {
         )
     }
 
-    /// How far the splits of a derivation are from the sizes that the grammar writes for their parts: the
-    /// largest factor between the two, at least 1. Repeats fill any extent with parts of about their own
-    /// size; but rules drawn for two floors, in the space of three, stretch their windows by 1.5.
+    /// The largest factor between the sizes of parts in the splits of a derivation and the sizes that the grammar
+    /// writes for them, at least 1. Repeats fill any extent with parts of about their own size; but rules drawn for two
+    /// floors, in the space of three, stretch their windows by 1.5.
     pub fn stretch(&self, derivation: &Derivation) -> f64 {
         let factors = derivation.non_terminals.iter().filter_map(|region| {
             let rule = &self.grammar.rules[region.rule];

@@ -101,7 +101,7 @@ impl<'g> Table<'g> {
             .flat_map(|&rule| self.right[rule].iter().copied())
     }
 
-    /// Which symbols some derivation reaches from the starts.
+    /// For each symbol, true if some derivation reaches it from the starts.
     pub fn reachable(&self) -> Vec<bool> {
         let mut seen = vec![false; self.names.len()];
         let mut stack = self.starts.clone();

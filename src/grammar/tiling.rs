@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::check::TOLERANCE;
-use crate::shape::{Facade, Rect, Region};
+use edifice_shape::{Facade, Rect, Region};
 
-/// Where two layouts differ.
+/// The first difference of two layouts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Difference {
     /// The facades have different sizes.
@@ -21,15 +21,15 @@ pub enum Difference {
     Region {
         /// Its label.
         label: String,
-        /// Where it is.
+        /// Its rectangle.
         rect: Rect,
-        /// Which layout has it.
+        /// True if the first layout has it, false if the second.
         in_first: bool,
     },
 }
 
-/// Whether two layouts have the same size and the same regions, in any order, with coordinates
-/// equal up to [`TOLERANCE`] of the larger side. Names and units are not compared.
+/// True if two layouts have the same size and the same regions, in any order, with coordinates equal up to
+/// [`TOLERANCE`] of the larger side. Names and units are not compared.
 pub fn same_tiling(first: &Facade, second: &Facade) -> bool {
     tiling_difference(first, second).is_none()
 }

@@ -3,7 +3,7 @@
 /// Weights above this are scaled down before they are summed.
 const LARGE: f64 = 1e150;
 
-/// By how much: a power of two, so that no digit of a weight changes.
+/// Factor by which large weights are scaled: a power of two, so that no digit of a weight changes.
 const DOWN: f64 = 1.0 / (1u128 << 127) as f64;
 
 /// Numbers in the same proportions as `weights`, small enough that a hundred times their sum is finite. Weights of

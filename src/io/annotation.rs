@@ -1,9 +1,9 @@
-//! What files of annotation tools have in common: boxes in image coordinates, y down.
+//! The common parts of the files of annotation tools: boxes in image coordinates, y down.
 
 use std::path::Path;
 
-use crate::shape::{Rect, Region};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Rect, Region};
 
 /// A box in an image: edges in pixels, from the left and from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]

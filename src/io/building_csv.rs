@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::packed::unpacked;
 use super::read_bytes;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// Most cells of a table: a compressed one may have half as many as bytes, each a text of its own.
 const MOST_CELLS: usize = 1 << 24;

@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 use super::json::{check_header, parse_json};
 use super::packed::extension;
 use super::{read_bytes, write_atomic};
-use crate::shape::{Building, FacadePiece, MassBox, Special};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Building, FacadePiece, MassBox, Special};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/building";

@@ -13,8 +13,8 @@ use quick_xml::events::Event;
 
 use super::label_map::CMP;
 use super::{file_stem, read_bytes};
-use crate::shape::{Facade, LabelGrid, Rect, Region};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Facade, LabelGrid, Rect, Region};
 
 /// Labels in the order in which they are painted, later over earlier; `background` lies below all
 /// (`label_names.txt` of the database: descending third column).
@@ -57,7 +57,7 @@ pub enum CmpError {
     Points {
         /// `x` or `y`.
         element: &'static str,
-        /// How often it stands there.
+        /// Number of times that it stands there.
         count: usize,
     },
     /// A coordinate is not a fraction.
@@ -71,7 +71,7 @@ pub enum CmpError {
     /// The label is missing or not one of the database.
     #[error("<labelname> is {0:?}, expected one of the labels of CMP")]
     Label(String),
-    /// No object at all.
+    /// The file has no object.
     #[error("no <object> in the file")]
     Empty,
 }

@@ -16,8 +16,8 @@ use serde::Deserialize;
 use super::annotation::{ImageBox, check_side};
 use super::json::parse_json;
 use super::{file_stem, read_bytes};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::Facade;
 
 /// Longest list of images in an error.
 const LISTED: usize = 8;
@@ -172,7 +172,7 @@ impl File {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Rect;
+    use edifice_shape::Rect;
 
     const ONE: &str = r#"{ "info": {}, "licenses": [],
       "images": [{"id": 7, "file_name": "paris/house.01.jpg", "width": 40, "height": 60, "license": 1}],

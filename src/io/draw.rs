@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::palette::Palette;
 use super::raster::{BACKGROUND, Raster};
-use crate::shape::Facade;
+use edifice_shape::Facade;
 
 fn labels(facade: &Facade) -> impl Iterator<Item = &str> {
     facade.regions.iter().map(|r| r.label.as_str())

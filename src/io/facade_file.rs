@@ -11,23 +11,23 @@ use super::pixels::JPEG_MAGIC;
 use super::{
     LabelMap, cmp_xml, coco, draw, facade_json, json, label_image, label_text, labelme, pixels,
 };
-use crate::file::write_atomic;
-use crate::shape::{Facade, LabelGrid, decompose};
-use crate::{Error, Result};
+use edifice_base::file::write_atomic;
+use edifice_base::{Error, Result};
+use edifice_shape::{Facade, LabelGrid, Labelled, decompose};
 
 /// Longer side of CMP facades whose image is missing, in units.
 const CMP_SIDE: f64 = 1000.0;
 
-/// What readers need to know beside the file.
+/// The options of readers, beside the file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
     /// Meaning of colours and numbers in label images and text matrices; without it those of ECP,
     /// Graz and CMP are known.
     pub label_map: Option<LabelMap>,
-    /// Whether a colour of an image that the label map does not name takes the label of the nearest
-    /// colour; otherwise it is an error. JPEG images are read only so.
+    /// True if a colour of an image that the label map does not name takes the label of the nearest colour; otherwise
+    /// it is an error. JPEG images are read only so.
     pub nearest_colour: bool,
-    /// Which image of a COCO file is meant, where it has several.
+    /// The image of a COCO file that is meant, if it has several.
     pub image: Option<String>,
     /// Width and height of a CMP facade, in pixels, when no PNG of its name stands beside the XML.
     pub size: Option<(f64, f64)>,
@@ -44,13 +44,27 @@ pub enum Source {
     Cmp(cmp_xml::CmpFacade, f64, f64),
 }
 
+impl Source {
+    /// The facade in one of its two forms; the rectangles of CMP are a layout.
+    ///
+    /// # Errors
+    /// As [`cmp_xml::CmpFacade::layout`].
+    pub fn labelled(self) -> Result<Labelled> {
+        Ok(match self {
+            Source::Layout(facade) => Labelled::Layout(facade),
+            Source::Picture(grid) => Labelled::Picture(grid),
+            Source::Cmp(cmp, width, height) => Labelled::Layout(cmp.layout(width, height)?),
+        })
+    }
+}
+
 /// A file of a kind that is not read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{kind} is unsupported; facades are read from .facade.json, LabelMe and COCO JSON, label images (.png; .jpg with --nearest-colour), text matrices (.txt, .csv) and CMP rectangles (.xml), each text also as .gz"
 )]
 pub struct Unsupported {
-    /// What the file seems to be.
+    /// The kind of the file, as far as it can be told.
     pub kind: String,
 }
 
@@ -88,7 +102,7 @@ fn format_of(path: &Path, bytes: &[u8]) -> Result<Format, Unsupported> {
     })
 }
 
-/// Whether the bytes are text: no control characters, but for those of lines and tabs.
+/// True if the bytes are text: no control characters, but for those of lines and tabs.
 fn is_text(bytes: &[u8]) -> bool {
     let control = |b: &u8| b.is_ascii_control() && !matches!(b, b'\n' | b'\r' | b'\t');
     !bytes.iter().any(control) && std::str::from_utf8(bytes).is_ok()

@@ -18,8 +18,8 @@ use serde::Deserialize;
 
 use super::json::{check_header, number, parse_json, quoted};
 use super::{photograph, read_bytes, write_atomic};
-use crate::shape::{AnnotatedFacade, Facade, Note, Photograph, Rect, Region};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{AnnotatedFacade, Facade, Note, Photograph, Rect, Region};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/facade";

@@ -11,8 +11,8 @@ use serde_json::Value;
 
 use super::json::parse_json;
 use super::read_bytes;
-use crate::shape::{PlanUnion, Rect};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{PlanUnion, Rect};
 
 /// Why a polygon is no footprint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -32,7 +32,7 @@ pub enum FootprintError {
     /// Too few or too many corners.
     #[error("{corners} corners after those on straight edges are dropped, expected 4 to {MOST}")]
     Corners {
-        /// How many are left.
+        /// Number of corners that are left.
         corners: usize,
     },
     /// Two edges cross or touch.
@@ -59,9 +59,9 @@ pub enum FootprintError {
     /// A plan that is too small or too large for a house.
     #[error("the footprint is {width:.1} m x {depth:.1} m, expected 4 to 60 m")]
     Size {
-        /// Along the longest edge.
+        /// Extent along the longest edge, in metres.
         width: f64,
-        /// Across.
+        /// Extent across it, in metres.
         depth: f64,
     },
 }
@@ -214,7 +214,7 @@ fn cross(a: P, b: P) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Whether two edges that are not neighbours meet, or neighbours fold back.
+/// Checks that no two edges meet that are not neighbours, and that no neighbours fold back.
 fn crossings(ring: &[P]) -> std::result::Result<(), FootprintError> {
     let n = ring.len();
     let edge = |k: usize| (ring[k], ring[(k + 1) % n]);

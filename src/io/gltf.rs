@@ -14,8 +14,8 @@ use json::{Index, Root};
 
 use super::glb_container::{TooLong, glb_container};
 use super::write_atomic;
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
 
 /// Why a scene cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -35,7 +35,7 @@ pub enum GltfError {
         what: &'static str,
         /// The index.
         index: usize,
-        /// How many there are.
+        /// Number of them in the scene.
         count: usize,
     },
     /// A position is not finite.

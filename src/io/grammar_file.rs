@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::packed::extension;
 use super::{grammar_cga, grammar_json, read_bytes};
-use crate::grammar::Grammar;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::Grammar;
 
-/// Whether the extension, or else the first character, says JSON rather than CGA.
+/// True if the extension, or else the first character, says JSON rather than CGA.
 fn is_json(path: &Path, bytes: &[u8]) -> bool {
     match extension(path).as_str() {
         "json" => true,

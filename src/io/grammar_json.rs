@@ -23,9 +23,9 @@ use serde::Deserialize;
 
 use super::json::{check_header, number, parse_json, quoted};
 use super::{read_bytes, write_atomic};
-use crate::grammar::{Grammar, Operation, Rule, Size, Start, Successor, check};
-use crate::shape::Axis;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::{Grammar, Operation, Rule, Size, Start, Successor, check};
+use edifice_shape::Axis;
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/grammar";

@@ -1,11 +1,11 @@
-//! What all JSON formats share: errors that name the place, and the keys `format` and `version`.
+//! The common parts of all JSON formats: errors that name the place, and the keys `format` and `version`.
 
 use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// A text as JSON.
 pub(super) fn quoted(text: &str) -> String {

@@ -10,8 +10,8 @@ use super::label_map::{ECP, Key, LabelMap};
 use super::nearest_colour::{NearestColours, NearestSearch};
 use super::pixels::{JPEG_MAGIC, Pixels};
 use super::{file_stem, read_bytes};
-use crate::shape::LabelGrid;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::LabelGrid;
 
 /// A pixel that the label map does not name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -21,7 +21,7 @@ pub struct UnknownPixel {
     pub column: usize,
     /// Row from the top, from 0.
     pub row: usize,
-    /// What it says.
+    /// Its colour or number.
     pub key: Key,
 }
 
@@ -105,7 +105,7 @@ impl UnknownPixel {
     }
 }
 
-/// What to take for a pixel, at a column and row, that the map does not name: a label, or an error.
+/// Called for a pixel, at a column and row, that the map does not name: gives its label, or `None` for an error.
 type Otherwise<'o> = &'o mut dyn FnMut((usize, usize), Key) -> Option<u16>;
 
 /// The merged grid of labels of an image.

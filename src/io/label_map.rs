@@ -1,4 +1,4 @@
-//! Which colour or number of an image stands for which label.
+//! The labels that colours or numbers of an image stand for.
 
 use std::fmt;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde::de::{self, MapAccess, Visitor};
 
 use super::json::parse_json;
 use super::read_bytes;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// Colours of the ECP and Graz facade databases.
 pub const ECP: [(&str, [u8; 3]); 9] = [
@@ -51,7 +51,7 @@ pub const CMP_COLORS: [(&str, [u8; 3]); 8] = [
     ("pillar", [72, 61, 139]),
 ];
 
-/// What a pixel says: a colour, or a number (palette index, grey value, number in a matrix).
+/// The value of a pixel: a colour, or a number (palette index, grey value, number in a matrix).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Key {
     /// Red, green, blue.
@@ -156,7 +156,7 @@ impl LabelMap {
             .collect()
     }
 
-    /// Whether the map names colours (rather than only numbers).
+    /// True if the map names colours (rather than only numbers).
     pub fn has_colors(&self) -> bool {
         self.entries
             .iter()

@@ -10,8 +10,8 @@ use std::path::Path;
 use super::label_map::{Key, LabelMap};
 use super::raster::Raster;
 use super::{file_stem, read_bytes};
-use crate::shape::{Facade, LabelGrid};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Facade, LabelGrid};
 
 /// Reads a text matrix. With a `map`, numbers are looked up in it; other entries are labels.
 ///

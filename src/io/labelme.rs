@@ -15,8 +15,8 @@ use serde::Deserialize;
 use super::annotation::{ImageBox, check_side};
 use super::json::parse_json;
 use super::{file_stem, read_bytes};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::Facade;
 
 /// Reads an element layout from a file of LabelMe.
 ///
@@ -77,7 +77,7 @@ struct Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Rect;
+    use edifice_shape::Rect;
 
     const GOOD: &str = r#"{ "version": "5.4.1", "flags": {}, "imagePath": "x.jpg", "imageData": null,
       "imageWidth": 40, "imageHeight": 60, "shapes": [

@@ -36,7 +36,7 @@ pub mod surface_obj;
 
 use std::path::Path;
 
-pub use crate::file::write_atomic;
+pub use edifice_base::file::write_atomic;
 pub use facade_file::{
     ReadOptions, Source, read_facade, read_label_grid, read_noted, read_source, write_facade,
 };

@@ -14,7 +14,7 @@ pub struct NearestColours {
     /// The largest distance of such a colour from the nearest one of the map: the root of the sum of the
     /// squared differences of red, green and blue, at most 441.7.
     pub distance: f64,
-    /// That colour.
+    /// The colour at that distance.
     pub colour: [u8; 3],
     /// Column and row from the upper left of a pixel of that colour, from 0.
     pub place: (usize, usize),
@@ -88,7 +88,7 @@ impl NearestSearch {
         label
     }
 
-    /// What was found; `None` when no colour was asked for.
+    /// The report on all colours that were looked up; `None` if there was none.
     pub fn found(&self, map: &LabelMap) -> Option<NearestColours> {
         let Furthest {
             squared,

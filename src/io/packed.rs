@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
-use crate::{Error, Result, file};
+use edifice_base::{Error, Result, file};
 
 /// Most bytes that a packed file may unpack to: 256 MB.
 pub const MOST_BYTES: u64 = 1 << 28;

@@ -8,8 +8,8 @@ use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, ImageReader};
 
 use super::read_bytes;
-use crate::shape::{Photograph, PhotographError, PhotographFormat};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{Photograph, PhotographError, PhotographFormat};
 
 /// Why a text or a file is no photograph.
 #[derive(Debug, thiserror::Error)]
@@ -28,7 +28,7 @@ pub enum ReadPhotographError {
     /// Its header cannot be read.
     #[error("the picture cannot be read: {0}")]
     Picture(#[from] image::ImageError),
-    /// It is too large.
+    /// The picture is too large.
     #[error(transparent)]
     Large(#[from] PhotographError),
 }
@@ -89,7 +89,7 @@ pub fn address(picture: &Photograph) -> String {
     text
 }
 
-/// What stands before the picture in its address.
+/// The beginning of the data address, before the picture.
 fn head(format: PhotographFormat) -> &'static str {
     match format {
         PhotographFormat::Jpeg => "data:image/jpeg;base64,",

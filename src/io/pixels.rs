@@ -180,7 +180,7 @@ impl Pixels {
         &self.bytes[row * length..(row + 1) * length]
     }
 
-    /// Whether a pixel is a number (palette index or grey value) rather than a colour.
+    /// True if a pixel is a number (palette index or grey value) rather than a colour.
     pub fn is_numbered(&self) -> bool {
         self.stride < 3
     }

@@ -1,6 +1,6 @@
 //! Layouts as rows of pixels: what label images and text matrices are written from.
 
-use crate::shape::{Facade, Rect};
+use edifice_shape::{Facade, Rect};
 
 /// Label of what no region covers: elements lie on a wall.
 pub const BACKGROUND: &str = "wall";

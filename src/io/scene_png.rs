@@ -1,7 +1,7 @@
 //! Pictures of scenes as PNG.
 
-use crate::scene::Scene;
-use crate::scene::render::{Camera, Picture, render};
+use edifice_scene::Scene;
+use edifice_scene::render::{Camera, Picture, render};
 
 /// Draws a scene as an RGB PNG of `width` x `height` pixels.
 ///

@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use crate::scene::Scene;
+use edifice_scene::Scene;
 
 /// Pixels per metre, and room around each view (m).
 const SCALE: f64 = 24.0;

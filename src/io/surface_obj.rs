@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::read_bytes;
-use crate::shape::solid::{Finish, Surface};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::solid::{Finish, Surface};
 
 /// The text of a file. Numbers are written so that reading gives the same bits.
 pub fn to_text(surface: &Surface, name: &str) -> String {
@@ -29,7 +29,7 @@ pub fn to_text(surface: &Surface, name: &str) -> String {
     text
 }
 
-/// What is wrong with a line.
+/// The defects of a line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ObjError {
     /// Not a finite number.

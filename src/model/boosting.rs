@@ -55,7 +55,7 @@ struct Tree {
 /// # Examples
 /// Exclusive or, which no sum of functions of one feature can represent:
 /// ```
-/// use edifice::model::boosting::{Boosting, BoostingError, Settings};
+/// use edifice_model::boosting::{Boosting, BoostingError, Settings};
 /// let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]].repeat(50);
 /// let rows: Vec<Vec<f64>> = corners.into_iter().map(Vec::from).collect();
 /// let targets: Vec<f64> = rows.iter().map(|x| if x[0] == x[1] { 0.0 } else { 1.0 }).collect();
@@ -76,7 +76,7 @@ pub struct Boosting {
 /// Why a [`Boosting`] cannot be learnt, or read: the first three from [`Boosting::learn`], the last from [`Boosting::check`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BoostingError {
-    /// No row at all.
+    /// There is no row.
     #[error("no rows to learn from")]
     Empty,
     /// A row of another length than the first.
@@ -273,7 +273,7 @@ fn grow(
     (tree, leaf_of)
 }
 
-/// What each cut of a feature gains over all leaves, beyond no cut.
+/// The gain of each cut of a feature, summed over all leaves, relative to no cut.
 fn gains(sums: &[(f64, f64)], cuts: usize, ridge: f64) -> Vec<f64> {
     let value = |g: f64, h: f64| g * g / (h + ridge);
     let mut gains = vec![0.0; cuts];
@@ -302,7 +302,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     #[test]
     fn recovers_the_probabilities_of_a_known_function() {

@@ -26,7 +26,7 @@ use super::linalg::{LN_2PI, cholesky, ln_gamma_d, lower_inverse};
 ///
 /// K counts, which may be fractions; O(K).
 /// ```
-/// use edifice::model::conjugate::dirichlet_mode;
+/// use edifice_model::conjugate::dirichlet_mode;
 /// assert_eq!(dirichlet_mode(&[3.0, 1.0], 1.0), [0.75, 0.25]);
 /// assert_eq!(dirichlet_mode(&[3.0, 0.0], 1.5), [0.875, 0.125]);
 /// ```
@@ -42,7 +42,7 @@ pub fn dirichlet_mode(counts: &[f64], alpha: f64) -> Vec<f64> {
 ///
 /// In nats, O(K). At α = 1, K = 2 it is `1 / ((n + 1) C(n, n₁))`:
 /// ```
-/// use edifice::model::conjugate::dirichlet_evidence;
+/// use edifice_model::conjugate::dirichlet_evidence;
 /// assert!((dirichlet_evidence(&[2.0, 1.0], 1.0) - (1.0_f64 / 12.0).ln()).abs() < 1e-12);
 /// ```
 pub fn dirichlet_evidence(counts: &[f64], alpha: f64) -> f64 {
@@ -72,7 +72,7 @@ pub fn dirichlet_log_density(table: &[f64], alpha: f64) -> f64 {
 ///
 /// All scatter matrices are (p + d) x (p + d), row-major, x first; each function is O((p + d)³). [`Priors::default`] has values.
 /// ```
-/// use edifice::model::conjugate::Priors;
+/// use edifice_model::conjugate::Priors;
 /// // y = 1, 3 without parents: u = (1, y), scatter [2, 4; 4, 10]. Mean 4 / (2 + κ), κ = 0.01.
 /// let linear = Priors::default().linear.mode(&[2.0, 4.0, 4.0, 10.0], 1, 1);
 /// assert!(linear.is_some_and(|l| (l.coefficients()[0] - 4.0 / 2.01).abs() < 1e-12));

@@ -20,8 +20,8 @@ use super::error::ModelError;
 /// The share w of the first of two known densities, from their values at each row; the likelihood
 /// `(1 + 2w) (2 - w)` has its maximum at 3/4:
 /// ```
-/// use edifice::model::ModelError;
-/// use edifice::model::em::{Em, Outcome, Stopping, run};
+/// use edifice_model::ModelError;
+/// use edifice_model::em::{Em, Outcome, Stopping, run};
 /// struct Share(Vec<[f64; 2]>);
 /// impl Em for Share {
 ///     type Model = f64;
@@ -55,7 +55,7 @@ pub trait Em {
     /// E step: expected sufficient statistics under `model`, and `log P(O | Θ)`.
     ///
     /// # Errors
-    /// What the data contradicts.
+    /// Parameters that the data contradict.
     fn expect(&self, model: &Self::Model) -> Result<(Self::Stats, f64), ModelError>;
 
     /// M step: the parameters of highest expected complete-data log posterior.
@@ -79,7 +79,7 @@ pub struct Stopping {
     pub movement: f64,
     /// Stop as well when a round gains less log posterior than this (0: never for this reason).
     pub gain: f64,
-    /// Stop after so many rounds.
+    /// Most rounds.
     pub max_rounds: usize,
 }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with data, a model, or a question put to it.
+//! The errors of data, of models, and of questions put to a model.
 
 /// One variant per way to be wrong; each names the variable, and the row where there is one.
 ///
@@ -7,7 +7,7 @@
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{ModelError, Table};
+/// use edifice_model::{ModelError, Table};
 /// let error = Table::new().real("width", [Some(9.5), Some(f64::INFINITY)]).unwrap_err();
 /// assert_eq!(error.to_string(), "column `width`, row 1: inf is not finite (declare it missing instead)");
 /// assert!(matches!(error.in_row(7), ModelError::NotFinite { row: 7, .. }));
@@ -17,7 +17,7 @@ pub enum ModelError {
     /// No rows, or no columns, where some are needed.
     #[error("no {what} to work with")]
     Empty {
-        /// `rows`, `columns`, `groups`, ...
+        /// The things of which there are none: `rows`, `columns`, `groups`, ...
         what: &'static str,
     },
     /// Two columns, variables or groups share a name.
@@ -125,7 +125,7 @@ pub enum ModelError {
     Parameter {
         /// The parameter, setting or variable.
         name: String,
-        /// What is wrong with it.
+        /// The defect of the variable, as a phrase.
         problem: String,
     },
     /// A covariance that is not positive definite.
@@ -152,7 +152,7 @@ pub enum ModelError {
     Corrupt {
         /// Line and column, or the field.
         place: String,
-        /// What is wrong there.
+        /// The defect at that place, as a phrase.
         problem: String,
     },
 }

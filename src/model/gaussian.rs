@@ -32,7 +32,7 @@ pub(crate) struct Particles {
 }
 
 impl Particles {
-    /// None yet.
+    /// An empty list of particles over `groups` groups and `missing` missing values.
     pub fn new(groups: usize, missing: usize) -> Self {
         Self {
             groups,
@@ -41,7 +41,7 @@ impl Particles {
         }
     }
 
-    /// One of no states, with nothing missing.
+    /// One particle that has no states yet and no missing value.
     pub fn start() -> Self {
         Self {
             log_densities: vec![0.0],
@@ -49,12 +49,12 @@ impl Particles {
         }
     }
 
-    /// None yet, over the same groups and missing values.
+    /// An empty list over the same groups and missing values.
     pub fn like(&self) -> Self {
         Self::new(self.groups, self.missing)
     }
 
-    /// None yet, over one group more, that `extension` adds.
+    /// An empty list over one group more, which `extension` adds.
     pub fn after(&self, extension: &Extension) -> Self {
         Self::new(self.groups + 1, extension.missing())
     }
@@ -119,8 +119,8 @@ pub(crate) fn add_scatter(
     }
 }
 
-/// How a group extends the particles of a row: by a linear Gaussian, conditioned on the group's own values. What is the
-/// same for all particles and states.
+/// The extension of the particles of a row by one group: a linear Gaussian, conditioned on the group's own values. Only
+/// the part that is the same for all particles and states.
 pub(crate) struct Extension<'a> {
     real: &'a [f64],
     /// Inputs, and where among the missing values they are.
@@ -130,7 +130,7 @@ pub(crate) struct Extension<'a> {
     /// Which of them have a value, and which do not.
     seen: Vec<usize>,
     gone: Vec<usize>,
-    /// Values missing so far.
+    /// Number of values that are missing before the extension.
     missing: usize,
 }
 
@@ -163,7 +163,7 @@ impl<'a> Extension<'a> {
         }
     }
 
-    /// Values missing after it.
+    /// Number of values that are missing after the extension.
     pub fn missing(&self) -> usize {
         self.missing + self.gone.len()
     }

@@ -28,7 +28,7 @@ pub(crate) fn order(parents: &[Vec<usize>], names: &[String]) -> Result<Vec<usiz
     Ok(order)
 }
 
-/// Whether `to` is `from` or a descendant of it.
+/// True if `to` is `from` or a descendant of it.
 pub(crate) fn reaches(parents: &[Vec<usize>], from: usize, to: usize) -> bool {
     to == from || parents[to].iter().any(|&p| reaches(parents, from, p))
 }

@@ -1,4 +1,4 @@
-//! What negative chains tell of the weights of a log-linear model.
+//! The information that negative chains give of the weights of a log-linear model.
 //!
 //! Let x be an example of `p(x; w*)` and x' the state of a chain that begins at x and leaves `p(x; w)` invariant,
 //! reversibly. Near w* the mean of the gap `f(x) - f(x')` is `I (w* - w)` with
@@ -29,7 +29,7 @@ pub(super) struct Information {
 }
 
 impl Information {
-    /// Nothing observed yet, of so many weights.
+    /// An estimate without observations, for `n` weights.
     pub fn new(n: usize) -> Self {
         Self {
             n,

@@ -3,7 +3,7 @@
 
 use rand::{Rng, RngExt};
 
-use crate::rng::categorical;
+use edifice_base::rng::categorical;
 
 /// k-means++ seeding (Arthur and Vassilvitskii 2007) and `rounds` Lloyd rounds; the cluster of
 /// every point. Clusters may be empty when there are fewer distinct points than `k`.

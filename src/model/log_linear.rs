@@ -15,7 +15,7 @@
 
 use super::ModelError;
 use super::factor_graph::{Chain, Settings, fit};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// A model by its features and its negative sampler.
 ///
@@ -25,9 +25,9 @@ use crate::rng::Stream;
 /// # Examples
 /// A bit that is 1 in 3 of 4 examples, its feature in some unit: the weight is the log odds over the unit.
 /// ```
-/// use edifice::model::factor_graph::Settings;
-/// use edifice::model::log_linear::LogLinear;
-/// use edifice::rng::Stream;
+/// use edifice_model::factor_graph::Settings;
+/// use edifice_model::log_linear::LogLinear;
+/// use edifice_base::rng::Stream;
 /// use rand::RngExt;
 /// let model = LogLinear::new(
 ///     1,
@@ -38,7 +38,7 @@ use crate::rng::Stream;
 /// let settings = Settings { newton: true, ..Settings::default() };
 /// let weights = model.fit(&data, &settings, 1)?;
 /// assert!((100.0 * weights[0] - 3.0_f64.ln()).abs() < 0.1);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub struct LogLinear<X, F, S> {
     weights: usize,
@@ -54,7 +54,7 @@ where
     F: Fn(&X) -> Vec<f64> + Sync,
     S: Fn(&mut X, &[f64], &mut Stream) + Sync,
 {
-    /// A model of so many weights, its features and its sampler, which gets a state and the weights.
+    /// A model from its number of weights, its features and its sampler, which gets a state and the weights.
     pub fn new(weights: usize, features: F, sampler: S) -> Self {
         Self {
             weights,

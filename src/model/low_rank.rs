@@ -35,9 +35,9 @@ impl Default for Limits {
 /// others being 0. The start is the zero matrix.
 ///
 /// # Examples
-/// Where all is known one step is the answer: singular values 3 and 1, less 1.
+/// If all is known, one step is the answer: singular values 3 and 1, less 1.
 /// ```
-/// use edifice::model::low_rank::{Limits, objective, soft_impute};
+/// use edifice_model::low_rank::{Limits, objective, soft_impute};
 /// let known = [Some(3.0), Some(0.0), Some(0.0), Some(1.0)];
 /// let z = soft_impute(2, 2, &known, 1.0, Limits::default());
 /// assert!((z[(0, 0)] - 2.0).abs() < 1e-12 && z[(1, 1)].abs() < 1e-12);
@@ -102,7 +102,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     #[test]
     fn a_matrix_of_rank_one_comes_back() {

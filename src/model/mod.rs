@@ -31,7 +31,7 @@
 //! parameters, *select* a size by a criterion; *sample* draws, *complete* draws what is missing.
 //! `log_density` is of complete real points, `log_probability` of evidence, `log_likelihood` of the
 //! rows of a table with missing values integrated out. What draws takes a generator; what runs with
-//! restarts and streams of its own takes a seed ([`crate::rng`]).
+//! restarts and streams of its own takes a seed ([`edifice_base::rng`]).
 //!
 //! Common ground: [`Table`] (data with missing values), [`em`] (the one EM loop), [`conjugate`]
 //! (priors with closed-form evidence), [`ModelError`] (what can be wrong, where). Everything works
@@ -58,6 +58,7 @@ pub mod low_rank;
 pub mod network;
 pub(crate) mod standardize;
 mod table;
+pub mod tables;
 mod translate;
 
 pub use error::ModelError;

@@ -2,7 +2,7 @@
 
 use super::error::ModelError;
 
-/// What to do with a column whose observed values are all equal.
+/// The treatment of a column whose observed values are all equal.
 ///
 /// Such a column has deviation 0, so that it cannot be brought to deviation 1: `(x - mean) / deviation` is not defined.
 /// It arises in [`hierarchy::Settings::constant`](super::hierarchy::Settings::constant).

@@ -87,7 +87,7 @@ impl Column {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Cell, Table};
+/// use edifice_model::{Cell, Table};
 /// let houses = Table::new()
 ///     .real("width", [Some(12.0), None, Some(9.5)])?
 ///     .binary("chimney", [Some(true), Some(false), None])?
@@ -99,7 +99,7 @@ impl Column {
 /// let asked = houses.select(&[1, 0]).only(&["chimney"])?;
 /// assert_eq!(asked.column("chimney")?.cell(1), Cell::Code(1));
 /// assert_eq!(asked.column("width")?.cell(1), Cell::Missing);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Table {

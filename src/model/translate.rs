@@ -160,7 +160,7 @@ mod tests {
     use super::super::em::{Em, Stopping};
     use super::super::hierarchy::{Group, Priors, Settings, Variant, learn};
     use super::super::network::FitSettings;
-    use crate::model::Table;
+    use crate::Table;
 
     #[test]
     fn a_step_of_em_is_the_same_in_both_engines() {

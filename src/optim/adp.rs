@@ -19,7 +19,7 @@
 //!
 //! # Examples
 //! ```
-//! use edifice::optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
+//! use edifice_optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
 //! use rand::{Rng, RngExt};
 //!
 //! /// Climb to step 10, one or three steps at a time; odd steps cost twice.
@@ -62,7 +62,7 @@ use argmin::core::{Error as ArgminError, KV, Problem, Solver, State, Termination
 use rand::{Rng, RngExt};
 
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// A finite decision process with additive costs.
 ///
@@ -74,7 +74,7 @@ use crate::rng::{Stream, stream};
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::adp::Process;
+/// use edifice_optim::adp::Process;
 /// /// Pay 6 with coins of 1, 3 and 4, each of cost 1.
 /// struct Change;
 /// impl Process for Change {
@@ -94,18 +94,18 @@ use crate::rng::{Stream, stream};
 /// assert_eq!(cost, 3.0);
 /// ```
 pub trait Process {
-    /// Where the walk stands.
+    /// The state of a walk.
     type State;
-    /// What can be decided.
+    /// A decision.
     type Action: Clone;
 
     /// The state `S_0`.
     fn initial(&self) -> Self::State;
-    /// Whether no further walk is to begin, for example because memory is used up; asked after each walk.
+    /// True if no further walk is to begin, for example because memory is used up; asked after each walk.
     fn is_exhausted(&self) -> bool {
         false
     }
-    /// Whether nothing is left to decide.
+    /// True if nothing is left to decide.
     fn is_final(&self, state: &Self::State) -> bool;
     /// `C_t(S_t, a_t)`.
     fn cost(&self, state: &Self::State, action: &Self::Action) -> f64;
@@ -113,7 +113,7 @@ pub trait Process {
     fn apply(&self, state: &mut Self::State, action: &Self::Action);
 }
 
-/// Where exploration draws its actions from.
+/// The distribution from which exploration draws its actions.
 ///
 /// One call of [`Heuristic::sample`] per explored step, so that its cost is a factor of the whole run's. An action that has
 /// probability 0 here is found by no walk: the approximation only repeats actions that it has learnt of.
@@ -125,7 +125,7 @@ pub trait Heuristic<P: Process> {
     fn start_walk<R: Rng>(&mut self, _process: &mut P, _rng: &mut R) {}
 }
 
-/// What was learnt about the value function.
+/// The learnt approximation of the value function.
 ///
 /// It stands for `V` in Bellman's equation (see the [module](self)): [`Approximation::best`] is
 /// `argmin_a C(S, a) + V(S')`, over the actions that are known; [`Approximation::learn`] gets a walk of T actions from the
@@ -156,7 +156,7 @@ impl<P: Process, V: Approximation<P>> Approximation<P> for &mut V {
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::adp::Epsilon;
+/// use edifice_optim::adp::Epsilon;
 /// let falling = Epsilon { start: 0.9, end: 0.1 };
 /// // Of 5 iterations the middle one has the geometric mean of both ends.
 /// for (n, expected) in [(0, 0.9), (2, 0.3), (4, 0.1)] {
@@ -166,9 +166,9 @@ impl<P: Process, V: Approximation<P>> Approximation<P> for &mut V {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Epsilon {
-    /// At the first iteration: 0.9 in Wu et al. 2014, Sec. 6.1.
+    /// The share at the first iteration: 0.9 in Wu et al. 2014, Sec. 6.1.
     pub start: f64,
-    /// At the last iteration.
+    /// The share at the last iteration.
     pub end: f64,
 }
 
@@ -188,7 +188,7 @@ impl Epsilon {
         end: 1.0,
     };
 
-    /// Whether both are probabilities, and positive unless they are equal.
+    /// True if both are probabilities, and positive unless they are equal.
     fn is_valid(self) -> bool {
         let share = |p: f64| p > 0.0 && p <= 1.0;
         (share(self.start) && share(self.end)) || (self.start == 0.0 && self.end == 0.0)
@@ -219,7 +219,7 @@ pub struct Adp<H, V> {
     rng: Stream,
 }
 
-/// What goes wrong in a run: returned by [`Adp::run`], before the first walk for the first two.
+/// The errors of a run: returned by [`Adp::run`], before the first walk for the first two.
 #[derive(Debug, thiserror::Error)]
 pub enum AdpError {
     /// Not a single iteration was asked for.
@@ -230,9 +230,9 @@ pub enum AdpError {
         "probabilities of exploring from {start} to {end} are out of range: above 0, at most 1, or both 0"
     )]
     Epsilon {
-        /// At the first iteration.
+        /// The share at the first iteration.
         start: f64,
-        /// At the last.
+        /// The share at the last iteration.
         end: f64,
     },
     /// The cost of no walk was a number.

@@ -11,7 +11,7 @@ use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
 /// A solution that can be changed a little and changed back.
 ///
@@ -22,8 +22,8 @@ use crate::rng::{Stream, stream};
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::annealing::Landscape;
-/// use edifice::rng::stream;
+/// use edifice_optim::annealing::Landscape;
+/// use edifice_base::rng::stream;
 /// use rand::{Rng, RngExt};
 /// /// Walk on the integers towards 3.
 /// struct Walk { at: i32, before: i32 }
@@ -46,7 +46,7 @@ use crate::rng::{Stream, stream};
 /// assert_eq!((walk.solution(), walk.cost()), (0, 3.0));
 /// ```
 pub trait Landscape {
-    /// What to remember of the best solution.
+    /// The record that is kept of the best solution.
     type Solution: Clone;
 
     /// Cost of the solution as it stands.
@@ -69,7 +69,7 @@ pub trait Landscape {
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::annealing::Cooling;
+/// use edifice_optim::annealing::Cooling;
 /// let cooling = Cooling { start: 4.0, end: 1.0 };
 /// let temperatures = [0, 1, 2].map(|n| cooling.at(n, 3));
 /// assert!(temperatures.iter().zip([4.0, 2.0, 1.0]).all(|(t, expected)| (t - expected).abs() < 1e-12));
@@ -99,8 +99,8 @@ impl Cooling {
 /// # Examples
 /// Numbers with signs, such that the sum is 0 (number partitioning):
 /// ```
-/// use edifice::optim::Outcome;
-/// use edifice::optim::annealing::{Annealing, Cooling, Landscape};
+/// use edifice_optim::Outcome;
+/// use edifice_optim::annealing::{Annealing, Cooling, Landscape};
 /// use rand::{Rng, RngExt};
 /// struct Signs { numbers: Vec<f64>, flipped: usize }
 /// impl Landscape for Signs {
@@ -120,7 +120,7 @@ impl Cooling {
 /// let run = Annealing::new(cooling, 100, 20, 1)?.until(0.0).run(&mut signs, |_| {})?;
 /// assert_eq!((run.cost, run.outcome), (0.0, Outcome::TargetReached));
 /// assert_eq!(run.best[0].signum(), run.best[1].signum()); // 8 + 7 = 6 + 5 + 4
-/// # Ok::<(), edifice::optim::annealing::AnnealingError>(())
+/// # Ok::<(), edifice_optim::annealing::AnnealingError>(())
 /// ```
 #[derive(Debug)]
 pub struct Annealing {
@@ -131,15 +131,15 @@ pub struct Annealing {
     rng: Stream,
 }
 
-/// What goes wrong in a run: temperatures in [`Annealing::new`], anything else in [`Annealing::run`].
+/// The errors of a run: temperatures in [`Annealing::new`], anything else in [`Annealing::run`].
 #[derive(Debug, thiserror::Error)]
 pub enum AnnealingError {
     /// Temperatures must be positive numbers, the first at least the last.
     #[error("annealing temperatures {start} to {end} are not positive and falling")]
     Temperatures {
-        /// First.
+        /// The first temperature.
         start: f64,
-        /// Last.
+        /// The last temperature.
         end: f64,
     },
     /// argmin failed.
@@ -247,7 +247,7 @@ impl<L: Landscape> Solver<&mut L, Search<L::Solution>> for Annealing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optim::Outcome;
+    use crate::Outcome;
 
     /// Steps along a line with a shallow valley at 5, a barrier, and the optimum at 15.
     #[derive(Clone)]

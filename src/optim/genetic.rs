@@ -26,9 +26,9 @@ use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
 use super::run::{Run, Search, Step, execute};
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 
-/// What is bred: how genomes begin, cross, change, and what they cost.
+/// The population's problem: the first genomes, their crossing and change, and their cost.
 ///
 /// Costs have any unit, as only their order counts; the [module](self) says how often each function is called. Most of
 /// the time is usually spent in [`Breed::costs`], the only function that may compute in parallel: the others draw
@@ -90,13 +90,13 @@ impl Default for Settings {
 /// Genomes with their costs, from the best to the worst.
 pub type Population<G> = Vec<(G, f64)>;
 
-/// What goes wrong in a run: settings in [`Genetic::new`], anything else in [`Genetic::run`].
+/// The errors of a run: settings in [`Genetic::new`], anything else in [`Genetic::run`].
 #[derive(Debug, thiserror::Error)]
 pub enum GeneticError {
     /// A setting is out of its range.
     #[error("genetic algorithm: {setting} is {value}, expected {expected}")]
     Setting {
-        /// Which one.
+        /// Name of the setting.
         setting: &'static str,
         /// Its value.
         value: f64,
@@ -159,8 +159,8 @@ impl Settings {
 /// # Examples
 /// All bits of a word of 16 to 1, by one-point crossover and flips of single bits:
 /// ```
-/// use edifice::optim::Outcome;
-/// use edifice::optim::genetic::{Breed, Genetic, Settings};
+/// use edifice_optim::Outcome;
+/// use edifice_optim::genetic::{Breed, Genetic, Settings};
 /// use rand::{Rng, RngExt};
 /// struct Ones;
 /// impl Breed for Ones {
@@ -178,7 +178,7 @@ impl Settings {
 /// assert_eq!((run.best, run.outcome), (u16::MAX, Outcome::TargetReached));
 /// assert!(run.trace.windows(2).all(|w| w[1].cost <= w[0].cost));
 /// assert!(population.len() == 40 && population.is_sorted_by(|a, b| a.1 <= b.1));
-/// # Ok::<(), edifice::optim::genetic::GeneticError>(())
+/// # Ok::<(), edifice_optim::genetic::GeneticError>(())
 /// ```
 #[derive(Debug)]
 pub struct Genetic<G> {

@@ -41,7 +41,7 @@ pub enum GridError {
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::grid::points;
+/// use edifice_optim::grid::points;
 /// let all: Vec<Vec<f64>> = points(&[vec![0.0, 1.0], vec![5.0, 6.0, 7.0]]).collect();
 /// assert_eq!(all.len(), 6);
 /// assert_eq!(all[..2], [[0.0, 5.0], [0.0, 6.0]]);
@@ -122,13 +122,13 @@ where
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::grid::minimize;
+/// use edifice_optim::grid::minimize;
 /// let found = minimize(&[vec![0.0, 1.0, 2.0], vec![3.0, 4.0]], |p| {
 ///     Ok::<_, std::convert::Infallible>((p[0] - 1.0).abs() + p[1])
 /// })?;
 /// assert_eq!((found.best, found.cost), (vec![1.0, 3.0], 3.0));
 /// assert_eq!(found.trace.len(), 6);
-/// # Ok::<(), edifice::optim::grid::GridError>(())
+/// # Ok::<(), edifice_optim::grid::GridError>(())
 /// ```
 pub fn minimize<E: std::fmt::Display>(
     axes: &[Vec<f64>],
@@ -159,7 +159,7 @@ pub fn minimize<E: std::fmt::Display>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optim::Outcome;
+    use crate::Outcome;
 
     #[test]
     fn finds_the_first_of_equal_points_and_passes_errors_on() {

@@ -59,7 +59,7 @@ pub struct LeastSquaresError(String);
 /// # Examples
 /// A decay `y = a exp(-b t)` through four points without errors:
 /// ```
-/// use edifice::optim::least_squares::{Limits, Residuals, minimize};
+/// use edifice_optim::least_squares::{Limits, Residuals, minimize};
 /// struct Decay(Vec<(f64, f64)>);
 /// impl Residuals for Decay {
 ///     fn residuals(&self, x: &[f64], out: &mut Vec<f64>) {
@@ -71,7 +71,7 @@ pub struct LeastSquaresError(String);
 /// let fit = minimize(&Decay(points.collect()), vec![1.0, 0.0], limits, |_| {})?;
 /// assert!((fit.best[0] - 2.0).abs() < 1e-6 && (fit.best[1] - 0.5).abs() < 1e-6);
 /// assert!(fit.cost < 1e-12);
-/// # Ok::<(), edifice::optim::least_squares::LeastSquaresError>(())
+/// # Ok::<(), edifice_optim::least_squares::LeastSquaresError>(())
 /// ```
 pub fn minimize<R: Residuals>(
     residuals: &R,
@@ -105,7 +105,7 @@ fn sum(residuals: &[f64]) -> f64 {
 struct LevenbergMarquardt {
     limits: Limits,
     damping: f64,
-    /// At the present point.
+    /// The residuals at the present point.
     residuals: Vec<f64>,
     stuck: bool,
 }

@@ -25,7 +25,7 @@
 /// # Examples
 /// Four widths that fill a wall of 10, none below 1:
 /// ```
-/// use edifice::optim::projection::{BoundedSimplex, ProjectionError};
+/// use edifice_optim::projection::{BoundedSimplex, ProjectionError};
 /// let wall = |total| BoundedSimplex::new(vec![1.0; 4], total, vec![1.0; 4], vec![f64::INFINITY; 4]);
 /// let widths = wall(10.0)?.project(&[4.0, 3.0, 0.5, 4.0], &[1.0; 4])?;
 /// // The third meets its bound; the others, 11 together, share the difference to 9.
@@ -49,7 +49,7 @@ pub enum ProjectionError {
     /// A list has not one number for each variable.
     #[error("{what} has {found} numbers, expected {expected}")]
     Dimension {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -59,7 +59,7 @@ pub enum ProjectionError {
     /// A number is NaN or infinite where it must not be, or a weight is not positive.
     #[error("{what}[{index}] is {value}")]
     Number {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Variable.
         index: usize,
@@ -161,10 +161,10 @@ impl BoundedSimplex {
     ///
     /// # Examples
     /// ```
-    /// use edifice::optim::projection::BoundedSimplex;
+    /// use edifice_optim::projection::BoundedSimplex;
     /// let simplex = BoundedSimplex::probability(3)?;
     /// assert_eq!(simplex.project(&[0.75, 0.75, -1.0], &[1.0; 3])?, [0.5, 0.5, 0.0]);
-    /// # Ok::<(), edifice::optim::projection::ProjectionError>(())
+    /// # Ok::<(), edifice_optim::projection::ProjectionError>(())
     /// ```
     pub fn project(&self, target: &[f64], weights: &[f64]) -> Result<Vec<f64>, ProjectionError> {
         dimension("target", target, self.dimension())?;

@@ -52,8 +52,8 @@ impl Default for QpOptions {
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::Outcome;
-/// use edifice::optim::qp::{QpOptions, QuadraticProgram, Row, solve};
+/// use edifice_optim::Outcome;
+/// use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 /// // The point nearest to (3, 1) on the line x + y = 2, with x at most 1.5.
 /// let mut program = QuadraticProgram::new(2);
 /// program.pull(0, 3.0, 1.0).pull(1, 1.0, 1.0);

@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 /// # Examples
 /// P has the rows (2, 1) and (1, 2), q is (-3, -3); the minimum is where `P x = -q`, at (1, 1):
 /// ```
-/// use edifice::optim::qp::{QpError, QpOptions, QuadraticProgram, solve};
+/// use edifice_optim::qp::{QpError, QpOptions, QuadraticProgram, solve};
 /// let mut program = QuadraticProgram::new(2);
 /// program.quadratic = vec![(0, 0, 2.0), (0, 1, 1.0), (1, 1, 2.0)];
 /// program.linear = vec![-3.0, -3.0];
@@ -71,7 +71,7 @@ pub enum QpError {
     /// A list has not one number for each variable.
     #[error("{what} has {found} numbers, expected {expected}")]
     Dimension {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -81,9 +81,9 @@ pub enum QpError {
     /// A term names a variable that does not exist.
     #[error("{what}[{row}] names variable {index}, there are {count}")]
     Index {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Which of its rows or entries.
+        /// Index of the row or entry of the list.
         row: usize,
         /// The index named.
         index: usize,
@@ -93,9 +93,9 @@ pub enum QpError {
     /// A number is NaN or infinite where it must not be.
     #[error("{what}[{row}] has the number {value}")]
     Number {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Which of its rows or entries.
+        /// Index of the row or entry of the list.
         row: usize,
         /// The number.
         value: f64,

@@ -1,4 +1,4 @@
-//! What every optimizer returns, and the one way in which argmin runs them.
+//! The result of every optimizer, and the one way in which argmin runs them.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -15,7 +15,7 @@ use argmin::core::{
 ///
 /// # Examples
 /// ```
-/// use edifice::optim::{Outcome, grid};
+/// use edifice_optim::{Outcome, grid};
 /// let run = grid::minimize(&[vec![3.0, 1.0, 2.0]], |x| Ok::<_, String>((x[0] - 1.2).powi(2)))?;
 /// assert_eq!(run.best, [1.0]);
 /// assert_eq!(run.outcome, Outcome::Converged);
@@ -79,12 +79,12 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether the solution is optimal to some tolerance.
+    /// True if the solution is optimal to some tolerance.
     pub fn is_solved(self) -> bool {
         matches!(self, Self::Converged | Self::AlmostConverged)
     }
 
-    /// What argmin tells of the end of a run.
+    /// The outcome that argmin's status of termination means.
     fn of(status: &TerminationStatus) -> Self {
         let TerminationStatus::Terminated(reason) = status else {
             return Self::Stalled;

@@ -113,8 +113,8 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// Where a value lies, 0 at the start of the axis and 1 at its end, clamped a little outside;
-    /// `None` when it cannot be shown.
+    /// The place of a value, 0 at the start of the axis and 1 at its end, clamped a little outside; `None` if it cannot
+    /// be shown.
     pub fn place(&self, value: f64) -> Option<f64> {
         let value = match self.log {
             true if value <= 0.0 => return None,

@@ -5,7 +5,7 @@ use super::colour::{Colour, MUTED, category};
 use super::drawing::{Anchor, Area, Drawing};
 use super::frame::{self, Key, SMALL};
 
-/// Where the legend stands.
+/// The corner of the chart in which the legend stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Corner {
     /// Upper right.

@@ -8,18 +8,18 @@ use super::frame::{self, SMALL};
 /// Room for the name of a leaf, across the direction of reading.
 const LINE: f64 = 14.0;
 
-/// What axis and margins take from the width of a tree that stands upright.
+/// Width that axis and margins take beside a tree that stands upright, in pixels.
 const BESIDE: f64 = 90.0;
 
-/// What title and axis take from the height of a tree that lies on its side.
+/// Height that title and axis take above and below a tree that lies on its side, in pixels.
 const ABOVE_AND_BELOW: f64 = 80.0;
 
 /// One merge: clusters below the number of leaves are leaves, `leaves + k` is the k-th merge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Merge {
-    /// One cluster.
+    /// One of the two clusters.
     pub left: usize,
-    /// The other.
+    /// The other of the two clusters.
     pub right: usize,
     /// Distance at which they meet.
     pub height: f64,
@@ -90,7 +90,7 @@ impl Dendrogram {
         order
     }
 
-    /// Whether the names do not fit side by side: then the tree lies on its side.
+    /// True if the names do not fit side by side: then the tree lies on its side.
     fn lies(&self, width: f64) -> bool {
         self.leaves.len() as f64 * LINE > width - BESIDE
     }

@@ -3,7 +3,7 @@
 use super::colour::{Colour, INK};
 use super::render;
 
-/// Where a text stands relative to its point.
+/// The place of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     /// The point is its left end (or its lower end when vertical).
@@ -19,7 +19,7 @@ pub enum Anchor {
 pub struct Text {
     /// The point.
     pub at: (f64, f64),
-    /// What it says.
+    /// The words.
     pub text: String,
     /// Height of the font in logical pixels.
     pub size: f64,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::drawing::{Area, Drawing};
 use super::{Bars, Chart, Dendrogram, HeatMap, Ranking, Tiles, render};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// One panel of a figure.
 #[derive(Debug, Clone)]
@@ -82,7 +82,7 @@ impl Figure {
         self
     }
 
-    /// What the figure shows, for readers who cannot see it.
+    /// The caption, for readers who cannot see the figure.
     pub fn caption(&self) -> &str {
         &self.caption
     }
@@ -128,7 +128,7 @@ pub const MOST_SVG_BYTES: usize = 30_000;
 /// Writes `<name>.svg` and `<name>.png` into a folder.
 ///
 /// # Errors
-/// [`crate::Error::Io`] when a file cannot be written, [`crate::Error::Method`] when plotters cannot draw.
+/// [`edifice_base::Error::Io`] when a file cannot be written, [`edifice_base::Error::Method`] when plotters cannot draw.
 pub fn write_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     write_within(folder, name, figure, usize::MAX).map(|_| ())
 }
@@ -149,7 +149,7 @@ fn write_within(folder: &Path, name: &str, figure: &Figure, most: usize) -> Resu
     let svg = render::svg(&drawing)?;
     let path = folder.join(&vector);
     if svg.len() <= most {
-        crate::file::write_atomic(&path, svg.as_bytes())?;
+        edifice_base::file::write_atomic(&path, svg.as_bytes())?;
         files.push(vector);
     } else if let Err(e) = std::fs::remove_file(&path)
         && e.kind() != ErrorKind::NotFound
@@ -157,7 +157,7 @@ fn write_within(folder: &Path, name: &str, figure: &Figure, most: usize) -> Resu
         return Err(Error::io(&path, "remove", e));
     }
     let png = render::png(&drawing)?;
-    crate::file::write_atomic(&folder.join(&pixels), &png)?;
+    edifice_base::file::write_atomic(&folder.join(&pixels), &png)?;
     files.push(pixels);
     Ok(files)
 }

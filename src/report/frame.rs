@@ -86,7 +86,7 @@ pub fn y_ticks(out: &mut Drawing, plot: Area, y: &Fitted, label: &str) {
     });
 }
 
-/// How a legend shows its entry.
+/// The mark of an entry in a legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
     /// A piece of line.

@@ -70,7 +70,7 @@ pub fn few_colours(bytes: &[u8]) -> Result<Vec<u8>, Box<dyn std::error::Error + 
     )?)
 }
 
-/// Of so many pixels NeuQuant learns from one.
+/// Number of pixels of which NeuQuant learns from one.
 const SAMPLE: i32 = 3;
 
 fn encoded(

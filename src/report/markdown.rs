@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-/// Where the links of a page lead.
+/// The targets of the links of a page.
 #[derive(Clone, Copy)]
 pub struct Place<'a> {
     /// Folder that links and pictures are relative to.

@@ -6,7 +6,7 @@
 //!   marks and rendered by plotters to SVG and to PNG (256 colours) at twice the resolution, with the font that the `dejavu` crate ships.
 //! - [`index`]: one page over everything.
 //!
-//! Every file appears whole or not at all ([`crate::file::write_atomic`]).
+//! Every file appears whole or not at all ([`edifice_base::file::write_atomic`]).
 
 mod axis;
 mod bars;

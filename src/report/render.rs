@@ -12,14 +12,14 @@ use plotters::style::{FontStyle, FontTransform, register_font};
 use super::colour::Colour;
 use super::drawing::{Anchor, Drawing, Mark, Text};
 use super::indexed;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 const SVG_SCALE: f64 = 8.0;
 const PNG_SCALE: f64 = 2.0;
 const PNG_SAMPLES: u32 = 2;
 const FAMILY: &str = "sans-serif";
 
-/// What plotters says when it cannot draw.
+/// The message of plotters when it cannot draw.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot draw: {0}")]
 struct CannotDraw(String);

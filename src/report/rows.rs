@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// One observation.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,11 +13,11 @@ pub struct Row {
     pub dataset: String,
     /// Method, with its configuration.
     pub method: String,
-    /// What it was run on: facade, split, rank, ...
+    /// The input of the run: facade, split, rank, ...
     pub instance: String,
     /// Seed; empty for what has none (deterministic methods, means over seeds).
     pub seed: Option<u64>,
-    /// What was measured.
+    /// The measured quantity.
     pub metric: String,
     /// The number.
     pub value: f64,
@@ -78,7 +78,7 @@ pub fn csv_bytes(rows: &[Row]) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`csv_bytes`], and [`Error::Io`] when the file cannot be written.
 pub fn write_rows(path: &Path, rows: &[Row]) -> Result<()> {
-    crate::file::write_atomic(path, &csv_bytes(rows)?)
+    edifice_base::file::write_atomic(path, &csv_bytes(rows)?)
 }
 
 #[cfg(test)]

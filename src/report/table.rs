@@ -1,6 +1,6 @@
 //! Markdown tables.
 
-/// How a column is aligned.
+/// The alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// Words.
@@ -49,7 +49,7 @@ impl Table {
         self.rows.len()
     }
 
-    /// Whether it has no row.
+    /// True if it has no row.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

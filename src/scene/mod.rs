@@ -62,7 +62,7 @@ impl Instance {
         }
     }
 
-    /// Where a point of the mesh goes.
+    /// The place of a point of the mesh in the frame of the group.
     pub fn place(&self, p: [f32; 3]) -> [f32; 3] {
         let [x, y, z] = [0, 1, 2].map(|i| p[i] * self.scale[i]);
         let (sin, cos) = self.yaw.sin_cos();
@@ -85,7 +85,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// Where a point in the group's frame goes.
+    /// The place of a point of the group's frame in the scene.
     pub fn place(&self, p: [f32; 3]) -> [f32; 3] {
         let frame = Instance {
             yaw: self.yaw,
@@ -95,14 +95,14 @@ impl Group {
     }
 }
 
-/// Everything there is to show.
+/// All that a picture shows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     /// Surfaces.
     pub materials: Vec<Material>,
     /// Meshes.
     pub meshes: Vec<Mesh>,
-    /// What stands where.
+    /// The groups of instances.
     pub groups: Vec<Group>,
 }
 

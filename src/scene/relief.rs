@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::{Material, Mesh};
-use crate::shape::{Facade, Rect};
+use crate::{Material, Mesh};
+use edifice_shape::{Facade, Rect};
 
-/// How a label looks: its name without number, colour, roughness, distance from the wall in metres
-/// (outwards positive).
+/// The look of a label: its name without number, colour, roughness, distance from the wall in metres (outwards
+/// positive).
 const LOOKS: [(&str, [u8; 3], f32, f32); 25] = [
     ("wall", [0xe9, 0xdf, 0xcd], 0.95, 0.0),
     ("window", [0x3f, 0x56, 0x6b], 0.15, -0.18),

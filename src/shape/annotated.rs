@@ -3,12 +3,12 @@
 
 use super::{Facade, Photograph, Rect};
 
-/// What a file says of one region beside its label and place.
+/// The notes of a file on one region, beside its label and place.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Note {
     /// Name of the region within its layout.
     pub id: Option<String>,
-    /// Whether the region was observed (`true`) or added by a completion (`false`).
+    /// True if the region was observed, false if a completion added it; `None` if the file does not say.
     pub observed: Option<bool>,
     /// Probability of an added region, 0 to 1.
     pub probability: Option<f64>,

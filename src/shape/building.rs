@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Rect;
 use super::building_error::BuildingError;
 
-/// What a box of the mass model is.
+/// The kind of a box of the mass model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoxStyle {
@@ -61,7 +61,7 @@ pub struct Roof {
 /// A box of the mass model, standing on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MassBox {
-    /// What it is.
+    /// Kind of the box.
     pub style: BoxStyle,
     /// Centre along x.
     pub x: f64,
@@ -163,7 +163,7 @@ impl FacadeElement {
 pub struct FacadePiece {
     /// The side it belongs to.
     pub side: Side,
-    /// Where it starts along the side: x for front and back, y for left and right.
+    /// Its start along the side: x for front and back, y for left and right.
     pub start: f64,
     /// Height of its lower edge above the ground.
     pub base: f64,

@@ -26,9 +26,9 @@ pub struct PlanEdge {
     pub side: Side,
     /// Its coordinate across: y for front and back, x for left and right.
     pub at: f64,
-    /// Where it starts: x for front and back, y for left and right.
+    /// Its start: x for front and back, y for left and right.
     pub start: f64,
-    /// Where it ends.
+    /// Its end, on the same axis.
     pub end: f64,
 }
 
@@ -168,7 +168,7 @@ pub struct Visibility {
     pub visible: f64,
 }
 
-/// How much of the boundary of the union of `part` is seen from outside the union of `whole`.
+/// The length of the boundary of the union of `part`, and of the share that is seen from outside the union of `whole`.
 /// The rectangles of `part` are among those of `whole`.
 pub fn visibility(part: &[Rect], whole: &[Rect]) -> Visibility {
     let (xs, ys) = grid_lines(whole);

@@ -36,14 +36,14 @@ pub use specks::absorb_specks;
 ///
 /// # Examples
 /// ```
-/// use edifice::shape::{LabelGrid, clean};
+/// use edifice_shape::{LabelGrid, clean};
 /// let cuts: Vec<f64> = (0..=20).map(f64::from).collect();
 /// let mut cells = vec![0; 400];
 /// cells[210] = 1; // one pixel of another label
 /// let labels = vec!["wall".to_string(), "door".to_string()];
 /// let grid = LabelGrid { name: "g".into(), unit: "px".into(), xs: cuts.clone(), ys: cuts, labels, cells };
 /// assert_eq!(clean(&grid, 1.0)?.labels, ["wall"]);
-/// # Ok::<(), edifice::shape::ToleranceError>(())
+/// # Ok::<(), edifice_shape::ToleranceError>(())
 /// ```
 pub fn clean(grid: &LabelGrid, tolerance: f64) -> Result<LabelGrid, ToleranceError> {
     if !(tolerance.is_finite() && tolerance >= 0.0) {

@@ -15,7 +15,7 @@ pub struct Component {
 }
 
 impl Component {
-    /// Whether it fills the span around it.
+    /// True if it fills the span around it.
     pub fn is_rectangle(&self) -> bool {
         let b = self.bounds;
         self.cells == (b.right - b.left) * (b.top - b.bottom)

@@ -133,7 +133,7 @@ struct Cutter<'a> {
     stamp: u64,
 }
 
-/// How bad a line is: rectangles crossed, areas crossed uncleanly, their length on the line.
+/// The cost of a line, compared in order: rectangles crossed, areas crossed uncleanly, their length on the line.
 type Badness = (usize, usize, f64);
 
 impl Cutter<'_> {
@@ -244,7 +244,7 @@ fn less(a: Badness, b: Badness) -> bool {
         .is_lt()
 }
 
-/// Which areas one line crosses and runs along.
+/// The areas that one line crosses, and those that it runs along.
 struct Marks {
     stamp: u32,
     crossed_at: Vec<u32>,
@@ -294,7 +294,7 @@ impl Marks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::splittable;
+    use crate::splittable;
     use proptest::prelude::*;
 
     /// A grid of unit cells from a picture, the top row first, one letter a label.

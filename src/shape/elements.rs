@@ -6,7 +6,7 @@ use super::{Facade, GridError, LabelGrid, Rect, Region, Span};
 /// Labels of what lies behind the elements.
 pub const BACKGROUND_LABELS: [&str; 6] = ["wall", "facade", "background", "sky", "roof", "void"];
 
-/// Whether a label names what lies behind the elements rather than an element.
+/// True if a label names the surface behind the elements rather than an element.
 pub fn is_background(label: &str) -> bool {
     BACKGROUND_LABELS
         .iter()

@@ -11,7 +11,7 @@ use super::Rect;
 pub struct Region {
     /// Material or element name, for example `window`.
     pub label: String,
-    /// Where it is, in the facade's coordinates.
+    /// Its place, in the facade's coordinates.
     pub rect: Rect,
 }
 
@@ -50,7 +50,7 @@ pub enum LayoutError {
         field: &'static str,
         /// The value found.
         value: f64,
-        /// Whether the field must be above zero.
+        /// True if the field must be above zero.
         positive: bool,
     },
     /// A region has an empty label.

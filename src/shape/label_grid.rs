@@ -253,7 +253,7 @@ fn firsts(count: usize, mut equal: impl FnMut(usize) -> bool) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Rect, Region};
+    use crate::{Rect, Region};
 
     fn grid(columns: usize, labels: &[&str], cells: &[u16]) -> LabelGrid {
         let cuts = |n: usize| (0..=n).map(|k| k as f64).collect();

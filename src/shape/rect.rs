@@ -77,7 +77,7 @@ impl Rect {
         (self.x + self.width / 2.0, self.y + self.height / 2.0)
     }
 
-    /// Whether a point lies in the rectangle, its lower and left edges included.
+    /// True if a point lies in the rectangle, its lower and left edges included.
     pub fn contains(&self, x: f64, y: f64) -> bool {
         (self.x..self.right()).contains(&x) && (self.y..self.top()).contains(&y)
     }

@@ -106,7 +106,7 @@ fn pinwheel(facade: &Facade, indices: &[u32]) -> LayoutError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::tests::facade;
+    use crate::tests::facade;
 
     #[test]
     fn a_pinwheel_is_named_wherever_it_hides() {

@@ -183,7 +183,7 @@ impl Facade {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::tests::facade;
+    use crate::tests::facade;
     use proptest::prelude::*;
 
     /// Oracle: paints every unit cell.

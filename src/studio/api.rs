@@ -18,14 +18,14 @@ use tokio::time::timeout;
 use super::document::SaveError;
 use super::jobs::{End, Job};
 use super::{Open, Studio, assets};
-use crate::editing::examples::{example, examples};
-use crate::editing::history::steps;
-use crate::editing::work::Stopped;
+use edifice_editing::examples::{example, examples};
+use edifice_editing::history::steps;
+use edifice_editing::work::Stopped;
 
 /// Work that takes longer than this is a job.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// What answers a request: its status, and what is wrong.
+/// The refusal of a request: its status, and the reason.
 struct Refusal(StatusCode, String);
 
 impl IntoResponse for Refusal {
@@ -34,8 +34,8 @@ impl IntoResponse for Refusal {
     }
 }
 
-impl From<crate::Error> for Refusal {
-    fn from(error: crate::Error) -> Self {
+impl From<edifice_base::Error> for Refusal {
+    fn from(error: edifice_base::Error) -> Self {
         Self(StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
     }
 }

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::jobs::Job;
-use crate::editing::history::{Document, steps};
-use crate::editing::work::Work;
-use crate::editing::{self, State, Step};
-use crate::file::write_atomic;
-use crate::{Error, Result, io};
+use edifice_base::file::write_atomic;
+use edifice_base::{Error, Result};
+use edifice_editing as editing;
+use edifice_editing::history::{Document, steps};
+use edifice_editing::work::Work;
+use edifice_editing::{State, Step};
+use edifice_io as io;
 
 /// An open document.
 pub struct Open {
@@ -20,7 +22,7 @@ pub struct Open {
     folder: PathBuf,
     /// Name of the file it is saved as.
     file: String,
-    /// What the file held when it was read or written last; `None` before it is saved.
+    /// The content of the file when it was read or written last; `None` before it is saved.
     known: Option<Vec<u8>>,
     saved_at: u64,
     milliseconds: f64,
@@ -93,7 +95,7 @@ impl Open {
         Ok(())
     }
 
-    /// Takes what commands came to, in so many milliseconds.
+    /// Takes the results of commands, and the milliseconds that they took.
     pub fn take(&mut self, commands: &[Value], steps: Vec<Step>, milliseconds: f64) {
         self.document.take(commands, steps);
         self.milliseconds = milliseconds;
@@ -133,7 +135,7 @@ impl Open {
         self.file.strip_suffix(ending).unwrap_or(&self.file)
     }
 
-    /// What a list of documents says of it.
+    /// The entry of the document in a list of documents.
     pub fn summary(&self, id: &str) -> Value {
         let state = self.document.state();
         json!({
@@ -143,7 +145,7 @@ impl Open {
         })
     }
 
-    /// All of it.
+    /// The whole document, as a page gets it.
     ///
     /// # Errors
     /// As [`State::view`].

@@ -1,4 +1,4 @@
-//! Who may ask: looked at before a request is routed.
+//! The check of every request before it is routed.
 //!
 //! A page of another site can make a browser send requests here, and by a name that is bound to 127.0.0.1 (rebinding) even
 //! read the answers. So: the `Host` must be one of two names with this port, an `Origin` one of two, `Sec-Fetch-Site` this
@@ -16,11 +16,11 @@ use tokio::time::timeout;
 
 /// Header of the token.
 pub const TOKEN: &str = "x-edifice-token";
-/// What a page may load and do: nothing but what this server serves, no script in the page itself.
+/// The content security policy of a page: it loads only what this server serves, and has no script in the page itself.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// How much and how long.
+/// The limits of requests, in bytes and in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Longest time from one request of a connection to the whole head of the next: whoever sends a byte now and then, or nothing,
@@ -45,7 +45,7 @@ impl Default for Limits {
     }
 }
 
-/// What is let in.
+/// The rules by which requests are let in.
 #[derive(Debug, Clone)]
 pub struct Guard {
     hosts: [String; 2],
@@ -120,7 +120,7 @@ fn only<'h>(headers: &'h HeaderMap, name: &str) -> Result<Option<&'h str>, ()> {
     }
 }
 
-/// Whether two texts are the same, in a time that does not tell where they differ.
+/// True if two texts are the same, in a time that does not tell where they differ.
 fn same(a: &[u8], b: &[u8]) -> bool {
     let differ = a.iter().zip(b).fold(0, |d, (x, y)| d | (x ^ y));
     a.len() == b.len() && differ == 0

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::editing::work::Work;
+use edifice_editing::work::Work;
 
 /// Ended jobs that are remembered.
 const REMEMBERED: usize = 100;
@@ -13,19 +13,19 @@ const REMEMBERED: usize = 100;
 /// A piece of work.
 pub struct Job {
     id: String,
-    /// What it tells, and that it can be stopped.
+    /// The work itself, which tells its progress and can be stopped.
     pub work: Work,
     start: Instant,
     place: Mutex<Place>,
 }
 
-/// Which document a job is for, and how it ended.
+/// The document of a job, and the job's end.
 struct Place {
     document: Option<String>,
     end: Option<(End, f64)>,
 }
 
-/// How a job ended.
+/// The end of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub enum End {
     /// The document is as the work left it.
@@ -53,7 +53,7 @@ impl Job {
         self.end(End::Stopped);
     }
 
-    /// Whether it is over.
+    /// True if it is over.
     pub fn is_over(&self) -> bool {
         let place = self.place.lock().unwrap_or_else(PoisonError::into_inner);
         place.end.is_some()
@@ -65,7 +65,7 @@ impl Job {
         place.document = Some(document.to_owned());
     }
 
-    /// What a page is told of it.
+    /// The state of the job, as a page gets it.
     pub fn shown(&self) -> Value {
         let told = self.work.told();
         let place = self.place.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! The studio: documents of [`crate::editing`] in a page served on this machine, `edifice studio`.
+//! The studio: documents of [`edifice_editing`] in a page served on this machine, `edifice studio`.
 //!
 //! # What is asked and answered
 //! Every answer of `/api` is JSON, but for exports and scripts; an error is `{"error": "..."}` with the status 400 (no
@@ -9,7 +9,7 @@
 //! | `GET /api/documents` | | `version`, `readOnly`, `documents` (each `id`, `kind`, `name`, `revision`, `unsaved`, `job`), `examples` |
 //! | `POST /api/documents` | `{"example": ID}` | a document, or a job |
 //! | `GET /api/documents/ID` | | a document |
-//! | `POST /api/documents/ID/edit` | `{"commands": [...], "revision": N}` | the document after the [commands](crate::editing), or a job |
+//! | `POST /api/documents/ID/edit` | `{"commands": [...], "revision": N}` | the document after the [commands](edifice_editing), or a job |
 //! | `POST /api/documents/ID/ask` | `{"ask": ...}` | what the editor says; the document stays as it is |
 //! | `POST /api/documents/ID/undo`, `redo` | `{}` | the document |
 //! | `POST /api/documents/ID/save` | `{"overwrite": true}` or `{}` | `file`, `script`: names of the files written |
@@ -45,9 +45,9 @@ pub use api::router;
 pub use document::{Open, SaveError};
 pub use server::{Running, start};
 
-use crate::Result;
+use edifice_base::Result;
 
-/// What the studio is started with.
+/// The settings that the studio is started with.
 #[derive(Debug, Clone, Default)]
 pub struct Settings {
     /// Files to open.
@@ -102,7 +102,7 @@ impl Studio {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         if all.len() >= MOST {
-            return Err(crate::Error::method(TooMany));
+            return Err(edifice_base::Error::method(TooMany));
         }
         all.push(Arc::new(Mutex::new(document)));
         Ok(format!("d{}", all.len()))

@@ -12,7 +12,7 @@ use hyper_util::service::TowerToHyperService;
 
 use super::guard::{Guard, guard};
 use super::{Settings, Studio, router};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
 
 /// A studio that listens, before it answers.
 pub struct Running {

@@ -203,7 +203,7 @@ fn of_boxes(boxes: Vec<MassBox>) -> Vec<Option<f64>> {
     attributes(&Building::new("p", "m", 3.0, boxes, vec![], vec![]).unwrap()).unwrap()
 }
 
-/// Whether some porch centre lies so near the middle line that rounding decides its half.
+/// True if some porch centre lies so near the middle line that rounding decides its half.
 fn porch_on_the_middle_line(boxes: &[MassBox]) -> bool {
     let plan: Vec<Rect> = boxes.iter().map(MassBox::plan).collect();
     let bounds = PlanUnion::new(&plan).bounding_box().unwrap();

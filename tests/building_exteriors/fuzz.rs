@@ -1,11 +1,11 @@
 //! Houses of random boxes, roofs, chimneys and towers: every one closed, in one piece, with the volume of the integral
 //! over its plan. `EDIFICE_FUZZ_HOUSES=10000` makes more of them.
 
-use edifice::experiments::building_exteriors::houses::wild;
 use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Joining, model};
 use edifice::rng::stream;
 use edifice::shape::{Building, Ridge, Roof, RoofStyle, Special};
+use edifice_experiments::building_exteriors::houses::wild;
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ fn house(index: u64) -> Building {
     building
 }
 
-/// What is wrong with the house of this number.
+/// The fault of the house of this number; `None` for a sound one.
 fn fault(index: u64) -> Option<String> {
     let building = house(index);
     let joining = [Joining::Boxes, Joining::Merged][(index % 2) as usize];

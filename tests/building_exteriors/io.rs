@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use edifice::io::building_json;
-use edifice::tables::schema::{Kind, Schema, SchemaError, SchemaGroup};
+use edifice::model::tables::schema::{Kind, Schema, SchemaError, SchemaGroup};
 
 const GOOD: &str = r#"{"format":"edifice/building","version":1,"name":"a","unit":"m","floor_height":3.0,"boxes":[{"style":"main","x":5,"y":4,"width":10,"depth":8,"height":6,"roof":{"style":"hip","pitch":25,"ridge":"x"}}],"facades":[{"side":"front","start":0,"base":0,"width":10,"height":3,"elements":[{"style":"sash","x":1,"y":1,"width":1.2,"height":1.4}]}],"special":["chimney"]}"#;
 

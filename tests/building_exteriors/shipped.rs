@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use edifice::experiments::building_exteriors::houses::{
-    DEPENDENCIES, Family, House, KINDS, SHIPPED, SHIPPED_SEED, STYLES, houses,
-};
 use edifice::io::building_json;
 use edifice::methods::building_exteriors::attributes::{GROUPS, Level, attributes};
 use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Joining, model};
 use edifice::methods::building_exteriors::mass::is_sound;
 use edifice::model::hierarchy::Priors;
+use edifice_experiments::building_exteriors::houses::{
+    DEPENDENCIES, Family, House, KINDS, SHIPPED, SHIPPED_SEED, STYLES, houses,
+};
 
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("datasets/building_exteriors")

@@ -1,11 +1,11 @@
 //! Grammars in few bytes: what is written comes back, the same bytes again; damaged files are refused.
 
-use edifice::experiments::city_proceduralization::synthetic;
 use edifice::grammar::instance::{InstanceGrammar, InstanceRule, Kept, Placement, Template};
 use edifice::io::city::{compact, grammar_json};
 use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings, proceduralize};
 use edifice::rng::{Stream, stream};
 use edifice::shape::triangles::TriangleMesh;
+use edifice_experiments::city_proceduralization::synthetic;
 use rand::RngExt;
 
 /// Every triangle that a grammar derives to, in world coordinates, with its building.

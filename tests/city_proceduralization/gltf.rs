@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use edifice::experiments::city_proceduralization::synthetic;
 use edifice::io::city::{glb, gltf, read};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
 use edifice::rng::stream;
 use edifice::shape::triangles::City;
+use edifice_experiments::city_proceduralization::synthetic;
 use rand::RngExt;
 use serde_json::json;
 

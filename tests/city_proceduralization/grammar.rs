@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use edifice::cluster::adjusted_rand_index;
-use edifice::experiments::city_proceduralization::synthetic;
 use edifice::grammar::instance::{
     InstanceGrammar, InstanceGrammarError, InstanceRule, Placement, Template,
 };
@@ -12,6 +11,7 @@ use edifice::methods::city_proceduralization::{
     Budget, Mode, Precision, Settings, Structure, decompose, proceduralize,
 };
 use edifice::shape::triangles::{City, CityBuilding, TriangleMesh, VolumeRaster};
+use edifice_experiments::city_proceduralization::synthetic;
 
 fn settings(mode: Mode, budget: Budget) -> Settings {
     Settings {

@@ -1,11 +1,11 @@
-//! What a city's grammar must not depend on: the order of buildings, threads.
+//! The grammar of a city does not depend on the order of buildings or on threads.
 
-use edifice::experiments::city_proceduralization::synthetic;
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{compact, grammar_json};
 use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings, proceduralize};
 use edifice::rng::stream;
 use edifice::shape::triangles::City;
+use edifice_experiments::city_proceduralization::synthetic;
 use rand::seq::SliceRandom;
 
 fn settings(mode: Mode, budget: Budget) -> Settings {

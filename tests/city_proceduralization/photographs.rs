@@ -1,4 +1,4 @@
-//! Where one is, from photographs of facades.
+//! Localization from photographs of facades.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

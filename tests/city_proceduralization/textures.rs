@@ -14,7 +14,7 @@ use rand::RngExt;
 const MATERIALS: &str =
     "newmtl plain\nKd .8 .8 .8\nnewmtl a\nKd 1 1 1\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n";
 
-/// A facade of 100 x 80 texels: windows of so many texels, so many columns and rows.
+/// A facade of 100 x 80 texels: windows of `w` x `h` texels in `columns` and `rows`.
 fn facade(path: &Path, [w, h]: [u32; 2], [columns, rows]: [u32; 2]) {
     let picture = image::GrayImage::from_fn(100, 80, |x, y| {
         let inside = |v: u32, n: u32, all: u32, size: u32| {

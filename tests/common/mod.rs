@@ -1,4 +1,4 @@
-//! Where the tests on real data find it.
+//! The place of the real data for the tests on it.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -43,7 +43,7 @@ fn with(ops: &str) -> Settings {
     }
 }
 
-/// What the grammar found costs, and whether it is proven optimal.
+/// The cost of the grammar found, and true if it is proven optimal.
 fn cost(facade: &Facade, settings: &Settings) -> (f64, bool) {
     let facades = std::slice::from_ref(facade);
     let outcome = infer(facades, settings).unwrap();

@@ -19,7 +19,7 @@ fn operations(text: &str) -> Operations {
     text.parse().unwrap()
 }
 
-/// What the exact search finds is a grammar of the layouts and costs what it says.
+/// The cost that the exact search finds; its grammar is one of the layouts and costs that much.
 fn exact(facades: &[Content], operations: Operations, costs: &Costs) -> Option<f64> {
     let found = smallest(facades, operations, costs, &LIMITS)?;
     let layouts: Vec<_> = facades.iter().map(|f| f.facade("tiny")).collect();

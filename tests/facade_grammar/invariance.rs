@@ -1,4 +1,4 @@
-//! What a facade grammar costs does not depend on units, on orientation or on where regions are listed.
+//! The cost of a facade grammar does not depend on units, on orientation or on the order in which regions are listed.
 
 use std::path::Path;
 
@@ -121,7 +121,7 @@ const FACTORS: [f64; 12] = [
     1.0 / 0.3048,
 ];
 
-/// The same layouts in other ways, each with a name. What changes sizes only comes first, so many of them.
+/// The same layouts in other ways, each with a name. Changes of size alone come first; their number is returned too.
 fn views(facades: &[Facade], rng: &mut Stream) -> (usize, Vec<(String, Vec<Facade>)>) {
     let factor = FACTORS[rng.random_range(0..FACTORS.len())];
     let random = 10f64.powf(rng.random_range(-6.0..6.0));
@@ -163,7 +163,7 @@ fn views(facades: &[Facade], rng: &mut Stream) -> (usize, Vec<(String, Vec<Facad
     (count, views.collect())
 }
 
-/// How the cost or the proof of the other views differ.
+/// The differences in the cost or the proof of the other views, in words.
 fn differences(
     facades: &[Facade],
     operations: Operations,

@@ -80,7 +80,7 @@ impl Case {
         (0..x.len()).map(term).sum()
     }
 
-    /// How far a point is from the equality and the bounds.
+    /// The largest violation of the equality or a bound by a point.
     fn violation(&self, x: &[f64]) -> f64 {
         let sum: f64 = self.coefficients.iter().zip(x).map(|(a, x)| a * x).sum();
         let bounds = (0..x.len()).map(|i| (self.lower[i] - x[i]).max(x[i] - self.upper[i]));

@@ -1,7 +1,7 @@
 //! Grammars as CGA text: round trips, what is understood, and errors with their place.
 
 use crate::support::{random_grammar, size_independent, stochastic};
-use edifice::grammar::{Costs, Grammar, Operation, Size, derive, evaluate};
+use edifice::grammar::{Costs, Grammar, Operation, Size, derive, evaluate, listing};
 use edifice::io::grammar_cga::{from_str, parse, to_string};
 use edifice::io::grammar_json;
 use edifice::shape::Axis;
@@ -354,4 +354,24 @@ fn deep_nesting_is_refused() {
     assert!(error.message.contains("nested too deeply"), "{error}");
     let error = from_str(&format!("const a = {}1", "-".repeat(100_000))).unwrap_err();
     assert_eq!(error.line, 1);
+}
+
+#[test]
+fn a_listing_reads_like_the_paper() {
+    let text = "//@ facade NT1 36 x 9\nNT1 --> split(x) { 8 : NT8 | { 6 : T | 8 : NT8 }* }\n\
+                NT8 -->\n//@ sym_split\nsplit(x) { 3 : Window1 | 2 : Wall1 | 3 : Window1 }\n\
+                NT9 --> 25% : split(x) { ~1 : a } else : split(x) { ~1 : b }";
+    let grammar = from_str(text).unwrap();
+    let expected = [
+        "NT1 → repeatABA(x){NT8 | T}",
+        "NT8 → symsplit(x){Window1 | Wall1}",
+        "NT9 → [25%] split(x){a}",
+        "NT9 → [75%] split(x){b}",
+    ];
+    assert_eq!(listing(&grammar, false), expected);
+    assert_eq!(
+        listing(&grammar, true)[0],
+        "NT1 → repeatABA(x){8: NT8 | 6: T}"
+    );
+    assert!((Costs::default().grammar(&grammar) - 6.8).abs() < 1e-9);
 }

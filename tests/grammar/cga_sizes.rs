@@ -1,4 +1,4 @@
-//! What CityEngine's reference says of sizes: absolute, floating, fractions, repeats, ranges.
+//! The statements of CityEngine's reference on sizes: absolute, floating, fractions, repeats, ranges.
 
 use edifice::grammar::{Grammar, Operation, Rule, Size, derive};
 use edifice::io::grammar_cga::{from_str, to_string};

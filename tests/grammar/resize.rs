@@ -95,7 +95,7 @@ fn thin_structures_keep_their_size() {
     assert!(successors.iter().all(relative));
 }
 
-/// Whether frames of 2 keep their size at a width.
+/// True if frames of 2 keep their size at a width.
 fn wide_is_as_written(grammar: &Grammar, width: f64) -> bool {
     let derivation = derive_at(grammar, 0, width, 50.0, &mut stream(0, "none", 0)).unwrap();
     let widths = derivation.facade.regions.iter().map(|r| r.rect.width);

@@ -1,4 +1,4 @@
-//! What fuzzing has found worth keeping (`fuzz/seeds/`) goes through the readers in the ordinary tests.
+//! The files that fuzzing found worth keeping (`fuzz/seeds/`) go through the readers in the ordinary tests.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
 use edifice::methods::structure_completion::model::Model as CompletionModel;
 use edifice::model::network::Network;
-use edifice::tables::schema::Schema;
-use edifice::tables::table_model::TableModel;
+use edifice::model::tables::schema::Schema;
+use edifice::model::tables::table_model::TableModel;
 
-/// Whether the reader of that name takes the bytes.
+/// True if the reader of that name takes the bytes.
 fn read(reader: &str, bytes: &[u8]) -> bool {
     let path = Path::new("seed");
     let text = std::str::from_utf8(bytes).ok();

@@ -45,7 +45,7 @@ fn read(file: &Path, arguments: &[&str], what: &str) -> bool {
     }
 }
 
-/// Where numbers stand in a text, outside of names in quotes.
+/// The ranges of the numbers in a text, outside of names in quotes.
 fn numbers(text: &str) -> Vec<std::ops::Range<usize>> {
     let (mut found, mut quoted, mut start) = (Vec::new(), false, None);
     for (at, c) in text.char_indices() {

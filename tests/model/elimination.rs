@@ -216,7 +216,7 @@ fn barren_variables_do_not_count() {
     );
     let corner = network.marginal(&nothing, "v1_1").unwrap();
     let by_hand = {
-        // P(v1_1) over v1_0 and v0_1, both children of v0_0.
+        // `P(v1_1)` over `v1_0` and `v0_1`, both children of `v0_0`.
         let child = |p: usize| [0.7 - 0.2 * p as f64, 0.3 + 0.2 * p as f64];
         let mut yes = 0.0;
         for (r, root) in [0.7, 0.3].iter().enumerate() {

@@ -2,12 +2,12 @@
 
 use edifice::model::hierarchy::{Group, Settings, learn};
 use edifice::model::network::Evidence;
+use edifice::model::tables::Dataset;
+use edifice::model::tables::compare::{Contender, extended, held_out};
+use edifice::model::tables::encoding::Encoding;
+use edifice::model::tables::transform::{Bounds, Tails, Transform};
 use edifice::model::{Cell, Table};
 use edifice::rng::{Stream, stream};
-use edifice::tables::Dataset;
-use edifice::tables::compare::{Contender, extended, held_out};
-use edifice::tables::encoding::Encoding;
-use edifice::tables::transform::{Bounds, Tails, Transform};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

@@ -29,7 +29,7 @@ where
     parameters.fit(&dataset).expect("a mixture").predict(data)
 }
 
-/// Whether two labelings are the same up to names.
+/// True if two labelings are the same up to names.
 fn same(a: &Array1<usize>, b: &Array1<usize>) -> bool {
     let n = a.len();
     (0..n).all(|i| (0..n).all(|j| (a[i] == a[j]) == (b[i] == b[j])))

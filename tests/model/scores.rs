@@ -47,7 +47,7 @@ fn dirichlet_evidence_is_the_integral() {
 
 #[test]
 fn normal_inverse_wishart_evidence_is_the_integral() {
-    // d = 1: σ² ~ InvGamma(ν/2, ψ/2), μ | σ² ~ N(0, σ²/κ); integrate over (μ, log σ).
+    // d = 1: σ² ~ inverse gamma(ν/2, ψ/2), μ | σ² ~ N(0, σ²/κ); integrate over (μ, log σ).
     let y = [0.3, -0.8, 1.4];
     let (nu, psi, kappa) = (PRIOR.freedom, PRIOR.scatter, PRIOR.intercept);
     let mut sum = 0.0;

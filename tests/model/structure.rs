@@ -85,7 +85,7 @@ fn acyclic(parents: &[Vec<usize>]) -> bool {
     done.iter().all(|d| *d)
 }
 
-/// Every acyclic structure over so many variables.
+/// Every acyclic structure over `n` variables.
 fn structures(n: usize) -> Vec<Vec<Vec<usize>>> {
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|a| (0..a).map(move |b| (a, b))).collect();
     let all = (0..3_usize.pow(pairs.len() as u32)).map(|mut which| {

@@ -4,10 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use assert_cmd::Command;
+use edifice::model::tables::compare::summary;
+use edifice::model::tables::schema::{Kind, Schema, SchemaError};
+use edifice::model::tables::table_model::TableModel;
 use edifice::rng::stream;
-use edifice::tables::compare::summary;
-use edifice::tables::schema::{Kind, Schema, SchemaError};
-use edifice::tables::table_model::TableModel;
 use rand::RngExt;
 
 /// Birds of three kinds: two lengths that go with the kind, a category, a yes or no, some cells missing.

@@ -1,4 +1,4 @@
-//! What is learnt does not depend on the units of the data: mixtures, networks, hierarchies.
+//! Learnt models do not depend on the units of the data: mixtures, networks, hierarchies.
 
 use edifice::model::Table;
 use edifice::model::em::Outcome;

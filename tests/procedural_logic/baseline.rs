@@ -103,7 +103,7 @@ fn parameters_do_not_matter_on_facade_i() {
     assert_eq!(binary.into_iter().collect::<Vec<_>>(), [693, 756]);
 }
 
-/// Where full lines go both ways, the parameters decide which go first.
+/// If full lines go both ways, the parameters decide which go first.
 #[test]
 fn parameters_decide_where_lines_cross() {
     // Three floors of a wall and a window; along the floors something faces every line, across them nothing does.

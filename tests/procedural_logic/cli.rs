@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use assert_cmd::Command;
-use edifice::experiments::layouts;
-use edifice::experiments::procedural_logic::corruption::{Corruption, pixels};
-use edifice::experiments::procedural_logic::shipped;
 use edifice::grammar::derive;
 use edifice::io::{facade_json, grammar_json};
 use edifice::methods::procedural_logic::{Model, ModelFile, Parameters};
 use edifice::rng::stream;
 use edifice::shape::{Facade, LabelGrid, Rect, Region};
+use edifice_experiments::layouts;
+use edifice_experiments::procedural_logic::corruption::{Corruption, pixels};
+use edifice_experiments::procedural_logic::shipped;
 
 fn edifice(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::cargo_bin("edifice").expect("the program");

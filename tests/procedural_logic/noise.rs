@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use edifice::experiments::layouts;
-use edifice::experiments::procedural_logic::corruption::{Corruption, pixels};
-use edifice::experiments::procedural_logic::gold::Annotations;
-use edifice::experiments::procedural_logic::noise::{TARGET, cleaned, corrupted, outcome, rates};
-use edifice::experiments::procedural_logic::{data, shipped, trivial};
 use edifice::methods::procedural_logic::{Known, Model, Parameters, Style, starting_rules};
 use edifice::rng::stream;
 use edifice::shape::{Facade, LabelGrid};
+use edifice_experiments::layouts;
+use edifice_experiments::procedural_logic::corruption::{Corruption, pixels};
+use edifice_experiments::procedural_logic::gold::Annotations;
+use edifice_experiments::procedural_logic::noise::{TARGET, cleaned, corrupted, outcome, rates};
+use edifice_experiments::procedural_logic::{data, shipped, trivial};
 
 use crate::common::real_data;
 

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use edifice::experiments::layouts;
-use edifice::experiments::procedural_logic::gold::Doors;
-use edifice::experiments::procedural_logic::{data, outline, shipped};
 use edifice::grammar::derive;
 use edifice::methods::procedural_logic::{Model, NaryTree, Parameters, split_grammar};
 use edifice::shape::{Facade, LabelGrid};
+use edifice_experiments::layouts;
+use edifice_experiments::procedural_logic::gold::Doors;
+use edifice_experiments::procedural_logic::{data, outline, shipped};
 
 fn shipped_layouts() -> Vec<Facade> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar");

@@ -1,14 +1,13 @@
 //! Structure completion on real facades: the default method against every baseline.
 
-use edifice::experiments::layouts;
-use edifice::experiments::structure_completion::data;
 use edifice::io::{ReadOptions, read_source};
-use edifice::methods::structure_completion::layout::{Element, Layout, scope};
+use edifice::methods::structure_completion::layout::{Element, Layout, extract, scope};
 use edifice::methods::structure_completion::measure::agreement;
 use edifice::methods::structure_completion::method::{Method, complete};
 use edifice::methods::structure_completion::model::Model;
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
+use edifice_experiments::layouts;
 
 #[test]
 fn the_default_method_is_above_every_baseline_on_paris_facades() {
@@ -18,7 +17,7 @@ fn the_default_method_is_above_every_baseline_on_paris_facades() {
     let files = layouts::files(&folder.join("facades/ecp2011/labels"), ".png").expect("files");
     let read = |path: &std::path::PathBuf| {
         let source = read_source(path, &ReadOptions::default()).expect("readable");
-        data::elements(source, path).expect("elements")
+        extract::elements(&source.labelled().expect("a layout")).expect("elements")
     };
     let all: Vec<Layout> = files.iter().map(read).collect();
     assert_eq!(all.iter().filter(|l| scope::in_scope(l)).count(), 104);

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use edifice::io::{building_csv, json, read_bytes};
 use edifice::model::hierarchy::{Constant, Settings, learn};
-use edifice::tables::Dataset;
-use edifice::tables::schema::Schema;
+use edifice::model::tables::Dataset;
+use edifice::model::tables::schema::Schema;
 
 fn read(schema: &str, table: &str) -> Option<Dataset> {
     let table = format!("houses/{table}");

@@ -1,4 +1,4 @@
-//! What holds on real facades and houses; skipped where there are none.
+//! Properties that hold on real facades and houses; skipped without such data.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use edifice::cluster::{Linkage, Query, agglomerate, cumulative_match, purity};
-use edifice::experiments::procedural_logic::gold::{Annotations, Doors};
 use edifice::grammar::{Costs, derive, evaluate};
 use edifice::io::{ReadOptions, facade_json, read_label_grid};
 use edifice::methods::procedural_logic::{
     Measure, Model, NaryTree, Parameters, baseline_grammar, split_grammar,
 };
 use edifice::shape::{Facade, LabelGrid};
+use edifice_experiments::procedural_logic::gold::{Annotations, Doors};
 
 use crate::common::real_data;
 

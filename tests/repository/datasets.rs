@@ -1,8 +1,8 @@
-//! What ships in `datasets/` is what the project's own commands make.
+//! The files in `datasets/` are those that the project's own commands make.
 
 use std::path::Path;
 
-use edifice::experiments::facade_grammar::data;
+use edifice_experiments::facade_grammar::data;
 
 #[test]
 fn shipped_facades_are_the_generators_byte_for_byte() {

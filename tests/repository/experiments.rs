@@ -4,7 +4,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-use edifice::experiments::{ALL, Budget, Experiment, Options, run};
+use edifice_experiments::{ALL, Budget, Experiment, Options, run};
 
 fn options(out: &Path, threads: usize) -> Options {
     Options {

@@ -3,5 +3,6 @@
 mod datasets;
 mod experiments;
 mod installed;
+mod prose;
 #[cfg(unix)]
 mod sizes;

@@ -1,4 +1,4 @@
-//! What `.ci/sizes` refuses, on repositories of a few files.
+//! The refusals of `.ci/sizes`, on repositories of a few files.
 
 use std::path::Path;
 use std::process::Command;

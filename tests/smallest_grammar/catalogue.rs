@@ -6,7 +6,7 @@ use edifice::shape::Axis;
 
 use super::content::Content;
 
-/// What a successor of a rule is.
+/// A successor of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Symbol {
     /// A label.

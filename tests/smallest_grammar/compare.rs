@@ -16,7 +16,7 @@ use super::search::{Limits, smallest};
 /// Differences of costs that are noise.
 const NOISE: f64 = 1e-6;
 
-/// Some layouts, what rules may be and what they cost.
+/// The layouts, operations and costs of a case.
 pub struct Case {
     /// The layouts.
     pub facades: Vec<Content>,
@@ -28,14 +28,14 @@ pub struct Case {
     pub costs: Costs,
 }
 
-/// What was found.
+/// The costs and bounds found.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
     /// The least cost; `None` when the exact search was not finished.
     pub exact: Option<f64>,
     /// Cost of the grammar that inference found, by the evaluator.
     pub cost: f64,
-    /// What inference says no grammar costs less than.
+    /// The bound of inference: it says that no grammar costs less.
     pub bound: Option<f64>,
     /// Lower and upper bound with more work, of a single facade.
     pub bounds: Option<(f64, f64)>,
@@ -122,17 +122,17 @@ impl Case {
 }
 
 impl Comparison {
-    /// Whether inference says that its grammar is optimal.
+    /// True if inference says that its grammar is optimal.
     pub fn proven(&self) -> bool {
         self.bound.is_some_and(|bound| self.cost <= bound + NOISE)
     }
 
-    /// Whether the grammar is known to be optimal.
+    /// True if the grammar is known to be optimal.
     pub fn optimal(&self) -> bool {
         self.exact.is_some_and(|exact| self.cost <= exact + NOISE)
     }
 
-    /// What was said and is not true.
+    /// A bound that is above the least cost, in words; `None` if all are right.
     pub fn fault(&self) -> Option<String> {
         let exact = self.exact?;
         let above = |bound: f64| bound > exact + NOISE;

@@ -1,4 +1,4 @@
-//! What a region contains: labelled tiles in integer coordinates from its lower left corner.
+//! The content of a region: labelled tiles in integer coordinates from its lower left corner.
 
 use std::fmt;
 
@@ -101,7 +101,7 @@ impl Content {
             .collect()
     }
 
-    /// What stands between two lines.
+    /// The content between two lines.
     pub fn strip(&self, axis: Axis, from: u32, to: u32) -> Self {
         let d = along(axis);
         let mut extent = self.extent;

@@ -8,14 +8,14 @@
 
 use super::network::Network;
 
-/// What is decided of a type.
+/// The decision on a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Nothing.
+    /// No decision yet.
     Open,
     /// It is a non-terminal of the grammar.
     In,
-    /// It is not.
+    /// It is no non-terminal of the grammar.
     Out,
 }
 
@@ -32,14 +32,14 @@ pub struct Landmarks<'n> {
     value: Vec<f64>,
     /// By step: the dearest node that it needs; none when it needs nothing that is not there.
     supporter: Vec<Option<usize>>,
-    /// By step: its value.
+    /// By step: the value of its supporter.
     reached: Vec<f64>,
     zone: Vec<bool>,
     before: Vec<bool>,
 }
 
 impl<'n> Landmarks<'n> {
-    /// Without any computation yet.
+    /// A computation on a network, before its first bound.
     pub fn new(network: &'n Network) -> Self {
         let (nodes, steps) = (network.nodes, network.steps.len());
         Self {

@@ -14,7 +14,7 @@ use edifice::shape::Axis;
 use super::catalogue::{Catalogue, Symbol};
 use super::content::{Content, along};
 
-/// What a rule does with the successors on its path.
+/// The operation of a rule on the successors on its path.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Way {
     Split(Axis),
@@ -37,7 +37,7 @@ pub struct Step {
     pub needs: Vec<usize>,
     /// The node after it.
     pub to: usize,
-    /// What it costs.
+    /// Its cost.
     pub cost: f64,
     /// The lines between which its successor first stands.
     pub part: Option<(u32, u32)>,

@@ -33,7 +33,7 @@ pub struct Smallest {
 
 /// Sums of costs that differ by less are equal.
 const NOISE: f64 = 1e-7;
-/// How often all types are tried before the search branches.
+/// Number of times that all types are tried before the search branches.
 const PASSES: usize = 2;
 
 /// The smallest grammar of some facades; `None` when `limits` do not suffice.
@@ -111,7 +111,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether no grammar that agrees with `status` is better than the best known.
+    /// True if no grammar that agrees with `status` is better than the best known.
     fn hopeless(&mut self, status: &[Status]) -> bool {
         self.bounds += 1;
         let enough = self.enough();

@@ -1,6 +1,6 @@
 //! The API by calling its router, without a socket.
 
-use edifice::studio::Settings;
+use edifice_studio::Settings;
 use serde_json::{Value, json};
 
 use crate::client::Api;

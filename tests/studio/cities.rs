@@ -3,19 +3,19 @@
 use std::path::Path;
 use std::time::Instant;
 
-use edifice::editing::city_proceduralization::fill;
-use edifice::experiments::shipped_bytes;
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{grammar_json, obj};
 use edifice::methods::city_proceduralization::synthesis::Shape;
-use edifice::studio::Settings;
+use edifice_datasets::shipped_bytes;
+use edifice_editing::city_proceduralization::fill;
+use edifice_studio::Settings;
 use serde_json::{Value, json};
 
 use crate::client::Api;
 
 const TOWN: &str = "city_proceduralization/town.city-grammar.json";
 
-/// A made city of at least so many buildings: copies of the shipped town in rows.
+/// A made city of at least `least` buildings: copies of the shipped town in rows.
 fn made(least: usize) -> InstanceGrammar {
     let path = Path::new(TOWN);
     let mut grammar =

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
-use edifice::studio::{Settings, Studio, router};
+use edifice_studio::{Settings, Studio, router};
 use serde_json::{Value, json};
 use tower::ServiceExt;
 
@@ -25,7 +25,7 @@ impl Api {
         }
     }
 
-    /// What its requests run in.
+    /// The runtime of its requests.
     pub fn runtime(&self) -> &tokio::runtime::Runtime {
         self.runtime.as_ref().expect("until it is dropped")
     }

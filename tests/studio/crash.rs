@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use edifice::editing;
-use edifice::editing::work::Work;
 use edifice::rng::stream;
+use edifice_editing as editing;
+use edifice_editing::work::Work;
 use rand::RngExt;
 
 /// A studio in a process of its own.
@@ -86,7 +86,7 @@ impl Drop for Process {
     }
 }
 
-/// A layout of so many elements that its file takes a while to write.
+/// A layout of `count` elements: its file takes a while to write.
 fn large(folder: &Path, count: usize) -> PathBuf {
     let region = |k: usize| {
         let (x, y) = (k % 100, k / 100);

@@ -1,14 +1,14 @@
-//! What designers ask of the editors: wishes, floors and columns, joint grammars, three dimensions; each with a script that
-//! gives the same bytes.
+//! The editors on the wishes of designers: attributes, floors and columns, joint grammars, three dimensions; each with
+//! a script that gives the same bytes.
 
 use std::path::Path;
 use std::process::Command;
 
-use edifice::editing::building_exteriors::ranges;
-use edifice::editing::examples::example;
-use edifice::editing::history::Document;
-use edifice::editing::work::Work;
 use edifice::rng::stream;
+use edifice_editing::building_exteriors::ranges;
+use edifice_editing::examples::example;
+use edifice_editing::history::Document;
+use edifice_editing::work::Work;
 use rand::RngExt;
 use serde_json::{Value, json};
 

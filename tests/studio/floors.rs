@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
 use edifice::grammar::{Grammar, Operation, Rule, Size, Start, Successor, check};
 use edifice::io::{facade_json, read_grammar};
 use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::rng::stream;
 use edifice::shape::Axis;
+use edifice_editing::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
 use rand::{Rng, RngExt};
 
 fn files(ending: &str) -> Vec<PathBuf> {

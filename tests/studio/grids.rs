@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use edifice::editing::history::Document;
-use edifice::editing::open;
-use edifice::editing::work::Work;
 use edifice::rng::stream;
+use edifice_editing::history::Document;
+use edifice_editing::open;
+use edifice_editing::work::Work;
 use rand::RngExt;
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! Each attack over a real socket, and its refusal.
 
 use edifice::rng::stream;
-use edifice::studio::Settings;
+use edifice_studio::Settings;
 use rand::RngExt;
 
 use crate::socket::Server;

@@ -7,14 +7,14 @@ use std::rc::Rc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use edifice::editing::examples::example;
-use edifice::editing::open;
-use edifice::editing::work::{Stopped, Told, Work, stoppable};
 use edifice::io::{city, facade_json};
 use edifice::methods::city_proceduralization::decompose_watched;
 use edifice::methods::facade_grammar::{self, infer_watched};
 use edifice::shape::Facade;
-use edifice::studio::Settings;
+use edifice_editing::examples::example;
+use edifice_editing::open;
+use edifice_editing::work::{Stopped, Told, Work, stoppable};
+use edifice_studio::Settings;
 use serde_json::{Value, json};
 
 use crate::client::Api;
@@ -43,7 +43,7 @@ fn long() -> (Api, Value) {
     (api, json!([{"do": "merge", "facades": [facade]}]))
 }
 
-/// What work said last that was stopped as soon as it said something.
+/// The last progress of work that was stopped as soon as it told any.
 fn stopped_at_once(method: impl FnOnce(&Work) + Send + 'static) -> Told {
     let work = Work::default();
     let own = work.clone();

@@ -4,8 +4,8 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use edifice::studio::Settings;
-use edifice::studio::guard::Limits;
+use edifice_studio::Settings;
+use edifice_studio::guard::Limits;
 
 use crate::socket::Server;
 

@@ -4,13 +4,13 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use edifice::editing::examples::example;
-use edifice::editing::history::Document;
-use edifice::editing::open;
-use edifice::editing::work::Work;
 use edifice::io::photograph::{address, of_bytes};
 use edifice::rng::stream;
-use edifice::studio::Settings;
+use edifice_editing::examples::example;
+use edifice_editing::history::Document;
+use edifice_editing::open;
+use edifice_editing::work::Work;
+use edifice_studio::Settings;
 use image::{ImageFormat, RgbImage};
 use rand::RngExt;
 use serde_json::{Value, json};

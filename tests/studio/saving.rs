@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use edifice::studio::{Open, Settings};
+use edifice_studio::{Open, Settings};
 use serde_json::json;
 
 use crate::socket::Server;

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use edifice::editing::examples::example;
-use edifice::editing::history::Document;
-use edifice::editing::work::Work;
+use edifice_editing::examples::example;
+use edifice_editing::history::Document;
+use edifice_editing::work::Work;
 use serde_json::{Value, json};
 
 fn document(id: &str) -> Document {

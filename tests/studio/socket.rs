@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
-use edifice::studio::{Settings, start};
+use edifice_studio::{Settings, start};
 
 /// A running studio.
 pub struct Server {

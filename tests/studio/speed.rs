@@ -1,11 +1,11 @@
-//! How long edits take on the server: `cargo test --release --test studio speed -- --ignored --nocapture`.
+//! Seconds of edits on the server: `cargo test --release --test studio speed -- --ignored --nocapture`.
 
 use std::time::Instant;
 
-use edifice::editing::examples::example;
-use edifice::editing::history::Document;
-use edifice::editing::work::Work;
 use edifice::rng::stream;
+use edifice_editing::examples::example;
+use edifice_editing::history::Document;
+use edifice_editing::work::Work;
 use rand::RngExt;
 use serde_json::{Value, json};
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-use edifice::experiments::sweep::examples::examples;
-use edifice::experiments::{ALL, Budget, Options, run};
+use edifice_experiments::sweep::examples::examples;
+use edifice_experiments::{ALL, Budget, Options, run};
 
 /// Runs artefacts and returns their rows: `[dataset, method, instance, seed, metric]` to value.
 fn artefact(paper: &str, name: &str) -> BTreeMap<[String; 5], f64> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::source::{Source, has_word, sources};
+use crate::{has_word, root, rust_files};
 
 /// Files of a method that do not have its name: its commands, and programs that serve it alone.
 const OWN: &[(&str, &str)] = &[
@@ -19,7 +19,7 @@ const OWN: &[(&str, &str)] = &[
 
 /// Lists of methods: what is dropped with a method are single lines.
 const REGISTRIES: &[&str] = &[
-    "src/methods/mod.rs",
+    "src/lib.rs",
     "src/cli/mod.rs",
     "src/editing/mod.rs",
     "experiments/mod.rs",
@@ -32,7 +32,7 @@ fn is_registry(place: &str) -> bool {
     REGISTRIES.contains(&place) || slugs().iter().any(artefacts)
 }
 
-/// Whether a file goes with the method.
+/// True if a file goes with the method.
 fn is_own(slug: &str, place: &str) -> bool {
     let named = place.split(['/', '.']).any(|part| {
         part == slug
@@ -44,30 +44,55 @@ fn is_own(slug: &str, place: &str) -> bool {
     named || OWN.iter().any(listed)
 }
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// The methods, as `src/methods/mod.rs` lists them.
+/// The methods: the folders of `src/methods`.
 fn slugs() -> Vec<String> {
-    let text = std::fs::read_to_string(root().join("src/methods/mod.rs")).expect("readable");
-    let slug = |line: &str| Some(line.strip_prefix("pub mod ")?.strip_suffix(';')?.to_owned());
-    let slugs: Vec<String> = text.lines().filter_map(slug).collect();
+    let folders = std::fs::read_dir(root().join("src/methods")).expect("listed");
+    let name = |entry: std::io::Result<std::fs::DirEntry>| {
+        let name = entry.expect("an entry").file_name();
+        name.to_string_lossy().into_owned()
+    };
+    let mut slugs: Vec<String> = folders.map(name).collect();
+    slugs.sort();
     assert!(slugs.len() >= 3, "{slugs:?}");
     slugs
 }
 
+/// True if a line names a method: its slug, its crate or the library of its crate.
+fn names(line: &str, slug: &str) -> bool {
+    let dashed = slug.replace('_', "-");
+    [
+        slug.to_owned(),
+        format!("edifice_{slug}"),
+        format!("edifice-{dashed}"),
+    ]
+    .iter()
+    .any(|name| has_word(line, name))
+        || line.contains(&format!("src/methods/{slug}"))
+}
+
 #[test]
 fn only_its_own_files_name_a_method() {
-    let folders = ["src", "experiments", "benches", "examples"];
-    let all: Vec<Source> = folders.iter().flat_map(|f| sources(root(), f)).collect();
     let mut faults = Vec::new();
-    for slug in slugs() {
-        let strangers = all
-            .iter()
-            .filter(|source| !is_own(&slug, &source.place) && !is_registry(&source.place));
-        let naming = strangers.filter(|source| source.names(&slug));
-        faults.extend(naming.map(|source| format!("{}: names {slug}", source.place)));
+    for path in ["src", "experiments", "benches", "examples"]
+        .iter()
+        .flat_map(|folder| rust_files(folder))
+    {
+        let place = path.to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(root().join(&path)).expect("readable");
+        // The tests of a file stand at its end.
+        let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+        for slug in slugs() {
+            if is_own(&slug, &place) || is_registry(&place) {
+                continue;
+            }
+            let lines = code.lines().filter(|l| !l.trim_start().starts_with("//"));
+            let crate_of = format!("edifice_{slug}");
+            for line in
+                lines.filter(|l| has_word(l, &crate_of) || l.contains(&format!("methods::{slug}")))
+            {
+                faults.push(format!("{place}: names {slug}: {}", line.trim()));
+            }
+        }
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
@@ -84,7 +109,14 @@ fn the_library_compiles_without_each_method() {
             .expect("a folder");
         let output = Command::new(env!("CARGO"))
             .current_dir(&copy)
-            .args(["check", "--lib", "--quiet", "--offline", "--target-dir"])
+            .args([
+                "check",
+                "--workspace",
+                "--lib",
+                "--quiet",
+                "--offline",
+                "--target-dir",
+            ])
             .arg(target)
             .output()
             .expect("cargo runs");
@@ -94,7 +126,7 @@ fn the_library_compiles_without_each_method() {
     }
 }
 
-/// Whether a target of the manifest is one of the method's.
+/// True if a target of the manifest is one of the method's.
 fn names_own(slug: &str, target: &str) -> bool {
     let stem = |path: &str| Path::new(path).file_stem()?.to_str().map(str::to_owned);
     let programs = OWN
@@ -116,14 +148,23 @@ fn copy_without(slug: &str) -> PathBuf {
     for file in ["Cargo.lock", "README.md"] {
         std::fs::copy(root().join(file), copy.join(file)).expect("copied");
     }
-    // The targets of the method go, paragraph by paragraph.
     let manifest = std::fs::read_to_string(root().join("Cargo.toml")).expect("readable");
-    let kept: Vec<&str> = manifest
-        .split("\n\n")
-        .filter(|paragraph| !paragraph.starts_with("[[") || !names_own(slug, paragraph))
-        .collect();
-    std::fs::write(copy.join("Cargo.toml"), kept.join("\n\n")).expect("written");
+    std::fs::write(copy.join("Cargo.toml"), manifest_without(slug, &manifest)).expect("written");
     copy
+}
+
+/// A manifest without the targets of the method, which are paragraphs, and the lines that name it.
+fn manifest_without(slug: &str, manifest: &str) -> String {
+    let kept = manifest
+        .split("\n\n")
+        .filter(|paragraph| !paragraph.starts_with("[[") || !names_own(slug, paragraph));
+    let kept: Vec<String> = kept
+        .map(|paragraph| {
+            let lines = paragraph.lines().filter(|line| !names(line, slug));
+            lines.collect::<Vec<_>>().join("\n")
+        })
+        .collect();
+    kept.join("\n\n")
 }
 
 fn copy_folder(slug: &str, folder: &Path, copy: &Path) {
@@ -137,11 +178,14 @@ fn copy_folder(slug: &str, folder: &Path, copy: &Path) {
         }
         if entry.path().is_dir() {
             copy_folder(slug, &place, copy);
+        } else if name.ends_with("Cargo.toml") {
+            let text = std::fs::read_to_string(entry.path()).expect("readable");
+            std::fs::write(copy.join(&place), manifest_without(slug, &text)).expect("written");
         } else if is_registry(&name) {
             let text = std::fs::read_to_string(entry.path()).expect("readable");
             let kept = text
                 .lines()
-                .filter(|line| !has_word(line, slug) || line.starts_with("//!"));
+                .filter(|line| !names(line, slug) || line.starts_with("//!"));
             let kept: Vec<&str> = kept.collect();
             std::fs::write(copy.join(&place), kept.join("\n")).expect("written");
         } else {

@@ -6,8 +6,8 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::styles::{GARAGES, Kinds, Place};
 
-/// What the plan and the walls must come to; lengths in metres, positions as shares of the bounding
-/// box of the ground floor, before a mirrored house is mirrored.
+/// The wanted numbers of the plan and the walls; lengths in metres, positions as shares of the bounding box of the
+/// ground floor, before a mirrored house is mirrored.
 #[derive(Debug, Clone)]
 pub(super) struct Numbers {
     pub width: f64,
@@ -18,17 +18,17 @@ pub(super) struct Numbers {
     pub bdry: f64,
     /// Shares of the floors in the total floor area.
     pub arf: [f64; 3],
-    /// How far the front rooms stand out.
+    /// Length by which the front rooms stand out.
     pub front_step: f64,
-    /// How far the wall beside a garage beside the house steps in.
+    /// Length by which the wall beside a garage steps in, if the garage is beside the house.
     pub side_step: f64,
-    /// How far the wall behind a garage behind the house steps in.
+    /// Length by which the wall behind a garage steps in, if the garage is behind the house.
     pub yard: f64,
     pub garage: Option<Part>,
     pub place: Option<Place>,
     pub front_porch: Option<Part>,
     pub back_porch: Option<Part>,
-    /// How far the back wall steps in beside a back porch.
+    /// Length by which the back wall steps in beside a back porch.
     pub back_step: f64,
     /// Front, back, left, right.
     pub wwr: [f64; 4],

@@ -7,9 +7,9 @@
 use rand::{Rng, RngExt};
 
 use super::plan::Site;
-use crate::shape::{Rect, Side};
+use edifice_shape::{Rect, Side};
 
-/// What a plan looks like from above.
+/// The form of a plan, seen from above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Family {
     /// One long body, a corner a little set back.
@@ -62,7 +62,7 @@ impl Family {
     }
 }
 
-/// How often each is tried.
+/// Weight of each family among those tried.
 const WEIGHTS: [u32; 10] = [10, 3, 4, 2, 5, 9, 4, 12, 2, 2];
 
 /// Corners in the order of [`Site::deepest`].

@@ -2,7 +2,7 @@
 
 use super::storeys::millimetres;
 use super::strips::{NARROWEST, Strip, Use};
-use crate::shape::{ElementStyle, FacadeElement, FacadePiece};
+use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 
 /// Usual distance between windows (m).
 const SPACING: f64 = 2.4;
@@ -148,7 +148,7 @@ fn set_apart(slots: &mut [Slot], pieces: &[FacadePiece], scale: f64) -> bool {
     moved
 }
 
-/// Whether each mark (left edge, centre, right edge) of the fewer windows meets one of the others.
+/// True if each mark (left edge, centre, right edge) of the fewer windows meets one of the others.
 fn in_line(a: Vec<[f64; 3]>, b: Vec<[f64; 3]>) -> bool {
     let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
     let meet = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).any(|(a, b)| (a - b).abs() < APART);

@@ -1,12 +1,12 @@
-//! Whether roofs hide windows or doors.
+//! The test for roofs that hide windows or doors.
 
-use crate::methods::building_exteriors::house::walls::{WallPiece, walls_of_pieces};
-use crate::shape::{
+use edifice_building_exteriors::house::walls::{WallPiece, walls_of_pieces};
+use edifice_shape::{
     BoxStyle, Building, ElementStyle, FacadePiece, MassBox, Ridge, RoofStyle, Side,
 };
 
-/// How far sloped roofs reach over the walls, and flat ones; thickness of a roof; a porch's beam (m). A little more
-/// than what is built.
+/// The reach of sloped roofs over the walls, and of flat ones; thickness of a roof; height of a porch's beam (m). Each
+/// a little more than is built.
 const EAVES: f64 = 0.4;
 const CORNICE: f64 = 0.15;
 const ROOF: f64 = 0.2;
@@ -17,7 +17,7 @@ const DECK: f64 = 0.2;
 const CLEAR: f64 = 0.03;
 const PLACES: usize = 16;
 
-/// Whether some element of the building is behind or over the roof of some box, or has no wall.
+/// True if some element of the building is behind or over the roof of some box, or has no wall.
 pub(super) fn hides(building: &Building) -> bool {
     let walls = walls_of_pieces(building);
     building.facades.iter().zip(&walls).any(|(piece, wall)| {

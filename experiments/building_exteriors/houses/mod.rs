@@ -27,10 +27,10 @@ pub use wild::wild;
 
 use rayon::prelude::*;
 
-use crate::methods::building_exteriors::attributes::facade_attributes;
-use crate::methods::building_exteriors::mass::is_sound;
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building};
+use edifice_base::rng::stream;
+use edifice_building_exteriors::attributes::facade_attributes;
+use edifice_building_exteriors::mass::is_sound;
+use edifice_shape::{BoxStyle, Building};
 
 /// Number of hidden styles.
 pub const STYLES: usize = styles::STYLES.len();
@@ -71,13 +71,13 @@ pub const SHIPPED: usize = 200;
 /// A generated house and its hidden style.
 #[derive(Debug, Clone)]
 pub struct House {
-    /// What the learner sees.
+    /// The house, as the learner sees it.
     pub building: Building,
     /// Its style, below [`STYLES`].
     pub style: usize,
     /// The kinds of its nine attributes that have kinds, in the order of [`KINDS`].
     pub kinds: [usize; KINDS.len()],
-    /// What its plan looks like.
+    /// The form of its plan.
     pub family: Family,
 }
 
@@ -128,7 +128,7 @@ fn attempt(
     })
 }
 
-/// Whether the windows of the floors stand in line, or do not, as the kind says.
+/// True if the windows of the floors stand in line exactly where the kind asks for it.
 fn has_alignment(building: &Building, kinds: &styles::Kinds) -> bool {
     let wanted = match (kinds.arf, kinds.alignment) {
         (0, _) | (_, 2) => [0.0; 4],

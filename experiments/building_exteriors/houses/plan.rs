@@ -19,7 +19,7 @@ use super::draw::{Numbers, Part};
 use super::families::Family;
 use super::storeys::{self, millimetres};
 use super::styles::{Kinds, Place};
-use crate::shape::{BoxStyle, MassBox, PlanUnion, Rect};
+use edifice_shape::{BoxStyle, MassBox, PlanUnion, Rect};
 
 pub(super) struct Plan {
     pub floor_height: f64,
@@ -29,7 +29,7 @@ pub(super) struct Plan {
 
 /// Free wall between two parts, or a part and a corner (m).
 const CLEAR: f64 = 0.05;
-/// How far a wing behind or beside a garage laps over it (m).
+/// Length by which a wing behind or beside a garage laps over it (m).
 const LAP: f64 = 0.1;
 /// Thinnest wing and narrowest recess of the main body (m).
 const THINNEST: f64 = 1.5;
@@ -172,7 +172,7 @@ impl Site {
     }
 }
 
-/// Whether a part before the front wall stands out of it and meets it.
+/// Tests that a part before the front wall stands out of it and meets it; `None` if not.
 fn stands_before(part: &Rect, step: f64, depth: f64) -> Option<()> {
     let meets = part.top() > step + CLEAR && part.top() < 0.7 * depth;
     (part.x > CLEAR && part.y > CLEAR && part.y < step - CLEAR && meets).then_some(())

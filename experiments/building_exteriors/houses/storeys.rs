@@ -5,12 +5,12 @@ use rand::{Rng, RngExt};
 use super::draw::Numbers;
 use super::plan::{PARTS, Site};
 use super::styles::Kinds;
-use crate::methods::building_exteriors::house::roofs::largest_rectangles;
-use crate::shape::{BoxStyle, MassBox, PlanUnion, Rect, Ridge, Roof, RoofStyle};
+use edifice_building_exteriors::house::roofs::largest_rectangles;
+use edifice_shape::{BoxStyle, MassBox, PlanUnion, Rect, Ridge, Roof, RoofStyle};
 
 /// Least extent of an upper floor (m).
 const LEAST: f64 = 3.0;
-/// How far a wing reaches into the boxes that it joins beyond half its width (m).
+/// Length by which a wing reaches, beyond half its width, into the boxes that it joins (m).
 const REACH: f64 = 0.4;
 /// Slopes of roofs in degrees.
 const PITCHES: [f64; 4] = [25.0, 30.0, 35.0, 40.0];

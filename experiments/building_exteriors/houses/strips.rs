@@ -2,19 +2,19 @@
 
 use super::plan::Plan;
 use super::storeys::millimetres;
-use crate::shape::{BoxStyle, ElementStyle, MassBox, PlanEdge, PlanUnion, Rect, Side};
+use edifice_shape::{BoxStyle, ElementStyle, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// Narrowest strip with windows, and narrowest that can be seen to be asymmetric (m).
 pub(super) const NARROWEST: f64 = 1.2;
 pub(super) const NARROWEST_FREE: f64 = 1.6;
 /// Thinnest strip that a cut may leave, blank (m).
 const THINNEST: f64 = 0.3;
-/// How far the roof of a porch reaches over it (m).
+/// Length by which the roof of a porch reaches over it (m).
 const EAVES: f64 = 0.4;
 /// Narrowest wall for a garage door (m).
 const GARAGE_DOOR: f64 = 2.55;
 
-/// What a wall has.
+/// The use of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
     Windows,
@@ -57,12 +57,12 @@ impl Strip {
         self.walls.iter().any(|w| w.usage == Use::Door)
     }
 
-    /// Whether no wall is blank.
+    /// True if no wall is blank.
     fn is_bare(&self) -> bool {
         self.walls.iter().all(|w| w.usage != Use::Blank)
     }
 
-    /// Whether it has windows.
+    /// True if it has windows.
     pub fn is_glazed(&self) -> bool {
         let windows = |w: &Wall| w.usage == Use::Windows;
         self.width() >= NARROWEST && !self.has_door() && self.walls.iter().any(windows)
@@ -107,7 +107,7 @@ fn outline(plan: &Plan, k: usize) -> Vec<PlanEdge> {
     PlanUnion::new(&walls).outline()
 }
 
-/// Where the roof of a porch meets a wall of the ground floor, along the wall.
+/// The range along a wall of the ground floor where the roof of a porch meets it, in metres; `None` if it does not.
 fn roofed(side: Side, at: f64, porch: &Rect) -> Option<[f64; 2]> {
     let (low, high, start, end) = match side {
         Side::Front | Side::Back => (porch.y, porch.top(), porch.x, porch.right()),

@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use crate::shape::{ElementStyle, RoofStyle, Special};
+use edifice_shape::{ElementStyle, RoofStyle, Special};
 
 /// Kinds of the attributes of one house, and its elements.
 #[derive(Debug, Clone)]
@@ -31,11 +31,11 @@ pub(super) struct Kinds {
     pub windows: Vec<ElementStyle>,
     /// Special elements present.
     pub special: Vec<Special>,
-    /// Whether the plan is mirrored left to right.
+    /// True if the plan is mirrored left to right.
     pub mirrored: bool,
 }
 
-/// Where a garage stands.
+/// The place of a garage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// Before the front wall, on the left.
@@ -211,7 +211,7 @@ pub(super) const STYLES: [Style; 7] = [
     },
 ];
 
-/// How often each style is built.
+/// Share of each style among the houses.
 const WEIGHTS: [f64; 7] = [0.15, 0.15, 0.14, 0.15, 0.14, 0.13, 0.14];
 
 const ROOFS: [RoofStyle; 3] = [RoofStyle::Flat, RoofStyle::Gable, RoofStyle::Hip];

@@ -12,7 +12,7 @@ use super::glaze::glaze;
 use super::plan::Plan;
 use super::strips::{NARROWEST_FREE, Strip, Use, make_symmetric, strips};
 use super::styles::Kinds;
-use crate::shape::{ElementStyle, FacadePiece, Side};
+use edifice_shape::{ElementStyle, FacadePiece, Side};
 
 /// The facade pieces, or `None` when the numbers cannot be met.
 pub(super) fn build(

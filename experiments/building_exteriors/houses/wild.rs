@@ -4,9 +4,9 @@
 
 use rand::{Rng, RngExt};
 
-use crate::methods::building_exteriors::mass::is_sound;
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, MassBox, PlanUnion, Ridge, Roof, RoofStyle, visibility};
+use edifice_base::rng::stream;
+use edifice_building_exteriors::mass::is_sound;
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Ridge, Roof, RoofStyle, visibility};
 
 /// Wild house number `index` of the set with this seed.
 pub fn wild(seed: u64, index: u64) -> Building {
@@ -71,7 +71,7 @@ fn attempt(index: u64, rng: &mut impl Rng) -> Option<Building> {
     (is_sound(&building) && parts_count(&building, parts)).then_some(building)
 }
 
-/// Whether each part is seen, and the porches are in front and at the back as drawn.
+/// True if each part is seen, and the porches are in front and at the back as drawn.
 fn parts_count(building: &Building, parts: [bool; 3]) -> bool {
     let plan = building.floor_plan(0);
     let Some(bounds) = PlanUnion::new(&plan).bounding_box() else {

@@ -5,9 +5,9 @@ use rand::RngExt;
 use super::draft::{Draft, Part, leaf};
 use super::elements::{Break, Style, door, dormer, pilaster, shop};
 use super::theme::{Attic, Body, Ground, Theme};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
-/// What stands in one column of one floor.
+/// The content of one column of one floor: the kind of window, and a break of the rhythm.
 type Cell = (usize, Option<Break>);
 
 /// Designs a facade.
@@ -115,7 +115,7 @@ impl Designer<'_> {
         self.draft.stack(name, parts)
     }
 
-    /// What stands in each column of each floor.
+    /// The content of each column of each floor.
     fn plans(&mut self, columns: u32, floors: u32) -> Vec<Vec<Cell>> {
         let mut plans: Vec<Vec<Cell>> = Vec::new();
         for f in 0..floors {

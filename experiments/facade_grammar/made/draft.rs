@@ -2,15 +2,15 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::{Grammar, Operation, Rule, Start, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, Operation, Rule, Start, Successor};
+use edifice_shape::Axis;
 
 /// A symbol with its size in centimetres.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Part {
     /// Terminal label or non-terminal symbol.
     pub symbol: String,
-    /// Whether it has no rule.
+    /// True if it has no rule.
     pub terminal: bool,
     /// Extent along x.
     pub width: u32,
@@ -37,7 +37,7 @@ impl Part {
     }
 }
 
-/// What makes two parts the same: operation, and the parts inside.
+/// The properties in which equal parts agree: operation, and the parts inside.
 type Content = (bool, Axis, Vec<Part>, u32);
 
 /// The rules so far.

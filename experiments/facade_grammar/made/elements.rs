@@ -3,9 +3,9 @@
 use rand::RngExt;
 
 use super::draft::{Draft, Part, leaf};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
-/// How a window is divided.
+/// The division of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Glazing {
     /// One terminal.

@@ -27,13 +27,13 @@
 mod plan;
 mod write;
 
-use crate::grammar::{Grammar, GrammarError, derive};
-use crate::rng::stream;
-use crate::shape::Facade;
+use edifice_base::rng::stream;
+use edifice_grammar::{Grammar, GrammarError, derive};
+use edifice_shape::Facade;
 
 use plan::Plan;
 
-/// How a reference splits a facade, and what its own layouts look like.
+/// The way in which a reference splits a facade, and the form of its own layouts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Floors, then tiles.

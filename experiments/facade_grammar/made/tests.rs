@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::grammar::{Costs, evaluate};
+use edifice_grammar::{Costs, evaluate};
 
 #[test]
 fn layouts_are_splittable_tilings_that_their_grammars_derive() {
@@ -16,7 +16,7 @@ fn layouts_are_splittable_tilings_that_their_grammars_derive() {
             "{}: {count} terminals",
             facade.name
         );
-        crate::shape::splittable(facade).unwrap();
+        edifice_shape::splittable(facade).unwrap();
         evaluate(grammar, std::slice::from_ref(facade), &Costs::default())
             .unwrap_or_else(|e| panic!("{}: {e}", facade.name));
         let whole = |v: f64| v.fract() == 0.0;
@@ -51,6 +51,6 @@ fn any_number_of_terminals_can_be_had() {
             count.abs_diff(terminals) * 4 < terminals,
             "{count} for {terminals}"
         );
-        crate::shape::splittable(&made.facade).unwrap();
+        edifice_shape::splittable(&made.facade).unwrap();
     }
 }

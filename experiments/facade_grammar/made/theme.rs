@@ -2,7 +2,7 @@
 
 use super::elements::Glazing;
 
-/// How the kinds of windows follow each other along a floor.
+/// The order of the kinds of windows along a floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rhythm {
     /// A A A A.
@@ -20,7 +20,7 @@ pub enum Rhythm {
 }
 
 impl Rhythm {
-    /// Which kind stands at place `i` of `n`, from 0 for A.
+    /// The kind that stands at place `i` of `n`, from 0 for A.
     pub fn kind(self, i: usize, n: usize) -> usize {
         let last = n - 1;
         match self {
@@ -34,7 +34,7 @@ impl Rhythm {
     }
 }
 
-/// How the body is divided before its floors.
+/// The division of the body before its floors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Body {
     /// One piece.
@@ -60,7 +60,7 @@ pub enum Ground {
     Arcade,
 }
 
-/// What stands above the cornice.
+/// The part above the cornice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attic {
     /// Nothing.
@@ -88,12 +88,12 @@ pub struct Theme {
     pub body: Body,
     /// Ground floor.
     pub ground: Ground,
-    /// What stands on top.
+    /// The part above the cornice.
     pub attic: Attic,
     /// Share of windows' kinds that carry a balcony: 0 none, 1 every second kind, 2 also one that
     /// runs along a whole floor.
     pub balconies: u32,
-    /// Whether pilasters stand between columns.
+    /// True if pilasters stand between columns.
     pub pilasters: bool,
     /// Fewest and most windows that differ from what the rhythm asks for.
     pub breaks: (u32, u32),

@@ -7,10 +7,10 @@ use super::data::{self, FIGURE_9, Instance};
 use super::iterations;
 use super::published::Published;
 use super::runs::mean;
-use crate::experiments::{Artefact, Budget, Context};
-use crate::methods::procedural_logic::Parameters;
-use crate::report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
-use crate::{Error, Result};
+use crate::{Artefact, Budget, Context};
+use edifice_base::{Error, Result};
+use edifice_procedural_logic::Parameters;
+use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// The artefact.
 pub const RANGES: Artefact = Artefact {
@@ -97,7 +97,7 @@ const WHICH: &str = "**Which setting Table 2 prints.** The column `procedural_lo
     only where a part has full lines in both directions. Where the parse then takes all lines of one direction before the other, horizontal ones first, it is \
     BGL's initial step, and the two columns coincide.";
 
-/// What the settings do and do not reach.
+/// The sentences on the costs that the settings reach, and those that they do not.
 fn reached(found: &Found) -> String {
     let costs = &found.measured[found.example].costs;
     let range = |joining: usize| {
@@ -149,7 +149,7 @@ impl Found {
         best.unwrap_or_default()
     }
 
-    /// What the tables show of all settings, in the order of their rows.
+    /// The picks among all settings that the tables show, in the order of their rows.
     fn picks(&self, joining: usize) -> Result<[(&'static str, Pick); 6]> {
         Ok([
             ("compression", Pick::At(place(&Parameters::COMPRESSION)?)),

@@ -5,15 +5,13 @@ use serde::{Deserialize, Serialize};
 use super::super::BEST;
 use super::super::likeness::likeness;
 use super::super::runs::{Question, Solver, mean, solve};
-use crate::grammar::{Costs, evaluate};
-use crate::methods::facade_grammar::{Method, Operations};
-use crate::methods::procedural_logic::{
-    Joining, Parameters, baseline_grammar_joining, search_axes,
-};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{Method, Operations};
+use edifice_grammar::{Costs, evaluate};
+use edifice_procedural_logic::{Joining, Parameters, baseline_grammar_joining, search_axes};
+use edifice_shape::Facade;
 
-/// How binary splits become n-ary, with the name in tables; that of Table 2 first.
+/// The ways in which binary splits become n-ary, with their names in tables; that of Table 2 first.
 pub const JOININGS: [(&str, Joining); 3] = [
     ("procedural_logic", Joining::All),
     ("procedural_logic_used_once", Joining::UsedOnce),
@@ -37,7 +35,7 @@ pub fn settings() -> Vec<Parameters> {
     all
 }
 
-/// What the methods cost on one facade, splits only.
+/// The costs of the methods on one facade, splits only.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Measured {
     /// `costs[joining][setting]`.
@@ -46,7 +44,7 @@ pub struct Measured {
     pub bayesian: f64,
     /// This project's ADP.
     pub adp: f64,
-    /// Whether the grammar of Table 2's column and that of BGL split the same regions.
+    /// True if the grammar of Table 2's column and that of BGL split the same regions.
     pub same_regions: bool,
 }
 
@@ -82,7 +80,7 @@ pub fn measure(facade: &Facade, iterations: u64, seed: u64) -> Result<Measured> 
     })
 }
 
-/// What is taken of the costs of all settings.
+/// The number that is picked from the costs of all settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pick {
     /// The least over the settings.

@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::super::picture::panel;
 use super::super::{folds, row};
 use super::{facades, first, plus_minus, split};
-use crate::Result;
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::{Element, Layout};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::method::{Method, complete};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::report::{Align, Figure, Table};
-use crate::rng::stream;
-use crate::shape::Rect;
+use crate::Context;
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_report::{Align, Figure, Table};
+use edifice_shape::Rect;
+use edifice_structure_completion::layout::{Element, Layout};
+use edifice_structure_completion::measure::agreement;
+use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::partial::PartialLayout;
 
 /// Facades in the picture.
 const SHOWN: usize = 3;

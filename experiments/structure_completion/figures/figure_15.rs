@@ -2,16 +2,16 @@
 
 use super::super::picture::panel;
 use super::super::row;
-use crate::experiments::Context;
-use crate::io::facade_json;
-use crate::methods::structure_completion::best::modes;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::model::shipped_model;
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::report::{Align, Figure, Table};
-use crate::rng::stream;
-use crate::shape::{AnnotatedFacade, Facade, Rect, Region};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_io::facade_json;
+use edifice_report::{Align, Figure, Table};
+use edifice_shape::{AnnotatedFacade, Facade, Rect, Region};
+use edifice_structure_completion::best::modes;
+use edifice_structure_completion::layout::{Class, Element};
+use edifice_structure_completion::model::shipped_model;
+use edifice_structure_completion::partial::PartialLayout;
 
 /// Outline of the sketch in metres.
 const WIDTH: f64 = 10.7;

@@ -5,13 +5,13 @@ use rand::seq::SliceRandom;
 use super::super::published::Published;
 use super::super::row;
 use super::facades;
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::Layout;
-use crate::methods::structure_completion::policy::{PaperModel, WEIGHTS, weight_states};
-use crate::methods::structure_completion::score::{TERMS, Term};
-use crate::report::{Align, Chart, Corner, Figure, Scale, Series, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
+use edifice_structure_completion::layout::Layout;
+use edifice_structure_completion::policy::{PaperModel, WEIGHTS, weight_states};
+use edifice_structure_completion::score::{TERMS, Term};
 
 /// Facades of the whole training set, and those left out each time, in tenths of it.
 const WHOLE: usize = 100;

@@ -5,16 +5,16 @@ use serde::{Deserialize, Serialize};
 use super::super::picture::panel;
 use super::super::row;
 use super::{Item, facades, mean_error, paper, plus_minus, split};
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::{Element, Layout};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::methods::structure_completion::policy::{Budget, PaperModel, Scene, optimize};
-use crate::methods::structure_completion::score::{TERMS, Term};
-use crate::methods::structure_completion::task::Task;
-use crate::report::{Align, Figure, Table, Tiles};
-use crate::rng::{Stream, stream};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::{Stream, stream};
+use edifice_base::{Error, Result};
+use edifice_report::{Align, Figure, Table, Tiles};
+use edifice_structure_completion::layout::{Element, Layout};
+use edifice_structure_completion::measure::agreement;
+use edifice_structure_completion::partial::PartialLayout;
+use edifice_structure_completion::policy::{Budget, PaperModel, Scene, optimize};
+use edifice_structure_completion::score::{TERMS, Term};
+use edifice_structure_completion::task::Task;
 
 /// Facades in the picture of Fig. 17.
 const SHOWN: usize = 3;
@@ -33,8 +33,8 @@ fn title(left_out: usize) -> String {
     }
 }
 
-/// What decides which part of a layout is hidden: the same in these figures and in sweeps, whatever other facades are
-/// completed.
+/// The random numbers that decide which part of a layout is hidden: the same in these figures and in sweeps, whatever
+/// other facades are completed.
 pub fn drawn(layout: &Layout, seed: u64) -> Stream {
     stream(seed, &format!("figure 18, {}", layout.name), 0)
 }

@@ -2,21 +2,21 @@
 
 use super::super::{folds, row};
 use super::{facades, first, split};
-use crate::experiments::Context;
-use crate::io::gltf;
-use crate::io::scene_png::picture_png;
-use crate::methods::structure_completion::layout::lines::{lines, median};
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::method::{Method, complete};
-use crate::methods::structure_completion::task::Task;
-use crate::report::{Align, Table};
-use crate::rng::stream;
-use crate::scene::relief::{material, relief};
-use crate::scene::trace::{framing, trace};
-use crate::scene::{Group, Instance, Scene};
-use crate::shape::{Axis, Facade, LabelGrid, Rect, Region, decompose};
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_io::gltf;
+use edifice_io::scene_png::picture_png;
+use edifice_report::{Align, Table};
+use edifice_scene::relief::{material, relief};
+use edifice_scene::trace::{framing, trace};
+use edifice_scene::{Group, Instance, Scene};
+use edifice_shape::{Axis, Facade, LabelGrid, Rect, Region, decompose};
+use edifice_structure_completion::layout::lines::{lines, median};
+use edifice_structure_completion::layout::{Class, Element, Layout};
+use edifice_structure_completion::measure::agreement;
+use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::task::Task;
 
 /// Metres from floor to floor, by which a facade in pixels is measured.
 const FLOOR: f64 = 3.2;
@@ -194,7 +194,7 @@ fn add_roof(scene: &mut Scene, name: &str, front: &Facade) -> usize {
     let triangles = sides
         .iter()
         .flat_map(|s| [s[0], s[1], s[2], s[0], s[2], s[3]]);
-    scene.meshes.push(crate::scene::Mesh {
+    scene.meshes.push(edifice_scene::Mesh {
         name: format!("{name} roof"),
         positions: (0..8).map(corner).collect(),
         parts: vec![(number, triangles.collect())],

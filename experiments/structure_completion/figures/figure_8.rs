@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use super::super::picture::panel;
 use super::super::row;
 use super::{facades, mean_error, paper, plus_minus, split};
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::policy::{Budget, Policy, Scene, grow, optimize};
-use crate::methods::structure_completion::task::Task;
-use crate::report::{Align, Figure, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_report::{Align, Figure, Table};
+use edifice_structure_completion::layout::Element;
+use edifice_structure_completion::measure::agreement;
+use edifice_structure_completion::policy::{Budget, Policy, Scene, grow, optimize};
+use edifice_structure_completion::task::Task;
 
 /// Facades in the picture.
 const SHOWN: usize = 3;

@@ -13,11 +13,11 @@ pub mod figure_8;
 pub use figure_18::{drawn, without};
 
 use super::data::{self, Item};
-use crate::experiments::Context;
-use crate::methods::structure_completion::completion::Completion;
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::methods::structure_completion::policy::PaperModel;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_base::{Error, Result};
+use edifice_structure_completion::completion::Completion;
+use edifice_structure_completion::layout::{Class, Element, Layout};
+use edifice_structure_completion::policy::PaperModel;
 
 /// Facades that fit a picture and that a search of seconds can complete.
 const ELEMENTS: std::ops::RangeInclusive<usize> = 8..=90;
@@ -32,7 +32,7 @@ pub fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
     Ok(items)
 }
 
-/// Whether a facade has at least eight windows and at most 90 elements.
+/// True if a facade has at least eight windows and at most 90 elements.
 pub fn in_size(item: &Item) -> bool {
     item.layout.count(Class::Window) >= 8 && ELEMENTS.contains(&item.layout.elements.len())
 }

@@ -9,8 +9,8 @@ use toml::Spanned;
 
 use super::file::{Definition, Lists, Settings};
 use super::place::suggestion;
-use crate::experiments::sweep::study::Study;
-use crate::{Error, Result};
+use crate::sweep::study::Study;
+use edifice_base::{Error, Result};
 
 /// A configuration that is compared with others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ pub struct Arm {
     pub settings: Map<String, Value>,
 }
 
-/// What is wrong with the arms.
+/// The faults of the arms.
 #[derive(Debug, thiserror::Error)]
 enum ArmError {
     #[error("the sweep has no arm: write [[arm]] or [[grid]], and leave some of them in")]

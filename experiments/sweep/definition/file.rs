@@ -8,8 +8,8 @@ use toml::Spanned;
 
 use super::place::{place, suggestion};
 use super::task::TaskOptions;
-use crate::experiments::sweep::study::{Better, Study};
-use crate::{Error, Result};
+use crate::sweep::study::{Better, Study};
+use edifice_base::{Error, Result};
 
 /// Settings by name, each with its place in the file.
 pub(super) type Settings = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
@@ -63,13 +63,13 @@ enum Seeds {
     List(Vec<u64>),
 }
 
-/// What the report is about.
+/// The options of the report.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReportOptions {
     /// Metric; the study's first unless given.
     pub metric: Option<String>,
-    /// Which values are better.
+    /// The values that are better.
     pub better: Option<Better>,
     /// Name of the arm that the others are compared with; the first unless given.
     pub reference: Option<String>,
@@ -90,17 +90,17 @@ pub struct Definition {
     pub learn: Vec<String>,
     /// Seeds.
     pub seeds: Vec<u64>,
-    /// Whether all arms meet the same chance on an instance and seed.
+    /// True if all arms meet the same chance on an instance and seed.
     pub paired_seeds: bool,
-    /// What the report is about.
+    /// The options of the report.
     pub report: ReportOptions,
-    /// What a task needs.
+    /// The needs of a task.
     pub task: TaskOptions,
     pub(super) file: File,
     pub(super) text: String,
 }
 
-/// What is wrong in a sweep file.
+/// A fault of a sweep file, as a sentence.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 struct Wrong(String);

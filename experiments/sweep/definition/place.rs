@@ -1,4 +1,4 @@
-//! Where in a sweep file something is wrong, and what was probably meant.
+//! The place of a fault in a sweep file, and the word that was probably meant.
 
 use std::ops::Range;
 

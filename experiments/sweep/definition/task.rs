@@ -1,8 +1,8 @@
-//! What a task needs of a machine.
+//! The needs of a task on a machine.
 
 use serde::{Deserialize, Serialize};
 
-/// What a task needs of a machine.
+/// The needs of a task on a machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TaskOptions {

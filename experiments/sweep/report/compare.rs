@@ -1,21 +1,19 @@
-//! What the results say of each arm, and of each against the reference.
+//! The results of each arm, and of each against the reference.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::experiments::sweep::collect::Record;
-use crate::experiments::sweep::plan::Plan;
-use crate::experiments::sweep::statistics::{
-    Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank,
-};
-use crate::experiments::sweep::study::{Better, Study};
-use crate::rng::stream;
+use crate::sweep::collect::Record;
+use crate::sweep::plan::Plan;
+use crate::sweep::statistics::{Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank};
+use crate::sweep::study::{Better, Study};
+use edifice_base::rng::stream;
 
-/// What is compared.
+/// The question of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// Metric.
     pub metric: String,
-    /// Which values are better.
+    /// The values that are better.
     pub better: Better,
     /// Index of the arm that the others are compared with.
     pub reference: usize,
@@ -55,7 +53,7 @@ impl Question {
 /// Values of the metric: `[arm][unit]`, by seed.
 pub type Values = Vec<Vec<BTreeMap<u64, f64>>>;
 
-/// One arm.
+/// The results of one arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     /// Mean over the units that all arms have.
@@ -77,11 +75,12 @@ pub struct Line {
 /// Everything that a report says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What is compared.
+    /// The question.
     pub question: Question,
-    /// By arm.
+    /// The results, one line for each arm.
     pub lines: Vec<Line>,
-    /// What a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the splits of it, or its parts.
+    /// The unit that a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the
+    /// splits of it, or its parts.
     pub unit: &'static str,
     /// Units that all arms have values of.
     pub common: Vec<usize>,

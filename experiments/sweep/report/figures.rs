@@ -1,11 +1,11 @@
 //! Figures of a sweep's report.
 
 use super::compare::Comparison;
-use crate::experiments::sweep::collect::Record;
-use crate::experiments::sweep::plan::Plan;
-use crate::experiments::sweep::statistics::{profile, reached};
-use crate::experiments::sweep::study::{Better, Study};
-use crate::report::{Chart, Corner, Figure, Ranking, Scale, Series};
+use crate::sweep::collect::Record;
+use crate::sweep::plan::Plan;
+use crate::sweep::statistics::{profile, reached};
+use crate::sweep::study::{Better, Study};
+use edifice_report::{Chart, Corner, Figure, Ranking, Scale, Series};
 
 /// Critical-difference diagram; none with fewer than two arms.
 pub fn ranking(plan: &Plan, comparison: &Comparison) -> Option<Figure> {
@@ -153,7 +153,7 @@ pub fn anytime(
 /// Points of an anytime curve.
 const POINTS: usize = 80;
 
-/// Shares of runs that reached each target after so many evaluations; none without traces.
+/// Shares of runs that reached each target, by evaluations; none without traces.
 pub fn targets(
     plan: &Plan,
     study: &Study,

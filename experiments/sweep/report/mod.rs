@@ -13,8 +13,8 @@ use super::collect::{Record, records};
 use super::journal::Keep;
 use super::plan::Plan;
 use super::study::Study;
-use crate::report::{Align, Figure, Page, Section, Table, index, write_figure};
-use crate::{Error, Result, file};
+use edifice_base::{Error, Result, file};
+use edifice_report::{Align, Figure, Page, Section, Table, index, write_figure};
 
 /// Folder of the report in a sweep's folder.
 pub const REPORT: &str = "report";
@@ -119,7 +119,7 @@ fn check(plan: &Plan, out: &Path, records: &[Record], allow_missing: bool) -> Re
     ))
 }
 
-/// What was compared, in a sentence.
+/// The comparison, in a sentence.
 fn summary(plan: &Plan, comparison: &Comparison) -> String {
     let head = &plan.head;
     let seeds = plan.tasks.len() / (head.arms.len() * head.instances.len()).max(1);

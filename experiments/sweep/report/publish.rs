@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::REPORT;
-use crate::experiments::frame::SWEEPS;
-use crate::experiments::frame::provenance::{Machine, Made, Run};
-use crate::experiments::frame::write_index;
-use crate::experiments::sweep::collect::RESULTS;
-use crate::experiments::sweep::plan::Plan;
-use crate::experiments::sweep::study::Study;
-use crate::{Error, Result, file};
+use crate::frame::SWEEPS;
+use crate::frame::provenance::{Machine, Made, Run};
+use crate::frame::write_index;
+use crate::sweep::collect::RESULTS;
+use crate::sweep::plan::Plan;
+use crate::sweep::study::Study;
+use edifice_base::{Error, Result, file};
 
 /// Name of the one artefact of a sweep.
 const ARTEFACT: &str = "report";
@@ -21,9 +21,7 @@ pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path
     let mut settings = BTreeMap::new();
     let mut set = |name: &str, value: serde_json::Value| settings.insert(name.to_owned(), value);
     set("tasks", head.tasks.into());
-    let arm = |arm: &crate::experiments::sweep::definition::Arm| {
-        (arm.name.clone(), arm.settings.clone().into())
-    };
+    let arm = |arm: &crate::sweep::definition::Arm| (arm.name.clone(), arm.settings.clone().into());
     set(
         "arms",
         head.arms

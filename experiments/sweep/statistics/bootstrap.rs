@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// A mean with an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +54,7 @@ pub fn bootstrap(by_instance: &[Vec<f64>], rng: &mut Stream) -> Option<Interval>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     #[test]
     fn the_interval_covers_the_true_mean_as_often_as_it_says() {

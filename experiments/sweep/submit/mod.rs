@@ -8,12 +8,12 @@ use std::path::Path;
 use super::collect::state;
 use super::journal::{Keep, read_all};
 use super::plan::{Plan, Task};
-use crate::Result;
+use edifice_base::Result;
 
 pub use slurm::{ArrayLimit, array_limit, scripts};
 pub use snakemake::snakefile;
 
-/// How a plan is cut into jobs.
+/// The packing of a plan into jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packing {
     /// Tasks that have no result yet.
@@ -30,7 +30,7 @@ const GUESS: f64 = 10.0;
 /// Packs the tasks without a result into jobs of about the wanted length, by the measured mean time of a task.
 ///
 /// # Errors
-/// [`crate::Error::Io`].
+/// [`edifice_base::Error::Io`].
 pub fn packing(plan: &Plan, out: &Path) -> Result<Packing> {
     let wanted = plan.head.task.pack_seconds();
     let known = read_all(out, Keep::Presence)?.entries;

@@ -4,14 +4,14 @@ use std::path::Path;
 use std::process::Command;
 
 use super::{Packing, word};
-use crate::experiments::sweep::plan::Plan;
+use crate::sweep::plan::Plan;
 
 /// Most elements of an array, and whether Slurm was asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArrayLimit {
     /// `MaxArraySize`: indices stay below it.
     pub size: usize,
-    /// Whether `scontrol` said so; else it is Slurm's default.
+    /// True if `scontrol` said so; otherwise it is Slurm's default.
     pub asked: bool,
 }
 

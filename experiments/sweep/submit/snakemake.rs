@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::{Packing, word};
-use crate::experiments::sweep::plan::Plan;
-use crate::{Error, Result};
+use crate::sweep::plan::Plan;
+use edifice_base::{Error, Result};
 
 /// A Snakefile that runs all shards and collects, in the sweep's folder.
 ///

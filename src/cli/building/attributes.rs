@@ -1,8 +1,8 @@
 //! `edifice building attributes`.
 
 use super::data::Input;
-use crate::cli::model::data::csv_lines;
-use crate::cli::print;
+use crate::model::data::csv_lines;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -12,6 +12,6 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice::Result<()> {
+pub fn run(args: &Args) -> edifice_base::Result<()> {
     print::line(&csv_lines(&args.input.read()?.table).join("\n"))
 }

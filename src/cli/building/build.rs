@@ -2,24 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::is_file_name;
-use edifice::io::building_csv::{self, TextTable};
-use edifice::io::footprint;
-use edifice::methods::building_exteriors::attributes::COLUMNS;
-use edifice::methods::building_exteriors::design::{MOVED, Possible, possible_rows, wanted_rows};
-use edifice::methods::building_exteriors::house::Options;
-use edifice::methods::building_exteriors::mass::footprint::decided;
-use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::model::Table;
-use edifice::rng::stream;
-use edifice::shape::Rect;
-use edifice::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::design::{MOVED, Possible, possible_rows, wanted_rows};
+use edifice_building_exteriors::house::Options;
+use edifice_building_exteriors::mass::footprint::decided;
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_editing::building_exteriors::is_file_name;
+use edifice_io::building_csv::{self, TextTable};
+use edifice_io::footprint;
+use edifice_model::Table;
+use edifice_shape::Rect;
 
 use super::data;
 use super::draw::{Draw, drawn_table};
 use super::produce::{Order, Output, produce};
-use crate::cli::model::given::evidence;
-use crate::cli::print;
+use crate::model::given::evidence;
+use crate::print;
 
 /// Options of `build`.
 #[derive(clap::Args)]
@@ -117,7 +117,7 @@ fn orders(table: &TextTable, path: &Path, given: bool) -> Result<Vec<Order>> {
 /// Draws a batch of samples at each call.
 type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
 
-/// Where the samples of `generate` come from, and what is given.
+/// The source of the samples of `generate`, and the values that are given.
 fn sampler<'a>(
     args: &'a GenerateArgs,
     file: &'a ModelFile,

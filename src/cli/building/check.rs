@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
-use edifice::methods::building_exteriors::house::model::expected_volume;
-use edifice::methods::building_exteriors::house::{Model, model};
-use edifice::shape::Building;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::model::expected_volume;
+use edifice_building_exteriors::house::{Model, model};
+use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
+use edifice_shape::Building;
 
 use super::output::{street, write_png};
 use super::produce::RoofOption;
-use crate::cli::print;
+use crate::print;
 
 /// Largest relative difference between the volume of a surface and the integral over its plan.
 const VOLUME: f64 = 1e-9;
@@ -98,10 +98,10 @@ fn tell(name: &str, faults: &[String], json: bool) -> Result<()> {
         .try_for_each(|fault| print::line(&format!("{name}: {fault}")))
 }
 
-/// What is wrong with a house.
+/// The faults of a house, one sentence each; none for a sound one.
 fn faults(building: &Building, roof: RoofOption) -> Vec<String> {
     let mut faults = Vec::new();
-    if !edifice::methods::building_exteriors::mass::is_sound(building) {
+    if !edifice_building_exteriors::mass::is_sound(building) {
         faults.push("the boxes are not in one piece, shut in a courtyard, are thinner than 0.5 m, touch in a corner only, or parts overlap".into());
     }
     match model(building, roof.joining()) {

@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{building_csv, building_json, json, read_bytes};
-use edifice::methods::building_exteriors::attributes::attributes;
-use edifice::methods::building_exteriors::data::dataset;
-use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::tables::Dataset;
-use edifice::tables::schema::{FORMAT, Schema, VERSION};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::attributes;
+use edifice_building_exteriors::data::dataset;
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_io::{building_csv, building_json, json, read_bytes};
+use edifice_model::tables::Dataset;
+use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 
-/// Where houses come from.
+/// The source of houses.
 #[derive(clap::Args)]
 pub struct Input {
     /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`.

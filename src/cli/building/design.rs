@@ -2,16 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::{self as editing, Wishes, is_file_name};
-use edifice::editing::work::Work;
-use edifice::io::building_json;
-use edifice::methods::building_exteriors::design::Edit;
-use edifice::shape::Building;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::design::Edit;
+use edifice_editing::building_exteriors::{self as editing, Wishes, is_file_name};
+use edifice_editing::work::Work;
+use edifice_io::building_json;
+use edifice_shape::Building;
 
 use super::data;
 use super::produce::Making;
-use crate::cli::print;
+use crate::print;
 
 /// Options of `variations`.
 #[derive(clap::Args)]

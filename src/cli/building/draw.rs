@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::is_file_name;
-use edifice::io::building_json;
-use edifice::methods::building_exteriors::attributes::COLUMNS;
-use edifice::methods::building_exteriors::design::{completions, observed};
-use edifice::methods::building_exteriors::model_file::ModelFile;
-use edifice::model::{Cell, Table};
-use edifice::rng::stream;
-use edifice::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::design::{completions, observed};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_editing::building_exteriors::is_file_name;
+use edifice_io::building_json;
+use edifice_model::{Cell, Table};
 
 use super::data::{self, Input};
 use super::produce::Making;
-use crate::cli::model::data::csv_lines;
-use crate::cli::model::given::evidence;
-use crate::cli::print;
+use crate::model::data::csv_lines;
+use crate::model::given::evidence;
+use crate::print;
 
 /// Samples among which the most probable are sought.
 const POOL: usize = 2000;
@@ -25,7 +25,7 @@ const COMPLETED: usize = 5;
 /// Root mean square distance, in standard deviations, below which two houses are the same.
 const APART: f64 = 0.05;
 
-/// What to draw.
+/// The number of houses to draw, and the choice among them.
 #[derive(clap::Args)]
 pub struct Draw {
     /// Houses to draw [default: 10; completed houses: 5]
@@ -40,7 +40,7 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// What to draw.
+    /// Options of drawing from their values.
     pub fn new(count: usize, most_probable: bool, seed: u64) -> Self {
         Self {
             count: Some(count),

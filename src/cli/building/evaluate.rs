@@ -1,7 +1,7 @@
 //! `edifice building evaluate`.
 
 use super::data::Input;
-use crate::cli::model::evaluate::Splits;
+use crate::model::evaluate::Splits;
 
 /// Options.
 #[derive(clap::Args)]
@@ -13,7 +13,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice::Result<()> {
+pub fn run(args: &Args) -> edifice_base::Result<()> {
     let data = args.input.read()?;
     args.splits.evaluate(&data, &args.input.input)
 }

@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use edifice::Error;
-use edifice::methods::building_exteriors::model_file::ModelFile;
+use edifice_base::Error;
+use edifice_building_exteriors::model_file::ModelFile;
 
 use super::data::Input;
-use crate::cli::model::learning::Learning;
-use crate::cli::print;
+use crate::model::learning::Learning;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     input: Input,
-    /// Where the model goes (`*.houses.json`).
+    /// File of the model (`*.houses.json`).
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice::Result<()> {
+pub fn run(args: &Args) -> edifice_base::Result<()> {
     let data = args.input.read()?;
     let start = args
         .learning
@@ -42,7 +42,7 @@ pub fn run(args: &Args) -> edifice::Result<()> {
     let groups = data.groups;
     let file = ModelFile { groups, model };
     let text = file.to_json().map_err(Error::method)?;
-    edifice::io::write_atomic(&args.output, text.as_bytes())?;
+    edifice_io::write_atomic(&args.output, text.as_bytes())?;
     let houses = data.table.rows();
     print::message(&format!(
         "{houses} houses: {styles} styles, kinds {cardinalities:?}, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {:.1} s",

@@ -2,17 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::building_exteriors::scene_of;
-use edifice::io::scene_png::picture_png;
-use edifice::io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
-use edifice::methods::building_exteriors::house::scene::{Placed, scene};
-use edifice::methods::building_exteriors::house::{Database, Model};
-use edifice::scene::Scene;
-use edifice::scene::trace::{framing, trace};
-use edifice::shape::Building;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::house::{Database, Model};
+use edifice_editing::building_exteriors::scene_of;
+use edifice_io::scene_png::picture_png;
+use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
+use edifice_scene::Scene;
+use edifice_scene::trace::{framing, trace};
+use edifice_shape::Building;
 
-/// What the shipped database is called in the program.
+/// The name of the shipped database in the program.
 const SHIPPED: &str = "building_exteriors/houses.buildings.jsonl";
 /// Pixels of a picture.
 const PICTURE: [usize; 2] = [800, 500];
@@ -40,7 +40,7 @@ pub fn database(path: Option<&Path>) -> Result<Database> {
         Some(path) => (building_json::read(path)?, path.to_path_buf()),
         None => {
             let path = PathBuf::from(SHIPPED);
-            let bytes = edifice::experiments::shipped_bytes(SHIPPED)?;
+            let bytes = edifice_datasets::shipped_bytes(SHIPPED)?;
             (building_json::parse_lines(bytes, &path)?, path)
         }
     };

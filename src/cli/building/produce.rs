@@ -2,25 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{gltf, write_atomic};
-use edifice::methods::building_exteriors::attributes::COLUMNS;
-use edifice::methods::building_exteriors::house::{
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::house::{
     Database, Generated, HouseReport, Joining, Method, Options, generate,
 };
-use edifice::methods::building_exteriors::mass::contradiction::check_given;
-use edifice::methods::building_exteriors::mass::footprint::reconcile;
-use edifice::rng::stream;
-use edifice::shape::Building;
-use edifice::{Error, Result};
+use edifice_building_exteriors::mass::contradiction::check_given;
+use edifice_building_exteriors::mass::footprint::reconcile;
+use edifice_io::{gltf, write_atomic};
+use edifice_shape::Building;
 use rayon::prelude::*;
 
 use super::output::{self, Format};
-use crate::cli::print;
+use crate::print;
 
-/// Houses written together: at most so many are in memory.
+/// Most houses that are in memory and written together.
 const CHUNK: usize = 64;
 
-/// Where houses go, and in which form.
+/// The folder of the houses, and their form.
 #[derive(clap::Args)]
 pub struct Output {
     /// Folder of the output; it is made when it does not exist.
@@ -39,7 +39,7 @@ pub struct Output {
     pub json: bool,
 }
 
-/// How houses are made, and which files of them are written.
+/// The making of houses, and the files of them that are written.
 #[derive(clap::Args)]
 pub struct Making {
     /// Files for each house.
@@ -51,7 +51,7 @@ pub struct Making {
     /// Roofs of each box, or one joined roof for all boxes of a height.
     #[arg(long, value_enum, default_value = "boxes")]
     pub roof: RoofOption,
-    /// How mass models and facades are found.
+    /// Method for mass models and facades.
     #[arg(long, value_enum, default_value = "best")]
     pub method: MethodOption,
     /// Never cut a strip of wall in two for the sake of symmetry.
@@ -59,7 +59,7 @@ pub struct Making {
     pub no_cuts: bool,
 }
 
-/// How roofs are joined.
+/// The joining of roofs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum RoofOption {
     /// Each box has its own.
@@ -78,7 +78,7 @@ impl RoofOption {
     }
 }
 
-/// How mass models and facades are found.
+/// The method for mass models and facades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum MethodOption {
     /// Boxes of similar houses fitted by least squares, facades side by side: reaches the attributes in milliseconds.
@@ -155,8 +155,7 @@ pub fn produce(
         }
     }
     output::folder(&output.output)?;
-    let mut street: Vec<(Building, edifice::methods::building_exteriors::house::Model)> =
-        Vec::new();
+    let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
     let (mut done, mut near) = (0, 0);
     for chunk in orders.chunks(CHUNK) {
         let made: Vec<Result<Option<(Generated, f64)>>> = chunk

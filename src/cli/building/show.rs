@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use edifice::methods::building_exteriors::network;
+use edifice_building_exteriors::network;
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -21,12 +21,12 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice::Result<()> {
+pub fn run(args: &Args) -> edifice_base::Result<()> {
     let file = data::model(&args.model)?;
     let model = &file.model;
     if let Some(path) = &args.svg {
         let svg = network::svg(model, &file.discrete());
-        edifice::io::write_atomic(path, svg.as_bytes())?;
+        edifice_io::write_atomic(path, svg.as_bytes())?;
     }
     let kinds: Vec<(&String, usize)> = model
         .real_groups()

@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::rng::stream;
-use edifice::shape::triangles::{
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{
     City, Corners, SurfaceDistance, TriangleMesh, VolumeRaster, repair, surface_samples,
 };
-use edifice::{Error, Result};
 use rayon::prelude::*;
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Points that distances are measured from.
 const SAMPLES: usize = 20_000;
@@ -20,7 +20,7 @@ const SAMPLES: usize = 20_000;
 pub struct Args {
     /// A city or a grammar.
     first: PathBuf,
-    /// Another.
+    /// Another city or grammar.
     second: PathBuf,
     /// Cells of the raster, in metres.
     #[arg(long, default_value_t = 0.5)]

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use edifice::grammar::instance::InstanceGrammar;
-use edifice::io::city;
-pub use edifice::io::city::grammar_file::is_grammar;
-use edifice::shape::triangles::City;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::InstanceGrammar;
+use edifice_io::city;
+pub use edifice_io::city::grammar_file::is_grammar;
+use edifice_shape::triangles::City;
 
 /// Reads a grammar.
 pub fn grammar(path: &Path) -> Result<InstanceGrammar> {

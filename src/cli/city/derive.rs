@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice::io::city::{self, cityjson, glb, grammar_file, obj};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
+use edifice_io::city::{self, cityjson, glb, grammar_file, obj};
 
 use super::data;
 
@@ -16,7 +16,7 @@ pub struct Args {
     /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
     #[arg(short, long)]
     output: PathBuf,
-    /// Write a glTF node for each instance, for viewers without EXT_mesh_gpu_instancing.
+    /// Write a glTF node for each instance, for viewers without `EXT_mesh_gpu_instancing`.
     #[arg(long)]
     no_instancing: bool,
 }
@@ -63,5 +63,5 @@ pub fn write(
         }
         _ => cityjson::to_string(&derivation.city(grammar)).into_bytes(),
     };
-    edifice::io::write_atomic(path, &bytes)
+    edifice_io::write_atomic(path, &bytes)
 }

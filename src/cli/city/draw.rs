@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use edifice::io::city::picture;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::city::picture;
 
 use super::data;
 
@@ -38,7 +38,7 @@ pub fn run(args: &Args) -> Result<()> {
     cities.push(data::city(&args.file)?);
     let cities: Vec<_> = cities.iter().collect();
     let bytes = picture::side_by_side(&cities, args.width, args.width * 3 / 4);
-    edifice::io::write_atomic(
+    edifice_io::write_atomic(
         &args.output,
         &bytes.map_err(|e| Error::content(&args.output, e))?,
     )

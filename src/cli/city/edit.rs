@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::editing::CommandError;
-use edifice::editing::city_proceduralization::{CityEdit, edit};
-use edifice::io::city::grammar_file;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::CommandError;
+use edifice_editing::city_proceduralization::{CityEdit, edit};
+use edifice_io::city::grammar_file;
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]

@@ -2,17 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::city::view_json;
-use edifice::io::{pixels, read_bytes};
-use edifice::methods::city_proceduralization::facades::{Facade, facades, photographed};
-use edifice::methods::city_proceduralization::localization::{
-    Seen, landmarks, locate, locate_facades,
-};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::facades::{Facade, facades, photographed};
+use edifice_city_proceduralization::localization::{Seen, landmarks, locate, locate_facades};
+use edifice_io::city::view_json;
+use edifice_io::{pixels, read_bytes};
 use rayon::prelude::*;
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -23,7 +21,7 @@ pub struct Args {
     /// from edge to edge (PNG, JPEG, WebP); the city must then have textures.
     #[arg(long, required = true, num_args = 1..)]
     view: Vec<PathBuf>,
-    /// How many places to list.
+    /// Number of places to list.
     #[arg(long, default_value_t = 5)]
     top: usize,
     /// Print a line of JSON for each place instead of text.

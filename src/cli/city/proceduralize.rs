@@ -4,17 +4,17 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use edifice::grammar::instance::{InstanceGrammar, Kept};
-use edifice::io::city::{self, glb, grammar_file};
-use edifice::methods::city_proceduralization::{
-    self as method, Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative,
-    Settings,
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization as method;
+use edifice_city_proceduralization::{
+    Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
 };
-use edifice::shape::triangles::MeshFaults;
-use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
-use edifice::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, Kept};
+use edifice_io::city::{self, glb, grammar_file};
+use edifice_shape::triangles::MeshFaults;
+use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
 
-use crate::cli::print;
+use crate::print;
 
 /// Cells of the raster that judges the result, in metres.
 const RESOLUTION: f64 = 1.0;
@@ -53,7 +53,7 @@ enum Keep {
     Ids,
     /// Identifiers, and neither textures nor patterns for synthesis.
     Buildings,
-    /// Neither these nor those.
+    /// No attributes, identifiers, textures or patterns for synthesis.
     Shape,
 }
 
@@ -63,7 +63,7 @@ pub struct Args {
     /// Cities; buildings of several files are put together.
     #[arg(required = true)]
     input: Vec<PathBuf>,
-    /// How types are found.
+    /// Method that finds types.
     #[arg(long, value_enum, default_value = "best")]
     mode: Mode,
     /// Number of templates, or `all`.
@@ -81,7 +81,7 @@ pub struct Args {
     /// Weights of the paper's features, `F=W,...`; others are 1.
     #[arg(long, value_name = "F=W,...")]
     weights: Option<String>,
-    /// How communities are found, with `--mode paper`.
+    /// Method that finds communities, with `--mode paper`.
     #[arg(long, value_enum, default_value = "girvan-newman")]
     communities: Communities,
     /// With `--mode paper`, represent a type by its member of fewest polygons.
@@ -90,13 +90,14 @@ pub struct Args {
     /// Seed of k-means.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How finely numbers are written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`, cm otherwise].
+    /// Step of the numbers written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`,
+    /// cm otherwise].
     #[arg(long, value_enum)]
     precision: Option<Steps>,
     /// Most pixels along a side of a template's textures; 0 for no textures.
     #[arg(long, value_name = "N", default_value_t = 128)]
     texture_pixels: usize,
-    /// What of the buildings is kept.
+    /// Part of the buildings that is kept.
     #[arg(long, value_enum, default_value = "all")]
     keep: Keep,
     /// The grammar to write: text (`*.city-grammar.json`, also with `.gz`), or few bytes (`*.city-grammar.bin`).
@@ -164,10 +165,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(path) = &args.glb {
         let bytes = glb::to_bytes(&made.grammar, &derivation, true);
         let bytes = bytes.map_err(|e| Error::content(path, e))?;
-        edifice::io::write_atomic(path, &bytes)?;
+        edifice_io::write_atomic(path, &bytes)?;
     }
     let bytes = args.bytes_of(&made.grammar)?;
-    edifice::io::write_atomic(&args.output, &bytes)?;
+    edifice_io::write_atomic(&args.output, &bytes)?;
     let bytes = bytes.len();
     print::message("measuring");
     let iou = iou(&input, &made.grammar).map_err(|e| failure(e, args))?;
@@ -291,7 +292,7 @@ fn read(paths: &[PathBuf]) -> Result<City> {
 }
 
 /// Volumetric intersection over union of the derived triangles with the input's.
-fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice::error::Cause> {
+fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice_base::error::Cause> {
     let derived = grammar.derive()?.city(grammar);
     let repaired: Vec<TriangleMesh> = input.buildings.iter().map(|b| repair(&b.mesh).0).collect();
     let first: Vec<&TriangleMesh> = repaired.iter().collect();
@@ -301,7 +302,7 @@ fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice::error::C
         .iou())
 }
 
-fn failure(error: edifice::error::Cause, args: &Args) -> Error {
+fn failure(error: edifice_base::error::Cause, args: &Args) -> Error {
     match args.input.first() {
         Some(path) => Error::content(path, error),
         None => Error::method(error),
@@ -311,7 +312,7 @@ fn failure(error: edifice::error::Cause, args: &Args) -> Error {
 /// Buildings named in a warning.
 const NAMED: usize = 3;
 
-/// Whether a mesh has a fault.
+/// A test of a mesh for a fault: true if it has it.
 type HasFault = fn(&MeshFaults) -> bool;
 
 /// Tells what is wrong with the meshes.

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Rules told in words.
 const TOLD: usize = 5;
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
         .collect();
     rules.sort_by(|a, b| {
         let size =
-            |r: &edifice::grammar::instance::InstanceRule| r.weight * r.successors.len() as f64;
+            |r: &edifice_grammar::instance::InstanceRule| r.weight * r.successors.len() as f64;
         size(b).total_cmp(&size(a)).then(a.symbol.cmp(&b.symbol))
     });
     for rule in rules.into_iter().take(TOLD) {

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::editing::city_proceduralization::fill;
-use edifice::io::city::{geojson, grammar_file};
-use edifice::methods::city_proceduralization::synthesis::Shape;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::synthesis::Shape;
+use edifice_editing::city_proceduralization::fill;
+use edifice_io::city::{geojson, grammar_file};
 
 use super::{data, derive};
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]

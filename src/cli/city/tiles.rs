@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use edifice::io::city::tiles;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::city::tiles;
 
 use super::data;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -35,7 +35,7 @@ pub fn run(args: &Args) -> Result<()> {
     std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, "create", e))?;
     // The tileset comes last: it names no tile that is not there.
     for (name, bytes) in &files {
-        edifice::io::write_atomic(&args.output.join(name), bytes)?;
+        edifice_io::write_atomic(&args.output.join(name), bytes)?;
     }
     let bytes: usize = files.iter().map(|f| f.1.len()).sum();
     print::line(&format!("{} tiles, {bytes} bytes", files.len() - 1))

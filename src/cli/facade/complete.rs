@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use edifice::editing::structure_completion::{Wanted, complete, file, shipped_model};
-use edifice::io::{facade_json, read_bytes, write_atomic, write_facade};
-use edifice::methods::structure_completion::method::Method;
-use edifice::methods::structure_completion::model::Model;
-use edifice::shape::{AnnotatedFacade, Rect};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::structure_completion::{Wanted, complete, file, shipped_model};
+use edifice_io::{facade_json, read_bytes, write_atomic, write_facade};
+use edifice_shape::{AnnotatedFacade, Rect};
+use edifice_structure_completion::method::Method;
+use edifice_structure_completion::model::Model;
 
 use super::{input, mask, overview};
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade complete`.
 #[derive(clap::Args)]
@@ -30,7 +30,7 @@ pub struct Args {
     /// Model of `facade train`; the default one was learnt from the shipped layouts
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
-    /// How to complete
+    /// Method of completion
     #[arg(long, default_value = "best", value_parser = Method::ALL.map(Method::option))]
     method: String,
     /// Number of different completions

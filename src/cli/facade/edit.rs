@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::editing::structure_completion::{FacadeEdit, edit};
-use edifice::io::{facade_json, photograph, write_atomic};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::structure_completion::{FacadeEdit, edit};
+use edifice_io::{facade_json, photograph, write_atomic};
 
 use super::input;
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade edit`.
 #[derive(clap::Args)]
@@ -42,7 +42,7 @@ pub struct Args {
 
 fn parse(text: &str) -> std::result::Result<FacadeEdit, String> {
     text.parse()
-        .map_err(|e: edifice::editing::CommandError| e.to_string())
+        .map_err(|e: edifice_editing::CommandError| e.to_string())
 }
 
 /// Runs the command.

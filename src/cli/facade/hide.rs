@@ -2,21 +2,21 @@
 
 use std::path::PathBuf;
 
-use edifice::io::{facade_json, write_atomic};
-use edifice::methods::structure_completion::task::Task;
-use edifice::shape::{AnnotatedFacade, Facade, Rect};
-use edifice::{Error, Result, rng};
+use edifice_base::{Error, Result, rng};
+use edifice_io::{facade_json, write_atomic};
+use edifice_shape::{AnnotatedFacade, Facade, Rect};
+use edifice_structure_completion::task::Task;
 
 use super::input;
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade hide`.
 #[derive(clap::Args)]
 pub struct Args {
     /// Whole facade: any format that `facade convert` reads
     input: PathBuf,
-    /// What is hidden: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
+    /// The part to hide: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
     /// corner of 0.6 x 0.6 (corner36), the lowest 40 % (bottom40)
     #[arg(long, value_parser = Task::ALL.map(Task::name))]
     task: String,

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::structure_completion;
-use edifice::experiments::structure_completion::data;
-use edifice::io;
-use edifice::methods::structure_completion::layout::Layout;
-use edifice::shape::{AnnotatedFacade, Rect};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::structure_completion;
+use edifice_io as io;
+use edifice_shape::{AnnotatedFacade, Rect};
+use edifice_structure_completion::layout::Layout;
+use edifice_structure_completion::layout::extract;
 
-use crate::cli::reading::{self, Reading};
+use crate::reading::{self, Reading};
 
 /// A rectangle `x,y,w,h` as an argument.
 pub fn rect(text: &str) -> std::result::Result<Rect, String> {
@@ -46,7 +46,8 @@ pub fn layouts(inputs: &[PathBuf], reading: &Reading) -> Result<Vec<Layout>> {
     let mut layouts = Vec::new();
     for input in inputs {
         for path in files(input)? {
-            layouts.push(data::elements(reading::source(&path, &options)?, &path)?);
+            let source = reading::source(&path, &options)?.labelled()?;
+            layouts.push(extract::elements(&source).map_err(|e| Error::content(&path, e))?);
         }
     }
     Ok(layouts)

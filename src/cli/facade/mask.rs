@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use edifice::io::label_map::Key;
-use edifice::io::{self, pixels::Pixels};
-use edifice::shape::Rect;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io as io;
+use edifice_io::label_map::Key;
+use edifice_io::pixels::Pixels;
+use edifice_shape::Rect;
 
 /// Most cells of a mask along one axis.
 const CELLS: usize = 128;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use edifice::io::palette::Palette;
-use edifice::shape::AnnotatedFacade;
+use edifice_io::palette::Palette;
+use edifice_shape::AnnotatedFacade;
 
 /// Height of a panel.
 const PANEL: f64 = 360.0;
@@ -29,7 +29,7 @@ pub fn svg(panels: &[(String, &AnnotatedFacade)]) -> String {
             "<g transform=\"translate({x:.1} 40)\">\n<text y=\"-10\" font-family=\"sans-serif\" font-size=\"13\">{title}</text>\n\
              <rect width=\"{wide:.1}\" height=\"{high:.1}\" fill=\"#e9dfcd\"/>"
         );
-        let rect = |r: &edifice::shape::Rect| {
+        let rect = |r: &edifice_shape::Rect| {
             format!(
                 "x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\"",
                 r.x * scale,

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use edifice::methods::structure_completion::model::shipped_model;
-use edifice::methods::structure_completion::policy::paper_model;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_structure_completion::model::shipped_model;
+use edifice_structure_completion::policy::paper_model;
 
 use super::complete::read_model;
 use super::input;
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade score`.
 #[derive(clap::Args)]

@@ -9,8 +9,8 @@ use edifice::methods::structure_completion::model::Model;
 use edifice::{Error, Result};
 
 use super::input;
-use crate::cli::print;
-use crate::cli::reading::Reading;
+use crate::print;
+use crate::reading::Reading;
 
 /// Options of `facade train`.
 #[derive(clap::Args)]

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::editing::split_grammar::{Wish, derived, glb};
-use edifice::grammar::{Derivation, Grammar, check};
-use edifice::io::{read_grammar, write_atomic, write_facade};
-use edifice::shape::Facade;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::split_grammar::{Wish, derived, glb};
+use edifice_grammar::{Derivation, Grammar, check};
+use edifice_io::{read_grammar, write_atomic, write_facade};
+use edifice_shape::Facade;
 
-use crate::cli::print;
+use crate::print;
 
 /// Options of `edifice grammar derive`.
 #[derive(clap::Args)]

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::editing::CommandError;
-use edifice::editing::split_grammar::{GrammarEdit, edit};
-use edifice::grammar::{Costs, check};
-use edifice::io::{read_grammar, write_grammar};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::CommandError;
+use edifice_editing::split_grammar::{GrammarEdit, edit};
+use edifice_grammar::{Costs, check};
+use edifice_io::{read_grammar, write_grammar};
 
-use crate::cli::print;
+use crate::print;
 
 /// Options of `edifice grammar edit`.
 #[derive(clap::Args)]

@@ -4,18 +4,16 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
-use edifice::experiments::peers;
-use edifice::grammar::{Costs, Evaluation, evaluate, listing};
-use edifice::io;
-use edifice::methods::facade_grammar::{
-    Method, Operations, Outcome, Protect, Settings, infer_observed,
-};
-use edifice::shape::Facade;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_experiments::peers;
+use edifice_facade_grammar::{Method, Operations, Outcome, Protect, Settings, infer_observed};
+use edifice_grammar::{Costs, Evaluation, evaluate, listing};
+use edifice_io as io;
+use edifice_shape::Facade;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::print;
-use crate::cli::reading::{self, Reading};
+use crate::print;
+use crate::reading::{self, Reading};
 
 /// Options of `edifice grammar infer`.
 #[derive(clap::Args)]
@@ -30,7 +28,7 @@ pub struct Args {
     /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
-    /// How to search
+    /// Method of search
     #[arg(long, value_enum, default_value = "adp")]
     method: MethodName,
     /// Iterations of the methods that repeat themselves
@@ -39,7 +37,7 @@ pub struct Args {
     /// Seed of all randomness
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Operations that rules may use: split, repeat, repeat_aba, sym_split, grid_split
+    /// Operations that rules may use: `split`, `repeat`, `repeat_aba`, `sym_split`, `grid_split`
     #[arg(long, default_value_t = Operations::default(), value_name = "LIST")]
     ops: Operations,
     /// Cost of a split, and of the extensions that split once
@@ -112,7 +110,7 @@ fn read(args: &Args) -> Result<Vec<Facade>> {
         facade
             .check_tiling()
             .map_err(|error| Error::content(path, error))?;
-        edifice::shape::splittable(&facade).map_err(|error| Error::content(path, error))?;
+        edifice_shape::splittable(&facade).map_err(|error| Error::content(path, error))?;
         Ok(facade)
     };
     args.inputs.iter().map(checked).collect()

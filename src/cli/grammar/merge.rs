@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use edifice::editing::facade_grammar::merge;
-use edifice::editing::work::Work;
-use edifice::grammar::Costs;
-use edifice::io::{read_facade, read_grammar, write_grammar};
-use edifice::shape::Facade;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_editing::facade_grammar::merge;
+use edifice_editing::work::Work;
+use edifice_grammar::Costs;
+use edifice_io::{read_facade, read_grammar, write_grammar};
+use edifice_shape::Facade;
 
-use crate::cli::print;
+use crate::print;
 
 /// Options of `edifice grammar merge`.
 #[derive(clap::Args)]

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use edifice::grammar::{Costs, Grammar, check, derive, listing};
-use edifice::io::read_grammar;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::{Costs, Grammar, check, derive, listing};
+use edifice_io::read_grammar;
 
-use crate::cli::print;
+use crate::print;
 
 /// Options of `edifice grammar show`.
 #[derive(clap::Args)]
@@ -26,7 +26,7 @@ pub struct Args {
     /// Cost of split, and of symsplit and gridsplit
     #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().split)]
     split_cost: f64,
-    /// Cost of repeat, and of repeatABA
+    /// Cost of a repeat, and of a repeat of the form ABABA
     #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().repeat)]
     repeat_cost: f64,
     /// End with one line of JSON
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// What there is to say about a grammar.
+/// The summary of a grammar.
 struct Summary<'g> {
     cost: f64,
     operations: BTreeMap<&'static str, usize>,
@@ -79,7 +79,7 @@ impl<'g> Summary<'g> {
     fn new(
         grammar: &'g Grammar,
         costs: &Costs,
-    ) -> std::result::Result<Self, edifice::grammar::GrammarError> {
+    ) -> std::result::Result<Self, edifice_grammar::GrammarError> {
         let defined: BTreeSet<&str> = grammar.rules.iter().map(|r| r.symbol.as_str()).collect();
         let written = grammar.rules.iter().flat_map(|r| r.operation.symbols());
         let starts = grammar.starts.iter().map(|s| s.symbol.as_str());
@@ -154,7 +154,7 @@ impl<'g> Summary<'g> {
     }
 }
 
-/// Without the dust of adding tenths.
+/// The cost, rounded to nine decimals: sums of tenths without their errors.
 fn tidy(cost: f64) -> f64 {
     (cost * 1e9).round() / 1e9
 }

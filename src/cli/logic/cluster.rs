@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::cluster::{Dendrogram, agglomerate};
-use edifice::methods::procedural_logic::{self, Model};
-use edifice::report::{self, Figure, HeatMap, Merge};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_cluster::{Dendrogram, agglomerate};
+use edifice_procedural_logic as procedural_logic;
+use edifice_procedural_logic::Model;
+use edifice_report as report;
+use edifice_report::{Figure, HeatMap, Merge};
 use nalgebra::DMatrix;
 
 use super::input::{Energy, Facades, Linkage, Measure, model};
-use crate::cli::print;
+use crate::print;
 
 /// Options of `logic cluster`.
 #[derive(clap::Args)]

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use edifice::io::write_atomic;
-use edifice::methods::procedural_logic::{self, Model};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::write_atomic;
+use edifice_procedural_logic as procedural_logic;
+use edifice_procedural_logic::Model;
 use nalgebra::DMatrix;
 
 use super::input::{Energy, Facades, Measure, model};
-use crate::cli::print;
+use crate::print;
 
 /// Options of `logic compare`.
 #[derive(clap::Args)]
@@ -116,7 +117,7 @@ fn rank(args: &Args, model: &Model, distances: &DMatrix<f64>, query: usize) -> R
     print::line(&format!("{name}: {text}"))
 }
 
-/// Whether two distances are equal up to rounding.
+/// True if two distances are equal up to rounding.
 fn equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.max(b)
 }

@@ -3,12 +3,12 @@
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-use edifice::methods::procedural_logic::{Model, Parameters, fewest_rules, search_axes};
-use edifice::shape::LabelGrid;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_procedural_logic::{Model, Parameters, fewest_rules, search_axes};
+use edifice_shape::LabelGrid;
 
 use super::input::{Energy, Facades, read_model, write_model};
-use crate::cli::print;
+use crate::print;
 
 /// More rules per facade than this are a sign of noisy labels: exact ones of ECP2011 need less than one, of
 /// Graz2012 and the shipped layouts less than ten.

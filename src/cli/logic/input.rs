@@ -2,16 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{self, json};
-use edifice::methods::procedural_logic::{
-    MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters,
-};
-use edifice::shape::{LabelGrid, ToleranceError, clean};
-use edifice::{Error, Result, cluster, methods::procedural_logic};
+use edifice_base::{Error, Result};
+use edifice_cluster as cluster;
+use edifice_io as io;
+use edifice_io::json;
+use edifice_procedural_logic as procedural_logic;
+use edifice_procedural_logic::{MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters};
+use edifice_shape::{LabelGrid, ToleranceError, clean};
 use rayon::prelude::*;
 
-use crate::cli::print;
-use crate::cli::reading::{self, Reading};
+use crate::print;
+use crate::reading::{self, Reading};
 
 /// Facades to read.
 #[derive(clap::Args)]
@@ -51,7 +52,7 @@ impl Facades {
         }
     }
 
-    /// Whether the facades are cleaned.
+    /// True if the facades are cleaned.
     pub fn is_clean(&self) -> bool {
         self.clean.is_some()
     }
@@ -139,7 +140,7 @@ impl Energy {
         })
     }
 
-    /// Whether any parameter is given.
+    /// True if any parameter is given.
     pub fn is_given(&self) -> bool {
         self.alpha.is_some() || self.parental_bias.is_some() || self.horizontal_bias.is_some()
     }

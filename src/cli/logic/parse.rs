@@ -3,14 +3,14 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use edifice::grammar::Grammar;
-use edifice::io::write_grammar;
-use edifice::methods::procedural_logic::{Model, NaryTree, Parameters, split_grammar};
-use edifice::shape::LabelGrid;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::Grammar;
+use edifice_io::write_grammar;
+use edifice_procedural_logic::{Model, NaryTree, Parameters, split_grammar};
+use edifice_shape::LabelGrid;
 
 use super::input::{Energy, Facades, read_model};
-use crate::cli::print;
+use crate::print;
 
 /// Options of `logic parse`.
 #[derive(clap::Args)]

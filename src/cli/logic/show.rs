@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use edifice::io::json::parse_json;
-use edifice::methods::procedural_logic::{MODEL_FORMAT, Model, ModelFile};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::json::parse_json;
+use edifice_procedural_logic::{MODEL_FORMAT, Model, ModelFile};
 
-use crate::cli::model::Shown;
+use crate::model::Shown;
 
 /// Labels, rules and facades of a logic model.
 pub const LOGIC: Shown = Shown {

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice::io::write_facade;
-use edifice::methods::procedural_logic::{Known, Style, starting_rules};
-use edifice::rng::stream;
-use edifice::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_io::write_facade;
+use edifice_procedural_logic::{Known, Style, starting_rules};
 
 use super::input::read_model;
-use crate::cli::print;
+use crate::print;
 
 /// Options of `logic synthesize`.
 #[derive(clap::Args)]

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::io::{building_csv, json, read_bytes};
-use edifice::model::{Cell, Table};
-use edifice::tables::Dataset;
-use edifice::tables::schema::{FORMAT, Schema, VERSION};
-use edifice::tables::table_model::TableModel;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::{building_csv, json, read_bytes};
+use edifice_model::tables::Dataset;
+use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
+use edifice_model::tables::table_model::TableModel;
+use edifice_model::{Cell, Table};
 
 /// A table, and how to read it.
 #[derive(clap::Args)]

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use edifice::model::ModelError;
-use edifice::model::network::{Evidence, Network};
+use edifice_model::ModelError;
+use edifice_model::network::{Evidence, Network};
 
 /// Width of a box, and the gaps between boxes, in pixels.
 const WIDTH: f64 = 168.0;
@@ -25,7 +25,7 @@ struct Box {
     name: String,
     /// Category and probability.
     bars: Vec<(String, f64)>,
-    /// Whether it is given.
+    /// True if it is given.
     given: bool,
     parents: Vec<usize>,
     /// Corner at the upper left.
@@ -185,7 +185,7 @@ fn draw(boxes: &[Box], (width, height): (f64, f64)) -> String {
     out + "</svg>\n"
 }
 
-/// What fits of a name, for markup.
+/// The part of a name that fits, for markup.
 fn text(name: &str) -> String {
     let mut shown: String = name.chars().take(FIT).collect();
     if name.chars().count() > FIT {

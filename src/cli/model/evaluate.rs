@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use edifice::model::ModelError;
-use edifice::tables::Dataset;
-use edifice::tables::compare::{BACKGROUND, Contender, held_out, split, summary};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_model::ModelError;
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split, summary};
 
 use super::data::TableInput;
 use super::search::Search;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -20,7 +20,7 @@ pub struct Args {
     splits: Splits,
 }
 
-/// Which models, on which splits.
+/// The models and the splits of an evaluation.
 #[derive(clap::Args)]
 pub struct Splits {
     /// Random splits.

@@ -1,9 +1,9 @@
 //! Evidence in words: `garage=none`, `bbox.w=12`, `wwr=0.2,0.2,0.1,0.1`, `roof.hip=yes`.
 
-use edifice::model::hierarchy::Group;
-use edifice::model::{ModelError, Table};
+use edifice_model::hierarchy::Group;
+use edifice_model::{ModelError, Table};
 
-/// What is wrong with a piece of evidence.
+/// The defects of a piece of evidence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GivenError {
     /// Not of the form `name=value`.
@@ -43,7 +43,7 @@ pub enum GivenError {
         name: String,
         /// The text found.
         text: String,
-        /// Those it has.
+        /// The categories of the column.
         categories: Vec<String>,
     },
     /// The model layer refuses the evidence.

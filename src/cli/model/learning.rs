@@ -1,4 +1,5 @@
-//! How `model learn` and `building learn` run: with progress, a time limit, and an end on request that keeps the best so far.
+//! The run of `model learn` and `building learn`: with progress, a time limit, and an end on request that keeps the
+//! best so far.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -6,16 +7,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use edifice::model::em::Outcome;
-use edifice::model::hierarchy::{
+use edifice_base::{Error, Result};
+use edifice_model::em::Outcome;
+use edifice_model::hierarchy::{
     Hierarchy, Learned, Settings, Step, fit_observed, learn_observed, refine,
 };
-use edifice::model::{ModelError, Table};
-use edifice::tables::Dataset;
-use edifice::{Error, Result};
+use edifice_model::tables::Dataset;
+use edifice_model::{ModelError, Table};
 
 use super::search::{Search, warnings};
-use crate::cli::print;
+use crate::print;
 
 /// Time between two lines of progress.
 const TELL: Duration = Duration::from_secs(10);
@@ -28,7 +29,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 pub struct Learning {
     #[command(flatten)]
     pub search: Search,
-    /// End after so many seconds with the best model so far (as Ctrl-C does).
+    /// Seconds after which to end with the best model so far (as Ctrl-C does).
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
     /// Go on from a model that was learned before from such a table, for example one that was interrupted.
@@ -45,7 +46,7 @@ pub struct Learning {
     kinds: Option<usize>,
 }
 
-/// What was learned.
+/// The result of learning.
 pub struct Found {
     /// The model.
     pub model: Hierarchy,
@@ -53,7 +54,7 @@ pub struct Found {
     pub score: f64,
     /// BIC score, nats, where a structure was searched.
     pub bic: Option<f64>,
-    /// Whether a limit or Ctrl-C ended it.
+    /// True if a limit or Ctrl-C ended it.
     pub interrupted: bool,
     /// Seconds that it took.
     pub seconds: f64,

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use edifice::file::{read_bytes, write_atomic};
-use edifice::model::ModelError;
-use edifice::model::network::{Evidence, Network};
-use edifice::{Error, Result};
+use edifice_base::file::{read_bytes, write_atomic};
+use edifice_base::{Error, Result};
+use edifice_model::ModelError;
+use edifice_model::network::{Evidence, Network};
 
 use super::{Any, NotANetwork, at, drawing, read};
 

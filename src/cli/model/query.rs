@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use edifice::model::ModelError;
-use edifice::model::network::{Answer, Estimate, Evidence, Network};
-use edifice::rng::stream;
-use edifice::{Error, Result};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::ModelError;
+use edifice_model::network::{Answer, Estimate, Evidence, Network};
 
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -23,13 +23,13 @@ pub struct Args {
     /// Variables to ask for; all discrete ones by default.
     #[arg(long, value_delimiter = ',')]
     of: Vec<String>,
-    /// How to answer.
+    /// Method of inference.
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     method: Method,
     /// Draws or sweeps of a sampling method, or rounds of loopy propagation.
     #[arg(long, default_value_t = 10_000)]
     draws: usize,
-    /// The most probable explanations, so many, instead of posteriors.
+    /// Number of most probable explanations to give instead of posteriors.
     #[arg(long, value_name = "COUNT", conflicts_with_all = ["of", "method"])]
     explain: Option<usize>,
     /// Seed of all random streams.
@@ -40,7 +40,7 @@ pub struct Args {
     json: bool,
 }
 
-/// How to answer.
+/// The method of inference.
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Method {
     /// Variable elimination.

@@ -1,10 +1,10 @@
 //! Options of learning a hierarchical model, and what to warn of.
 
-use edifice::Error;
-use edifice::model::hierarchy::{Constant, Settings, Variant};
-use edifice::model::{Cell, Table};
+use edifice_base::Error;
+use edifice_model::hierarchy::{Constant, Settings, Variant};
+use edifice_model::{Cell, Table};
 
-/// How to learn.
+/// The options of learning.
 #[derive(clap::Args)]
 pub struct Search {
     /// Fewest styles tried.
@@ -37,7 +37,7 @@ pub struct Search {
 
 impl Search {
     /// The settings of the model layer; `background` is the share that is meant where none is given.
-    pub fn settings(&self, background: f64) -> edifice::Result<Settings> {
+    pub fn settings(&self, background: f64) -> edifice_base::Result<Settings> {
         let background = self.background.unwrap_or(background);
         if !(0.0..1.0).contains(&background) {
             return Err(Error::option(
@@ -79,7 +79,7 @@ impl Search {
     }
 }
 
-/// What was learned all the same, but says little: constant columns, fewer rows than parameters.
+/// Warnings of parts of the data that were learned but say little: constant columns, fewer rows than parameters.
 pub fn warnings(table: &Table, parameters: usize) -> Vec<String> {
     let mut warnings = Vec::new();
     for column in table.columns() {

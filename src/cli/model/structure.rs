@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use edifice::model::network::structure::{Score, Search, search};
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_model::network::structure::{Score, Search, search};
 
 use super::data::TableInput;
-use crate::cli::print;
+use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
@@ -17,7 +17,7 @@ pub struct Args {
     /// The file to write: `*.bif`, `*.xmlbif`, `*.json`, `*.dot` or `*.svg`.
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// What is maximised.
+    /// Score to maximise.
     #[arg(long, value_enum, default_value_t = Kind::Bdeu)]
     score: Kind,
     /// Rows that the prior of BDeu is worth.
@@ -46,7 +46,7 @@ pub struct Args {
     json: bool,
 }
 
-/// What is maximised.
+/// The score to maximise.
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Kind {
     /// Log marginal likelihood (Bayesian Dirichlet, equivalent and uniform).

@@ -2,27 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice::file::write_atomic;
-use edifice::model::ModelError;
-use edifice::rng::stream;
-use edifice::tables::Dataset;
-use edifice::tables::compare::{BACKGROUND, extended};
-use edifice::tables::encoding::Encoding;
-use edifice::tables::table_model::{FORMAT, TableModel};
-use edifice::{Error, Result};
+use edifice_base::file::write_atomic;
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_model::ModelError;
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{BACKGROUND, extended};
+use edifice_model::tables::encoding::Encoding;
+use edifice_model::tables::table_model::{FORMAT, TableModel};
 
 use super::Shown;
 use super::data::{TableInput, csv_lines, read_model, read_rows};
 use super::given::evidence;
 use super::learning::Learning;
-use crate::cli::print;
+use crate::print;
 
 /// Options of `learn`.
 #[derive(clap::Args)]
 pub struct LearnArgs {
     #[command(flatten)]
     input: TableInput,
-    /// Where the model goes (`*.table-model.json`).
+    /// File of the model (`*.table-model.json`).
     #[arg(short, long)]
     output: PathBuf,
     #[command(flatten)]
@@ -204,7 +204,7 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
     Ok(())
 }
 
-/// How `model show` shows a model of a table.
+/// The display of a model of a table by `model show`.
 pub const TABLE_MODEL: Shown = Shown {
     format: FORMAT,
     show,

@@ -1,9 +1,9 @@
 //! `edifice sweep examples`.
 
 use clap::Args;
-use edifice::experiments::sweep::definition::nearest;
-use edifice::experiments::sweep::examples::examples;
-use edifice::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_experiments::sweep::definition::nearest;
+use edifice_experiments::sweep::examples::examples;
 
 use super::super::print;
 
@@ -23,7 +23,7 @@ pub fn show(options: &Options) -> Result<()> {
     let all = examples();
     let Some(name) = &options.name else {
         if options.json {
-            let one = |e: &edifice::experiments::sweep::examples::Example| serde_json::json!({ "name": e.name, "about": e.about(), "text": e.text });
+            let one = |e: &edifice_experiments::sweep::examples::Example| serde_json::json!({ "name": e.name, "about": e.about(), "text": e.text });
             let all: Vec<_> = all.iter().map(one).collect();
             return print::line(&serde_json::json!({ "examples": all }).to_string());
         }

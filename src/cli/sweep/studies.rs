@@ -1,8 +1,8 @@
 //! `edifice sweep studies`.
 
 use clap::Args;
-use edifice::Result;
-use edifice::experiments::sweep::Study;
+use edifice_base::Result;
+use edifice_experiments::sweep::Study;
 
 use super::super::print;
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use clap::{Args, ValueEnum};
-use edifice::experiments::sweep::submit::{array_limit, packing, scripts, snakefile};
-use edifice::experiments::sweep::{Plan, Study};
-use edifice::{Error, Result, file};
+use edifice_base::{Error, Result, file};
+use edifice_experiments::sweep::submit::{array_limit, packing, scripts, snakefile};
+use edifice_experiments::sweep::{Plan, Study};
 
 use super::super::print;
 use super::Common;

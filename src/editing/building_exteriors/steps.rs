@@ -9,8 +9,8 @@ use super::{
     House, Wishes, edit, given, shipped_database, shipped_model, text, variations, view, wished,
     words,
 };
-use crate::methods::building_exteriors::house::Options;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::Options;
 
 /// Most answers at once.
 const MOST: usize = 12;

@@ -1,14 +1,14 @@
 //! Edits of houses as text: on the command line and in commands.
 
 use super::super::{CommandError, numbers, written};
-use crate::Result;
-use crate::methods::building_exteriors::design::Edit;
-use crate::shape::BoxStyle;
+use edifice_base::Result;
+use edifice_building_exteriors::design::Edit;
+use edifice_shape::BoxStyle;
 
 /// `STYLE@X,Y,W,D,H`: a new box.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The fault of the text, as a sentence.
 pub fn add(text: &str) -> std::result::Result<Edit, String> {
     let parts = text.split_once('@');
     let (style, rest) = parts.ok_or_else(|| format!("{text:?}: expected STYLE@X,Y,W,D,H"))?;
@@ -24,7 +24,7 @@ pub fn add(text: &str) -> std::result::Result<Edit, String> {
 /// `INDEX=X,Y`: the new centre of a box.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The fault of the text, as a sentence.
 pub fn moved(text: &str) -> std::result::Result<Edit, String> {
     indexed(text).map(|(index, to)| Edit::Move(index, to))
 }
@@ -32,7 +32,7 @@ pub fn moved(text: &str) -> std::result::Result<Edit, String> {
 /// `INDEX=W,D,H`: the new size of a box.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The fault of the text, as a sentence.
 pub fn resized(text: &str) -> std::result::Result<Edit, String> {
     indexed(text).map(|(index, to)| Edit::Resize(index, to))
 }

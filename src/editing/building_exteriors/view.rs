@@ -1,16 +1,16 @@
-//! What a page shows of a house.
+//! The view of a house, as a page shows it.
 
 use serde_json::{Value, json};
 
 use super::wish::{FIRST_FLAG, given, ranges};
 use super::{House, shipped_model};
-use crate::methods::building_exteriors::attributes::{GROUPS, attributes};
-use crate::methods::building_exteriors::design::Edit;
-use crate::methods::building_exteriors::house::scene::{Placed, scene};
-use crate::methods::building_exteriors::house::{Generated, Model};
-use crate::scene::Scene;
-use crate::shape::{Building, MassBox};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_building_exteriors::attributes::{GROUPS, attributes};
+use edifice_building_exteriors::design::Edit;
+use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::house::{Generated, Model};
+use edifice_scene::Scene;
+use edifice_shape::{Building, MassBox};
 
 /// The scene of one house, its colours chosen by its name.
 pub fn scene_of(building: &Building, model: &Model) -> Scene {

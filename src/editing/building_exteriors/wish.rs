@@ -5,39 +5,35 @@ use std::sync::OnceLock;
 use super::super::CommandError;
 use super::super::work::{Stopped, Work};
 use super::shipped_model;
-use crate::Result;
-use crate::methods::building_exteriors::attributes::{
-    AttributeError, AttributeRow, COLUMNS, attributes,
-};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::design::wanted_rows;
-use crate::methods::building_exteriors::house::{
-    Database, GenerateError, Generated, Options, generate,
-};
-use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
-use crate::methods::building_exteriors::mass::target::PARTS;
-use crate::model::ModelError;
-use crate::model::hierarchy::Hierarchy;
-use crate::rng::stream;
-use crate::shape::Building;
+use edifice_base::Result;
+use edifice_base::rng::stream;
+use edifice_building_exteriors::attributes::{AttributeError, AttributeRow, COLUMNS, attributes};
+use edifice_building_exteriors::data::table;
+use edifice_building_exteriors::design::wanted_rows;
+use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
+use edifice_building_exteriors::mass::contradiction::{Contradiction, check_given};
+use edifice_building_exteriors::mass::target::PARTS;
+use edifice_model::ModelError;
+use edifice_model::hierarchy::Hierarchy;
+use edifice_shape::Building;
 
 /// First column that is yes or no.
 pub const FIRST_FLAG: usize = 39;
-/// Draws of the model: for an answer, of which so many are built; for the ranges.
+/// Draws of the model for an answer, those of them that are built, and draws for the ranges.
 const POOL: usize = 500;
 const TRIES: usize = 4;
 const DRAWS: usize = 2000;
 /// A house within this distance of its row (standard deviations) is near enough.
 const NEAR: f64 = 0.05;
 
-/// What is wished of a house.
+/// The wishes for a house.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wishes {
     /// Columns that must have these values.
     pub given: AttributeRow,
     /// A style of the model, from 1.
     pub style: Option<usize>,
-    /// Whether all other columns stay as they are; else they are the model's.
+    /// True if all other columns stay as they are; otherwise they are the model's.
     pub keep: bool,
 }
 
@@ -49,7 +45,7 @@ pub enum WishError {
     Style {
         /// The style, from 1.
         wanted: usize,
-        /// How many there are.
+        /// Number of styles.
         count: usize,
     },
     /// Two wishes that no house can have together.
@@ -211,7 +207,7 @@ pub fn ranges() -> Result<&'static [[f64; 2]; 49]> {
     }
     let model = &shipped_model()?.model;
     let draws = model.sample(DRAWS, &mut stream(0, "building/ranges", 0));
-    let rows = wanted_rows(&draws.map_err(crate::Error::method)?.table);
+    let rows = wanted_rows(&draws.map_err(edifice_base::Error::method)?.table);
     let between = |c: usize| {
         let mut values: Vec<f64> = rows.iter().map(|r| r[c]).collect();
         values.sort_by(f64::total_cmp);

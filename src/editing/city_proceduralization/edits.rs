@@ -1,7 +1,7 @@
 //! Edits of an instance grammar, as text and as values.
 
 use super::super::{CommandError, numbers};
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Placement};
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Placement};
 
 /// One edit.
 #[derive(Debug, Clone, PartialEq)]

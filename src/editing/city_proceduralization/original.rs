@@ -6,14 +6,14 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::super::work::{Work, stoppable};
-use crate::grammar::instance::InstanceGrammar;
-use crate::methods::city_proceduralization::{
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::{
     Budget, Decomposition, Settings, decompose_watched, from_components,
 };
-use crate::shape::triangles::{City, OrientedBox, TriangleMesh};
-use crate::{Error, Result};
+use edifice_grammar::instance::InstanceGrammar;
+use edifice_shape::triangles::{City, OrientedBox, TriangleMesh};
 
-/// What [`Original::packed`] is asked for by.
+/// The name of the format of [`Original::packed`].
 pub const FORMAT: &str = "original";
 /// Corners of a packed part at most, so that an index has 16 bits.
 const CORNERS: usize = 65_535;
@@ -80,10 +80,10 @@ impl Original {
         parts.concat()
     }
 
-    /// By how much the volume of each building differs from that in another city, as a share of its own; by identifier.
+    /// The difference of each building's volume from that in another city, as a share of its own; by identifier.
     pub fn volume_errors(&self, derived: &City) -> rustc_hash::FxHashMap<String, f64> {
         let volumes = |city: &City| -> rustc_hash::FxHashMap<String, f64> {
-            let one = |b: &crate::shape::triangles::CityBuilding| {
+            let one = |b: &edifice_shape::triangles::CityBuilding| {
                 let base = OrientedBox::around(&b.mesh)?.base[2];
                 Some((b.id.clone(), b.mesh.volume_above(base)))
             };

@@ -1,8 +1,8 @@
-//! Which rules a building comes from.
+//! The rules that lead to a building.
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::instance::{InstanceGrammar, Placement};
+use edifice_grammar::instance::{InstanceGrammar, Placement};
 
 /// A rule that was applied, and which of its successors was followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -13,7 +13,7 @@ pub struct Turn {
     pub part: usize,
 }
 
-/// Where the buildings and the placed templates of a derivation come from.
+/// The origins of the buildings and the placed templates of a derivation.
 #[derive(Debug, Clone, Default)]
 pub struct Paths {
     /// Of each placed template, in the order of the derivation: rules applied, one inside another.
@@ -88,8 +88,8 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::experiments::shipped_bytes;
-    use crate::io::city::grammar_json;
+    use edifice_datasets::shipped_bytes;
+    use edifice_io::city::grammar_json;
 
     #[test]
     fn the_walk_is_that_of_the_derivation() {

@@ -1,4 +1,4 @@
-//! What is asked of a city without changing it.
+//! Questions to a city that do not change it.
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use super::super::{CommandError, parse};
 use super::City;
 use super::paths::paths;
-use crate::methods::city_proceduralization::localization::{Seen, landmarks, locate};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_city_proceduralization::localization::{Seen, landmarks, locate};
 
 /// Places that are listed.
 const TOP: usize = 5;
@@ -17,7 +17,8 @@ const TOP: usize = 5;
 enum Question {
     /// Everything known of a building, by its index.
     Building { building: usize },
-    /// Where these buildings stand near each other, as somebody sees them (Demir et al. 2014, Fig. 10).
+    /// Finds the places where these buildings stand near each other, as somebody sees them (Demir et al. 2014, Fig.
+    /// 10).
     Locate { buildings: Vec<usize> },
 }
 

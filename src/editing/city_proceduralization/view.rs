@@ -1,10 +1,10 @@
-//! What a page shows of a city: templates once, and where they stand.
+//! The view of a city, as a page shows it: templates once, and the places of their instances.
 
 use serde_json::{Value, json};
 
 use super::paths::paths;
 use super::{City, Made};
-use crate::Result;
+use edifice_base::Result;
 
 /// Everything there is to show: lengths in metres to the centimetre, corners of templates in thousandths of their box.
 pub fn view(city: &City) -> Result<Value> {

@@ -5,11 +5,11 @@ use std::rc::Rc;
 
 use super::super::split_grammar::{Wish, derived};
 use super::super::work::{Work, stoppable};
-use crate::grammar::{Grammar, check};
-use crate::io::facade_json;
-use crate::methods::facade_grammar::{InferError, Outcome, Settings, infer_watched};
-use crate::shape::Facade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{InferError, Outcome, Settings, infer_watched};
+use edifice_grammar::{Grammar, check};
+use edifice_io::facade_json;
+use edifice_shape::Facade;
 
 /// The smallest grammar found of all facades of a grammar, each at its own size, and further ones.
 ///

@@ -1,11 +1,11 @@
 //! A facade of a grammar, at its own or another size.
 
-use crate::grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
-use crate::layout::resize::{AlignError, align};
-use crate::rng;
-use crate::shape::Facade;
+use edifice_base::rng;
+use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
+use edifice_layout::resize::{AlignError, align};
+use edifice_shape::Facade;
 
-/// What to derive.
+/// The wanted derivation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wish {
     /// Index of the start.
@@ -14,7 +14,7 @@ pub struct Wish {
     pub size: Option<(f64, f64)>,
     /// Seed of stochastic grammars.
     pub seed: u64,
-    /// Whether edges are aligned at another size than its own.
+    /// True if edges are aligned at another size than its own.
     pub align: bool,
 }
 

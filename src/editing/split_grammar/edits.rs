@@ -3,7 +3,7 @@
 use super::floors;
 use super::line::{Line, unfit};
 use super::text::Place;
-use crate::grammar::{Grammar, GrammarError, Operation, Successor, check, size_independent};
+use edifice_grammar::{Grammar, GrammarError, Operation, Successor, check, size_independent};
 
 /// One edit. Rules are counted from 0 in the order of the file; PART is a [`Place`] in one: a part, or a column or row of a grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +49,7 @@ pub enum GrammarEditError {
         rule: usize,
         /// The part.
         part: Place,
-        /// How many there are.
+        /// Number of such parts.
         count: usize,
     },
     /// The rule's operation has nothing of this kind.
@@ -59,7 +59,7 @@ pub enum GrammarEditError {
         rule: usize,
         /// Name of its operation.
         operation: &'static str,
-        /// What can be done.
+        /// The edits that are possible.
         hint: &'static str,
     },
     /// A size leaves nothing for the part itself or for the others.
@@ -71,7 +71,7 @@ pub enum GrammarEditError {
         part: Place,
         /// The size asked for.
         size: f64,
-        /// What there is.
+        /// The length that is there.
         room: f64,
     },
     /// The regions of a rule are as long in every facade.

@@ -11,8 +11,8 @@ use super::edits::GrammarEditError;
 use super::line::{Line, along_mut, repeats, totals};
 use super::reach::{LEAST_GROWTH, Laid, Reach, periods, reach};
 use super::text::Place;
-use crate::grammar::{Grammar, GrammarError, Size};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, GrammarError, Size};
+use edifice_shape::Axis;
 
 /// Puts a copy of a part, or of a column or row of a grid, before it (`grows`), or takes it out. In a repeat, a period comes or goes.
 ///

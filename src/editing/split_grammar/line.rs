@@ -1,9 +1,9 @@
-//! What a rule writes along one axis: the sizes of its parts, or of the columns or rows of a grid.
+//! The sizes that a rule writes along one axis: those of its parts, or of the columns or rows of a grid.
 
 use super::edits::GrammarEditError;
 use super::text::Place;
-use crate::grammar::{Grammar, Operation, Size, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, Operation, Size, Successor};
+use edifice_shape::Axis;
 
 /// The sizes that an operation writes along an axis; none where it does not split along it.
 pub(super) fn along(operation: &Operation, axis: Axis) -> Vec<Size> {
@@ -30,7 +30,7 @@ pub(super) fn along(operation: &Operation, axis: Axis) -> Vec<Size> {
     }
 }
 
-/// The same, to be changed.
+/// The sizes that an operation writes along an axis, to be changed.
 pub(super) fn along_mut(operation: &mut Operation, axis: Axis) -> Vec<&mut Size> {
     match operation {
         Operation::Split {
@@ -64,7 +64,7 @@ pub(super) fn index_along(operation: &Operation, axis: Axis, successor: usize) -
     }
 }
 
-/// How often the size of an index stands in a region with so many periods.
+/// The number of times that the size of an index stands in a region with this number of periods.
 pub(super) fn times(operation: &Operation, index: usize, periods: usize) -> f64 {
     let count = match operation {
         Operation::Split { .. } | Operation::GridSplit { .. } => 1,
@@ -80,7 +80,7 @@ pub(super) fn times(operation: &Operation, index: usize, periods: usize) -> f64 
     count as f64
 }
 
-/// Sums of the absolute and of the relative sizes along an axis, in a region with so many periods.
+/// Sums of the absolute and of the relative sizes along an axis, in a region with this number of periods.
 pub(super) fn totals(operation: &Operation, axis: Axis, periods: usize) -> [f64; 2] {
     let mut sums = [0.0, 0.0];
     for (k, size) in along(operation, axis).iter().enumerate() {
@@ -90,7 +90,7 @@ pub(super) fn totals(operation: &Operation, axis: Axis, periods: usize) -> [f64;
     sums
 }
 
-/// Whether an operation puts as many periods as fit.
+/// True if an operation puts as many periods as fit.
 pub(super) fn repeats(operation: &Operation) -> bool {
     matches!(
         operation,
@@ -102,7 +102,7 @@ pub(super) fn repeats(operation: &Operation) -> bool {
 pub(super) struct Line<'g> {
     rule: usize,
     place: Place,
-    /// Along which axis it lies.
+    /// The axis along which it lies.
     pub(super) axis: Axis,
     pub(super) operation: &'g mut Operation,
 }
@@ -178,12 +178,12 @@ impl<'g> Line<'g> {
         }
     }
 
-    /// How often an entry stands where the entries fill the region once.
+    /// The number of times that an entry stands where the entries fill the region once.
     pub(super) fn times(&self, index: usize) -> f64 {
         times(self.operation, index, 1)
     }
 
-    /// What all entries take together.
+    /// The sum of all entries, each as often as it stands.
     pub(super) fn total(&self) -> f64 {
         totals(self.operation, self.axis, 1).iter().sum()
     }

@@ -1,9 +1,9 @@
 //! The region of a rule that floors and columns are put into, and what is around it.
 
 use super::line::{along, index_along, repeats, totals};
-use crate::grammar::{Derivation, Grammar, GrammarError, Operation, Size, derive_at, laid_out};
-use crate::rng;
-use crate::shape::{Axis, Rect};
+use edifice_base::rng;
+use edifice_grammar::{Derivation, Grammar, GrammarError, Operation, Size, derive_at, laid_out};
+use edifice_shape::{Axis, Rect};
 
 /// Growths that differ by less of the larger one are the same.
 const SAME: f64 = 1e-6;
@@ -11,14 +11,15 @@ const SAME: f64 = 1e-6;
 /// A region that grows by less of what the facade grows by has a fixed length.
 pub(super) const LEAST_GROWTH: f64 = 1e-6;
 
-/// How a rule lies along an axis in a region.
+/// The layout of a rule along an axis in a region.
 #[derive(Debug, Clone)]
 pub(super) struct Laid {
     /// The rule.
     pub rule: usize,
     /// Length of the region.
     pub extent: f64,
-    /// By how much the region grows with the facade, while all repeats around it keep their numbers of periods.
+    /// The growth of the region for a growth of 1 of the facade, while all repeats around it keep their numbers of
+    /// periods.
     pub growth: f64,
     /// Periods of a repeat; 1 of other rules.
     pub periods: usize,
@@ -27,7 +28,7 @@ pub(super) struct Laid {
 }
 
 impl Laid {
-    /// How the rule lies in a region, with the parts that it makes of it.
+    /// The layout of the rule in a region, with the parts that it makes of it.
     fn new(
         grammar: &Grammar,
         rule: usize,
@@ -158,7 +159,7 @@ fn regions(
     Ok(())
 }
 
-/// How many periods a repeat puts into a region of this length.
+/// The number of periods that a repeat puts into a region of this length.
 ///
 /// # Errors
 /// When it does not fit at all.

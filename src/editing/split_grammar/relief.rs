@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::io::gltf;
-use crate::scene::relief::{material, relief};
-use crate::scene::{Group, Instance, Material, Scene};
-use crate::shape::{Facade, Rect, Region};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::gltf;
+use edifice_scene::relief::{material, relief};
+use edifice_scene::{Group, Instance, Material, Scene};
+use edifice_shape::{Facade, Rect, Region};
 
 /// Height given to facades whose unit is no metric one (m).
 const HEIGHT: f64 = 14.0;

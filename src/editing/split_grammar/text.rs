@@ -3,7 +3,7 @@
 use super::super::{CommandError, numbers};
 use super::edits::GrammarEdit;
 
-/// Where in a rule: what an edit names behind the rule's number and a point. All are counted from 0.
+/// A place in a rule: the text of an edit behind the rule's number and a point. All are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// `K`: a part, in the order written; of a repeat A B A, A is 0 and B is 1; of a grid a cell, row by row from the bottom.

@@ -1,8 +1,8 @@
 //! Edits of a layout of elements, as text and as values.
 
 use super::super::{CommandError, numbers};
-use crate::Result;
-use crate::shape::{AnnotatedFacade, AnnotationError, Facade, LayoutError, Note, Rect, Region};
+use edifice_base::Result;
+use edifice_shape::{AnnotatedFacade, AnnotationError, Facade, LayoutError, Note, Rect, Region};
 
 /// One edit. Elements are named by their id, or by `#K`, their place in the file from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +36,7 @@ pub enum FacadeEditError {
     NoUnknown {
         /// Its index.
         index: usize,
-        /// How many there are.
+        /// Number of unknown rectangles.
         count: usize,
     },
     /// A rectangle without a size.
@@ -50,7 +50,7 @@ pub enum FacadeEditError {
     Annotation(#[from] AnnotationError),
 }
 
-/// What an element is called in edits.
+/// The name of an element in edits.
 pub fn reference(note: &Note, index: usize) -> String {
     note.id.clone().unwrap_or_else(|| format!("#{index}"))
 }

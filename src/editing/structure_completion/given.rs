@@ -3,13 +3,13 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use crate::methods::structure_completion::completion::Completion;
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::shape::{AnnotatedFacade, Facade, Note, Rect, Region, is_background};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::{AnnotatedFacade, Facade, Note, Rect, Region, is_background};
+use edifice_structure_completion::completion::Completion;
+use edifice_structure_completion::layout::{Class, Element, Layout};
+use edifice_structure_completion::partial::PartialLayout;
 
-/// What is asked for beside the layout.
+/// The wishes for a completion, beside the layout.
 pub struct Wanted<'a> {
     /// Width of the outline, if another.
     pub width: Option<f64>,
@@ -17,7 +17,7 @@ pub struct Wanted<'a> {
     pub height: Option<f64>,
     /// Elements of an earlier completion that stay, by their ids.
     pub pins: &'a [String],
-    /// Where no element may be added.
+    /// Rectangles in which no element may be added.
     pub forbidden: &'a [Rect],
 }
 
@@ -25,9 +25,9 @@ pub struct Wanted<'a> {
 pub struct Given {
     /// The layout without dropped elements, as it is shown and written.
     pub shown: AnnotatedFacade,
-    /// What is completed.
+    /// The layout that is completed.
     pub partial: PartialLayout,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -8,11 +8,11 @@ use serde_json::{Value, json};
 use super::super::script::{Shell, Word};
 use super::super::{Step, parse};
 use super::{ENDING, Sketch};
-use crate::io::photograph;
-use crate::shape::AnnotatedFacade;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_io::photograph;
+use edifice_shape::AnnotatedFacade;
 
-/// What is asked of a drawing without changing it.
+/// The questions to a drawing that do not change it.
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 enum Question {

@@ -1,12 +1,12 @@
-//! What a page shows of a facade that is being completed.
+//! The view of a facade that is being completed, as a page shows it.
 
 use serde_json::{Value, json};
 
 use super::Sketch;
 use super::edits::reference;
-use crate::io::palette::leading_word;
-use crate::methods::structure_completion::layout::Class;
-use crate::shape::{AnnotatedFacade, Rect};
+use edifice_io::palette::leading_word;
+use edifice_shape::{AnnotatedFacade, Rect};
+use edifice_structure_completion::layout::Class;
 
 /// Labels that are completed.
 const LABELS: [&str; 4] = ["window", "door", "balcony", "shop"];

@@ -1,4 +1,4 @@
-//! What holds for every instance grammar that is derived.
+//! The conditions that every instance grammar meets before it is derived.
 
 use rustc_hash::FxHashMap;
 
@@ -129,7 +129,7 @@ impl InstanceGrammar {
     }
 }
 
-/// What a symbol names, by index.
+/// The template or the rule that a symbol names, by index.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Symbol {
     Template(usize),

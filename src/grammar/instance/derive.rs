@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::check::Symbol;
 use super::{InstanceGrammar, InstanceGrammarError, Placement};
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// Most placed templates that a derivation may have.
 pub const INSTANCE_LIMIT: usize = 20_000_000;
@@ -25,7 +25,7 @@ pub struct TemplateInstance {
 }
 
 impl TemplateInstance {
-    /// Where a point of the template goes.
+    /// The place of a point of the template.
     pub fn place(&self, p: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = [0, 1, 2].map(|i| p[i] * self.size[i]);
         let (sin, cos) = self.turn.to_radians().sin_cos();
@@ -185,8 +185,8 @@ impl InstanceDerivation {
     }
 
     /// The triangles of each building; instances outside all buildings are buildings of their own.
-    pub fn city(&self, grammar: &InstanceGrammar) -> crate::shape::triangles::City {
-        use crate::shape::triangles::{City, CityBuilding, OrientedBox};
+    pub fn city(&self, grammar: &InstanceGrammar) -> edifice_shape::triangles::City {
+        use edifice_shape::triangles::{City, CityBuilding, OrientedBox};
         let named = self.buildings.iter().map(|(id, attributes)| CityBuilding {
             id: id.clone(),
             attributes: attributes.clone(),

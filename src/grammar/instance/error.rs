@@ -31,9 +31,9 @@ pub enum InstanceGrammarError {
     /// A number is not usable.
     #[error("{place}: {value} is not a usable {what}")]
     Number {
-        /// Where.
+        /// Place of the number in the grammar.
         place: String,
-        /// What it is.
+        /// Meaning of the number.
         what: &'static str,
         /// The value.
         value: f64,
@@ -45,7 +45,7 @@ pub enum InstanceGrammarError {
         template: usize,
         /// The index.
         index: u32,
-        /// How many positions there are.
+        /// Number of positions.
         count: usize,
     },
     /// Parts do not follow the rule.

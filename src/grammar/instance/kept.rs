@@ -4,16 +4,18 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{InstanceGrammar, Placement};
 
-/// What of a grammar is kept.
+/// The part of a grammar that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
     /// Everything.
     All,
     /// Everything but the attributes of buildings.
     Identifiers,
-    /// What the axiom derives to, with identifiers; no attributes, textures, or rules that the axiom does not lead to.
+    /// The buildings that the axiom derives to, with identifiers; no attributes, textures, or rules that the axiom does
+    /// not lead to.
     Buildings,
-    /// What the axiom derives to, without identifiers, attributes and textures: each part is a building of its own.
+    /// The instances that the axiom derives to, without identifiers, attributes and textures: each part is a building
+    /// of its own.
     Shape,
 }
 

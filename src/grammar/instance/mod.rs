@@ -21,7 +21,7 @@ pub use repeated::{Posed, Repeated, repeated};
 
 use std::sync::Arc;
 
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// A symbol in its place: scaled, turned about the vertical, shifted.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +38,8 @@ pub struct Placement {
     pub id: Option<String>,
     /// Further properties of that building.
     pub attributes: serde_json::Map<String, serde_json::Value>,
-    /// Where this instance's successors stand, in the order of the rule; `None` is absent. Empty: where
-    /// the rule says.
+    /// The places of this instance's successors, in the order of the rule; `None` is absent. If the list is empty, the
+    /// rule's own places hold.
     pub parts: Vec<Option<Placement>>,
 }
 
@@ -65,7 +65,7 @@ pub struct Template {
     pub symbol: String,
     /// The mesh.
     pub mesh: TriangleMesh,
-    /// The picture file (PNG, JPEG or WebP) of its box mapping ([`crate::shape::triangles::BoxTexture`]), if it has one.
+    /// The picture file (PNG, JPEG or WebP) of its box mapping ([`edifice_shape::triangles::BoxTexture`]), if it has one.
     pub texture: Option<Arc<[u8]>>,
 }
 
@@ -74,9 +74,9 @@ pub struct Template {
 pub struct InstanceRule {
     /// The non-terminal.
     pub symbol: String,
-    /// How often, against the other rules of the symbol.
+    /// Weight against the other rules of the symbol, above 0.
     pub weight: f64,
-    /// What replaces it.
+    /// The instances that replace it.
     pub successors: Vec<Placement>,
 }
 
@@ -87,7 +87,7 @@ pub struct InstanceGrammar {
     pub name: String,
     /// Coordinate reference system.
     pub reference_system: Option<String>,
-    /// What to add to every coordinate to be in the reference system.
+    /// The shift from these coordinates to those of the reference system.
     pub origin: [f64; 3],
     /// Start symbol.
     pub axiom: String,

@@ -16,11 +16,11 @@ use rustc_hash::FxHashMap;
 
 /// A pair becomes a rule when it occurs so often: with two occurrences a rule saves nothing.
 const LEAST: usize = 3;
-/// Relative places are alike within so many metres,
+/// Greatest distance of relative places that are alike, in metres; it grows with the next constant.
 const CLOSE: f64 = 1.0;
-/// and this share of the distance,
+/// Share of the distance from the anchor that is added to it.
 const CLOSE_SHARE: f64 = 0.1;
-/// and so many degrees.
+/// Greatest difference of turns that are alike, in degrees.
 const CLOSE_TURN: f64 = 15.0;
 /// Rounds at most.
 const ROUNDS: usize = 24;
@@ -28,20 +28,20 @@ const ROUNDS: usize = 24;
 /// A symbol in the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posed {
-    /// What it is.
+    /// Number of its symbol.
     pub kind: usize,
-    /// Where.
+    /// Position in metres.
     pub at: [f64; 3],
     /// Turn about the vertical in degrees.
     pub turn: f64,
 }
 
-/// What always stands together.
+/// A group of symbols that always stand together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repeated {
     /// Members in the frame of the rule, with mean places: kinds below the number of kinds given, then rules in order.
     pub members: Vec<Posed>,
-    /// How often it occurs.
+    /// Number of occurrences.
     pub count: usize,
 }
 
@@ -208,7 +208,8 @@ impl State {
         ways
     }
 
-    /// How far a way is from a leader, when it is alike; the other symbol's turn is chosen to fit.
+    /// The distance of an occurrence from a leader, and its relative place, if it is alike; `None` otherwise. The other
+    /// symbol's turn is chosen to fit.
     fn close(&self, leader: &Relative, way: &Occurrence) -> Option<(f64, Relative)> {
         let shift = [0, 1, 2].map(|k| way.place.0[k] - leader.0[k]);
         let far = length(shift);
@@ -256,7 +257,7 @@ impl State {
     }
 }
 
-/// Where `item` stands in the frame of `anchor`, turned by half a turn or not.
+/// The place of `item` in the frame of `anchor`, turned by half a turn or not.
 fn relative(item: &Posed, anchor: &Posed, half: bool) -> Relative {
     let turn = anchor.turn + if half { 180.0 } else { 0.0 };
     let (sin, cos) = turn.to_radians().sin_cos();
@@ -267,7 +268,7 @@ fn relative(item: &Posed, anchor: &Posed, half: bool) -> Relative {
     )
 }
 
-/// Where a place in the frame of `frame` is outside it.
+/// The place outside of an item that is given in the frame of `frame`.
 fn placed(item: &Posed, frame: &Posed) -> Posed {
     let (sin, cos) = frame.turn.to_radians().sin_cos();
     let [x, y, z] = item.at;

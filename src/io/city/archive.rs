@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use lzma_rust2::XzReader;
 
 use super::obj;
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::City;
 
 /// Most bytes that an archive may unpack to: 1 GB.
 const MOST_BYTES: u64 = 1 << 30;
@@ -44,7 +44,7 @@ pub(super) fn read(path: &Path) -> Result<City> {
     }
     let mut city =
         city.ok_or_else(|| Error::content(path, "no .obj file in the archive".to_owned()))?;
-    let name = crate::io::file_stem(path);
+    let name = crate::file_stem(path);
     city.name = name.strip_suffix(".tar").unwrap_or(&name).to_owned();
     Ok(city)
 }

@@ -1,9 +1,9 @@
 //! Cities as CityJSON 1.0 to 2.0 (`.city.json`) and CityJSONSeq (`.city.jsonl`): z up, metres.
 //!
-//! A first-level city object with its parts is a building. Read are MultiSurface, CompositeSurface, Solid,
-//! MultiSolid and CompositeSolid of the highest level of detail; polygons with holes are triangulated. Where
+//! A first-level city object with its parts is a building. Read are `MultiSurface`, `CompositeSurface`, `Solid`,
+//! `MultiSolid` and `CompositeSolid` of the highest level of detail; polygons with holes are triangulated. Where
 //! surfaces are named (semantics) and windows among them, they are painted: openings dark, all else light.
-//! Written is CityJSON 2.0 with a MultiSurface of triangles for each building.
+//! Written is CityJSON 2.0 with a `MultiSurface` of triangles for each building.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::CityError;
-use crate::io::json::parse_json;
-use crate::io::read_bytes;
-use crate::shape::triangles::{
+use crate::json::parse_json;
+use crate::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{
     City, CityBuilding, Painted, Surface, TriangleMesh, polygon_triangles,
 };
-use crate::{Error, Result};
 
 #[derive(Deserialize)]
 struct Document {
@@ -53,14 +53,14 @@ pub fn read(path: &Path) -> Result<City> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
-    let sequence = crate::io::packed::extension(path) == "jsonl";
+    let sequence = crate::packed::extension(path) == "jsonl";
     let mut parts: Vec<&[u8]> = match sequence {
         true => bytes.split(|&b| b == b'\n').collect(),
         false => vec![bytes],
     };
     parts.retain(|line| !line.trim_ascii().is_empty());
     let mut city = City {
-        name: crate::io::file_stem(path),
+        name: crate::file_stem(path),
         ..City::default()
     };
     let mut transform = Transform {
@@ -195,7 +195,7 @@ fn greys(geometry: &Value) -> Vec<Arc<Surface>> {
 /// An object as it is drawn.
 struct Drawing<'a> {
     vertices: &'a [[f64; 3]],
-    /// What surfaces of each kind look like.
+    /// The paint of the surfaces of each kind.
     kinds: Vec<Arc<Surface>>,
     mesh: TriangleMesh,
     paint: Vec<Painted>,
@@ -286,7 +286,7 @@ pub fn to_string(city: &City) -> String {
     document.to_string()
 }
 
-/// Where the standard's names of reference systems begin.
+/// The beginning of the standard's names of reference systems.
 const OPEN_GIS: &str = "https://www.opengis.net/def/crs/";
 
 /// A reference system as CityJSON 2.0 names it: `EPSG:7415` is `https://www.opengis.net/def/crs/EPSG/0/7415`. The standard

@@ -1,13 +1,13 @@
-//! Shapes on the ground as GeoJSON: Polygon or MultiPolygon, as geometry, feature or collection, in metres.
+//! Shapes on the ground as GeoJSON: `Polygon` or `MultiPolygon`, as geometry, feature or collection, in metres.
 
 use std::path::Path;
 
 use serde_json::Value;
 
 use super::{CityError, FARTHEST};
-use crate::io::json::parse_json;
-use crate::io::read_bytes;
-use crate::{Error, Result};
+use crate::json::parse_json;
+use crate::read_bytes;
+use edifice_base::{Error, Result};
 
 /// Rings of a shape, holes and parts alike, each without its last corner, which repeats the first.
 ///

@@ -8,9 +8,9 @@
 use serde_json::{Value, json};
 
 use super::pictures::media_type;
-use crate::grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
-use crate::io::glb_container::{TooLong, glb_container};
-use crate::shape::triangles::{TriangleMesh, VIEWS, box_coordinates, box_view};
+use crate::glb_container::{TooLong, glb_container};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
+use edifice_shape::triangles::{TriangleMesh, VIEWS, box_coordinates, box_view};
 
 /// Name of the materials of box-mapped templates.
 pub const BOX_MAPPED: &str = "box mapping";
@@ -21,7 +21,7 @@ pub enum GlbError {
     /// Nothing to draw: glTF forbids empty meshes and accessors.
     #[error("no triangles to write")]
     Empty,
-    /// The format cannot say so many bytes.
+    /// The file would have more bytes than the format can say.
     #[error(transparent)]
     TooLong(#[from] TooLong),
 }

@@ -1,9 +1,9 @@
 //! Cities as glTF 2.0: `.glb`, and `.gltf` with buffers inside it or beside it.
 //!
 //! A node of the scene with a mesh is a building, called by its name. Instances of `EXT_mesh_gpu_instancing` are drawn out.
-//! What Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
-//! of one building become one, which knows the instances it is put together from ([`Part`](crate::shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
-//! lines are left out. Textures of base colours are read as what surfaces look like. Every index and length is checked against the bytes there are.
+//! A file that Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
+//! of one building become one, which knows the instances it is put together from ([`Part`](edifice_shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
+//! lines are left out. Textures of base colours are read as the paint of the surfaces. Every index and length is checked against the bytes there are.
 
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -19,11 +19,11 @@ use super::gltf_textures::{Image, Material, Texture, looks};
 use super::gltf_transform::{
     IDENTITY, Matrix, applied, composed, determinant, product, upright_box,
 };
-use crate::io::glb_container::split;
-use crate::io::json::parse_json;
-use crate::io::read_bytes;
-use crate::shape::triangles::{City, CityBuilding, Painted};
-use crate::{Error, Result};
+use crate::glb_container::split;
+use crate::json::parse_json;
+use crate::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{City, CityBuilding, Painted};
 
 /// Extensions that may be required.
 const KNOWN: [&str; 4] = [
@@ -148,7 +148,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         document: &document,
         meshes: Meshes::new(&document.meshes, looks, &buffers),
         city: City {
-            name: crate::io::file_stem(path),
+            name: crate::file_stem(path),
             ..City::default()
         },
         ids: Vec::new(),
@@ -168,7 +168,7 @@ struct Reader<'a> {
     city: City,
     /// Identifiers of the buildings that instances belong to; they are the first buildings of the city.
     ids: Vec<String>,
-    /// Which building of the city has the identifier.
+    /// Index of the building of the city, by identifier.
     listed: FxHashMap<String, usize>,
     triangles: usize,
 }

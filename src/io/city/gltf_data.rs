@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::CityError;
-use crate::io::read_bytes;
-use crate::{Error, Result};
+use crate::read_bytes;
+use edifice_base::{Error, Result};
 
 /// Bytes.
 #[derive(Deserialize)]
@@ -143,7 +143,7 @@ fn size_of(component: u32) -> usize {
     }
 }
 
-/// How a component is read; integers that are normalized stand for -1 to 1 or 0 to 1.
+/// The reader of a component type; integers that are normalized stand for -1 to 1 or 0 to 1.
 fn reader(component: u32, normalized: bool) -> Option<fn(&[u8]) -> f64> {
     let i8s = |b: &[u8]| f64::from(b[0] as i8);
     let i16s = |b: &[u8]| f64::from(i16::from_le_bytes([b[0], b[1]]));

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::CityError;
 use super::gltf_data::Buffers;
 use super::gltf_textures::Looks;
-use crate::shape::triangles::{Painted, Surface, TriangleMesh};
+use edifice_shape::triangles::{Painted, Surface, TriangleMesh};
 
 /// A mesh as the file says it.
 #[derive(Deserialize)]
@@ -33,7 +33,7 @@ fn triangles() -> u32 {
 #[derive(Default)]
 pub(super) struct MeshRead {
     pub mesh: TriangleMesh,
-    /// What its triangles look like, as far as the file says it.
+    /// The paint of its triangles, as far as the file gives it.
     pub paint: Vec<Painted>,
     /// The picture of its box mapping.
     pub texture: Option<Arc<[u8]>>,
@@ -42,7 +42,7 @@ pub(super) struct MeshRead {
 /// The meshes of a file.
 pub(super) struct Meshes<'a> {
     meshes: &'a [Mesh],
-    /// What each material looks like; none without textures.
+    /// The look of each material; empty for a file without textures.
     looks: Vec<Option<Looks>>,
     pub buffers: &'a Buffers<'a>,
     read: FxHashMap<usize, MeshRead>,
@@ -144,7 +144,7 @@ impl<'a> Meshes<'a> {
         Ok(())
     }
 
-    /// What the triangles of a primitive look like.
+    /// The paint of the triangles of a primitive.
     fn painted(
         &self,
         primitive: &Primitive,

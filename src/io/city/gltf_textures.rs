@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::gltf_data::{Buffers, load};
 use super::pictures::decoded;
 use super::{CityError, glb::BOX_MAPPED};
-use crate::shape::triangles::Surface;
+use edifice_shape::triangles::Surface;
 
 /// A material.
 #[derive(Deserialize)]
@@ -27,7 +27,7 @@ struct Roughness {
     base_color_texture: Option<Use>,
 }
 
-/// How a material uses a texture.
+/// The use of a texture by a material.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Use {
@@ -44,7 +44,7 @@ struct Extensions {
     transform: Option<Transform>,
 }
 
-/// KHR_texture_transform.
+/// The extension `KHR_texture_transform`.
 #[derive(Clone, Copy, Deserialize)]
 pub(super) struct Transform {
     #[serde(default)]
@@ -73,16 +73,16 @@ pub(super) struct Image {
     buffer_view: Option<usize>,
 }
 
-/// What a primitive looks like.
+/// The look of a primitive.
 #[derive(Clone)]
 pub(super) struct Looks {
     /// Its picture or colour.
     pub surface: Arc<Surface>,
     /// The set of texture coordinates.
     pub coordinates: usize,
-    /// What is done to them.
+    /// The transform of these coordinates.
     pub transform: Option<Transform>,
-    /// Whether the picture is the box mapping of a template.
+    /// True if the picture is the box mapping of a template.
     pub box_mapped: bool,
 }
 

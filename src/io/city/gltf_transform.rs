@@ -1,6 +1,6 @@
 //! Transforms of glTF's nodes: 4 x 4 matrices, column after column.
 
-use crate::shape::triangles::OrientedBox;
+use edifice_shape::triangles::OrientedBox;
 
 /// Share of a length by which an axis may be askew: single precision.
 const ALIGNED: f64 = 1e-6;

@@ -4,11 +4,11 @@
 use std::path::Path;
 
 use super::{compact, grammar_json};
-use crate::grammar::instance::InstanceGrammar;
-use crate::io::write_atomic;
-use crate::{Error, Result};
+use crate::write_atomic;
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::InstanceGrammar;
 
-/// Whether a file's name says that it holds a grammar.
+/// True if a file's name says that it holds a grammar.
 pub fn is_grammar(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let endings = [".json", ".json.gz", ".bin"];
@@ -17,7 +17,7 @@ pub fn is_grammar(path: &Path) -> bool {
         .any(|e| name.ends_with(&format!(".city-grammar{e}")))
 }
 
-/// Whether a file's name says that its grammar is compact.
+/// True if a file's name says that its grammar is compact.
 pub fn is_compact(path: &Path) -> bool {
     path.extension().is_some_and(|e| e == "bin")
 }

@@ -23,11 +23,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::pictures;
-use crate::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
-use crate::io::json::{check_header, parse_json};
-use crate::io::{read_bytes, write_atomic};
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use crate::json::{check_header, parse_json};
+use crate::{read_bytes, write_atomic};
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
+use edifice_shape::triangles::TriangleMesh;
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-grammar";

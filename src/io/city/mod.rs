@@ -39,8 +39,8 @@ pub use pictures::{add_textures, paint_parts};
 use std::path::Path;
 
 use super::packed;
-use crate::shape::triangles::City;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::City;
 
 /// Coordinates beyond this are no metres.
 const FARTHEST: f64 = 1e8;
@@ -69,7 +69,7 @@ pub enum CityError {
     Dangling {
         /// The index.
         index: u64,
-        /// How many positions there are.
+        /// Number of positions.
         count: usize,
     },
     /// Anything else that the format does not allow.
@@ -93,7 +93,7 @@ pub fn read(path: &Path) -> Result<City> {
     check(city, path)
 }
 
-/// What holds for every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
+/// The check of every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
 fn check(mut city: City, path: &Path) -> Result<City> {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for building in &city.buildings {

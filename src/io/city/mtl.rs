@@ -7,9 +7,9 @@ use rustc_hash::FxHashMap;
 
 use super::CityError;
 use super::pictures;
-use crate::io::read_bytes;
-use crate::shape::triangles::{Surface, Texture};
-use crate::{Error, Result};
+use crate::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{Surface, Texture};
 
 /// Materials by name.
 pub(super) type Materials = FxHashMap<String, Arc<Surface>>;

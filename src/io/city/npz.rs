@@ -9,8 +9,8 @@ use npyz::npz::NpzArchive;
 use npyz::{DType, Deserialize, TypeChar};
 
 use super::CityError;
-use crate::shape::triangles::{City, CityBuilding, TriangleMesh};
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
 /// Metres in the unit of whole-number coordinates.
 const CENTIMETRE: f64 = 0.01;
@@ -20,7 +20,7 @@ const CENTIMETRE: f64 = 0.01;
 /// # Errors
 /// Names the file and the array that is wrong.
 pub fn read(path: &Path) -> Result<City> {
-    parse(crate::file::read_bytes(path)?, path)
+    parse(edifice_base::file::read_bytes(path)?, path)
 }
 
 /// Parses the bytes of an archive; `path` only names it in errors.
@@ -83,7 +83,7 @@ pub fn parse(bytes: Vec<u8>, path: &Path) -> Result<City> {
     let meta = arrays.json("meta")?.unwrap_or_default();
     let text = |key: &str| meta.get(key).and_then(|v| v.as_str()).map(str::to_owned);
     Ok(City {
-        name: text("name").unwrap_or_else(|| crate::io::file_stem(path)),
+        name: text("name").unwrap_or_else(|| crate::file_stem(path)),
         reference_system: text("crs"),
         origin: [0.0; 3],
         buildings,

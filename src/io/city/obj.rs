@@ -10,9 +10,9 @@ use rustc_hash::FxHashMap;
 use super::CityError;
 use super::mtl::{self, Materials};
 pub use super::obj_write::{to_string, write};
-use crate::io::read_bytes;
-use crate::shape::triangles::{City, CityBuilding, Painted, Surface, TriangleMesh};
-use crate::{Error, Result};
+use crate::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_shape::triangles::{City, CityBuilding, Painted, Surface, TriangleMesh};
 
 /// Reads a file.
 ///
@@ -91,7 +91,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                     )));
                 }
                 let building = *current.get_or_insert_with(|| {
-                    faces.push((crate::io::file_stem(path), Vec::new()));
+                    faces.push((crate::file_stem(path), Vec::new()));
                     faces.len() - 1
                 });
                 uv.resize(corners.len(), [0.0; 2]);
@@ -122,7 +122,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     let buildings = faces.into_iter().zip(paint);
     let buildings = buildings.filter(|((_, triangles), _)| !triangles.is_empty());
     Ok(City {
-        name: crate::io::file_stem(path),
+        name: crate::file_stem(path),
         reference_system: None,
         origin: [0.0; 3],
         buildings: buildings
@@ -136,7 +136,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     })
 }
 
-/// Where an index of OBJ leads to among `count`; negative ones count from the last so far.
+/// The position, among `count`, that an index of OBJ names; negative ones count from the last so far.
 fn place(index: i64, count: usize) -> std::result::Result<usize, CityError> {
     let at = match index < 0 {
         true => index.checked_add_unsigned(count as u64),

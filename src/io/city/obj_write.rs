@@ -8,9 +8,9 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::pictures::ending;
-use crate::Result;
-use crate::io::{file_stem, write_atomic};
-use crate::shape::triangles::{City, CityBuilding, Painted, Surface, corner_bits};
+use crate::{file_stem, write_atomic};
+use edifice_base::Result;
+use edifice_shape::triangles::{City, CityBuilding, Painted, Surface, corner_bits};
 
 /// The material of what has no other.
 const PLAIN: &str = "plain";
@@ -24,7 +24,7 @@ pub fn to_string(city: &City) -> String {
 /// written whole or not at all, `path` the last.
 ///
 /// # Errors
-/// [`crate::Error::Io`] when a file cannot be written.
+/// [`edifice_base::Error::Io`] when a file cannot be written.
 pub fn write(city: &City, path: &Path) -> Result<()> {
     let stem = file_stem(path);
     let materials = Materials::of(city, &stem);

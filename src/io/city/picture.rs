@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::scene::render::render;
-use crate::scene::trace::framing;
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::shape::triangles::{City, Painted, corner_bits};
+use edifice_scene::render::render;
+use edifice_scene::trace::framing;
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
+use edifice_shape::triangles::{City, Painted, corner_bits};
 
 /// Space between pictures, in pixels.
 const GAP: usize = 8;
 
-/// Textures are drawn in about so many pieces.
+/// Approximate number of pieces in which textures are drawn.
 const MOST_PIECES: f64 = 600_000.0;
 /// No piece is halved below this length, in metres.
 const FINEST: f64 = 0.25;
@@ -21,7 +21,7 @@ const COARSE: u8 = 0xf8;
 /// Index of the material of what is not painted.
 const BUILDING: usize = 0;
 
-/// From the south-west, downward; y is up.
+/// Direction of the view: from the south-west, downward; y is up.
 const VIEW: [f32; 3] = [0.35, -0.55, -0.75];
 
 /// Draws cities from one place, from which the first is seen whole, as a PNG of one row; each picture is `width` x `height` pixels.

@@ -10,9 +10,9 @@ use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat};
 use rustc_hash::FxHashMap;
 
 use super::CityError;
-use crate::grammar::instance::InstanceGrammar;
-use crate::io::pixels::{self, PixelError};
-use crate::shape::triangles::{
+use crate::pixels::{self, PixelError};
+use edifice_grammar::instance::InstanceGrammar;
+use edifice_shape::triangles::{
     BoxTexture, City, CityBuilding, Painted, Surface, Texture, box_coordinates, box_view,
 };
 

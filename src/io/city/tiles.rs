@@ -1,6 +1,6 @@
 //! Instance grammars as 3D Tiles 1.1: `tileset.json`, and for each tile a binary glTF with instances.
 //!
-//! The plan is halved along its longer side until a tile has at most so many instances; a building is in the tile
+//! The plan is halved along its longer side until a tile has at most the wanted number of instances; a building is in the tile
 //! of its first instance, whole. Each tile's coordinates are relative to its middle, so that 32 bits hold millimetres
 //! in a city of any size. The tileset is in the metres of the grammar's reference system, z up, its origin in the
 //! `extras` of the asset.
@@ -8,7 +8,7 @@
 use serde_json::{Value, json};
 
 use super::glb::{self, GlbError};
-use crate::grammar::instance::{InstanceDerivation, InstanceGrammar};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 
 /// Instances in a tile at most.
 pub const MOST_INSTANCES: usize = 4000;

@@ -1,4 +1,4 @@
-//! What one sees of a city, as JSON: format `edifice/city-view`, version 1.
+//! The view that somebody has of a city, as JSON: format `edifice/city-view`, version 1.
 //!
 //! ```json
 //! { "format": "edifice/city-view", "version": 1, "unit": "m", "buildings": [
@@ -12,9 +12,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::CityError;
-use crate::io::json::{check_header, parse_json};
-use crate::io::read_bytes;
-use crate::{Error, Result};
+use crate::json::{check_header, parse_json};
+use crate::read_bytes;
+use edifice_base::{Error, Result};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-view";

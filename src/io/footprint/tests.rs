@@ -1,5 +1,5 @@
 use super::{FootprintError, rectangles};
-use crate::shape::PlanUnion;
+use edifice_shape::PlanUnion;
 use serde_json::json;
 
 const L: [[f64; 2]; 7] = [

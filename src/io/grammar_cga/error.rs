@@ -1,4 +1,4 @@
-//! What is wrong in CGA text, and where.
+//! Errors in CGA text, with their place.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use chumsky::span::{SimpleSpan, Span};
 /// Longest line that is printed under an error, in bytes.
 const LINE_SHOWN: usize = 400;
 
-/// What is wrong, at a place given in bytes.
+/// An error, at a place given in bytes.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub span: SimpleSpan,
@@ -31,7 +31,7 @@ pub struct CgaError {
     pub column: usize,
     /// The offending text; empty at the end of the file.
     pub found: String,
-    /// What is wrong.
+    /// The error as a sentence.
     pub message: String,
     /// The line, with the offending text marked.
     pub snippet: String,

@@ -13,8 +13,8 @@ use super::error::Fault;
 use super::note::Note;
 use super::reserved::is_leaf_operation;
 use super::syntax::{At, CgaRule, Chance, Item, Target};
-use crate::grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
+use edifice_shape::Axis;
 use natural::natural_extent;
 use value::{DRAWS, Draw};
 
@@ -82,13 +82,13 @@ struct Builder<'a> {
     /// Symbols whose rule only says how they look, and where it is written.
     leaves: FxHashMap<String, SimpleSpan>,
     rules: Vec<Rule>,
-    /// Where each rule is written.
+    /// The place of each rule in the text.
     places: Vec<SimpleSpan>,
     /// `//@ sizes absolute`.
     sizes_absolute: bool,
-    /// Whether floating sizes of the alternative at hand are absolute.
+    /// True if floating sizes of the alternative at hand are absolute.
     floats_absolute: bool,
-    /// What `rand` gives in the alternative at hand.
+    /// The values of `rand` in the alternative at hand.
     draw: Draw,
 }
 

@@ -31,10 +31,10 @@
 //! | `cga_annotations.html` | `@StartRule` marks a rule for the start rule chooser | on the rule of every start | the first one marked, else the first rule, is the axiom; other annotations are skipped |
 //! | `cgaindex.html` | names of operations, attributes, functions, keywords; declared names may not end in a dot ([changelog] of 2022.0) | a symbol that is one of them, or no ASCII identifier, gets another name and a comment `//@ symbol` | the comment gives the symbol back |
 //! | [standard rule] | a symbol without a rule is a leaf, with a warning unless a dot follows its name | a rule for each leaf | a dot after a name is no part of it |
-//! | `op_color.html` | `color("#rrggbb")` sets the colour of a shape | leaves have the colour of [`Palette`](crate::io::palette::Palette) | a rule of such operations alone (also `i(...)`, `extrude(...)`, ...) makes its symbol a terminal; before a symbol or a split they are skipped |
+//! | `op_color.html` | `color("#rrggbb")` sets the colour of a shape | leaves have the colour of [`Palette`](crate::palette::Palette) | a rule of such operations alone (also `i(...)`, `extrude(...)`, ...) makes its symbol a terminal; before a symbol or a split they are skipped |
 //! | `op_split.html` | a size without prefix is exact, and what the sizes leave stays empty; `~` sizes share the rest in proportion | `~` before every size but those of thin structures, in every rule | [`Size::Absolute`] and [`Size::Relative`] |
 //! | | `'` sizes are fractions of the whole | never | as weights: `'0.2 \| ~1 \| ~3` is `~0.2 \| ~0.2 \| ~0.6`. Beside an absolute size, and with a gap, an error |
-//! | | `{ ... }*` repeats as often as fits best; `~` sizes then fill the space | [`Repeat`](crate::grammar::Operation::Repeat) with `~`; `A \| { B \| A }*` for [`RepeatAba`](crate::grammar::Operation::RepeatAba) | also as `split(x) { ... }*` and among other parts, where it becomes a helper symbol (`Floor_1`) |
+//! | | `{ ... }*` repeats as often as fits best; `~` sizes then fill the space | [`Repeat`](edifice_grammar::Operation::Repeat) with `~`; `A \| { B \| A }*` for [`RepeatAba`](edifice_grammar::Operation::RepeatAba) | also as `split(x) { ... }*` and among other parts, where it becomes a helper symbol (`Floor_1`) |
 //! | | blocks may be nested to any depth | `//@ grid_split` only | a block without `*` is its parts; a repeat in a repeat, and several beside each other, are helper symbols of one floating period each; 64 levels |
 //! | `func_rand.html` | `rand(min, max)`, `rand(max)` and `rand()` are numbers of a range | never | in a rule: five equally likely rules, each with the middle of a fifth of the range, so that `rand(2, 4)` is 2.2, 2.6, 3.0, 3.4 or 3.8; several ranges of a rule take their fifths in different orders |
 //! | `const.html`, `attr.html` | evaluated once, before any rule | sizes that a symbol is given more than once | a range stands for its middle |
@@ -44,12 +44,12 @@
 //! [changelog]: https://doc.arcgis.com/en/cityengine/latest/cga/cga-changelog.htm
 //! [standard rule]: http://cehelp.esri.com/help/topic/com.procedural.cityengine.help/html/manual/cga/writing_rules/cga_wr_standard_rule.html
 //! [stochastic rule]: https://doc.arcgis.com/en/cityengine/latest/help/help-stochastic-rule.htm
-//! [`Size::Absolute`]: crate::grammar::Size::Absolute
-//! [`Size::Relative`]: crate::grammar::Size::Relative
+//! [`Size::Absolute`]: edifice_grammar::Size::Absolute
+//! [`Size::Relative`]: edifice_grammar::Size::Relative
 //!
 //! **Which sizes float.** An inferred grammar has absolute sizes; written so, CityEngine would leave gaps
 //! on a larger lot and cut parts off on a smaller one. The text has the sizes of
-//! [`size_independent`](crate::grammar::size_independent), which `edifice grammar derive` uses at another
+//! [`size_independent`](edifice_grammar::size_independent), which `edifice grammar derive` uses at another
 //! size too: thin structures are exact, all others share the rest, and repeats fit as many periods as
 //! there is room for. At the facade's own size that gives the absolute sizes. A rule in which some size is
 //! a weight already fills its space and is written as it is.
@@ -85,8 +85,8 @@ use std::path::Path;
 pub use error::CgaError;
 
 use super::{read_bytes, write_atomic};
-use crate::grammar::Grammar;
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+use edifice_grammar::Grammar;
 use error::Fault;
 
 /// Reads a grammar from a file.

@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::grammar::{Grammar, Operation, Size, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Grammar, Operation, Size, Successor};
+use edifice_shape::Axis;
 
 /// A size that is written more than once for the same symbol and axis has a name.
 pub(super) type SizeKey<'g> = (&'g str, Axis, u64);

@@ -67,7 +67,7 @@ impl Note {
         }
     }
 
-    /// Whether the comment is about the whole text, and not about the rule below it.
+    /// True if the comment is about the whole text, and not about the rule below it.
     pub fn is_header(&self) -> bool {
         matches!(
             self,

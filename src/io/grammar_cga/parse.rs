@@ -9,7 +9,7 @@ use super::syntax::{
     Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Prefix, Target,
 };
 use super::token::Token;
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 type Extra<'t, 'a> = extra::Err<Rich<'t, Token<'a>>>;
 

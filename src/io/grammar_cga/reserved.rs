@@ -48,12 +48,12 @@ pub(super) fn words() -> impl Iterator<Item = &'static str> {
     lists.into_iter().flat_map(str::split_ascii_whitespace)
 }
 
-/// Whether an operation may be skipped before a split or a symbol.
+/// True if an operation may be skipped before a split or a symbol.
 pub(super) fn is_appearance(operation: &str) -> bool {
     APPEARANCE.split_ascii_whitespace().any(|o| o == operation)
 }
 
-/// Whether an operation may stand in a leaf.
+/// True if an operation may stand in a leaf.
 pub(super) fn is_leaf_operation(operation: &str) -> bool {
     is_appearance(operation) || FILLING.split_ascii_whitespace().any(|o| o == operation)
 }

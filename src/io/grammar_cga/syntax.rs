@@ -2,7 +2,7 @@
 
 use chumsky::span::SimpleSpan;
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Something with its place in the text.
 pub(super) type At<T> = (T, SimpleSpan);
@@ -38,7 +38,7 @@ pub(super) struct Alternative<'a> {
     pub target: At<Target<'a>>,
 }
 
-/// What stands before the colon of an alternative.
+/// The part of an alternative before its colon.
 #[derive(Debug, Clone)]
 pub(super) enum Chance<'a> {
     Always,
@@ -46,7 +46,7 @@ pub(super) enum Chance<'a> {
     Else,
 }
 
-/// What a part becomes.
+/// The replacement of a part.
 #[derive(Debug, Clone)]
 pub(super) enum Target<'a> {
     Symbol(&'a str),
@@ -64,7 +64,7 @@ pub(super) enum Entry<'a> {
     Repeat(Vec<Entry<'a>>, SimpleSpan),
 }
 
-/// What stands before a size.
+/// The sign before a size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Prefix {
     /// Nothing: exactly this size.

@@ -6,10 +6,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::names::{SizeKey, constants, identifiers};
 use super::reserved;
-use crate::grammar::{Grammar, Operation, Rule, Size, Successor, size_independent};
-use crate::io::json::quoted;
-use crate::io::palette::Palette;
-use crate::shape::Axis;
+use crate::json::quoted;
+use crate::palette::Palette;
+use edifice_grammar::{Grammar, Operation, Rule, Size, Successor, size_independent};
+use edifice_shape::Axis;
 
 /// The version of CGA that the text keeps to: every word of it is known since then.
 const VERSION: &str = "2019.0";
@@ -105,7 +105,7 @@ fn leaves<'g>(grammar: &'g Grammar, defined: &FxHashSet<&str>) -> Vec<&'g str> {
     leaves
 }
 
-/// Whether some size of an operation is a weight, so that it fills any space.
+/// True if some size of an operation is a weight, so that it fills any space.
 fn has_weights(operation: &Operation) -> bool {
     let weight = |size: &Size| matches!(size, Size::Relative(_));
     match operation {

@@ -9,7 +9,7 @@ use super::lattice::Lattice;
 use super::projection::Limits;
 use super::resized;
 use super::strips::{Run, Strips};
-use crate::shape::{
+use edifice_shape::{
     Component, Facade, GridError, IndexedLayout, LabelGrid, Span, components, decompose,
     is_background,
 };
@@ -24,10 +24,10 @@ pub struct Areas<'a> {
     of_cell: Vec<u32>,
     /// Label of each area, as a number.
     labels: Vec<u16>,
-    /// Whether an area is a rectangular element, to be served first.
+    /// True if an area is a rectangular element, to be served first.
     is_element: Vec<bool>,
-    /// Whether a stretch of its area may vanish at a cell: background, and what odd elements have
-    /// beside their [bodies](body).
+    /// True if a stretch of its area may vanish at a cell: background, and the parts of odd elements beside their
+    /// [bodies](body).
     yields: Vec<bool>,
     /// Rectangles whose sizes count.
     extents: Vec<Extent>,

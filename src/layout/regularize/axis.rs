@@ -7,9 +7,9 @@ use super::equal::Cluster;
 use super::lattice::Lattice;
 use super::meeting::Groups;
 use super::strips::Strips;
-use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
+use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 
-/// How much dearer it is to change the size of an element than one of the background.
+/// Cost of a change to the size of an element, relative to that of one of the background.
 const ELEMENT: f64 = 8.0;
 
 /// One axis of a layout; lengths are in units of the lattice.
@@ -18,13 +18,13 @@ pub struct Axis<'a> {
     pub cuts: Vec<f64>,
     /// Length of edge on each line.
     pub weights: Vec<f64>,
-    /// What lies between the lines.
+    /// The areas between the lines.
     pub strips: Strips<'a>,
     /// Sizes that are equal.
     pub classes: Vec<Class>,
     /// Longest way that a line may move.
     pub reach: f64,
-    /// Where each line may be.
+    /// The range of each line's position.
     pub ranges: Vec<[f64; 2]>,
     /// The lattice.
     pub lattice: Lattice,

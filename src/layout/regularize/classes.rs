@@ -1,8 +1,8 @@
-//! Which sizes are equal before regularization, and so stay equal.
+//! The sizes that are equal before regularization, and so stay equal.
 
 use std::collections::BTreeMap;
 
-use crate::shape::Span;
+use edifice_shape::Span;
 
 /// Sizes along one axis that are equal, and stay so.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,12 +24,12 @@ pub struct Class {
 /// A rectangle between cut lines whose size counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Whether it is of the background.
+    /// True if it is of the background.
     pub behind: bool,
     /// Label number.
     pub label: u16,
-    /// Whether it may become equal along one axis to others that are not near across; otherwise only to those
-    /// that are near in both.
+    /// True if it may become equal along one axis to others that are not near across; otherwise only to those that are
+    /// near in both.
     pub strict: bool,
     /// Cut lines around it.
     pub span: Span,

@@ -1,10 +1,10 @@
-//! How many sizes occur.
+//! Numbers of distinct sizes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::classes::levels;
 use super::lattice::SAME;
-use crate::shape::{Facade, LabelGrid, Span, components};
+use edifice_shape::{Facade, LabelGrid, Span, components};
 
 /// Number of distinct sizes (width and height) of each label; those within a ten-millionth of the longer
 /// side of the layout are one.
@@ -47,7 +47,7 @@ pub fn of_areas(grid: &LabelGrid) -> (BTreeMap<String, usize>, BTreeMap<String, 
 
 /// Number of distinct sizes of the regions of each label.
 pub fn of_regions(facade: &Facade) -> BTreeMap<String, usize> {
-    let size = |r: &crate::shape::Region| (r.rect.width, r.rect.height);
+    let size = |r: &edifice_shape::Region| (r.rect.width, r.rect.height);
     let sizes: Vec<(&str, f64, f64)> = (facade.regions.iter())
         .map(|r| (r.label.as_str(), size(r).0, size(r).1))
         .collect();

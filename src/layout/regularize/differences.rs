@@ -23,7 +23,7 @@ pub struct SharedSize {
     pub wanted: f64,
     /// Bounds.
     pub range: (f64, f64),
-    /// How much a change counts.
+    /// Weight of a change of the value.
     pub weight: f64,
     /// Positions at both ends of each span.
     pub spans: Vec<(usize, usize)>,
@@ -50,7 +50,7 @@ pub struct Differences {
     edges: Vec<Edge>,
     /// Edges by their `from`.
     out: Vec<Vec<usize>>,
-    /// Whether positions and sizes are whole numbers.
+    /// True if positions and sizes are whole numbers.
     whole: bool,
     /// Differences below this count as none.
     slack: f64,
@@ -224,7 +224,7 @@ impl Differences {
         Some(())
     }
 
-    /// Whether positions satisfy every bound and constraint.
+    /// True if positions satisfy every bound and constraint.
     pub fn holds(&self, values: &[f64]) -> bool {
         let bounds =
             |k: usize| self.lower[k] <= values[k] + 1e-6 && values[k] <= self.upper[k] + 1e-6;
@@ -237,7 +237,7 @@ impl Differences {
 #[derive(Debug, Clone)]
 pub struct Chain {
     edges: Vec<usize>,
-    /// How much room is lacking.
+    /// The room that is lacking.
     excess: f64,
 }
 

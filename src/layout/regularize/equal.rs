@@ -1,4 +1,4 @@
-//! Which sizes along one axis become equal.
+//! The choice of the sizes along one axis that become equal.
 
 use super::axis::Axis;
 use super::classes::Class;

@@ -16,7 +16,7 @@ pub struct Lattice {
     longer: f64,
     /// Units along it.
     steps: f64,
-    /// Whether all coordinates are whole numbers of units.
+    /// True if all coordinates are whole numbers of units.
     pub whole: bool,
 }
 

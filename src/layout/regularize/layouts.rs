@@ -7,7 +7,7 @@ use super::areas::Areas;
 use super::counts;
 use super::projection::{Layout, Limits, Step};
 use super::square::square;
-use crate::shape::{
+use edifice_shape::{
     Facade, IndexedLayout, LabelGrid, LayoutError, Rect, Region, decompose, is_background,
 };
 
@@ -116,7 +116,7 @@ impl Tiling {
     /// [`LayoutError`] when lines that bound a region have met.
     pub fn moved(&self, xs: &[f64], ys: &[f64]) -> Result<Facade, LayoutError> {
         let regions = self.facade.regions.iter().zip(&self.layout.spans);
-        let moved = |(region, s): (&Region, &crate::shape::Span)| {
+        let moved = |(region, s): (&Region, &edifice_shape::Span)| {
             let (x, y) = (xs[s.left], ys[s.bottom]);
             Region {
                 label: region.label.clone(),
@@ -160,7 +160,7 @@ impl Layout for Tiling {
     }
 }
 
-/// Whether there are no more sizes than before.
+/// True if there are no more sizes than before.
 fn none_more(before: &BTreeMap<String, usize>, after: &BTreeMap<String, usize>) -> bool {
     after.values().sum::<usize>() <= before.values().sum()
 }

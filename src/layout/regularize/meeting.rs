@@ -1,4 +1,4 @@
-//! Which lines along one axis become one.
+//! The choice of the lines along one axis that become one.
 
 use super::axis::Axis;
 use super::equal::Cluster;
@@ -7,7 +7,7 @@ use super::equal::Cluster;
 pub struct Groups {
     /// Group of each line.
     pub of_line: Vec<usize>,
-    /// Where the lines of each group want to be.
+    /// The wanted position of the lines of each group.
     pub center: Vec<f64>,
     /// Sum of the weights of the lines.
     pub weight: Vec<f64>,
@@ -106,7 +106,7 @@ impl Axis<'_> {
         }
     }
 
-    /// Whether nothing is lost between the lines that follow a leader.
+    /// True if nothing is lost between the lines that follow a leader.
     fn may_meet(&self, leader: usize, leads: &[Option<usize>]) -> bool {
         let cuts = &self.cuts;
         let narrow = |from: usize, to: usize| cuts[to] - cuts[from] <= self.reach + 1e-6;

@@ -56,8 +56,8 @@ mod strips;
 
 use std::collections::BTreeMap;
 
-use crate::optim::qp::QpError;
-use crate::shape::{Facade, GridError, LabelGrid, LayoutError};
+use edifice_optim::qp::QpError;
+use edifice_shape::{Facade, GridError, LabelGrid, LayoutError};
 
 use areas::Areas;
 use layouts::{Picture, Tiling};
@@ -91,7 +91,7 @@ pub enum RegularizeError {
     Qp(#[from] QpError),
 }
 
-/// What regularization did.
+/// The changes that regularization made.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Longest way that any edge moved, in the unit of the layout.

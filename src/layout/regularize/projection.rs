@@ -35,14 +35,14 @@ pub trait Layout: Sized + Clone {
     /// Coordinates of the cut lines along x and y.
     fn lines(&self) -> [&[f64]; 2];
 
-    /// Whether a layout made from this one has as few sizes, and all labels and elements.
+    /// True if a layout made from this one has no more sizes, and all labels and elements.
     fn keeps(&self, made: &Self) -> bool;
 
-    /// How much there is to tell: distinct sizes and cut lines.
+    /// Number of distinct sizes and cut lines.
     fn complexity(&self) -> usize;
 }
 
-/// How far a step may go.
+/// The limits of a step.
 #[derive(Debug, Clone)]
 pub struct Limits {
     /// Longest way of any line from where it is.
@@ -51,11 +51,11 @@ pub struct Limits {
     pub depth: f64,
     /// Along x and y, the lines before the step and their ranges.
     pub ranges: [Vec<(f64, [f64; 2])>; 2],
-    /// Whether lines along x and y may move.
+    /// True for x and y if lines along that axis may move.
     pub axes: [bool; 2],
 }
 
-/// What one step made.
+/// The result of one step.
 #[derive(Debug, Clone)]
 pub struct Step<L> {
     /// The layout.
@@ -68,7 +68,7 @@ pub struct Step<L> {
     pub squared: usize,
 }
 
-/// What several steps made.
+/// The result of several steps.
 #[derive(Debug, Clone)]
 pub struct Made<L> {
     /// The layout.
@@ -79,7 +79,7 @@ pub struct Made<L> {
     pub squared: usize,
     /// Depth of nicks that were filled, over all steps.
     filled: f64,
-    /// Where lines along x and y were, and are.
+    /// The positions of lines along x and y, before all steps and now.
     tracks: [Vec<(f64, f64)>; 2],
 }
 
@@ -101,7 +101,7 @@ pub fn project<L: Layout>(start: &L, tolerance: f64) -> Result<Option<Made<L>>, 
     Ok(None)
 }
 
-/// Whether no step saves enough to be worth it.
+/// True if no step saves enough to be worth it: a tenth of the complexity.
 fn is_regular<L: Layout>(layout: &L, tolerance: f64) -> Result<bool, RegularizeError> {
     let made = Made::new(layout);
     let next = made.next(layout, tolerance, tolerance)?;
@@ -163,7 +163,7 @@ impl<L: Layout> Made<L> {
         Ok(None)
     }
 
-    /// Where each line may go, such that none of those at the start goes further than the tolerance.
+    /// The range of each line, such that none of those at the start goes further than the tolerance.
     fn ranges(&self, axis: usize, tolerance: f64) -> Vec<(f64, [f64; 2])> {
         let mut ranges: Vec<(f64, [f64; 2])> = Vec::new();
         for &(from, at) in &self.tracks[axis] {

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::RegularizeError;
 use super::strips::Run;
-use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
+use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 
 /// Share of its derived size that every region keeps.
 const LEAST_SHARE: f64 = 0.5;

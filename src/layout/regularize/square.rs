@@ -1,8 +1,8 @@
 //! Areas that are rectangles but for small nicks become rectangles.
 
-use crate::shape::{LabelGrid, Span, components, is_background};
+use edifice_shape::{LabelGrid, Span, components, is_background};
 
-/// What squaring did.
+/// The result of squaring.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Nicks {
     /// Areas that became rectangles.

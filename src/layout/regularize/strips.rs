@@ -1,4 +1,4 @@
-//! What lies along the strips between neighbouring cut lines of the other axis.
+//! The areas along the strips between neighbouring cut lines of the other axis.
 
 /// A stretch of one area along a strip, between cut lines `from` and `to`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Run {
 pub struct Strips<'a> {
     /// Area of each cell.
     pub cells: &'a [u32],
-    /// Whether each cell may vanish although its area does not continue beside it.
+    /// True for each cell that may vanish although its area does not continue beside it.
     pub yields: &'a [bool],
     /// Cells in a strip.
     pub length: usize,
@@ -34,9 +34,9 @@ impl<'a> Strips<'a> {
         self.cells.chunks_exact(self.length)
     }
 
-    /// Whether the cells between lines `first` and `last` can vanish: in each strip they continue what
-    /// lies before, then what lies behind; a `narrow` stretch between the two may vanish when all of it
-    /// yields and no two areas of one label come to touch.
+    /// True if the cells between lines `first` and `last` can vanish: in each strip they continue the area before them,
+    /// then the area behind them; a `narrow` stretch between the two may vanish when all of it yields and no two areas
+    /// of one label come to touch.
     pub fn can_vanish(
         self,
         first: usize,

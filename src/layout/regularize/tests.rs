@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::shape::{Rect, Region, decompose, splittable};
+use edifice_shape::{Rect, Region, decompose, splittable};
 
 /// A wall with windows given as (x, y, width, height), in whole pixels.
 fn wall(width: usize, height: usize, windows: &[(usize, usize, usize, usize)]) -> LabelGrid {
@@ -164,7 +164,7 @@ fn sizes_of(facade: &Facade) -> usize {
     counts::of_regions(facade).values().sum()
 }
 
-/// Whether regions that had one label and one size still have one size.
+/// True if regions that had one label and one size still have one size.
 fn stays_equal(before: &Facade, after: &Facade) -> bool {
     let same = 1e-7 * before.width.max(before.height);
     let equal = |f: &Facade, i: usize, j: usize| {
@@ -203,7 +203,7 @@ fn tolerance_0_is_the_identity() {
 
 /// Number of connected areas of windows.
 fn windows_of(grid: &LabelGrid) -> usize {
-    let elements = crate::shape::elements_of_grid(grid).unwrap();
+    let elements = edifice_shape::elements_of_grid(grid).unwrap();
     elements.regions.len()
 }
 

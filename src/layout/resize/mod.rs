@@ -8,14 +8,14 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::Derivation;
-use crate::layout::regularize::{RegularizeError, align_resized};
-use crate::shape::{Axis, Facade, Rect, is_background};
+use crate::regularize::{RegularizeError, align_resized};
+use edifice_grammar::Derivation;
+use edifice_shape::{Axis, Facade, Rect, is_background};
 
-/// How far an edge may move so that equal terminals stay equal, as a part of the facade's longer side.
+/// The longest way that an edge may move so that equal terminals stay equal, as a share of the facade's longer side.
 pub const ALIGN_REACH: f64 = 0.25;
 
-/// How far apart edges may be to become one line, as a part of the facade's longer side.
+/// The greatest distance of edges that become one line, as a share of the facade's longer side.
 pub const ALIGN_TOLERANCE: f64 = 0.004;
 
 /// Sizes are equal up to this part of the facade's longer side, the precision of the solver.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::grammar::Derivation;
+use edifice_grammar::Derivation;
 
 /// Sizes within this fraction of the facade's longer side are one.
 const SAME: f64 = 1e-6;
@@ -12,7 +12,7 @@ const SAME: f64 = 1e-6;
 /// The class of each terminal region of `resized`, given `own`, a derivation by the same rules at the grammar's
 /// own size: terminals are of one class when they have one label and, in the facade at its own
 /// size, one width and one height. "Equal terminals have the same size" asks that classes keep equal
-/// sizes; [`align_resized`](crate::layout::regularize::align_resized) sees to it.
+/// sizes; [`align_resized`](crate::regularize::align_resized) sees to it.
 pub fn terminal_classes(own: &Derivation, resized: &Derivation) -> Vec<usize> {
     let unit = SAME * own.facade.width.max(own.facade.height);
     let whole = |size: f64| (size / unit).round() as i64;

@@ -1,4 +1,4 @@
-//! How well the edges of two structures agree.
+//! Agreement of the edges of two structures: precision and recall.
 
 /// Precision and recall of the edges found, directions ignored; both 1 when there is nothing to
 /// find or nothing found wrongly.

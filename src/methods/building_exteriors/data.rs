@@ -1,9 +1,9 @@
 //! From attribute rows to the tables and groups of the model layer.
 
 use super::attributes::{AttributeRow, GROUPS, Level};
-use crate::model::hierarchy::Group;
-use crate::model::{ModelError, Table};
-use crate::tables::Dataset;
+use edifice_model::hierarchy::Group;
+use edifice_model::tables::Dataset;
+use edifice_model::{ModelError, Table};
 
 /// The 49 attributes of many buildings with the paper's 13 groups.
 ///

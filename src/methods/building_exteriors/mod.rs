@@ -1,7 +1,7 @@
-//! How houses look (Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential
+//! The exteriors of houses (Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential
 //! Buildings*): from houses to attributes to a learned hierarchical model.
 //!
-//! A building of any number of boxes and facade pieces ([`crate::shape::Building`]) becomes a
+//! A building of any number of boxes and facade pieces ([`edifice_shape::Building`]) becomes a
 //! vector of 49 [`attributes`] (Sec. 4.2, Appendix A).
 
 pub mod agreement;

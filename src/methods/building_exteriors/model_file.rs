@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::ModelError;
-use crate::model::hierarchy::{Group, Hierarchy};
+use edifice_model::ModelError;
+use edifice_model::hierarchy::{Group, Hierarchy};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/building_model";

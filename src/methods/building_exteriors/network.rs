@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::model::hierarchy::Hierarchy;
+use edifice_model::hierarchy::Hierarchy;
 
 /// Width of the drawing on a page: the narrower side of A4 landscape's print area, 280 mm, at 96 dpi.
 const PAGE: f64 = 1058.0;
@@ -36,7 +36,7 @@ pub fn svg(model: &Hierarchy, discrete: &[String]) -> String {
     picture.svg()
 }
 
-/// What is drawn.
+/// The nodes and edges of the drawing.
 struct Picture<'m> {
     styles: usize,
     /// Groups of attributes below hidden variables, and the cardinality of each.

@@ -17,7 +17,7 @@ use super::components::Component;
 use super::features::Points;
 use super::orientation::is_symmetric;
 use super::proceduralize::ProceduralizeError;
-use crate::cluster::{shortest_description, ward};
+use edifice_cluster::{shortest_description, ward};
 
 /// Differences of features below this are no differences: half a per cent of a length.
 const PRECISION: f64 = 0.005;
@@ -37,7 +37,7 @@ pub struct BuildingTypes {
     pub order: Vec<usize>,
     /// Number of types.
     pub count: usize,
-    /// Whether half a turn does not change a building of a type, for each type: what most of its buildings say.
+    /// For each type, true if half a turn does not change its buildings; most of its buildings decide.
     pub symmetric: Vec<bool>,
 }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
 use super::windows::{WindowFeatures, window_features};
-use crate::shape::triangles::{
+use edifice_shape::triangles::{
     City, MeshFaults, OrientedBox, Painted, Part, SectionProfile, SideView, Surface, TriangleMesh,
     clip_to_slabs, closing_lid, grey, height_map, repair,
 };
@@ -46,11 +46,11 @@ pub struct Component {
     pub frame: OrientedBox,
     /// The slab with its lid, in unit coordinates of the box.
     pub mesh: TriangleMesh,
-    /// How much of each column of the box is solid, 16 x 16.
+    /// Solid share of each column of the box, 0 to 1, 16 x 16 columns.
     pub heights: Vec<f32>,
     /// Volume in cubic metres.
     pub volume: f64,
-    /// Whether half a turn does not change it.
+    /// True if half a turn does not change it.
     pub symmetric: bool,
     /// The template that it is an instance of, where the input says it.
     pub stated: Option<usize>,
@@ -70,7 +70,7 @@ pub struct Decomposition {
     /// Components, building after building, from the ground up; the buildings by where and what they are, so that the order
     /// in which they are listed changes nothing.
     pub components: Vec<Component>,
-    /// What was wrong with each building's mesh.
+    /// Faults of the mesh of each building.
     pub faults: Vec<MeshFaults>,
     /// Buildings without a component: no triangle has an area.
     pub empty: Vec<usize>,
@@ -117,7 +117,7 @@ pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) ->
 }
 
 impl Component {
-    /// What its building's paint says of it.
+    /// Sets window features, greys and texture from the paint of its building.
     fn look_at(&mut self, paint: &[Painted]) {
         let (low, high) = (self.frame.base[2], self.frame.base[2] + self.frame.size[2]);
         self.windows = window_features(paint, &self.frame);
@@ -224,7 +224,7 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
 
 /// The heights at which a building is cut, increasing.
 ///
-/// With S_i = A(z_i) - A(z_{i+1}), a cut is where |S_i - S_{i-1}| exceeds 5 % of the largest area.
+/// With `S_i = A(z_i) - A(z_{i+1})`, a cut is where `|S_i - S_{i-1}|` exceeds 5 % of the largest area.
 pub fn cut_planes(mesh: &TriangleMesh) -> Vec<f64> {
     let Some(profile) = SectionProfile::new(mesh, STEP, MOST_SAMPLES) else {
         return Vec::new();

@@ -6,12 +6,12 @@ use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::parse_tree::ParseTree;
 use super::types::Types;
-use crate::grammar::instance::{
+use edifice_grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
 };
-use crate::shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
+use edifice_shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
 
-/// How finely numbers are written.
+/// The precision in which the numbers of a grammar are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Detail {
     /// Steps of lengths in a metre.

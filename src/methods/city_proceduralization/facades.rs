@@ -2,7 +2,7 @@
 //! is dark and light.
 
 use super::windows::{CELLS, Side, picture_features, side_features};
-use crate::shape::triangles::{CityBuilding, OrientedBox};
+use edifice_shape::triangles::{CityBuilding, OrientedBox};
 
 /// Numbers of a [`Facade`] that are told by windows.
 pub(super) const WINDOWS: usize = 8;

@@ -1,10 +1,10 @@
-//! What components are compared by.
+//! Features by which components are compared.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::components::Component;
-use crate::shape::triangles::convex_hull;
+use edifice_shape::triangles::convex_hull;
 
 /// Names of the eleven features of the paper, in order; the names that weights are given by.
 pub const PAPER_FEATURES: [&str; 11] = [
@@ -30,14 +30,14 @@ const EQUAL: f64 = 1e-9;
 /// A table of points, row after row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    /// Values.
+    /// The values, row after row.
     pub values: Vec<f64>,
-    /// Values per row.
+    /// Number of values in a row.
     pub dimension: usize,
 }
 
 impl Points {
-    /// A row.
+    /// The values of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.values[i * self.dimension..(i + 1) * self.dimension]
     }
@@ -134,7 +134,7 @@ const PRINCIPAL: usize = 12;
 /// The covariance is taken over at most so many components, evenly spread over them.
 const SAMPLE: usize = 20_000;
 
-/// How far apart a component with a texture and one without are: as half of the greys of [`Component::looks`] would put them.
+/// The distance between a component with a texture and one without: as half of the greys of [`Component::looks`] would put them.
 const PAINTED: f32 = 4.0;
 
 /// Heights; and, where any component of the city shows a texture, so many looks and whether it does. One that shows none is of a

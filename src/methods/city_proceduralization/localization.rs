@@ -1,4 +1,4 @@
-//! Where in the city one is, from the buildings that one sees (Fig. 10).
+//! Localization: the place in the city from which some buildings are seen (Fig. 10).
 //!
 //! A view is a set of buildings near each other, each with width, depth, height and the share of its box that is solid.
 //! Every building of the city is a place to stand; what is seen there are the buildings nearest to it. The
@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::facades::{FACADE_FEATURES, Facade, WINDOWS};
-use crate::shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
+use edifice_shape::triangles::{City, CityBuilding, OrientedBox, TriangleMesh};
 
-/// What is measured of a building in a view: logarithms of width, depth, height; the solid share.
+/// Number of features of a building in a view: logarithms of width, depth and height; the solid share.
 pub const VIEW_FEATURES: usize = 4;
 /// Most buildings in a view.
 pub const MOST_SEEN: usize = 10;
@@ -45,7 +45,7 @@ pub struct Seen {
 pub struct Landmark {
     /// Middle of its plan.
     pub at: [f64; 2],
-    /// How it looks.
+    /// Its size and solid share, as a view shows them.
     pub seen: Seen,
 }
 
@@ -188,7 +188,7 @@ fn places(
     one_place_each(landmarks, found, top)
 }
 
-/// What a difference of a standardized feature costs: the negative logarithm of Cauchy's density. A template's solid share may
+/// Cost of a difference of a standardized feature: the negative logarithm of Cauchy's density. A template's solid share may
 /// be far from that of the building it stands for; such a difference must not outweigh all others.
 fn lost(difference: f64) -> f64 {
     (difference / SPREAD).powi(2).ln_1p()

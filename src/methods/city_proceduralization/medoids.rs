@@ -4,26 +4,26 @@ use rayon::prelude::*;
 
 use super::components::{CELLS, Component};
 use super::types::Use;
-use crate::cluster::KdTree;
+use edifice_cluster::KdTree;
 
-/// Rounds of medoids.
+/// Number of rounds of finding medoids.
 const ROUNDS: usize = 3;
 /// Representatives that a component is compared with, nearest in features first.
 const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
 
-/// Distinct components.
+/// The distinct components as a table of features.
 pub(super) struct Table<'a> {
     /// Features, row after row, and how many a row has.
     pub(super) rows: Vec<f64>,
     pub(super) d: usize,
-    /// Volumes.
+    /// Volume of each, in cubic metres.
     pub(super) weights: Vec<f64>,
     pub(super) forms: Vec<Form<'a>>,
 }
 
-/// What components are compared by, up to quarter turns.
+/// The form by which components are compared, up to quarter turns: height map and greys.
 #[derive(Clone, Copy)]
 pub(super) struct Form<'a> {
     heights: &'a [f32],
@@ -158,7 +158,7 @@ impl<'a> Nearest<'a> {
     }
 }
 
-/// What differences of looks, from 0 to 1, count against shares of the volume.
+/// Weight of the difference of looks, from 0 to 1, against the mismatched share of the volume.
 const LOOKS_WEIGHT: f64 = 0.25;
 
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched

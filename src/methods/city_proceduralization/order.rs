@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
-use crate::shape::triangles::{City, TriangleMesh};
+use edifice_shape::triangles::{City, TriangleMesh};
 
 /// The buildings of a city by their bounds, then by their meshes. Buildings that are the same keep their order, which
 /// changes nothing but which identifier stands with which.

@@ -1,4 +1,4 @@
-//! Which way a component faces: of the two half turns of its box, one is canonical, so that like components, and
+//! The front of a component: of the two half turns of its box, one is canonical, so that like components, and
 //! like buildings, have like frames.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -48,7 +48,7 @@ pub(super) fn orient(components: &mut [Component]) {
     }
 }
 
-/// Whether half a turn changes nothing of a building that [`orient`] has seen.
+/// True if half a turn changes nothing of a building that [`orient`] has seen.
 pub(super) fn is_symmetric<'a>(mut components: impl Iterator<Item = &'a Component>) -> bool {
     let Some(first) = components.next() else {
         return true;
@@ -60,7 +60,7 @@ pub(super) fn is_symmetric<'a>(mut components: impl Iterator<Item = &'a Componen
     first.symmetric && components.all(|c| c.symmetric && centred(c))
 }
 
-/// Whether the first component, which is symmetric, looks away from what stands on it.
+/// True if the first component, which is symmetric, looks away from what stands on it.
 fn faces_back(components: &[Component]) -> bool {
     let first = &components[0].frame;
     if let Some(c) = components.iter().find(|c| !c.symmetric) {

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::type_graph::{
     DistanceWeights, NEIGHBOUR, NodeInstance, TypeEdge, neighbours, type_graph,
 };
-use crate::cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
-use crate::grammar::instance::{InstanceRule, Placement};
+use edifice_cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Levels at most: the tolerance is doubled at each.
 const MOST_LEVELS: usize = 16;
@@ -15,12 +15,12 @@ const MOST_LEVELS: usize = 16;
 /// Edges of a node that are kept whatever the other node's are.
 const NEAREST: usize = 4;
 
-/// How communities are found.
+/// The method of finding communities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detection {
     /// Girvan and Newman, as the paper does.
     GirvanNewman,
-    /// Louvain.
+    /// The method of Blondel et al. 2008, known as Louvain.
     Louvain,
 }
 
@@ -33,7 +33,7 @@ pub struct Level {
     pub size: (usize, usize),
     /// The graph, edge weights 1 / D.
     pub graph: WeightedGraph,
-    /// Its communities.
+    /// The communities of the graph.
     pub communities: Communities,
 }
 
@@ -46,7 +46,7 @@ pub struct ParseTree {
     pub children: Vec<Vec<usize>>,
     /// Instances at the top, in the frame of the city.
     pub top: Vec<Placement>,
-    /// The levels.
+    /// The levels, from the smallest tolerance on.
     pub levels: Vec<Level>,
 }
 
@@ -250,7 +250,7 @@ struct Mean {
 
 type Frame = ([f64; 3], f64);
 
-/// E_kl: mean shift, turn and size of each child in the frame of the anchor, the child that most groups have.
+/// `E_kl`: mean shift, turn and size of each child in the frame of the anchor, the child that most groups have.
 /// Children that never stand with the anchor lie at its place.
 fn mean_transforms(own: &[Grown], groups: &[Vec<Option<usize>>], slots: usize) -> Vec<Mean> {
     let has = |s: usize| groups.iter().filter(|g| g[s].is_some()).count();

@@ -3,7 +3,7 @@
 use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::type_graph::{NEIGHBOUR, NodeInstance, neighbours};
-use crate::grammar::instance::{Posed, Repeated, repeated};
+use edifice_grammar::instance::{Posed, Repeated, repeated};
 
 /// The patterns of a city over its types of buildings, smaller ones first.
 pub fn patterns(components: &[Component], buildings: &BuildingTypes) -> Vec<Repeated> {

@@ -1,4 +1,4 @@
-//! The whole pipeline.
+//! The whole pipeline: from a city to a grammar of instances.
 
 use rayon::prelude::*;
 
@@ -10,11 +10,11 @@ use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::type_graph::DistanceWeights;
 use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
-use crate::cluster::WardError;
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
-use crate::shape::triangles::{BoxTexture, City};
+use edifice_cluster::WardError;
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
+use edifice_shape::triangles::{BoxTexture, City};
 
-/// How types are found.
+/// The method of finding types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
     /// As the paper writes.
@@ -23,18 +23,18 @@ pub enum Mode {
     Best,
 }
 
-/// How many templates.
+/// The number of templates that the grammar may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Budget {
     /// One for each distinct component.
     All,
-    /// So many.
+    /// This number of templates.
     Templates(usize),
-    /// The components' number halved so many times.
+    /// The number of components, halved this many times.
     Level(u32),
 }
 
-/// How finely a grammar is written.
+/// The precision in which a grammar is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// Millimetres, ten-thousandths of degrees, templates on 16 bits.
@@ -45,7 +45,7 @@ pub enum Precision {
     Decimetre,
 }
 
-/// What represents a type in `paper`.
+/// The member that represents a type in `paper`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Representative {
     /// The member nearest to the mean.
@@ -57,21 +57,21 @@ pub enum Representative {
 /// Settings of the method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// How types are found.
+    /// The method of finding types.
     pub mode: Mode,
-    /// How many templates.
+    /// The number of templates that the grammar may have.
     pub budget: Budget,
     /// Weights W of the eleven features, in `paper`.
     pub weights: [f64; 11],
-    /// What represents a type, in `paper`.
+    /// The member that represents a type, in `paper`.
     pub representative: Representative,
     /// Weights of Eq. 11.
     pub distance: DistanceWeights,
-    /// How communities are found, in `paper`.
+    /// The method of finding communities, in `paper`.
     pub detection: Detection,
     /// Seed of k-means, in `paper`.
     pub seed: u64,
-    /// How finely numbers are written, in `best`. Without it: millimetres where each component has its own template,
+    /// The precision of numbers, in `best`. `None`: millimetres where each component has its own template,
     /// centimetres otherwise.
     pub precision: Option<Precision>,
 }
@@ -110,11 +110,11 @@ pub enum ProceduralizeError {
 pub struct Proceduralized {
     /// The grammar.
     pub grammar: InstanceGrammar,
-    /// The components.
+    /// The components into which the city was cut.
     pub decomposition: Decomposition,
-    /// Their types.
+    /// The types of the components.
     pub types: Types,
-    /// What stands together.
+    /// The groups that stand together.
     pub structure: Structure,
 }
 
@@ -132,14 +132,14 @@ impl Proceduralized {
     }
 }
 
-/// What stands together in a city.
+/// The groups that stand together in a city.
 #[derive(Debug, Clone)]
 pub enum Structure {
     /// In `paper`: types of components, up to one root.
     Tree(ParseTree),
     /// In `best`: types of buildings that repeat at like places.
     Patterns {
-        /// The types.
+        /// The types of the buildings.
         buildings: BuildingTypes,
         /// The patterns, over types of buildings and other patterns.
         patterns: Vec<Repeated>,
@@ -179,7 +179,7 @@ struct Prepared<'a> {
     best: Option<Best<'a>>,
 }
 
-/// What in `best` is the same for all budgets.
+/// The part of method `best` that is the same for all budgets.
 struct Best<'a> {
     /// The templates that the input states: where there are no more of them than asked for, they are kept, so that
     /// a derived city becomes the grammar that it was derived from.

@@ -1,10 +1,10 @@
-//! How often, how near and how consistently the instances of two nodes stand together (Sec. V.A).
+//! The graph of types: repetition, closeness and consistency of the instances of two nodes that stand together (Sec. V.A).
 //!
 //! Over pairs of neighbouring instances (midpoints within τ) of nodes k and l:
 //! - r = number of pairs (Eq. 8),
-//! - σ = sqrt(Σ (mht - mean mht)² / min(|N_k|, |N_l|)), mht the Manhattan distance in plan (Eq. 9),
-//! - μ = Σ dist / min(|N_k|, |N_l|) (Eq. 10),
-//! - D = (w_μ μ + w_σ σ) / r (Eq. 11).
+//! - `σ = sqrt(Σ (mht - mean mht)² / min(|N_k|, |N_l|))`, mht the Manhattan distance in plan (Eq. 9),
+//! - `μ = Σ dist / min(|N_k|, |N_l|)` (Eq. 10),
+//! - `D = (w_μ μ + w_σ σ) / r` (Eq. 11).
 
 use std::collections::BTreeMap;
 
@@ -20,9 +20,9 @@ const LEAST_DISTANCE: f64 = 1e-6;
 /// Weights of Eq. 11.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistanceWeights {
-    /// Of closeness: w_μ.
+    /// Weight `w_μ` of closeness.
     pub closeness: f64,
-    /// Of consistency: w_σ.
+    /// Weight `w_σ` of consistency.
     pub consistency: f64,
 }
 
@@ -38,9 +38,9 @@ impl Default for DistanceWeights {
 /// An instance of a node in the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeInstance {
-    /// The node.
+    /// Index of the node.
     pub node: usize,
-    /// Midpoint.
+    /// Midpoint of the instance, in metres.
     pub middle: [f64; 3],
 }
 
@@ -49,13 +49,13 @@ pub struct NodeInstance {
 pub struct TypeEdge {
     /// The nodes, the lower one first.
     pub nodes: (usize, usize),
-    /// r.
+    /// Number r of pairs of neighbouring instances (Eq. 8).
     pub repetition: usize,
-    /// μ.
+    /// Closeness μ, in metres (Eq. 10).
     pub closeness: f64,
-    /// σ.
+    /// Consistency σ, in metres (Eq. 9).
     pub consistency: f64,
-    /// D.
+    /// Distance D (Eq. 11); its inverse is the weight of the edge.
     pub distance: f64,
 }
 

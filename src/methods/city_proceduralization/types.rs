@@ -8,8 +8,8 @@ use super::components::Component;
 use super::features::{Points, paper_features};
 use super::medoids::{Form, Table, square};
 use super::proceduralize::{ProceduralizeError, Representative};
-use crate::cluster::{WardTree, kmeans, lloyd, means, ward};
-use crate::rng;
+use edifice_base::rng;
+use edifice_cluster::{WardTree, kmeans, lloyd, means, ward};
 
 /// A type's use for a component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -177,7 +177,7 @@ pub fn distinct_types(components: &[Component]) -> Types {
 
 /// Ward's hierarchy of the geometric features of components, weighted by volume, equal components joined first.
 pub struct TypeTree<'a> {
-    /// Distinct components: indices.
+    /// Indices of the distinct components.
     distinct: Vec<usize>,
     /// The distinct component that each is equal to.
     group: Vec<usize>,

@@ -1,8 +1,8 @@
 //! The six window features of a component (Sec. IV.C): its four sides are drawn, windows are told from the wall by Otsu's
 //! threshold, opening and closing.
 
-use crate::shape::triangles::{OrientedBox, Painted, SideView, grey, view_size};
-use crate::shape::{LabelGrid, Span, components};
+use edifice_shape::triangles::{OrientedBox, Painted, SideView, grey, view_size};
+use edifice_shape::{LabelGrid, Span, components};
 
 /// Pixels along the longer side of a picture at most.
 const MOST_PIXELS: usize = 256;
@@ -35,9 +35,9 @@ pub fn window_features(paint: &[Painted], frame: &OrientedBox) -> Option<WindowF
     (!found.is_empty()).then(|| std::array::from_fn(mean))
 }
 
-/// What a picture of a facade tells.
+/// The measures of one side of a box, read from its picture.
 pub(super) struct Side {
-    /// Width and height.
+    /// Width and height of the side, in metres or pixels.
     pub size: [f64; 2],
     /// Its window features.
     pub windows: WindowFeatures,
@@ -85,7 +85,7 @@ pub(super) fn picture_features(width: usize, colours: &[[u8; 3]]) -> Option<Side
 struct Picture {
     width: usize,
     height: usize,
-    /// Metres.
+    /// Side of a pixel of `greys`, in metres, or in pixels of the picture that it was made of.
     pixel: f64,
     /// Row after row from below; `None` where nothing is painted.
     greys: Vec<Option<u8>>,

@@ -9,11 +9,11 @@ use super::bound::{labels_once, saved_by_grids};
 use super::infer::{InferError, Settings};
 use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
 use super::rules::RulePricer;
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::optim::Step;
-use crate::optim::adp::Epsilon;
-use crate::optim::annealing::{Annealing, Cooling};
-use crate::shape::Facade;
+use crate::rules::AddRule;
+use edifice_optim::Step;
+use edifice_optim::adp::Epsilon;
+use edifice_optim::annealing::{Annealing, Cooling};
+use edifice_shape::Facade;
 
 /// Rules found, and a bound below which no grammar costs.
 type Found = (Vec<AddRule>, f64);
@@ -181,7 +181,7 @@ impl Search<'_> {
         }
     }
 
-    /// Eq. 1.
+    /// Cost of the grammar of some rules (Eq. 1).
     fn cost(&self, rules: &[AddRule]) -> f64 {
         let costs = &self.settings.costs;
         rules.iter().map(|r| r.candidate.cost(costs)).sum()
@@ -201,7 +201,7 @@ impl Search<'_> {
     }
 }
 
-/// What the Lagrangian bound brings.
+/// Result of the Lagrangian bound: the best rules, their cost, and the lower bound.
 struct Bounded {
     rules: Vec<AddRule>,
     cost: f64,
@@ -242,7 +242,7 @@ const FEWEST_STEPS: usize = 10;
 /// Most steps before branching, and in each branch.
 const ROOT_STEPS: u64 = 2_000;
 const BRANCH_STEPS: u64 = 100;
-/// Most branches.
+/// Maximum number of branches examined.
 const MOST_BRANCHES: u64 = 1_000;
 /// Strips of all types, some 50 bytes each with what exploration knows of them, beyond which layouts without a Lagrangian
 /// bound are searched no further. Only layouts of a thousand regions and more without any structure have so many.

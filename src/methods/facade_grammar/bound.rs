@@ -1,4 +1,4 @@
-//! What is known of the least cost of a facade's grammars.
+//! Bounds on the least cost of a facade's grammars.
 
 use std::fmt;
 
@@ -8,19 +8,19 @@ use super::infer::{InferError, Method, Settings, infer};
 use super::lagrangian::{BoundLimits, Incumbent, Program, solve};
 use super::operations::Operations;
 use super::regions::Types;
-use crate::grammar::Costs;
-use crate::shape::Facade;
+use edifice_grammar::Costs;
+use edifice_shape::Facade;
 
-/// What is known of the least cost of a facade's grammars.
+/// Bounds from below and above on the least cost of a facade's grammars (Eq. 1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
-    /// No grammar costs less.
+    /// Lower bound: no grammar costs less.
     pub lower: f64,
-    /// Cost of the best grammar known.
+    /// Upper bound: cost of the best grammar known.
     pub upper: f64,
-    /// Whether the two meet: the best grammar known is optimal.
+    /// True if the two bounds meet, so that the best grammar known is optimal.
     pub proven: bool,
-    /// Branches examined.
+    /// Number of branches examined; 0 where branch and bound was not run.
     pub nodes: u64,
     /// Non-terminal types that full lines can make of the facade; 0 when they were not counted.
     pub types: usize,

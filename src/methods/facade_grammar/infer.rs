@@ -12,13 +12,13 @@ use super::adp::search::Search;
 use super::best::further_steps;
 use super::lagrangian::NOISE;
 use super::operations::Operations;
-use crate::grammar::{CostError, Costs, Grammar};
-use crate::optim::Step;
-use crate::optim::adp::AdpError;
-use crate::optim::annealing::AnnealingError;
-use crate::shape::{Facade, LayoutError, splittable};
+use edifice_grammar::{CostError, Costs, Grammar};
+use edifice_optim::Step;
+use edifice_optim::adp::AdpError;
+use edifice_optim::annealing::AnnealingError;
+use edifice_shape::{Facade, LayoutError, splittable};
 
-/// How to search.
+/// The method of inference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -37,17 +37,17 @@ pub enum Method {
     Symmetry,
 }
 
-/// What to do.
+/// Settings of [`infer`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// How to search.
+    /// The method of inference.
     pub method: Method,
     /// Walks, of the methods that repeat them. Of [`Method::AdpBest`] a measure of the work that it may do (see
     /// [`super`]): it stops once its grammar is proven optimal.
     pub iterations: u64,
     /// Seed of all randomness.
     pub seed: u64,
-    /// Costs of rules.
+    /// Costs of operations and successors (Eq. 2).
     pub costs: Costs,
     /// Operations that rules may use.
     pub operations: Operations,
@@ -55,7 +55,7 @@ pub struct Settings {
     pub lambda_rule: f64,
     /// `lambda_2` of Eq. 5.
     pub lambda_lines: f64,
-    /// What the text leaves open.
+    /// Readings of the passages that the text leaves open.
     pub readings: Readings,
 }
 
@@ -85,10 +85,10 @@ impl Default for Settings {
     }
 }
 
-/// What was found.
+/// Result of [`infer`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// The grammar; its cost is for [`crate::grammar`] to say.
+    /// The grammar; its cost is for [`edifice_grammar`] to say.
     pub grammar: Grammar,
     /// Iterations that the method was given; [`Method::AdpBest`] stops sooner once its grammar is proven optimal.
     pub iterations: u64,
@@ -97,7 +97,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether no grammar is cheaper than one of this cost.
+    /// True if the lower bound shows that no grammar is cheaper than one of this cost.
     pub fn proves(&self, cost: f64) -> bool {
         self.lower_bound.is_some_and(|lower| cost <= lower + NOISE)
     }
@@ -114,7 +114,7 @@ pub enum InferError {
     NotATiling {
         /// Name of the facade.
         name: String,
-        /// What stands in its way.
+        /// The gap, overlap or other fault that stands in its way.
         source: LayoutError,
     },
     /// A part of a facade cannot be split by full lines (Sec. 6.3).
@@ -122,7 +122,7 @@ pub enum InferError {
     Unsplittable {
         /// Name of the facade.
         name: String,
-        /// The part.
+        /// The part that cannot be split.
         source: LayoutError,
     },
     /// A facade has too many distinct edge coordinates.
@@ -138,7 +138,7 @@ pub enum InferError {
     /// A cost is out of range.
     #[error(transparent)]
     Cost(#[from] CostError),
-    /// Dynamic programming failed.
+    /// Approximate dynamic programming failed.
     #[error(transparent)]
     Adp(#[from] AdpError),
     /// Annealing failed.
@@ -163,7 +163,7 @@ impl fmt::Display for Method {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown method `{name}`")]
 pub struct UnknownMethod {
-    /// The name.
+    /// The name that was given.
     pub name: String,
 }
 

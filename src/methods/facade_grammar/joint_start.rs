@@ -1,8 +1,8 @@
-//! Where a joint search starts: the union of the cheapest grammars of each facade alone.
+//! The start of a joint search: the union of the cheapest grammars of each facade alone.
 //!
 //! The union has the rules of all separate grammars, of each region type one, the cheapest; types that occur in several
 //! facades share it. Then every type takes the cheapest rule over the types of the union
-//! ([`crate::methods::facade_grammar::annealing`]), and types that no rule needs any more leave. Neither step raises the cost, so that the union
+//! ([`crate::annealing`]), and types that no rule needs any more leave. Neither step raises the cost, so that the union
 //! costs at most the sum of the separate grammars.
 
 use std::collections::BTreeMap;
@@ -10,14 +10,14 @@ use std::rc::Rc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::methods::facade_grammar::adp::search::Search;
-use crate::methods::facade_grammar::infer::InferError;
-use crate::methods::facade_grammar::regions::{LayoutIndex, Region, Strips, TypeId, Types};
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::methods::facade_grammar::rules::RuleCandidate;
-use crate::methods::facade_grammar::rules::RulePricer;
-use crate::methods::facade_grammar::rules::grid;
-use crate::shape::{Axis, Facade};
+use crate::adp::search::Search;
+use crate::infer::InferError;
+use crate::regions::{LayoutIndex, Region, Strips, TypeId, Types};
+use crate::rules::AddRule;
+use crate::rules::RuleCandidate;
+use crate::rules::RulePricer;
+use crate::rules::grid;
+use edifice_shape::{Axis, Facade};
 
 /// A rule and its cost.
 type Ruled = (f64, Rc<RuleCandidate>);
@@ -146,7 +146,7 @@ fn translated(
     }
 }
 
-/// Whether rules over the strips of a region in one search hold in another: what is equal there is equal here.
+/// True if rules over the strips of a region in one search hold in another: strips that are equal in the old are equal in the new.
 fn alike(old: &Strips, new: &Strips) -> bool {
     let mut equal: FxHashMap<TypeId, TypeId> = FxHashMap::default();
     let pairs = || old.all().iter().zip(new.all());

@@ -109,14 +109,14 @@
 //!   `paper` first, fewer the larger the facade, and ends when a limit of memory is reached. With grids allowed, the
 //!   bound looks for a start without them.
 //! - *Costs* of operations and successors are 0 or from 0.001 to 1,000: sums beyond cannot be compared.
-//! - *repeatABA* may have one B: A B A.
+//! - `repeatABA` may have one B: A B A.
 //! - *Bottom to top, left to right* orders types by the first region found with them.
 //! - *Baselines*: what is read into the methods of Table 2 stands in the report's `table_2` and `baseline_ranges`; the columns of
 //!   procedural logic (compression setting of its authors) and Bayesian grammar learning coincide on nearly all facades,
 //!   where the paper prints 51 and 43 on facade (i).
 //! - *Tables 4 and 5* need grammars that people made. The report makes references of several kinds for one layout;
 //!   `table_4` and `table_5` say which of the paper's statements hold for which kind.
-//! - *gridsplit* (Sec. 4.7, named only): one successor per cell, columns times rows. The search looks
+//! - `gridsplit` (Sec. 4.7, named only): one successor per cell, columns times rows. The search looks
 //!   for grids in regions whose full lines make at most 4,000 rectangles.
 //! - *Symmetry detection* is exhaustive up to a number of occurrences that grows with the number of
 //!   terminals, most important first; the text gives no bound.

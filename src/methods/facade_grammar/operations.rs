@@ -1,4 +1,4 @@
-//! Which splitting operations a grammar may use.
+//! The splitting operations that a grammar may use.
 
 use std::fmt;
 use std::str::FromStr;
@@ -36,7 +36,7 @@ impl Default for Operations {
     "unknown operation `{name}`, expected some of split, repeat, repeat_aba, sym_split, grid_split"
 )]
 pub struct UnknownOperation {
-    /// The name.
+    /// The name that was given.
     pub name: String,
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::canvas::{Canvas, View};
 use super::parameters::Facing;
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Sums of Eq. 8 over a set of facades: `sums[d][l][l']`, square matrices over the labels.
 ///
@@ -80,7 +80,7 @@ impl Affinity {
         }
     }
 
-    /// Whether the matrices are square, over at most `labels` labels, of finite numbers from zero.
+    /// True if the matrices are square, over at most `labels` labels, of finite numbers from zero.
     pub(super) fn is_sound(&self, labels: usize) -> bool {
         let sound = |sums: &Vec<f64>| {
             self.labels.checked_mul(self.labels) == Some(sums.len())

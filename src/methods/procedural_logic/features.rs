@@ -5,18 +5,18 @@ use serde::{Deserialize, Serialize};
 
 use super::parse::{BinaryNode, BinaryTree};
 use super::rules::{Call, RuleSet};
-use crate::cluster::{Histogram, chi_square};
+use edifice_cluster::{Histogram, chi_square};
 
 /// An element of the powerset of operations and labels: bit 0 the split along x, bit 1 the split
 /// along y, bit `2 + l` label `l`; without trailing zero words.
 pub type AssetSet = Vec<u64>;
 
-/// What the distances compare.
+/// The features of a facade that the distances compare.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// For every node of the binary split tree, the operations and labels at and below it.
     pub powerset: Histogram<AssetSet>,
-    /// How often each rule is applied.
+    /// Number of applications of each rule.
     pub rules: Histogram<u32>,
 }
 
@@ -46,7 +46,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All measures.
+    /// All four measures.
     pub const ALL: [Self; 4] = [
         Self::Powerset,
         Self::CommonRules,

@@ -11,7 +11,7 @@ use super::nary::NaryTree;
 use super::parameters::Parameters;
 use super::parse::{BinaryTree, NoSplit, parse};
 use super::rules::{Instance, RuleSet};
-use crate::shape::LabelGrid;
+use edifice_shape::LabelGrid;
 
 /// Facades parsed at once before their trees are added to the rules.
 const CHUNK: usize = 256;

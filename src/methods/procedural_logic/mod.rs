@@ -53,7 +53,7 @@
 //!   one facade has borrows the proportions of the facades with the most similar structures
 //!   ([`Style::similar`]); the paper does not say what becomes of it.
 //! - *Labels with noise* (from a segmentation) are cleaned before the method sees them
-//!   ([`clean`](crate::shape::clean)), when asked: the method itself stays lossless.
+//!   ([`clean`](edifice_shape::clean)), when asked: the method itself stays lossless.
 
 mod affinity;
 mod features;

@@ -11,7 +11,7 @@ use super::nary::NaryTree;
 use super::parameters::{ParameterError, Parameters};
 use super::parse::{BinaryTree, NoSplit, parse};
 use super::rules::{Instance, InstanceError};
-use crate::shape::{Facade, GridError, LabelGrid};
+use edifice_shape::{Facade, GridError, LabelGrid};
 
 /// Most labels that a model is fitted to: affinities take the square of their number.
 const MOST_LABELS: usize = 4096;
@@ -130,7 +130,7 @@ impl Model {
         Ok(tree.layout(&self.alphabet, &known.name, &known.unit))
     }
 
-    /// What the distances compare, for every facade that the model knows.
+    /// The profile of every facade that the model knows, for the distances between facades.
     ///
     /// The label image of each is painted from its parameters and parsed again, which is exact.
     ///

@@ -8,7 +8,7 @@ use super::inference::Inference;
 use super::model::{Known, Model};
 use super::parameters::{ParameterError, Parameters};
 use super::rules::{Call, Instance, InstanceError, ParametricRule, RuleSet};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Name of the format.
 pub const MODEL_FORMAT: &str = "edifice/logic-model";
@@ -73,7 +73,7 @@ pub enum ModelFileError {
     LabelTwice {
         /// Index of the second one.
         index: usize,
-        /// The label.
+        /// The label that is given twice.
         label: String,
     },
     /// The affinity matrices do not fit the labels, or hold a number that is negative or not finite.
@@ -88,7 +88,7 @@ pub enum ModelFileError {
     Rule {
         /// Index of the rule.
         index: usize,
-        /// What is wrong with it.
+        /// The fault of the rule, in words.
         what: &'static str,
     },
     /// A facade's call does not fit the rules.
@@ -96,7 +96,7 @@ pub enum ModelFileError {
     Call {
         /// Index of the facade.
         index: usize,
-        /// What is wrong with it.
+        /// The fault of the call.
         cause: InstanceError,
     },
     /// A size of a facade is not a positive number.

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
-/// What "W, the size of the facade" divides in Eq. 3.
+/// The reading of "W, the size of the facade" in Eq. 3: the extent by which the terms are divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
 #[serde(rename_all = "snake_case")]
 pub enum Extent {
@@ -18,7 +18,7 @@ pub enum Extent {
     Line,
 }
 
-/// Which asset faces an edge (Eq. 6).
+/// The reading of Eq. 6: the asset that faces an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
 #[serde(rename_all = "snake_case")]
 pub enum Facing {

@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::nary::{NaryNode, NaryTree};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
-/// What a rule calls for one of its parts.
+/// The call that a rule makes for one of its parts.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
@@ -88,7 +88,7 @@ impl RuleSet {
         self.rules.len()
     }
 
-    /// Whether there is no rule.
+    /// True if there is no rule.
     pub fn is_empty(&self) -> bool {
         self.rules.is_empty()
     }
@@ -258,10 +258,10 @@ fn parameter_vector(tree: &NaryTree) -> Vec<f64> {
 /// A call that the rule set cannot answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum InstanceError {
-    /// No such rule.
+    /// There is no rule of this number.
     #[error("there is no rule {rule}")]
     UnknownRule {
-        /// Its number.
+        /// The number that was called.
         rule: u32,
     },
     /// The parameter vector does not fit the starting rule.
@@ -269,7 +269,7 @@ pub enum InstanceError {
     Parameters {
         /// Length that the rule takes.
         expected: usize,
-        /// Length given.
+        /// Number of parameters given.
         found: usize,
     },
 }

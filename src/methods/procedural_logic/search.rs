@@ -2,9 +2,9 @@
 
 use super::model::{FitError, Model};
 use super::parameters::Parameters;
-use crate::optim::Run;
-use crate::optim::grid::{GridError, minimize};
-use crate::shape::LabelGrid;
+use edifice_optim::Run;
+use edifice_optim::grid::{GridError, minimize};
+use edifice_shape::LabelGrid;
 
 /// The values of `alpha`, `b_p` and `b_h` that the search tries; they span the ranges of Sec. 5.3.
 pub fn search_axes() -> [Vec<f64>; 3] {

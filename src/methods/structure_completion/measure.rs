@@ -1,4 +1,4 @@
-//! How near a completion is to the truth, computed without knowledge of any method.
+//! Agreement of a completion with the truth, computed without knowledge of any method.
 
 use super::layout::{Class, Element};
 use crate::shape::{Axis, Rect};

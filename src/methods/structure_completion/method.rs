@@ -9,11 +9,11 @@ use super::completion::Completion;
 use super::model::Model;
 use super::partial::PartialLayout;
 use super::policy;
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// A way to complete a layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Elements by expected F1 from exact draws, symmetry and transfer.
@@ -47,7 +47,7 @@ impl Method {
         Method::Nearest,
     ];
 
-    /// Whether it searches for seconds rather than milliseconds.
+    /// True if it searches for seconds rather than milliseconds.
     pub fn is_slow(self) -> bool {
         matches!(self, Method::Paper | Method::Annealing)
     }

@@ -1,4 +1,4 @@
-//! What is learnt from a database of whole layouts.
+//! The model that is learnt from a database of whole layouts.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,9 +8,9 @@ use super::layout::lines::{Line, lines, median};
 use super::layout::{Class, Layout};
 use super::model_file::ModelFileError;
 use super::policy::PaperModel;
-use crate::model::ModelError;
-use crate::model::boosting::{Boosting, BoostingError};
-use crate::shape::{Axis, Rect};
+use edifice_model::ModelError;
+use edifice_model::boosting::{Boosting, BoostingError};
+use edifice_shape::{Axis, Rect};
 
 /// A whole layout of the database, with its lattice.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +45,7 @@ impl Example {
 /// A learnt model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    /// The database.
+    /// The layouts of the database.
     pub examples: Vec<Example>,
     /// Columns from left to right.
     pub columns: Spacing,
@@ -67,10 +67,10 @@ pub enum TrainError {
     /// No layout has a window.
     #[error("none of the layouts has a window: nothing to learn from")]
     Empty,
-    /// The element probabilities.
+    /// The element probabilities cannot be learnt.
     #[error("element probabilities: {0}")]
     Elements(#[from] BoostingError),
-    /// The scoring functions, their weights or the policies.
+    /// The scoring functions, their weights or the policies cannot be learnt.
     #[error("scoring functions: {0}")]
     Score(#[from] ModelError),
 }
@@ -160,7 +160,5 @@ impl Model {
 /// # Errors
 /// [`ModelFileError`]; a test keeps it readable.
 pub fn shipped_model() -> Result<Model, ModelFileError> {
-    Model::from_json(include_str!(
-        "../../../datasets/structure_completion/default.completion.json"
-    ))
+    Model::from_json(edifice_datasets::DEFAULT_COMPLETION_MODEL)
 }

@@ -18,11 +18,11 @@ pub enum ModelFileError {
     /// Another format or version.
     #[error("{key} is {found}, expected {expected}")]
     Header {
-        /// `format` or `version`.
+        /// The key: `format` or `version`.
         key: &'static str,
-        /// What the file says.
+        /// The value in the file.
         found: String,
-        /// What it should say.
+        /// The value that is expected.
         expected: String,
     },
     /// A number of a layout that cannot be.
@@ -44,10 +44,10 @@ pub enum ModelFileError {
     Spacing(&'static str),
     /// Trees that do not fit the features.
     #[error("elements: {0}")]
-    Elements(#[from] crate::model::boosting::BoostingError),
+    Elements(#[from] edifice_model::boosting::BoostingError),
     /// Scoring functions or policies out of range.
     #[error("paper: {0}")]
-    Paper(#[from] crate::model::ModelError),
+    Paper(#[from] edifice_model::ModelError),
     /// No layout with windows.
     #[error("no layout has a window")]
     Empty,

@@ -2,7 +2,7 @@
 
 use super::layout::places::Places;
 use super::layout::{Class, Element};
-use crate::shape::Rect;
+use edifice_shape::Rect;
 
 /// The input of a completion.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,9 +28,9 @@ pub enum PartialError {
     Outside {
         /// Index of the element.
         index: usize,
-        /// Its class.
+        /// Class of the element.
         class: Class,
-        /// Its place.
+        /// Bounding box of the element.
         rect: Rect,
         /// Width of the outline.
         width: f64,
@@ -42,9 +42,9 @@ pub enum PartialError {
     InUnknown {
         /// Index of the element.
         index: usize,
-        /// Its class.
+        /// Class of the element.
         class: Class,
-        /// Its place.
+        /// Bounding box of the element.
         rect: Rect,
         /// Index of the unknown rectangle.
         unknown: usize,
@@ -147,7 +147,7 @@ impl PartialLayout {
         }
     }
 
-    /// Whether a point may hold something that is not known.
+    /// True if a point may hold something that is not known.
     pub fn is_unknown(&self, x: f64, y: f64) -> bool {
         match &self.unknown {
             None => true,
@@ -155,7 +155,7 @@ impl PartialLayout {
         }
     }
 
-    /// Whether there is anything to complete.
+    /// True if there is anything to complete.
     pub fn has_unknown(&self) -> bool {
         self.unknown.as_ref().is_none_or(|rects| {
             let outline = Rect::new(0.0, 0.0, self.width, self.height);
@@ -163,7 +163,7 @@ impl PartialLayout {
         })
     }
 
-    /// Whether an added element may stand there: within the outline, its centre in the unknown part,
+    /// True if an added element may stand there: within the outline, its centre in the unknown part,
     /// outside forbidden rectangles, and no observed element excludes it.
     pub fn allows(&self, element: &Element) -> bool {
         self.has_room(element) && self.observed.iter().all(|o| !o.excludes(element))

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::layout::{Element, Layout};
 use super::partial::PartialLayout;
-use crate::rng::Stream;
-use crate::shape::Rect;
+use edifice_base::rng::Stream;
+use edifice_shape::Rect;
 
-/// What is hidden.
+/// The part of a layout that is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Task {
     /// A random 20 % of the elements are observed; nothing is known of the rest of the facade.
@@ -74,7 +74,7 @@ impl Task {
         }
     }
 
-    /// Which elements (by index) are hidden, and the unknown rectangles: elements whose centre is
+    /// The indices of the hidden elements, and the unknown rectangles. Hidden are elements whose centre is
     /// unknown, or a random share. At least one element is observed where any could be.
     pub fn split(
         self,

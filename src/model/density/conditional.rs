@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::LogDensity;
-use crate::model::ModelError;
+use crate::ModelError;
 
 /// `p(x | g)`: one density of x for each range of g.
 ///
@@ -13,7 +13,7 @@ use crate::model::ModelError;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{Conditional, LogDensity, ScalarMixture};
+/// use edifice_model::density::{Conditional, LogDensity, ScalarMixture};
 /// // x is about 1 where g is below 10, and about 5 above.
 /// let pairs: Vec<(f64, f64)> = (0..20)
 ///     .map(|g| (f64::from(g), if g < 10 { 1.0 } else { 5.0 } + 0.1 * f64::from(g % 3)))
@@ -21,13 +21,13 @@ use crate::model::ModelError;
 /// let density = Conditional::fit(&pairs, 2, |x| ScalarMixture::fit(x, 0.01, 1))?;
 /// assert!(density.given(3.0).at(1.1) > density.given(3.0).at(5.1));
 /// assert!(density.given(99.0).at(5.1) > density.given(99.0).at(1.1));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditional<D> {
-    /// Where a range ends and the next begins, ascending.
+    /// The bounds between neighbouring ranges of g, ascending.
     edges: Vec<f64>,
-    /// One more than edges.
+    /// The density of each range; one more than edges.
     parts: Vec<D>,
 }
 
@@ -74,7 +74,7 @@ impl<D: LogDensity> Conditional<D> {
         &self.parts[range.min(self.parts.len() - 1)]
     }
 
-    /// Whether there is a density for each range.
+    /// True if there is a density for each range and the bounds are finite and ascending.
     pub fn is_whole(&self) -> bool {
         self.parts.len() == self.edges.len() + 1
             && self.edges.iter().all(|e| e.is_finite())

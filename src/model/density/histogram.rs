@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{LogDensity, check_values};
-use crate::model::ModelError;
+use crate::ModelError;
 
 /// Most bins of all dimensions together.
 const MOST_BINS: usize = 1 << 16;
-/// How many rows a uniform prior over the box is worth.
+/// Weight of the uniform prior over the box, in rows.
 const PRIOR_ROWS: f64 = 0.5;
 
 /// A density over a box, constant in each of its equal bins. Values outside have the density of the
@@ -19,7 +19,7 @@ const PRIOR_ROWS: f64 = 0.5;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{LogDensity, SmoothHistogram};
+/// use edifice_model::density::{LogDensity, SmoothHistogram};
 /// let values = [0.5, 0.5, 0.5, 2.5];
 /// let density = SmoothHistogram::fit(vec![0.0], vec![4.0], vec![4], 0.0, &values)?;
 /// // Counts 3, 0, 1, 0, an eighth of a row for each bin, over 4.5 rows; bins have width 1.
@@ -27,7 +27,7 @@ const PRIOR_ROWS: f64 = 0.5;
 /// assert!((p(0.9) - 3.125 / 4.5).abs() < 1e-12 && (p(1.1) - 0.125 / 4.5).abs() < 1e-12);
 /// assert!(((0..4).map(|bin| p(f64::from(bin))).sum::<f64>() - 1.0).abs() < 1e-12);
 /// assert_eq!(density.log_max(), density.log_density(&[0.0]));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]

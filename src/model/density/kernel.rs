@@ -1,25 +1,25 @@
 //! Kernel density estimation.
 
 use super::{LogDensity, check_values, moments};
-use crate::model::ModelError;
-use crate::model::linalg::LN_2PI;
+use crate::ModelError;
+use crate::linalg::LN_2PI;
 
 /// `p(x) = 1/n Σ_i Π_j N(x_j; x_ij, h_j)`: Gaussian product kernels on n rows.
 ///
 /// Rows n x d, one bandwidth per dimension, in the unit of its values. [`KernelDensity::fit`] is O(n² d), for the greatest
 /// density at a row, and a density O(n d). Source: Scott 1992; a product kernel follows correlated values badly, where
-/// [`gmm`](crate::model::gmm) is better.
+/// [`gmm`](crate::gmm) is better.
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{KernelDensity, LogDensity};
+/// use edifice_model::density::{KernelDensity, LogDensity};
 /// // Deviation 1 of 2 rows: bandwidth 2^(-1/5).
 /// let density = KernelDensity::fit(1, &[-1.0, 1.0], 0.01)?;
 /// let h = 2.0_f64.powf(-0.2);
 /// let expected = (-0.5 / (h * h)).exp() / (h * std::f64::consts::TAU.sqrt());
 /// assert!((density.log_density(&[0.0]).exp() - expected).abs() < 1e-12);
 /// assert_eq!(density.log_density(&[0.7]), density.log_density(&[-0.7]));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct KernelDensity {

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{LogDensity, check_values};
-use crate::model::ModelError;
-use crate::model::gmm::{Criterion, Points, Settings, select};
-use crate::model::linalg::LN_2PI;
+use crate::ModelError;
+use crate::gmm::{Criterion, Points, Settings, select};
+use crate::linalg::LN_2PI;
 
 /// Components beyond which none are tried.
 const MOST: usize = 4;
@@ -16,18 +16,18 @@ const LEAST: f64 = 0.02;
 
 /// `p(x) = Σ w_k N(x; μ_k, σ_k)`.
 ///
-/// K components of one value, in its unit; a density is O(K). A fit sorts n values, O(n log n), and runs [`gmm`](crate::model::gmm)'s
+/// K components of one value, in its unit; a density is O(K). A fit sorts n values, O(n log n), and runs [`gmm`](crate::gmm)'s
 /// EM for K = 1 to 4 on at most 256 groups of them, whatever n is. Source: Rissanen 1983 for the number of components.
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{LogDensity, ScalarMixture};
+/// use edifice_model::density::{LogDensity, ScalarMixture};
 /// let values: Vec<f64> = (0..60).map(|i| if i % 3 == 0 { 0.0 } else { 20.0 } + f64::from(i % 7) / 10.0).collect();
 /// let density = ScalarMixture::fit(&values, 0.01, 1)?;
 /// assert_eq!(density.components(), 2);
 /// assert!(density.at(20.3) > density.at(0.3) && density.at(0.3) > density.at(10.0) + 100.0);
 /// assert!(density.relative(&[20.3]) > -0.1);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]

@@ -36,11 +36,11 @@ use super::linalg::log_sum_exp;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{LogDensity, ScalarMixture};
+/// use edifice_model::density::{LogDensity, ScalarMixture};
 /// let standard = ScalarMixture::new(vec![1.0], vec![0.0], vec![1.0])?;
 /// assert!((standard.log_density(&[0.0]) + 0.5 * std::f64::consts::TAU.ln()).abs() < 1e-12);
 /// assert!((standard.relative(&[2.0]) + 2.0).abs() < 1e-12); // -x² / 2
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub trait LogDensity {
     /// Number of values d.

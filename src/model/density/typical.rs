@@ -7,19 +7,19 @@ use super::LogDensity;
 /// A density p and a level: [`LogDensity::relative`] is `min(0, log p(x) - level)`, so that all x with at
 /// least the typical density are equally good.
 ///
-/// Where a maximum is sharp, [`LogDensity::relative`] of the density itself punishes all values but the modal one; here only
+/// At a sharp maximum, [`LogDensity::relative`] of the density itself punishes all values but the modal one; here only
 /// values rarer than most of the data lose. Learning is n densities and a sort, O(n log n).
 ///
 /// # Examples
 /// ```
-/// use edifice::model::density::{LogDensity, ScalarMixture, Typical};
+/// use edifice_model::density::{LogDensity, ScalarMixture, Typical};
 /// let standard = ScalarMixture::new(vec![1.0], vec![0.0], vec![1.0])?;
 /// let rows = [[-1.0], [0.0], [0.5], [1.0]];
 /// // The least quarter of the log densities is that of the rows at -1 and 1.
 /// let typical = Typical::new(standard, rows.iter().map(|row| (&row[..], 1.0)), 0.25);
 /// assert_eq!((typical.relative(&[0.2]), typical.relative(&[-0.9])), (0.0, 0.0));
 /// assert!((typical.relative(&[2.0]) + 1.5).abs() < 1e-12); // -2² / 2 + 1² / 2
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Typical<D> {
@@ -49,7 +49,7 @@ impl<D: LogDensity> Typical<D> {
         Self { density, level }
     }
 
-    /// Whether the level is a number.
+    /// True if the level is finite.
     pub fn is_whole(&self) -> bool {
         self.level.is_finite()
     }

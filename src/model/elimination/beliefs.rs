@@ -10,7 +10,7 @@ use super::factor::sum_onto;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::elimination::{BucketTree, Factor, Mode};
+/// use edifice_model::elimination::{BucketTree, Factor, Mode};
 /// // A chain of three: each is as the one before three times out of four.
 /// let agree = |a, b| Factor::new(vec![a, b], [0.75_f64, 0.25, 0.25, 0.75].map(f64::ln).to_vec());
 /// let first = Factor::new(vec![0], [0.9_f64, 0.1].map(f64::ln).to_vec());
@@ -20,7 +20,7 @@ use super::factor::sum_onto;
 /// assert!((beliefs.of(&[2])[0] - (0.5 + 0.4 * 0.25)).abs() < 1e-12);
 /// let pair = beliefs.of(&[1, 2]);
 /// assert!((pair[0] - 0.7 * 0.75).abs() < 1e-12 && (pair[1] - 0.7 * 0.25).abs() < 1e-12);
-/// # Ok::<(), edifice::model::elimination::TooWide>(())
+/// # Ok::<(), edifice_model::elimination::TooWide>(())
 /// ```
 #[derive(Debug)]
 pub struct Beliefs<'t> {

@@ -8,7 +8,7 @@
 ///
 /// # Examples
 /// ```
-/// use edifice::model::elimination::Factor;
+/// use edifice_model::elimination::Factor;
 /// let sizes = [2, 3];
 /// let f = Factor::new(vec![1, 0], [1.0_f64, 2.0, 3.0, 4.0, 5.0, 6.0].map(f64::ln).to_vec());
 /// // Variable 0 is 1 and variable 1 is 2; in the factor variable 1 comes first.

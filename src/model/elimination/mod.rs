@@ -9,7 +9,7 @@
 //! pass backward gives every marginal, and draws are ancestral.
 //!
 //! ```
-//! use edifice::model::elimination::{BucketTree, Factor, Mode};
+//! use edifice_model::elimination::{BucketTree, Factor, Mode};
 //! // Two coins that agree three times out of four, and evidence on the second.
 //! let sizes = [2, 2];
 //! let agree = Factor::new(vec![0, 1], [0.75_f64, 0.25, 0.25, 0.75].map(f64::ln).to_vec());
@@ -17,7 +17,7 @@
 //! let tree = BucketTree::new(vec![agree, seen], &sizes, Mode::Sum)?;
 //! let first = tree.beliefs().of(&[0]);
 //! assert!((first[1] - 0.7).abs() < 1e-12 && (tree.total - 1.0_f64.ln()).abs() < 1e-12);
-//! # Ok::<(), edifice::model::elimination::TooWide>(())
+//! # Ok::<(), edifice_model::elimination::TooWide>(())
 //! ```
 //!
 //! Cost is exponential in the number of variables of the largest bucket, which depends on the order ([`order`]); the
@@ -36,15 +36,16 @@ pub(crate) use factor::advance;
 pub use order::{Order, TooWide};
 pub use tree::BucketTree;
 
-/// How variables are eliminated: by `Σ_v f` (Koller and Friedman 2009, Sec. 9.3) or by `max_v f` (Sec. 13.2), at the same cost.
+/// The operation that eliminates a variable: `Σ_v f` (Koller and Friedman 2009, Sec. 9.3) or `max_v f` (Sec. 13.2), at
+/// the same cost.
 ///
 /// # Examples
 /// ```
-/// use edifice::model::elimination::{BucketTree, Factor, Mode};
+/// use edifice_model::elimination::{BucketTree, Factor, Mode};
 /// let factor = || vec![Factor::new(vec![0, 1], [1.0_f64, 2.0, 3.0, 2.0].map(f64::ln).to_vec())];
-/// let total = |mode| Ok::<f64, edifice::model::elimination::TooWide>(BucketTree::new(factor(), &[2, 2], mode)?.total.exp());
+/// let total = |mode| Ok::<f64, edifice_model::elimination::TooWide>(BucketTree::new(factor(), &[2, 2], mode)?.total.exp());
 /// assert!((total(Mode::Sum)? - 8.0).abs() < 1e-12 && (total(Mode::Max)? - 3.0).abs() < 1e-12);
-/// # Ok::<(), edifice::model::elimination::TooWide>(())
+/// # Ok::<(), edifice_model::elimination::TooWide>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {

@@ -41,7 +41,7 @@ pub struct TooWide {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::elimination::Order;
+/// use edifice_model::elimination::Order;
 /// // A chain is eliminated from its ends, with tables of two variables.
 /// let chain: Vec<[usize; 2]> = (0..99).map(|i| [i, i + 1]).collect();
 /// let order = Order::new(chain.iter().map(|c| &c[..]), &[10; 100]);
@@ -56,7 +56,7 @@ pub struct TooWide {
 pub struct Order {
     /// The variables, first eliminated first.
     pub variables: Vec<usize>,
-    /// Where the largest table is needed.
+    /// The largest table of the elimination, and the cells of all its tables.
     pub widest: TooWide,
 }
 
@@ -77,7 +77,7 @@ impl Order {
         best
     }
 
-    /// Whether all tables can be made.
+    /// Checks that all tables can be made.
     ///
     /// # Errors
     /// [`TooWide`].
@@ -90,7 +90,7 @@ impl Order {
     }
 }
 
-/// What a greedy order looks at.
+/// The measure by which a greedy order picks the next variable.
 #[derive(Clone, Copy, PartialEq)]
 enum Cost {
     /// Cells of the table.

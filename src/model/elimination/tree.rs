@@ -29,13 +29,13 @@ pub(super) struct Bucket {
 /// `m_v = Σ_v t_v` (or `max_v t_v`) goes to the first of the rest of U_v in the order; `total` is the product of those without
 /// variables. Time of [`BucketTree::new`]: `O(c (f + b))` for f factors, b buckets and tables of c cells at most
 /// (each is added to one table), memory for the tables of all buckets ([`Order`]). Numbers are natural logarithms; `total` is in
-/// nats, as [`BucketTree::best`] has them. Sources: as [`super::elimination`](crate::model::elimination).
+/// nats, as [`BucketTree::best`] has them. Sources: as [`super::elimination`](crate::elimination).
 ///
 /// # Examples
 /// The two most probable of four assignments, and draws:
 /// ```
-/// use edifice::model::elimination::{BucketTree, Factor, Mode};
-/// use edifice::rng::stream;
+/// use edifice_model::elimination::{BucketTree, Factor, Mode};
+/// use edifice_base::rng::stream;
 /// let factor = Factor::new(vec![0, 1], [0.1_f64, 0.4, 0.3, 0.2].map(f64::ln).to_vec());
 /// let tree = BucketTree::new(vec![factor.clone()], &[2, 2], Mode::Max)?;
 /// let mut most = [0; 2];
@@ -54,7 +54,7 @@ pub(super) struct Bucket {
 /// }
 /// // Five standard deviations are 110.
 /// assert!(hits.abs_diff(800) < 110);
-/// # Ok::<(), edifice::model::elimination::TooWide>(())
+/// # Ok::<(), edifice_model::elimination::TooWide>(())
 /// ```
 #[derive(Debug)]
 pub struct BucketTree {

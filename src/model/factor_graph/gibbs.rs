@@ -4,7 +4,7 @@ use super::super::elimination::{self, BucketTree, Mode};
 use super::super::error::ModelError;
 use super::super::linalg::categorical_of_logs;
 use super::{Chain, dot};
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// A feature of the values of a few variables.
 pub type Feature = Box<dyn Fn(&[usize]) -> f64 + Send + Sync>;
@@ -32,8 +32,8 @@ pub struct Factor {
 /// # Examples
 /// A chain of three bits with weight `log 3` for equal neighbours: `Z = 2 (1 + 3)^2`.
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, sample};
-/// use edifice::rng::stream;
+/// use edifice_model::factor_graph::{Factor, Gibbs, sample};
+/// use edifice_base::rng::stream;
 /// let equal = |a, b| Factor {
 ///     variables: vec![a, b],
 ///     weight: 0,
@@ -46,7 +46,7 @@ pub struct Factor {
 /// let draws = sample(&gibbs, &vec![0; 3], &weights, 20_000, 2, &mut stream(1, "bits", 0));
 /// let share = draws.iter().filter(|x| x[0] == x[1]).count() as f64 / 20_000.0;
 /// assert!((share - 0.75).abs() < 0.02);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub struct Gibbs {
     sizes: Vec<usize>,
@@ -62,7 +62,7 @@ pub struct Gibbs {
 const TABULATED: usize = 1 << 12;
 
 impl Gibbs {
-    /// Variables with so many values each, and their factors.
+    /// A sampler of variables, given the number of values of each, and their factors.
     ///
     /// # Errors
     /// [`ModelError::Parameter`] for a factor on a variable that is not there, or that it names twice, or a variable

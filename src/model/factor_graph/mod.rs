@@ -27,7 +27,7 @@ use rayon::prelude::*;
 
 use super::error::ModelError;
 use super::information::Information;
-use crate::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
 pub use gibbs::{Factor, Feature, Gibbs};
 
 /// A model family: features of a state, and a way to move between states.
@@ -73,8 +73,8 @@ pub trait Propose: Sync {
 /// # Examples
 /// Numbers 0 to 2 with `p(x) ∝ 2^x`: 1/7, 2/7 and 4/7.
 /// ```
-/// use edifice::model::factor_graph::{Metropolis, Propose, sample};
-/// use edifice::rng::{Stream, stream};
+/// use edifice_model::factor_graph::{Metropolis, Propose, sample};
+/// use edifice_base::rng::{Stream, stream};
 /// use rand::RngExt;
 /// struct Digits;
 /// impl Propose for Digits {
@@ -121,7 +121,7 @@ pub struct Settings {
     pub rounds: usize,
     /// Moves of each chain in a round.
     pub moves: usize,
-    /// Whether chains go on from round to round (persistent) or restart at the data.
+    /// True if chains go on from round to round (persistent), false if they restart at the data.
     pub persistent: bool,
     /// First step size.
     pub rate: f64,
@@ -129,7 +129,8 @@ pub struct Settings {
     pub decay: f64,
     /// λ of the penalty `λ/2 |w|²` per example.
     pub penalty: f64,
-    /// Whether steps are Newton's, with the information that the chains give of the weights.
+    /// True if steps are Newton's, with the information that the chains give of the weights; false for plain gradient
+    /// steps.
     pub newton: bool,
 }
 
@@ -158,14 +159,14 @@ impl Default for Settings {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, gradient};
+/// use edifice_model::factor_graph::{Factor, Gibbs, gradient};
 /// // One bit whose feature is itself: E_w f = 1 / (1 + exp(-w)). One sweep of a single variable is exact.
 /// let bit = Factor { variables: vec![0], weight: 0, feature: Box::new(|x| x[0] as f64) };
 /// let gibbs = Gibbs::new(vec![2], vec![bit])?;
 /// let data = vec![vec![1]; 10_000];
 /// let slope = gradient(&gibbs, &data, &[3.0_f64.ln()], 1, 1)?;
 /// assert!((slope[0] - (1.0 - 0.75)).abs() < 0.02);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn gradient<C: Chain>(
     chain: &C,
@@ -195,7 +196,7 @@ pub fn gradient<C: Chain>(
 /// # Examples
 /// Two bits that are equal in 3 of 4 examples: the weight of "equal" is the log odds, `log 3`.
 /// ```
-/// use edifice::model::factor_graph::{Factor, Gibbs, Settings, fit};
+/// use edifice_model::factor_graph::{Factor, Gibbs, Settings, fit};
 /// let equal = Factor { variables: vec![0, 1], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
 /// let gibbs = Gibbs::new(vec![2, 2], vec![equal])?;
 /// let examples = [[0, 0], [1, 1], [0, 0], [0, 1]].repeat(100);
@@ -203,7 +204,7 @@ pub fn gradient<C: Chain>(
 /// let settings = Settings { newton: true, moves: 3, ..Settings::default() };
 /// let weights = fit(&gibbs, &data, &settings, 1)?;
 /// assert!((weights[0] - 3.0_f64.ln()).abs() < 0.1);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn fit<C: Chain>(
     chain: &C,

@@ -22,7 +22,7 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// For rows of `d` values and `k` components.
+    /// An accumulator for rows of `d` values and `k` components.
     pub fn new(d: usize, k: usize) -> Self {
         Self {
             x: vec![0.0; BLOCK * d],
@@ -160,7 +160,7 @@ fn gram(u: &[f64], n: usize, q: usize, sums: &mut [f64]) {
     general_mat_mul(1.0, &u2.t(), &u, 1.0, &mut below);
 }
 
-/// Where a triangle is cut: a multiple of the kernel's width; nowhere when it is small.
+/// The row at which a triangle is cut in two: a multiple of the kernel's width, or 0 (no cut) if it is small.
 fn half(d: usize) -> usize {
     if d < 24 { 0 } else { d / 2 / 8 * 8 }
 }

@@ -2,7 +2,7 @@
 //! Feature `linfa`.
 //!
 //! ```
-//! use edifice::model::gmm::linfa::{LinfaError, Parameters};
+//! use edifice_model::gmm::linfa::{LinfaError, Parameters};
 //! use linfa::DatasetBase;
 //! use linfa::traits::{Fit, Predict};
 //! use ndarray::Array2;
@@ -23,18 +23,18 @@ use ndarray::{Array1, ArrayBase, Data, Ix2};
 
 use super::super::error::ModelError;
 use super::{Criterion, Mixture, Points, Settings, fit, select};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// The number of components, fixed or found by [`select`]; for [`Parameters`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Components {
-    /// So many.
+    /// Exactly this number.
     Exactly(usize),
     /// The number, up to this one, that minimises the criterion.
     AtMost(usize, Criterion),
 }
 
-/// What linfa calls the parameters of an algorithm.
+/// The parameters of an algorithm, in linfa's sense.
 ///
 /// Its `Fit` copies the records (N x d) once and then is [`fit`] or [`select`], with the same random streams: equal seeds give
 /// equal mixtures. The [module](self) has an example.

@@ -15,7 +15,7 @@ use super::block::NEGLIGIBLE;
 use super::step::{Moments, Steps, add_row};
 use super::{Covariance, Mixture};
 
-/// Which coordinates of a row are observed.
+/// The coordinates of a row that are observed, and those that are missing.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Pattern {
     observed: Vec<usize>,
@@ -87,7 +87,7 @@ impl Marginals {
     }
 }
 
-/// How the missing coordinates follow from the observed ones under one component.
+/// The regression of the missing coordinates on the observed ones under one component.
 struct Regression {
     /// G, |m| x |o|.
     gain: Vec<f64>,

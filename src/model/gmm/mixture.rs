@@ -18,8 +18,8 @@ use super::{Covariance, Points};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::gmm::{Covariance, Mixture, Points};
-/// use edifice::rng::stream;
+/// use edifice_model::gmm::{Covariance, Mixture, Points};
+/// use edifice_base::rng::stream;
 /// let unit = [1.0, 0.0, 0.0, 1.0];
 /// let covariances = [unit, unit].concat();
 /// let mixture = Mixture::new(2, Covariance::Full, vec![0.5, 0.5], vec![0.0, 0.0, 8.0, 8.0], covariances)?;
@@ -32,7 +32,7 @@ use super::{Covariance, Points};
 /// // The first coordinate given, the second is that of the same component.
 /// let rows = mixture.sample_given(&[Some(8.0)], 100, &mut stream(1, "draws", 0));
 /// assert!(rows.chunks(2).all(|row| row[0] == 8.0 && (row[1] - 8.0).abs() < 6.0));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {
@@ -150,7 +150,7 @@ impl Mixture {
     }
 
     /// `log (w_k N(x; μ_k, Σ_k))` of every component, missing coordinates (NaN) integrated out.
-    pub(in crate::model) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
+    pub(crate) fn log_joint(&self, x: &[f64]) -> Vec<f64> {
         if x.iter().any(|v| v.is_nan()) {
             return Marginals::new(self, Pattern::of(x)).log_joint(self, x);
         }

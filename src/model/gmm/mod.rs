@@ -150,14 +150,14 @@ pub struct Fitted {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::gmm::{Points, Settings, fit};
-/// use edifice::rng::stream;
+/// use edifice_model::gmm::{Points, Settings, fit};
+/// use edifice_base::rng::stream;
 /// let values: Vec<f64> = (0..40).map(|i| if i % 2 == 0 { 0.0 } else { 9.0 } + (i % 5) as f64 / 10.0).collect();
 /// let fitted = fit(&Points::new(1, &values)?, 2, &Settings::default(), &mut stream(1, "gmm", 0))?;
 /// let mut means: Vec<f64> = (0..2).map(|k| fitted.mixture.mean(k)[0]).collect();
 /// means.sort_by(f64::total_cmp);
 /// assert!((means[0] - 0.2).abs() < 0.01 && (means[1] - 9.2).abs() < 0.01);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn fit<R: Rng>(
     points: &Points,
@@ -181,7 +181,7 @@ pub fn fit<R: Rng>(
 ///
 /// # Examples
 /// ```
-/// use edifice::model::gmm::{Covariance, Mixture, Points, Settings, fit_from};
+/// use edifice_model::gmm::{Covariance, Mixture, Points, Settings, fit_from};
 /// let values: Vec<f64> = (0..40).map(|i| if i % 4 == 0 { 0.0 } else { 9.0 } + (i % 5) as f64 / 10.0).collect();
 /// let settings = Settings { covariance: Covariance::Diagonal, ..Settings::default() };
 /// let start = Mixture::new(1, Covariance::Diagonal, vec![0.5, 0.5], vec![1.0, 8.0], vec![1.0, 1.0])?;
@@ -190,7 +190,7 @@ pub fn fit<R: Rng>(
 /// assert!((fitted.mixture.weights()[0] - 0.25).abs() < 1e-6);
 /// assert!((fitted.mixture.mean(1)[0] - 9.2).abs() < 1e-6);
 /// assert!(fitted.trace.is_sorted());
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn fit_from(
     points: &Points,

@@ -9,8 +9,8 @@ use super::super::error::ModelError;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::ModelError;
-/// use edifice::model::gmm::Points;
+/// use edifice_model::ModelError;
+/// use edifice_model::gmm::Points;
 /// let values = [1.0, 2.0, 3.0, f64::NAN, 5.0, 6.0];
 /// let points = Points::with_missing(2, &values)?.weighted(&[1.0, 2.0, 0.5])?;
 /// assert_eq!((points.len(), points.dimension(), points.total()), (3, 2, 3.5));
@@ -23,7 +23,7 @@ pub struct Points<'a> {
     d: usize,
     values: &'a [f64],
     weights: Option<&'a [f64]>,
-    /// Whether any value is missing.
+    /// True if any value is missing.
     incomplete: bool,
 }
 
@@ -109,7 +109,7 @@ impl<'a> Points<'a> {
         self.values.len() / self.d
     }
 
-    /// Never: points are checked at the door.
+    /// Always false: points are checked when they are made.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -132,7 +132,7 @@ impl<'a> Points<'a> {
         self.weights.map_or(1.0, |w| w[i])
     }
 
-    /// Whether row `i` lacks a value.
+    /// True if row `i` lacks a value.
     pub(crate) fn lacks(&self, i: usize) -> bool {
         self.incomplete && self.row(i).iter().any(|v| v.is_nan())
     }

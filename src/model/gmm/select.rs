@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use super::super::error::ModelError;
 use super::{Fitted, Points, Settings, fit};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
-/// What the number of components minimises.
+/// The criterion that the number of components minimises, in nats.
 ///
 /// L is the likelihood, P the number of free parameters ([`Mixture::free_parameters`](super::Mixture::free_parameters)), N the sum of
 /// weights and d the dimension; where values are missing, `N d` is the number of those that are observed. Without
@@ -52,7 +52,7 @@ pub struct Selected {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::gmm::{Criterion, Points, Settings, select};
+/// use edifice_model::gmm::{Criterion, Points, Settings, select};
 /// let values: Vec<f64> = (0..60).map(|i| f64::from(i % 3) * 10.0 + f64::from(i % 7) / 10.0).collect();
 /// let points = Points::new(1, &values)?;
 /// let selected = select(&points, 5, Criterion::Mdl, &Settings::default(), 1)?;
@@ -60,7 +60,7 @@ pub struct Selected {
 /// assert_eq!(selected.trace.len(), 5);
 /// let least = selected.trace.iter().map(|t| t.1).fold(f64::INFINITY, f64::min);
 /// assert_eq!(Criterion::Mdl.value(&selected.fitted, &points), least);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn select(
     points: &Points,

@@ -32,7 +32,7 @@ pub(crate) struct Component {
     pub weights: Vec<f64>,
 }
 
-/// What a row's missing values mean for each group.
+/// The groups of a row, sorted by the place of its missing values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pattern {
     /// Groups whose u is fully observed.
@@ -196,7 +196,7 @@ impl Front {
         (0..self.particles.len()).map(|i| self.get(i))
     }
 
-    /// Nothing yet, over one group more.
+    /// An empty list over one group more.
     fn after(&self, extension: &Extension) -> Self {
         Self {
             particles: self.particles.after(extension),
@@ -225,7 +225,7 @@ impl Front {
         }
     }
 
-    /// Some of them.
+    /// A copy of the chosen particles.
     fn some(&self, chosen: &[usize]) -> Self {
         let mut some = Self {
             particles: self.particles.like(),

@@ -101,7 +101,7 @@ fn added(edge: Edge, structure: &Structure) -> Structure {
     structure
 }
 
-/// Whether the edge is new and within the limits.
+/// True if the edge is new and within the limits.
 fn allowed(
     edge: Edge,
     before: &Structure,

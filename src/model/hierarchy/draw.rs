@@ -11,7 +11,7 @@ use super::infer::{Scratch, joint};
 use super::query::Hierarchy;
 use super::schema::Rows;
 use super::structure::configuration;
-use crate::rng::categorical;
+use edifice_base::rng::categorical;
 
 /// Rows drawn from a model by [`Hierarchy::sample`], [`Hierarchy::sample_style`], [`Hierarchy::complete`] or
 /// [`Hierarchy::most_probable`].
@@ -23,8 +23,8 @@ use crate::rng::categorical;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Cell, Table, em::Stopping, hierarchy::{Group, Priors, fit}};
-/// use edifice::rng::stream;
+/// use edifice_model::{Cell, Table, em::Stopping, hierarchy::{Group, Priors, fit}};
+/// use edifice_base::rng::stream;
 /// let width = (0..60).map(|i| Some(if i % 3 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
 /// let houses = Table::new()
 ///     .real("width", width)?
@@ -42,7 +42,7 @@ use crate::rng::categorical;
 /// let mean = (0..500).map(|i| real(wide.columns()[0].cell(i))).sum::<f64>() / 500.0;
 /// assert!((mean - 12.2).abs() < 0.5);
 /// assert!((0..500).all(|i| wide.columns()[1].cell(i) == Cell::Code(1)));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Draws {

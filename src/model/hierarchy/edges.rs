@@ -204,7 +204,7 @@ impl Families<'_> {
         }
     }
 
-    /// What it gains that the list of `edge` becomes `list`.
+    /// The gain in log evidence, in nats, if the list of `edge` becomes `list`.
     fn change(&mut self, structure: &Structure, edge: Edge, list: Vec<usize>) -> f64 {
         self.of(edge.family_with(structure, list)) - self.of(edge.family(structure))
     }

@@ -13,7 +13,7 @@ use super::search::Search;
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::{Group, Hierarchy, Observer, Priors, Settings, Variant};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// Least gain of a round of EM on many rows, nats a row: while a structure is searched, where what decides is far more, and
 /// where the parameters of all rows are settled.
@@ -46,17 +46,17 @@ pub struct Learned {
     pub bic: f64,
     /// Every accepted configuration, by |S|, then those of the searches above and around the best ones.
     pub trace: Vec<Step>,
-    /// Whether the observer ended the search: the model is the best so far.
+    /// True if the observer ended the search: the model is the best so far.
     pub interrupted: bool,
 }
 
 /// Learns structure and parameters from `data`, whose columns `groups` assign to attributes.
 ///
 /// The structure G (|S|, every |H_g|, lateral edges) is the one of highest Cheeseman-Stutz score that the search of
-/// [the module](crate::model::hierarchy) meets, in nats,
+/// [the module](crate::hierarchy) meets, in nats,
 /// `log P(O* | G) + log P(O | G, Θ) - log P(O* | G, Θ)`,
 /// with Θ the parameters that EM finds and O* the rows O completed by their expected statistics, whose evidence `P(O* | G)` is a
-/// product of the closed forms of [`conjugate`](crate::model::conjugate) (Fan and Wonka 2016, Eq. 2 with a uniform P(G);
+/// product of the closed forms of [`conjugate`](crate::conjugate) (Fan and Wonka 2016, Eq. 2 with a uniform P(G);
 /// Cheeseman and Stutz 1996).
 ///
 /// Each value tried of |S|, of an |H_g| or of the lateral edges takes one run of EM, whose rounds are linear in rows; the same
@@ -68,7 +68,7 @@ pub struct Learned {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, hierarchy::{Group, Settings, learn}};
+/// use edifice_model::{Table, hierarchy::{Group, Settings, learn}};
 /// let n = 40;
 /// let width = (0..n).map(|i| Some(if i % 2 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
 /// let houses = Table::new()
@@ -81,7 +81,7 @@ pub struct Learned {
 /// // All configurations score less than the model, but for what EM gained since.
 /// assert!(learned.trace.iter().all(|step| step.score < learned.score + 0.5));
 /// assert!(learned.trace.iter().any(|step| step.styles == 3) && !learned.interrupted);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn learn(
     data: &Table,
@@ -101,7 +101,7 @@ pub fn learn(
 /// Ended at the first configuration, then gone on with:
 /// ```
 /// use std::ops::ControlFlow;
-/// use edifice::model::{Table, hierarchy::{Group, Settings, learn_observed, refine}};
+/// use edifice_model::{Table, hierarchy::{Group, Settings, learn_observed, refine}};
 /// let width = (0..60).map(|i| Some([5.0, 12.0, 30.0][i % 3] + (i % 5) as f64 * 0.1));
 /// let houses = Table::new().real("width", width)?;
 /// let groups = [Group::new("size", &["width"])];
@@ -114,7 +114,7 @@ pub fn learn(
 /// let on = refine(&early.model, &houses, &settings, 1, &|_| ControlFlow::Continue(()))?;
 /// assert!(!on.interrupted && on.score > early.score + 1.0);
 /// assert_eq!(on.model.cardinalities(), [3]);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn learn_observed(
     data: &Table,
@@ -197,7 +197,7 @@ struct Work<'a> {
     schema: &'a Schema,
     settings: &'a Settings,
     rows: Rows,
-    /// `None`: all of them.
+    /// The rows of the search; `None` for all rows.
     sample: Option<Rows>,
 }
 
@@ -282,15 +282,15 @@ pub struct Fitted {
 
 /// One run of EM for given cardinalities (`states` per real group, in order) without lateral
 /// edges, from k-means++ clusters of at most 10,000 of the rows: for data too large to search.
-/// Time is linear in rows ([the module](crate::model::hierarchy) has the cost of a round); besides the data themselves one
-/// standardised copy is held. EM: Fan and Wonka 2016, Sec. 5.3, *Parameter learning*; [`em`](crate::model::em).
+/// Time is linear in rows ([the module](crate::hierarchy) has the cost of a round); besides the data themselves one
+/// standardised copy is held. EM: Fan and Wonka 2016, Sec. 5.3, *Parameter learning*; [`em`](crate::em).
 ///
 /// # Errors
 /// As [`learn`]; [`ModelError::Parameter`] for cardinalities that do not fit the groups.
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, em::{Outcome, Stopping}, hierarchy::{Group, Priors, fit}};
+/// use edifice_model::{Table, em::{Outcome, Stopping}, hierarchy::{Group, Priors, fit}};
 /// // Twenty narrow houses, forty wide ones.
 /// let width = (0..60).map(|i| Some(if i < 20 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
 /// let houses = Table::new().real("width", width)?;
@@ -300,7 +300,7 @@ pub struct Fitted {
 /// let kinds = &fitted.model.state_probabilities("size")?[0];
 /// // The mode under Dirichlet(1.2, 1.2).
 /// assert!((kinds[0].min(kinds[1]) - 20.2 / 60.4).abs() < 1e-3);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn fit(
     data: &Table,

@@ -110,7 +110,7 @@ pub use watch::Observer;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, hierarchy::{Group, Settings, Variant, learn}};
+/// use edifice_model::{Table, hierarchy::{Group, Settings, Variant, learn}};
 /// let width = |i: usize| 6.0 + (i % 7) as f64;
 /// let houses = Table::new()
 ///     .real("width", (0..70).map(|i| Some(width(i))))?
@@ -123,7 +123,7 @@ pub use watch::Observer;
 /// let edges = model.lateral_edges();
 /// assert_eq!(edges.len(), 1);
 /// assert!(edges[0].0 != "age" && edges[0].1 != "age");
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Variant {
@@ -145,7 +145,7 @@ pub enum Sweep {
     /// All (paper), unless the real columns of the rows searched have more than 10,000 values: then [`Sweep::Few`].
     #[default]
     Auto,
-    /// All (paper).
+    /// All cardinalities (paper).
     All,
     /// Two, spread evenly in ratio: `a (b/a)^(1/4)` and `a (b/a)^(3/4)` of a to b, rounded, so 4 and 13 of 2 to 25. Of all |S|
     /// tried above the second level so found, only the best three are fitted to the end.
@@ -156,10 +156,10 @@ pub enum Sweep {
 /// movements are as in [`Stopping`].
 ///
 /// # Examples
-/// What a background is worth on a row ten deviations away, in nats:
+/// The gain of a background on a row ten deviations away, in nats:
 /// ```
 /// use std::ops::ControlFlow;
-/// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
+/// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
 /// let seen = Table::new().real("width", (0..70).map(|i| Some(10.0 + (i % 7) as f64)))?;
 /// let strange = Table::new().real("width", [Some(33.0)])?;
 /// let groups = [Group::new("size", &["width"])];
@@ -174,7 +174,7 @@ pub enum Sweep {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Which model.
+    /// The model to learn.
     pub variant: Variant,
     /// Cardinalities of S to try (paper: 2 to 25).
     pub styles: RangeInclusive<usize>,
@@ -182,7 +182,7 @@ pub struct Settings {
     pub most_states: usize,
     /// Most lateral parents of one group.
     pub most_parents: usize,
-    /// Whether lateral edges may also run from categorical columns: to real groups, whose means the category shifts
+    /// True if lateral edges may also run from categorical columns: to real groups, whose means the category shifts
     /// (`N(C_g; B_ghᵀ (1, π(C_g), 1[E_k = 1], 1[E_k = 2], ..), Σ_gh)`), and to categorical columns (paper: no).
     pub category_edges: bool,
     /// ε: share of a wide background in every Gaussian of a real group, in [0, 1): `(1 - ε) N(C_g; ..) + ε N(C_g; 0, 9 I)`
@@ -198,11 +198,11 @@ pub struct Settings {
     pub search: Stopping,
     /// When EM of the final model stops.
     pub stopping: Stopping,
-    /// What to do with constant columns.
+    /// The treatment of constant columns.
     pub constant: Constant,
     /// For which cardinalities of S the second level is searched from the start.
     pub sweep: Sweep,
-    /// Most rows that the structure is searched on: of more, so many are drawn from those that lack fewest values, and the
+    /// Most rows that the structure is searched on: of more, this number is drawn from those that lack fewest values, and the
     /// parameters of the structure found are then fitted to all of them, until a round gains less than 1e-4 nats a row.
     pub searched: usize,
 }

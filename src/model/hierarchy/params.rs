@@ -51,9 +51,10 @@ pub(crate) struct Shape {
     pub d: Vec<usize>,
     /// Categorical columns that are parents of something.
     pub regressors: Vec<usize>,
-    /// Where the indicators of each categorical column start in an extended row, and its length at the end.
+    /// The index at which the indicators of each categorical column start in an extended row, and its length at the
+    /// end.
     pub indicators: Vec<usize>,
-    /// What rows that no state explains are drawn from.
+    /// The distribution of rows that no state explains; `None` without a background.
     pub background: Option<Background>,
     /// Assignments of linked groups that are alive at once in a row with missing values.
     pub alive: usize,
@@ -123,8 +124,8 @@ impl Shape {
         matches!(self.structure.selectors[g], Selector::Hidden(_))
     }
 
-    /// What a particle says of group `g` by `state`: of which state it is, and whether it is of the background instead
-    /// (numbers from [`Self::states`] on; which state is then open but for categories that select it).
+    /// The state that a particle means by `state` of group `g`, and true if it is of the background instead (numbers
+    /// from [`Self::states`] on; which state is then open but for categories that select it).
     pub fn read(&self, g: usize, state: usize) -> (usize, bool) {
         let states = self.states(g);
         match state.checked_sub(states) {

@@ -21,7 +21,7 @@ use super::wide::states;
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, em::Stopping, hierarchy::{Group, Hierarchy, Priors, fit}};
+/// use edifice_model::{Table, em::Stopping, hierarchy::{Group, Hierarchy, Priors, fit}};
 /// let width = (0..60).map(|i| Some(if i % 3 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
 /// let houses = Table::new()
 ///     .real("width", width)?
@@ -40,7 +40,7 @@ use super::wide::states;
 /// // Stored and read, it is the same model.
 /// let read = Hierarchy::from_json(&model.to_json()?)?;
 /// assert_eq!(read.style_posterior(&houses)?, model.style_posterior(&houses)?);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Hierarchy {
@@ -167,11 +167,7 @@ impl Hierarchy {
     }
 
     /// These rows under this model; the priors are not asked.
-    pub(in crate::model) fn problem<'a>(
-        &'a self,
-        rows: &'a Rows,
-        priors: &'a Priors,
-    ) -> Problem<'a> {
+    pub(crate) fn problem<'a>(&'a self, rows: &'a Rows, priors: &'a Priors) -> Problem<'a> {
         Problem {
             schema: &self.schema,
             rows,

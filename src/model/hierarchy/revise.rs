@@ -12,7 +12,7 @@ use super::params::Params;
 use super::search::{Search, better};
 use super::structure::{Selector, Structure};
 use super::{Step, Variant};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 use rand::Rng;
 
 /// Nats a row by which a short run may still rise, and for which all moves are tried once more, where work is saved.

@@ -12,7 +12,7 @@ use super::super::table::{MISSING, Table, Values};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{ModelError, Table, hierarchy::{Group, Settings, learn}};
+/// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, learn}};
 /// let houses = Table::new()
 ///     .real("width", (0..20).map(|i| Some(f64::from(i % 7))))?
 ///     .binary("garage", (0..20).map(|i| Some(i % 2 == 1)))?;
@@ -149,7 +149,8 @@ impl Schema {
         self.codes.iter().map(|c| c.categories.len()).collect()
     }
 
-    /// Where the indicators of each categorical column start in a row of real columns and indicators, and its length.
+    /// The index at which the indicators of each categorical column start in a row of real columns and indicators, and
+    /// its length at the end.
     pub fn indicators(&self) -> Vec<usize> {
         let mut starts = vec![self.reals.len()];
         for (i, size) in self.sizes().into_iter().enumerate() {

@@ -18,7 +18,7 @@ use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::wide::{Wide, states, wide};
 use super::{Settings, Step, Sweep, Variant};
-use crate::rng::stream;
+use edifice_base::rng::stream;
 
 /// Values of real columns up to which all |S| are searched from the start.
 const SMALL: usize = 10_000;
@@ -28,18 +28,18 @@ const FINALISTS: usize = 3;
 /// Rounds of EM in a short run.
 const SHORT: usize = 10;
 
-/// What a search needs everywhere.
+/// The inputs that every part of a search needs.
 pub(crate) struct Search<'a> {
     pub schema: &'a Schema,
     pub rows: &'a Rows,
     pub settings: &'a Settings,
-    /// Whether edges from categories are searched.
+    /// True if edges from categories are searched.
     pub categories: bool,
     pub watch: &'a Watch<'a>,
 }
 
 impl<'a> Search<'a> {
-    /// Whether work is saved if the settings do not say.
+    /// True if the table is so large that work is saved by default.
     pub fn large(&self) -> bool {
         self.rows.rows * self.rows.d > SMALL
     }
@@ -107,7 +107,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether work is saved, as on large tables.
+    /// True if work is saved: by the settings, or by default on large tables.
     pub(super) fn few(&self) -> bool {
         match self.settings.sweep {
             Sweep::Auto => self.large(),
@@ -304,7 +304,7 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
-    /// Whether the model has a second level of hidden variables.
+    /// True if the model has a second level of hidden variables.
     pub(super) fn layered(&self) -> bool {
         matches!(self.settings.variant, Variant::Full | Variant::NoLateral)
     }

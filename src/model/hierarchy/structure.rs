@@ -1,12 +1,12 @@
-//! What the graph of a hierarchical model looks like.
+//! The graph of a hierarchical model.
 
 use super::super::error::ModelError;
 use super::super::graph::{order, reaches};
 
-/// What selects one of the linear Gaussians of a group of real columns.
+/// The variable that selects one of the linear Gaussians of a group of real columns.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Selector {
-    /// The group's own second-level hidden variable, with so many values.
+    /// The group's own second-level hidden variable, with its number of values.
     Hidden(usize),
     /// The style S itself.
     Style,
@@ -33,12 +33,12 @@ pub(crate) struct Structure {
     pub background: f64,
 }
 
-/// Whether there is no background: files of models without one do not name it.
+/// True if there is no background: files of models without one do not name it.
 fn absent(share: &f64) -> bool {
     *share == 0.0
 }
 
-/// Whether no list has an entry: files of models without such edges do not name them.
+/// True if no list has an entry: files of models without such edges do not name them.
 fn none(lists: &[Vec<usize>]) -> bool {
     lists.iter().all(Vec::is_empty)
 }
@@ -90,7 +90,7 @@ impl Structure {
         order(&self.parents, names)
     }
 
-    /// Whether group `to` is reached from group `from` along lateral edges.
+    /// True if group `to` is reached from group `from` along lateral edges.
     pub fn reaches(&self, from: usize, to: usize) -> bool {
         reaches(&self.parents, from, to)
     }

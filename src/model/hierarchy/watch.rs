@@ -1,4 +1,4 @@
-//! What watches a search, and may end it.
+//! The observer of a search, which may end it.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,7 +24,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Whether the search shall go on; once it shall not, it never shall.
+    /// Asks the observer; true if the search shall go on. Once false, it stays false.
     pub fn goes_on(&self) -> bool {
         self.tell(None);
         !self.ended()

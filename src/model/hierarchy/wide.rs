@@ -10,7 +10,7 @@ use super::structure::{Selector, configuration};
 
 /// Statistics over all columns.
 pub(crate) struct Wide {
-    /// Whether indicators of categories are among the columns.
+    /// True if indicators of categories are among the columns.
     pub categories: bool,
     /// Length of v = (1, all real columns, and indicators of all categories).
     pub side: usize,

@@ -21,7 +21,8 @@ use super::{Answer, Cpd, Network};
 ///
 /// # Examples
 /// ```
-/// use edifice::{model::network::{Evidence, Network, Variable}, rng::stream};
+/// use edifice_model::network::{Evidence, Network, Variable};
+/// use edifice_base::rng::stream;
 /// let network = Network::new(vec![
 ///     Variable::table("rain", &["no", "yes"], &[], &[0.8, 0.2]),
 ///     Variable::table("wet", &["no", "yes"], &["rain"], &[0.9, 0.1, 0.2, 0.8]),
@@ -31,7 +32,7 @@ use super::{Answer, Cpd, Network};
 /// let drawn = network.likelihood_weighting(&given, 4000, &mut stream(1, "draws", 0))?;
 /// let rain = &drawn[0];
 /// assert!(rain.errors[1] < 0.02 && (rain.probabilities[1] - exact).abs() < 5.0 * rain.errors[1]);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -52,7 +53,7 @@ pub struct Estimate {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::network::{Evidence, Network, Variable};
+/// use edifice_model::network::{Evidence, Network, Variable};
 /// let network = Network::new(vec![
 ///     Variable::table("a", &["0", "1"], &[], &[0.7, 0.3]),
 ///     Variable::table("b", &["0", "1"], &["a"], &[0.9, 0.1, 0.4, 0.6]),
@@ -63,7 +64,7 @@ pub struct Estimate {
 /// assert!(loopy.converged && loopy.rounds < 200);
 /// let exact = network.marginal(&given, "a")?;
 /// assert!((loopy.answers[0].probabilities[1] - exact[1]).abs() < 1e-9);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loopy {
@@ -71,7 +72,7 @@ pub struct Loopy {
     pub answers: Vec<Answer>,
     /// Rounds made.
     pub rounds: usize,
-    /// Whether no message moved by more than the tolerance in the last round.
+    /// True if no message moved by more than the tolerance in the last round.
     pub converged: bool,
 }
 
@@ -302,7 +303,7 @@ impl<'a> Messages<'a> {
         }
     }
 
-    /// What all factors but one say of a variable.
+    /// The sum of the log messages to a variable from all factors but one.
     fn without(&self, v: usize, factor: usize) -> Vec<f64> {
         let mut sum = vec![0.0; self.sizes[v]];
         for &(f, place) in self.around[v].iter().filter(|(f, _)| *f != factor) {

@@ -4,7 +4,7 @@ use super::super::conjugate::Linear;
 use super::super::error::ModelError;
 use super::{Cpd, Stated, Variable};
 
-/// The stated distribution of `v` with so many configurations of discrete parents and `p` = 1 +
+/// The stated distribution of `v`, given the number of configurations of its discrete parents and `p` = 1 +
 /// continuous coordinates, `None` beyond the range of numbers. Nothing is allocated for sizes that
 /// the stated numbers do not have.
 pub(super) fn check(

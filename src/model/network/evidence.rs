@@ -6,7 +6,8 @@ use super::super::error::ModelError;
 use super::super::gaussian::{Particles, extend};
 use super::{Cpd, Network};
 
-/// What is known: categories, likelihoods of categories, coordinates of real vectors, each in the variable's own unit.
+/// The known facts: categories, likelihoods of categories, coordinates of real vectors, each in the variable's own
+/// unit.
 ///
 /// Hard evidence restricts `p(x)` to what agrees with it; soft evidence on `y` multiplies it by `λ(y)`, as a child of `y`
 /// that was seen would: `P(x | e) ∝ P(x) λ(y)` (Pearl 1988, Sec. 2.2.2). Said twice, soft evidence multiplies, hard
@@ -15,13 +16,13 @@ use super::{Cpd, Network};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{ModelError, network::{Evidence, Network, Variable}};
+/// use edifice_model::{ModelError, network::{Evidence, Network, Variable}};
 /// let network = Network::new(vec![Variable::table("rain", &["no", "yes"], &[], &[0.8, 0.2])])?;
 /// let forecast = Evidence::new().likely("rain", &[1.0, 4.0]);
 /// assert!((network.marginal(&forecast, "rain")?[1] - 0.5).abs() < 1e-12);
 /// let both = Evidence::new().is("rain", "no").is("rain", "yes");
 /// assert!(matches!(network.marginal(&both, "rain"), Err(ModelError::Contradiction { .. })));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
@@ -31,7 +32,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Nothing is known.
+    /// Evidence without any fact.
     pub fn new() -> Self {
         Self::default()
     }
@@ -93,10 +94,10 @@ pub(crate) struct Linked {
     pub particles: Particles,
 }
 
-/// What a question is about, besides the evidence.
+/// The target of a question, besides the evidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Asked {
-    /// Nothing: the evidence alone.
+    /// No variable: the evidence alone.
     Evidence,
     /// One variable.
     Variable(usize),

@@ -35,14 +35,14 @@ impl Default for FitSettings {
 
 /// Result of [`Network::fit`]: parameters at a local maximum of `log p(data | Θ) + log p(Θ)`.
 ///
-/// EM replaces the entries of a table by `(N_jk + α - 1) / Σ_k (N_jk + α - 1)`, N_jk the expected number of rows with category k
-/// in configuration j and α [`Priors::dirichlet`]; linear Gaussians by the mode of their posterior ([`conjugate`](crate::model::conjugate));
+/// EM replaces the entries of a table by `(N_jk + α - 1) / Σ_k (N_jk + α - 1)`, `N_jk` the expected number of rows with category k
+/// in configuration j and α [`Priors::dirichlet`]; linear Gaussians by the mode of their posterior ([`conjugate`](crate::conjugate));
 /// softmax weights by Newton's method (Koller and Friedman 2009, Sec. 19.2). Columns are in their own units; what is missing is
 /// summed or integrated out. Time of a round: one exact answer ([`Answer`](super::Answer)) for every row.
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, network::{FitSettings, Network, Variable}};
+/// use edifice_model::{Table, network::{FitSettings, Network, Variable}};
 /// // Seven times yes, three times no, and three rows that nobody looked at: they do not count.
 /// let seen = (0..13).map(|i| (i < 10).then_some(i < 7));
 /// let data = Table::new().binary("garage", seen)?;
@@ -53,7 +53,7 @@ impl Default for FitSettings {
 /// let yes = (7.0 + alpha - 1.0) / (10.0 + 2.0 * (alpha - 1.0));
 /// assert!((fitted.network.probabilities("garage")?[1] - yes).abs() < 1e-9);
 /// assert!(fitted.trace.windows(2).all(|w| w[1] >= w[0] - 1e-9));
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Fitted {

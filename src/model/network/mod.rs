@@ -9,7 +9,7 @@
 //! evidence on or below it and is not asked for is left out (barren variables), and drawn from its parents.
 //!
 //! ```
-//! use edifice::model::network::{Evidence, Network, Variable};
+//! use edifice_model::network::{Evidence, Network, Variable};
 //! let network = Network::new(vec![
 //!     Variable::table("rain", &["no", "yes"], &[], &[0.8, 0.2]),
 //!     Variable::table("wet", &["no", "yes"], &["rain"], &[0.9, 0.1, 0.2, 0.8]),
@@ -18,7 +18,7 @@
 //! let given = Evidence::new().is("wet", "yes").real("level", &[2.5]);
 //! let rain = network.marginal(&given, "rain")?;
 //! assert!(rain[1] > 0.9);
-//! # Ok::<(), edifice::model::ModelError>(())
+//! # Ok::<(), edifice_model::ModelError>(())
 //! ```
 //!
 //! # Deviations and readings
@@ -47,7 +47,7 @@ mod sample;
 mod score;
 mod store;
 pub mod structure;
-#[cfg(feature = "io")]
+#[cfg(feature = "xml")]
 mod xmlbif;
 
 use std::collections::{HashMap, HashSet};
@@ -80,7 +80,7 @@ enum Stated {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::network::{Evidence, Network, Variable};
+/// use edifice_model::network::{Evidence, Network, Variable};
 /// let network = Network::new(vec![
 ///     Variable::table("kind", &["house", "tower"], &[], &[0.5, 0.5]),
 ///     Variable::linear("height", 1, &["kind"], &[(&[6.0], &[1.0]), (&[40.0], &[100.0])]),
@@ -88,7 +88,7 @@ enum Stated {
 /// ])?;
 /// let given = Evidence::new().real("height", &[10.0]);
 /// assert!((network.marginal(&given, "lift")?[1] - 0.5).abs() < 1e-12);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {

@@ -13,7 +13,7 @@ use super::evidence::{Asked, Evidence, Known, Question};
 ///
 /// # Examples
 /// ```
-/// use edifice::model::network::{Evidence, Network, Variable};
+/// use edifice_model::network::{Evidence, Network, Variable};
 /// let network = Network::new(vec![
 ///     Variable::table("ill", &["no", "yes"], &[], &[0.99, 0.01]),
 ///     Variable::table("test", &["-", "+"], &["ill"], &[0.95, 0.05, 0.1, 0.9]),
@@ -23,7 +23,7 @@ use super::evidence::{Asked, Evidence, Known, Question};
 /// // Bayes' rule by hand.
 /// assert!((answers[0].probabilities[1] - 0.009 / (0.009 + 0.0495)).abs() < 1e-12);
 /// assert_eq!(answers[1].probabilities, [0.0, 1.0]);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
@@ -42,7 +42,7 @@ pub struct Answer {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::network::{Evidence, Network, Variable};
+/// use edifice_model::network::{Evidence, Network, Variable};
 /// let network = Network::new(vec![
 ///     Variable::table("a", &["0", "1"], &[], &[0.4, 0.6]),
 ///     Variable::table("b", &["0", "1"], &["a"], &[0.1, 0.9, 0.5, 0.5]),
@@ -54,7 +54,7 @@ pub struct Answer {
 /// assert!((best.log_joint - 0.36_f64.ln()).abs() < 1e-12);
 /// let all = network.explanations(&nothing, 10)?;
 /// assert!((all.iter().map(|e| e.log_joint.exp()).sum::<f64>() - 1.0).abs() < 1e-12);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {

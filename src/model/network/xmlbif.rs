@@ -10,7 +10,7 @@ use quick_xml::events::Event;
 use super::super::error::ModelError;
 use super::{Cpd, Network, Stated, Variable};
 
-/// What a `<DEFINITION>` holds.
+/// The content of a `<DEFINITION>`.
 #[derive(Default)]
 struct Definition {
     variable: String,

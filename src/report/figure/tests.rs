@@ -1,5 +1,5 @@
 use super::*;
-use crate::report::{BarGroup, Merge, Outline, Scale, Series, Tile, category};
+use crate::{BarGroup, Merge, Outline, Scale, Series, Tile, category};
 
 /// Every kind of panel, with hard data: gaps, logarithms of zero, long names.
 fn all() -> Figure {
@@ -39,7 +39,7 @@ fn all() -> Figure {
             .map(|r| (f64::from(r), 1.0 - 0.6 / f64::from(r)))
             .collect(),
     ))
-    .legend(crate::report::Corner::BottomRight);
+    .legend(crate::Corner::BottomRight);
     let names: Vec<String> = "abcdefghij".chars().map(|c| format!("({c})")).collect();
     let bars = Bars::new("By facade", "facade", Scale::new("cost"), names.clone())
         .group("ADP", (0..10).map(|i| Some(50.0 + f64::from(i))).collect())

@@ -1,6 +1,6 @@
-//! Where a scene is seen from.
+//! The camera that a scene is seen from.
 
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
 
 /// Nothing nearer than this is seen, in metres.
 const NEAR: f32 = 0.5;
@@ -8,9 +8,9 @@ const NEAR: f32 = 0.5;
 /// A perspective view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, in metres, y up.
+    /// Position of the eye, in metres, y up.
     pub eye: [f32; 3],
-    /// What it looks at.
+    /// The point that it looks at, in metres.
     pub target: [f32; 3],
     /// Vertical angle of view in degrees.
     pub angle: f32,
@@ -41,7 +41,7 @@ impl View {
         }
     }
 
-    /// Where the eye is.
+    /// Position of the eye, in metres.
     pub fn eye(&self) -> V {
         self.eye
     }
@@ -52,7 +52,7 @@ impl View {
         [dot(p, self.right), dot(p, self.up), dot(p, self.forward)]
     }
 
-    /// Whether some of a ball may be in the picture.
+    /// True if a part of a ball may be in the picture.
     pub fn sees(&self, center: V, radius: f32) -> bool {
         let [x, y, z] = self.local(center);
         let inside = |across: f32, half: f32| {

@@ -9,8 +9,8 @@ pub use camera::Camera;
 
 use rayon::prelude::*;
 
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
-use crate::scene::{Group, Instance, Mesh, Scene};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::{Group, Instance, Mesh, Scene};
 use camera::View;
 use depth::DepthBuffer;
 
@@ -20,9 +20,9 @@ const SAMPLES: usize = 2;
 const SHADOWS: usize = 4096;
 /// Direction towards the sun.
 const SUN: V = [0.52, 0.62, 0.59];
-/// How far from a surface its shadow is looked up, so that no box shades its own content.
+/// Distance from a surface at which its shadow is looked up, in metres, so that no box shades its own content.
 const OFFSET: f32 = 1.0;
-/// How much nearer to the sun a caster must be, in metres.
+/// A caster must be nearer to the sun by this, in metres.
 const BIAS: f32 = 1.2;
 /// Meshes of at most this many triangles cast their own shadow, larger ones that of their box.
 const EXACT: usize = 80;
@@ -170,7 +170,7 @@ impl Bounds {
     }
 }
 
-/// What the sun sees.
+/// The depths seen from the sun.
 struct Shadows {
     across: V,
     along: V,

@@ -2,7 +2,7 @@
 
 use super::super::Scene;
 use super::super::render::Camera;
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
 
 /// Vertical angle of view in degrees.
 const ANGLE: f32 = 30.0;

@@ -1,8 +1,8 @@
-//! What a ray sees, and the light that comes back along it.
+//! The nearest surface on a ray, and the light that comes back along it.
 
 use super::tree::Tree;
-use crate::scene::Scene;
-use crate::scene::vectors::{V, add, cross, dot, times, unit};
+use crate::Scene;
+use crate::vectors::{V, add, cross, dot, times, unit};
 
 /// Direction towards the sun.
 const SUN: V = [-0.46, 0.68, 0.57];
@@ -10,7 +10,7 @@ const SUNLIGHT: V = [2.3, 2.1, 1.8];
 const SKYLIGHT: V = [0.62, 0.72, 0.9];
 /// Rays towards the sky.
 const SKY_RAYS: usize = 6;
-/// How far light of the sky is blocked (m).
+/// Distance within which the light of the sky is blocked, in metres.
 const REACH: f32 = 8.0;
 /// Colour of the ground, linear.
 const LAWN: V = [0.16, 0.21, 0.1];
@@ -21,13 +21,13 @@ pub(super) struct World {
     colours: Vec<V>,
 }
 
-/// What a ray meets first.
+/// The first surface that a ray meets, or the sky.
 #[derive(Debug, Clone)]
 pub(super) struct Seen {
     pub point: V,
     pub normal: V,
     pub colour: V,
-    /// Along the ray; infinite for the sky.
+    /// Distance along the ray; infinite for the sky.
     pub distance: f32,
     pub ray: V,
     pub ground: bool,
@@ -67,7 +67,8 @@ impl World {
         }
     }
 
-    /// What a ray meets; with a turn of 0 to 15 also the share of open sky, from directions turned so far.
+    /// The first surface that a ray meets; with a turn of 0 to 15 also the share of open sky, from directions turned by
+    /// it.
     pub fn seen(&self, from: V, ray: V, turn: Option<usize>) -> Seen {
         let hit = self.tree.nearest(from, ray);
         let ground = (ray[1] < -1e-4).then(|| -from[1] / ray[1]);

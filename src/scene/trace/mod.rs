@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::Scene;
 use super::render::{Camera, Picture};
-use crate::scene::vectors::{V, add, cross, dot, sub, times, unit};
+use crate::vectors::{V, add, cross, dot, sub, times, unit};
 use light::{Seen, World, encoded};
 
 /// Rays along each axis of a pixel on an edge.
@@ -113,7 +113,7 @@ impl View {
     }
 }
 
-/// What the pixels see.
+/// The surfaces that the pixels see, row by row.
 struct Grid<'a> {
     seen: &'a [Seen],
     width: usize,
@@ -147,7 +147,7 @@ impl Grid<'_> {
         if count > 0.0 { sum / count } else { own.open }
     }
 
-    /// Whether a neighbour sees another plane, another colour, or differs in sunlight.
+    /// True if a neighbour sees another plane or another colour, or differs in sunlight.
     fn is_edge(&self, i: usize) -> bool {
         let own = &self.seen[i];
         self.around(i, 1).any(|j| {
@@ -158,7 +158,7 @@ impl Grid<'_> {
 }
 
 impl Seen {
-    /// Whether both see one plane, or both the sky.
+    /// True if both see one plane, or both the sky.
     fn is_beside(&self, other: &Self) -> bool {
         if self.is_sky() || other.is_sky() {
             return self.is_sky() && other.is_sky();

@@ -1,6 +1,6 @@
 //! Triangles in a tree of boxes, split where the surface area heuristic (MacDonald and Booth 1990) is least.
 
-use crate::scene::vectors::{V, cross, dot, sub, unit};
+use crate::vectors::{V, cross, dot, sub, unit};
 
 /// Triangles in a leaf at most, and places for a split along an axis.
 const LEAF: usize = 4;
@@ -30,7 +30,7 @@ struct Bounds {
     high: V,
 }
 
-/// What a ray meets first.
+/// The first triangle that a ray meets.
 pub(super) struct Hit {
     pub distance: f32,
     pub triangle: usize,
@@ -127,12 +127,12 @@ impl Tree {
         self.meet(from, ray, f32::INFINITY, false)
     }
 
-    /// The same within a distance.
+    /// The first triangle that a ray meets from its front, within a distance.
     pub fn nearest_within(&self, from: V, ray: V, most: f32) -> Option<Hit> {
         self.meet(from, ray, most, false)
     }
 
-    /// Whether a ray meets any triangle from its front.
+    /// True if a ray meets any triangle from its front.
     pub fn blocks(&self, from: V, ray: V) -> bool {
         self.meet(from, ray, 1e4, true).is_some()
     }
@@ -212,7 +212,7 @@ impl Bounds {
         if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
     }
 
-    /// Where a ray enters the box, when it does so before `most`.
+    /// The distance at which a ray enters the box; `None` if it does not before `most`.
     fn entry(&self, from: V, inverse: V, most: f32) -> Option<f32> {
         let (mut near, mut far) = (0.0_f32, most);
         for i in 0..3 {

@@ -1,13 +1,13 @@
-//! Whether a plan can be built: in one piece, without courtyards, nowhere too thin.
+//! Tests that a plan can be built: in one piece, without courtyards, nowhere too thin.
 
 use super::PlanUnion;
 
-/// What an engineer asks of a plan.
+/// The properties of a plan that decide if it can be built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Soundness {
     /// Parts that share no stretch of boundary.
     pub parts: usize,
-    /// Whether some outside place is shut in.
+    /// True if a part of the outside is enclosed.
     pub courtyard: bool,
     /// Places where the plan meets itself in a point only.
     pub pinches: usize,

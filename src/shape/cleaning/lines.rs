@@ -1,6 +1,6 @@
 //! The lines of one axis: candidates, and the cheapest choice among them.
 
-use crate::shape::{Axis, LabelGrid};
+use crate::{Axis, LabelGrid};
 
 /// Most candidate lines of an axis.
 const MOST_CANDIDATES: usize = 120;
@@ -8,7 +8,7 @@ const MOST_CANDIDATES: usize = 120;
 /// Weight of what lies within the tolerance of a line against what does not.
 const NEAR: f64 = 0.1;
 
-/// A line has to explain the area of a square of so many tolerances.
+/// Side of a square, in tolerances, whose area a line has to explain.
 const SIDE: f64 = 6.0;
 
 /// A merged label grid seen along one axis.

@@ -1,6 +1,6 @@
 //! Small connected areas take the label around them.
 
-use crate::shape::{LabelGrid, Span, components};
+use crate::{LabelGrid, Span, components};
 
 /// Gives every connected area smaller than `smallest` (in squares of the grid's unit) the label with which
 /// it shares the longest border, the smaller areas first, until none is left or one label is all there is.

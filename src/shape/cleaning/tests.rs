@@ -1,5 +1,5 @@
 use super::*;
-use crate::rng::stream;
+use edifice_base::rng::stream;
 use rand::RngExt;
 
 /// A wall of 160 x 120 pixels with two rows of four windows, whose sides waver by up to `noise`.

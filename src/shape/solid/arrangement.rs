@@ -169,7 +169,7 @@ fn intervals(polygon: &Polygon, over: &[usize], prisms: &[Prism]) -> Vec<(Plane,
     union
 }
 
-/// How a polygon lies to a line.
+/// The position of a polygon relative to a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Position {
     Left,

@@ -1,10 +1,10 @@
-//! Whether a surface is closed, without knowledge of its making.
+//! Checks that a surface is closed, without knowledge of its making.
 
 use rustc_hash::FxHashMap;
 
 use super::Surface;
 
-/// What a sound surface comes to.
+/// The size of a sound surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
     /// Distinct corners.
@@ -17,7 +17,7 @@ pub struct Report {
     pub volume: f64,
 }
 
-/// What is wrong with a surface.
+/// The defects of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     /// It has no triangles.
@@ -38,13 +38,13 @@ pub enum SurfaceError {
     /// Two triangles have the same edge in the same direction.
     #[error("an edge at ({}, {}, {}) is passed twice in one direction: parts touch in a line or overlap", at[0], at[1], at[2])]
     Twice {
-        /// Where it starts.
+        /// The start of the edge.
         at: [f64; 3],
     },
     /// An edge has one triangle only.
     #[error("the surface is open at ({}, {}, {})", at[0], at[1], at[2])]
     Open {
-        /// Where the edge starts.
+        /// The start of the edge.
         at: [f64; 3],
     },
     /// A face has no proper outline.

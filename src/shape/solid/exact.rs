@@ -56,7 +56,7 @@ impl Line {
         (self.a * p.x + self.b * p.y + self.c * p.w).cmp(&0)
     }
 
-    /// Where two lines cross; `None` when they are parallel.
+    /// The point where two lines cross; `None` if they are parallel.
     pub fn crossing(&self, other: &Line) -> Option<Point> {
         let w = self.a * other.b - other.a * self.b;
         (w != 0).then(|| {
@@ -151,7 +151,7 @@ impl Plane {
         self.at(p) as f64 / (p.w * SLOPES) as f64 * UNIT
     }
 
-    /// Where this plane is above the other: left of a line; `None` for parallel planes.
+    /// The line on whose left this plane is above the other; `None` for parallel planes.
     pub fn above(&self, other: &Plane) -> Option<Line> {
         let (a, b) = (self.a - other.a, self.b - other.b);
         (a != 0 || b != 0).then(|| Line::new(a, b, self.c - other.c))

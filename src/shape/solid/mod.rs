@@ -32,7 +32,7 @@ use exact::{Line, Plane};
 pub use faces::{Face, FaceKey, Faces};
 pub use openings::{Opening, Panel, Span, Wall};
 
-/// What a piece of surface is made of; where solids overlap, the first in this order shows.
+/// The finish of a piece of surface; where solids overlap, the first in this order shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Finish {
     /// Masonry of a chimney.

@@ -10,7 +10,7 @@ pub struct Wall {
     pub axis: usize,
     /// Its coordinate on that axis.
     pub at: f64,
-    /// Whether it looks towards larger coordinates.
+    /// True if it looks towards larger coordinates.
     pub positive: bool,
 }
 
@@ -20,11 +20,11 @@ pub type Span = [[f64; 2]; 2];
 /// A rectangle set back from what surrounds it, with further ones in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// Where it leaves its surroundings.
+    /// The opening in its surroundings.
     pub mouth: Span,
     /// Its own rectangle.
     pub face: Span,
-    /// How far behind the wall it lies; before the wall when negative.
+    /// Its depth behind the wall; negative before the wall.
     pub depth: f64,
     /// Finish of the sides between mouth and face.
     pub reveal: Finish,
@@ -39,7 +39,7 @@ pub struct Panel {
 pub struct Opening {
     /// The wall.
     pub wall: Wall,
-    /// What is cut into it.
+    /// The panel that is cut into it.
     pub panel: Panel,
 }
 
@@ -57,7 +57,7 @@ impl Faces {
             .map(|(k, _)| k)
     }
 
-    /// Whether the rectangle with its margin lies inside a face.
+    /// True if the rectangle with its margin lies inside a face.
     fn contains(&self, face: &Face, wall: &Wall, span: &Span) -> bool {
         let place = |v: u32| {
             let p = self.positions[v as usize];
@@ -194,7 +194,7 @@ fn mean_area(a: &Span, b: &Span) -> f64 {
     (area(0.0) + 4.0 * area(0.5) + area(1.0)) / 6.0
 }
 
-/// Whether a segment has a point in a rectangle.
+/// True if a segment has a point in a rectangle.
 fn touches(p: [f64; 2], q: [f64; 2], low: [f64; 2], high: [f64; 2]) -> bool {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for a in 0..2 {
@@ -222,7 +222,7 @@ impl Wall {
         if self.positive { line.reversed() } else { line }
     }
 
-    /// Whether the coordinate along the wall grows to the right, seen from outside.
+    /// True if the coordinate along the wall grows to the right, seen from outside.
     fn runs_right(&self) -> bool {
         (self.axis == 0) == self.positive
     }

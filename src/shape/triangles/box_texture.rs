@@ -19,9 +19,9 @@ pub struct BoxTexture {
 }
 
 impl BoxTexture {
-    /// What is seen of `paint` from around the box, as finely as its textures show it and in at most `most` pixels along a
-    /// side of a view; `None` where nothing with a texture is seen. What is not painted gets the view's mean colour, a view without any
-    /// the mean of all.
+    /// The views of `paint` from around the box, as fine as its textures and with at most `most` pixels along a side of
+    /// a view; `None` if nothing with a texture is seen. Unpainted pixels get the view's mean colour, a view without
+    /// any the mean of all.
     pub fn of(paint: &[Painted], frame: &OrientedBox, most: usize) -> Option<Self> {
         let (low, high) = (frame.base[2], frame.base[2] + frame.size[2]);
         let textured = |p: &&Painted| matches!(*p.surface, Surface::Texture(_));

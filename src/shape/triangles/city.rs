@@ -14,10 +14,10 @@ pub struct CityBuilding {
     pub attributes: serde_json::Map<String, serde_json::Value>,
     /// Its surface, relative to the city's origin.
     pub mesh: TriangleMesh,
-    /// What the surface is put together from, where the input says it: all of it, or nothing. Whoever changes the mesh
-    /// clears them.
+    /// The parts that make up the surface, if the input names them: all of it, or none. Whoever changes the mesh clears
+    /// them.
     pub parts: Vec<Part>,
-    /// What the surface looks like, as far as the input says it, in the same coordinates.
+    /// The paint of the surface, as far as the input gives it, in the same coordinates.
     pub paint: Vec<Painted>,
 }
 
@@ -27,7 +27,7 @@ pub struct CityBuilding {
 pub struct Part {
     /// Number of the template: parts of one number are instances of the same mesh.
     pub template: usize,
-    /// Where the box is.
+    /// The box that the template is put into.
     pub frame: OrientedBox,
     /// Positions of the building's mesh that belong to it.
     pub positions: Range<usize>,
@@ -37,7 +37,7 @@ pub struct Part {
     pub texture: Option<Arc<[u8]>>,
 }
 
-/// How far a template may reach out of the unit box.
+/// The distance that a template may reach out of the unit box.
 const OUTSIDE: f64 = 1e-6;
 
 impl CityBuilding {
@@ -107,7 +107,7 @@ pub struct City {
     pub name: String,
     /// Coordinate reference system, when the input says it.
     pub reference_system: Option<String>,
-    /// What to add to every coordinate to be in the reference system.
+    /// The shift from these coordinates to those of the reference system.
     pub origin: [f64; 3],
     /// The buildings.
     pub buildings: Vec<CityBuilding>,

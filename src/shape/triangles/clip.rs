@@ -66,7 +66,7 @@ fn split(polygon: &[[f64; 3]], z: f64) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     (below, above)
 }
 
-/// Where an edge meets a plane: the same bits for both directions of the edge.
+/// The point where an edge meets a plane: the same bits for both directions of the edge.
 pub(super) fn crossing(p: [f64; 3], q: [f64; 3], z: f64) -> [f64; 3] {
     let (a, b) = if p[2] < q[2] { (p, q) } else { (q, p) };
     let s = (z - a[2]) / (b[2] - a[2]);

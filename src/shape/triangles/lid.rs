@@ -11,7 +11,7 @@ use super::{Corners, TriangleMesh};
 const LEAST_AREA: f64 = 1e-4;
 /// Ends of segments closer than this meet, in metres.
 const WELD: f64 = 1e-3;
-/// A section may differ so much from A(z), as a share.
+/// Greatest difference of a section from A(z), as a share of A(z).
 const CLOSE: f64 = 0.01;
 /// Faces closer to the plane than this lie in it, in metres.
 const LEVEL: f64 = 1e-5;
@@ -20,10 +20,10 @@ const MOST_CHAINS: usize = 64;
 
 /// The section of a welded mesh just above the height `z`, as triangles facing up.
 ///
-/// Where the mesh is closed there, the section is chained from the crossings of triangles with the plane.
-/// Open meshes and such with T-junctions leave gaps: ends of chains are joined to the nearest beginnings. When
-/// the result does not have the area A(z), the roofs above z, laid down on the plane, are tried; what is nearer
-/// to A(z) is taken. Corners on the plane count as below it.
+/// If the mesh is closed there, the section is chained from the crossings of triangles with the plane. Open meshes and
+/// such with T-junctions leave gaps: ends of chains are joined to the nearest beginnings. When the result does not have
+/// the area A(z), the roofs above z, laid down on the plane, are tried; what is nearer to A(z) is taken. Corners on the
+/// plane count as below it.
 pub fn section_lid(mesh: &TriangleMesh, z: f64) -> TriangleMesh {
     let chained = chained_lid(mesh, z);
     let above = clip_to_slabs(mesh, &[z]).pop().unwrap_or_default();
@@ -43,8 +43,8 @@ pub fn section_lid(mesh: &TriangleMesh, z: f64) -> TriangleMesh {
     }
 }
 
-/// What closes the part of a mesh below the cut at `z`, and, turned over, the part above it: the section there
-/// but for what horizontal faces at `z` close already.
+/// The faces that close the part of a mesh below the cut at `z`, and, turned over, the part above it: the section there
+/// without the part that horizontal faces at `z` close already.
 ///
 /// With areas H of faces at `z` that look up and D of those that look down, A(z-) = A(z+) + H - D, and A(z+) - D is open.
 /// Stacked closed bodies leave nothing open; without faces that look down the section above is, without
@@ -170,7 +170,7 @@ fn joined(chains: Vec<Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
     rings
 }
 
-/// Where a triangle crosses the plane, material to the left.
+/// The segment where a triangle crosses the plane, material to the left.
 fn segment(t: &Corners, z: f64) -> Option<([f64; 2], [f64; 2])> {
     let above = t.map(|p| p[2] > z);
     let (mut from, mut to) = (None, None);

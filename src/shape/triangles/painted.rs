@@ -1,8 +1,8 @@
-//! What the surface of a building looks like: triangles with a texture or a plain colour.
+//! The painted surface of a building: triangles with a texture or a plain colour.
 
 use std::sync::Arc;
 
-/// What a triangle is painted with.
+/// The paint of a triangle.
 #[derive(Debug, PartialEq)]
 pub enum Surface {
     /// One colour: red, green, blue.
@@ -51,7 +51,7 @@ pub struct Painted {
     pub corners: [[f64; 3]; 3],
     /// Texture coordinates of the corners.
     pub uv: [[f64; 2]; 3],
-    /// What it is painted with.
+    /// Its paint.
     pub surface: Arc<Surface>,
 }
 

@@ -153,8 +153,8 @@ impl VolumeRaster {
     }
 }
 
-/// How much of each column of the unit box (x and y from -1/2 to 1/2, z from 0 to 1) is solid:
-/// `cells` x `cells` means of `samples` x `samples` columns, row after row from low y to high.
+/// The solid share of each column of the unit box (x and y from -1/2 to 1/2, z from 0 to 1): `cells` x `cells` means of
+/// `samples` x `samples` columns, row after row from low y to high.
 pub fn height_map(unit: &TriangleMesh, cells: usize, samples: usize) -> Vec<f32> {
     let side = cells * samples;
     let scale = side as f64;

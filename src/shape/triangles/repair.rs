@@ -1,5 +1,5 @@
-//! What is wrong with a mesh, and the repair that measuring needs: duplicated and degenerate triangles
-//! are dropped, a mesh that is inside out is turned.
+//! The faults of a mesh, and the repair that measuring needs: duplicated and degenerate triangles are dropped, a mesh
+//! that is inside out is turned.
 
 use rustc_hash::FxHashMap;
 
@@ -11,7 +11,7 @@ const WELD: f64 = 1e-4;
 /// Triangles of less than this area are degenerate, in square metres.
 const LEAST_AREA: f64 = 1e-9;
 
-/// What is wrong with a mesh.
+/// The faults of a mesh; all zero for a sound one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct MeshFaults {
     /// Edges of one triangle only.
@@ -22,12 +22,12 @@ pub struct MeshFaults {
     pub degenerate: usize,
     /// Triangles that occur more than once.
     pub duplicated: usize,
-    /// Whether the triangles faced inwards.
+    /// True if the triangles faced inwards.
     pub inverted: bool,
 }
 
 impl MeshFaults {
-    /// Whether something is wrong.
+    /// True if there is any fault.
     pub fn any(&self) -> bool {
         *self != Self::default()
     }

@@ -14,7 +14,7 @@ pub(super) fn ring_area(ring: &[[f64; 2]]) -> f64 {
     (0..n).map(cross).sum::<f64>() / 2.0
 }
 
-/// Whether a point lies inside a ring (even-odd rule).
+/// True if a point lies inside a ring (even-odd rule).
 pub(super) fn inside(ring: &[[f64; 2]], p: [f64; 2]) -> bool {
     let mut odd = false;
     for (i, a) in ring.iter().enumerate() {

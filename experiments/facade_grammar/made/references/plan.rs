@@ -1,11 +1,11 @@
-//! What stands where: tiles in rows and columns, in the rhythms of a kind.
+//! The plan of a reference: tiles in rows and columns, in the rhythms of a kind.
 
 use rand::RngExt;
 
 use super::Kind;
-use crate::experiments::facade_grammar::made::elements::{Break, Glazing, Style};
-use crate::experiments::facade_grammar::made::theme::Rhythm;
-use crate::rng::Stream;
+use crate::facade_grammar::made::elements::{Break, Glazing, Style};
+use crate::facade_grammar::made::theme::Rhythm;
+use edifice_base::rng::Stream;
 
 /// A tile's content.
 #[derive(Debug, Clone, Copy)]

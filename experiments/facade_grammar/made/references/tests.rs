@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::grammar::{Costs, derivation, evaluate};
+use edifice_grammar::{Costs, derivation, evaluate};
 
 /// Left, bottom, width and height of the regions that a grammar splits.
 fn regions(grammar: &Grammar) -> HashSet<[i64; 4]> {
@@ -21,7 +21,7 @@ fn every_reference_derives_its_layout_exactly() {
             let name = &one.facade.name;
             let count = one.facade.regions.len();
             assert!((50..1500).contains(&count), "{name}: {count} terminals");
-            crate::shape::splittable(&one.facade).unwrap();
+            edifice_shape::splittable(&one.facade).unwrap();
             for (kind, grammar) in Kind::ALL.iter().zip(&one.grammars) {
                 evaluate(
                     grammar,

@@ -2,11 +2,11 @@
 
 use super::Kind;
 use super::plan::{Plan, Tile};
-use crate::experiments::facade_grammar::made::composition::run;
-use crate::experiments::facade_grammar::made::draft::{Draft, Part, leaf};
-use crate::experiments::facade_grammar::made::elements::door;
-use crate::grammar::Grammar;
-use crate::shape::Axis;
+use crate::facade_grammar::made::composition::run;
+use crate::facade_grammar::made::draft::{Draft, Part, leaf};
+use crate::facade_grammar::made::elements::door;
+use edifice_grammar::Grammar;
+use edifice_shape::Axis;
 
 impl Plan {
     /// The grammar of a kind; all kinds derive the same terminals.

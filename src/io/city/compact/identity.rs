@@ -1,4 +1,4 @@
-//! Who placements are: identifiers and attributes.
+//! Identities of placements: identifiers and attributes.
 //!
 //! Identifiers that end in digits, like those before them, are told by the difference of their numbers; others, and
 //! attributes, stand in lists, in the order in which they are met.
@@ -31,7 +31,7 @@ pub(super) struct Identities {
     flags: [Bit; 4],
 }
 
-/// What [`Identities::flags`] tell.
+/// The meanings of [`Identities::flags`].
 #[derive(Clone, Copy)]
 enum Flag {
     HasId,

@@ -21,7 +21,7 @@ pub(super) struct StepMesh {
 /// Most triangles of all templates together.
 const MOST_TRIANGLES: u64 = 50_000_000;
 
-/// What is beyond an edge.
+/// The place beyond an edge.
 #[derive(Clone, Copy)]
 enum Beyond {
     Nothing,

@@ -32,11 +32,11 @@ use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
 pub use self::steps::Steps;
 use super::pictures;
-use crate::file::read_bytes;
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
-use crate::io::write_atomic;
-use crate::shape::triangles::TriangleMesh;
-use crate::{Error, Result};
+use crate::write_atomic;
+use edifice_base::file::read_bytes;
+use edifice_base::{Error, Result};
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
+use edifice_shape::triangles::TriangleMesh;
 
 /// The first bytes of a file.
 const MAGIC: [u8; 4] = *b"EdCG";
@@ -50,7 +50,7 @@ const MOST_TEXT: u64 = 1 << 28;
 /// Why bytes are no grammar, or a grammar cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CompactError {
-    /// Another kind of file.
+    /// The file is of another kind.
     #[error("not a compact grammar: it does not begin with \"EdCG\"")]
     Magic,
     /// A version that is not known.
@@ -62,7 +62,7 @@ pub enum CompactError {
     /// The file ends too early.
     #[error("truncated")]
     Truncated,
-    /// More than is read or written.
+    /// The number of things is larger than is read or written.
     #[error("too many {0}")]
     TooLarge(&'static str),
     /// A number leads nowhere.
@@ -71,7 +71,7 @@ pub enum CompactError {
     /// A number has too many digits for whole steps.
     #[error("{0} is too large to be written in steps")]
     Number(f64),
-    /// Steps that are none.
+    /// The numbers of steps are not from 1 to 65,535.
     #[error("steps {0:?} are not whole numbers from 1 to 65,535")]
     Steps(Steps),
     /// The text part.
@@ -101,7 +101,7 @@ pub fn write(grammar: &InstanceGrammar, path: &Path) -> Result<()> {
     )
 }
 
-/// What is not numbers.
+/// The texts of a file, and the few numbers that stand among them.
 #[derive(Serialize, Deserialize)]
 struct Texts {
     name: String,

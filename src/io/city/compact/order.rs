@@ -1,7 +1,7 @@
 //! Placements along Hilbert's curve, so that those that follow each other stand near each other.
 
 use super::Steps;
-use crate::grammar::instance::Placement;
+use edifice_grammar::instance::Placement;
 
 /// Halvings of the square.
 const LEVELS: u32 = 20;

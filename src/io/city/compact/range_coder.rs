@@ -43,7 +43,7 @@ pub(super) trait Coder {
     fn bit(&mut self, model: &mut Bit, bit: bool) -> bool;
     /// A bit that is 0 as often as 1.
     fn even(&mut self, bit: bool) -> bool;
-    /// Whether more was read than was written.
+    /// True if more was read than was written.
     fn exhausted(&self) -> bool;
 }
 
@@ -70,7 +70,7 @@ impl Encoder {
         }
     }
 
-    /// What was written.
+    /// The bytes of all bits written.
     pub(super) fn finish(mut self) -> Vec<u8> {
         (0..5).for_each(|_| self.shift());
         self.bytes

@@ -10,7 +10,7 @@ use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
 use super::steps::in_steps;
 use super::{CompactError, Steps};
-use crate::grammar::instance::{InstanceRule, Placement};
+use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Most placements of a file.
 const MOST_PLACEMENTS: u64 = 8_000_000;
@@ -24,7 +24,7 @@ struct Pose {
     size: [i64; 3],
 }
 
-/// What a placement is near to.
+/// The reference of a placement, from which its numbers are differences.
 #[derive(Clone, Copy, PartialEq)]
 enum Near {
     /// The axiom's successor before it.
@@ -69,7 +69,7 @@ pub(super) struct Rules<'a, C> {
     flags: [Bit; 3],
 }
 
-/// What [`Rules::flags`] tell.
+/// The meanings of [`Rules::flags`].
 #[derive(Clone, Copy)]
 enum Flag {
     WholeWeight,
@@ -168,7 +168,7 @@ impl<'a, C: Coder> Rules<'a, C> {
         })
     }
 
-    /// Where the successors of an instance stand.
+    /// The places of an instance's successors.
     fn parts(
         &mut self,
         symbol: &str,

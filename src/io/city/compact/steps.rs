@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::CompactError;
-use crate::grammar::instance::{InstanceGrammar, Placement};
+use edifice_grammar::instance::{InstanceGrammar, Placement};
 
-/// How many steps a unit has.
+/// Numbers of steps in a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Steps {
     /// Steps of a metre.
@@ -110,7 +110,7 @@ fn first(tried: &[i64], fits: impl Fn(i64) -> bool) -> i64 {
     found.or(tried.last().copied()).unwrap_or(1)
 }
 
-/// Whether a number is a whole number of steps, but for rounding.
+/// True if a number is a whole number of steps, but for rounding.
 fn whole(v: f64, steps: i64) -> bool {
     let scaled = v * steps as f64;
     (scaled - scaled.round()).abs() < 1e-6

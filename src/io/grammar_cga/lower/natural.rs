@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::grammar::{Operation, Rule, Size};
-use crate::shape::Axis;
+use edifice_grammar::{Operation, Rule, Size};
+use edifice_shape::Axis;
 
 /// Extent of a symbol along `wanted`, where absolute sizes alone say it.
 pub(super) fn natural_extent(rules: &[Rule], symbol: &str, wanted: Axis) -> Option<f64> {

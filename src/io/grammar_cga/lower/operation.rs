@@ -1,4 +1,4 @@
-//! What a part becomes, and the sizes of the parts.
+//! The replacement of a part, and the sizes of the parts.
 
 use chumsky::span::SimpleSpan;
 
@@ -7,16 +7,16 @@ use super::super::note::Note;
 use super::super::reserved::is_appearance;
 use super::super::syntax::{Alternative, At, Entry, Part, Prefix, Target};
 use super::Builder;
-use crate::grammar::{Operation, Size, Successor};
-use crate::shape::Axis;
+use edifice_grammar::{Operation, Size, Successor};
+use edifice_shape::Axis;
 
-/// How far fractions may be from filling the whole.
+/// The greatest difference of a sum of fractions from the whole.
 const FRACTION_SLACK: f64 = 1e-9;
 
 /// Most periods that fractions may repeat.
 const MOST_PERIODS: f64 = 1000.0;
 
-/// What a target becomes, looks apart.
+/// The replacement that a target names, without its looks.
 #[derive(Clone, Copy)]
 enum Plain<'t, 'a> {
     Symbol(&'a str),

@@ -19,7 +19,7 @@ pub(super) const DRAWS: usize = 5;
 pub(super) struct Draw {
     /// The part; `None` outside rules, where a range stands for its middle.
     part: Option<usize>,
-    /// How many values were taken.
+    /// Number of values taken so far.
     taken: Cell<usize>,
 }
 
@@ -44,7 +44,7 @@ impl Draw {
     }
 }
 
-/// Whether a size in the target is drawn at random.
+/// True if a size in the target is drawn at random.
 pub(super) fn is_random(target: &Target<'_>) -> bool {
     fn random(expression: &Expression<'_>) -> bool {
         match expression {

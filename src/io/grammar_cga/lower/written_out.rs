@@ -5,8 +5,8 @@ use chumsky::span::SimpleSpan;
 use super::super::error::Fault;
 use super::super::syntax::{Entry, Part, Target};
 use super::Builder;
-use crate::grammar::{Operation, Size};
-use crate::shape::Axis;
+use edifice_grammar::{Operation, Size};
+use edifice_shape::Axis;
 
 impl Builder<'_> {
     /// A mirrored split, written out.

@@ -1,6 +1,6 @@
 //! Names, units and groups of the 49 attributes.
 
-/// Which part of the hierarchical model a group belongs to (Fig. 4d).
+/// The part of the hierarchical model that a group belongs to (Fig. 4d).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
     /// Mass model attributes `M_c`: continuous.
@@ -14,13 +14,13 @@ pub enum Level {
 /// A group of attributes: one random variable of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Group {
-    /// Name.
+    /// Name of the group.
     pub name: &'static str,
     /// Part of the model.
     pub level: Level,
     /// Its first column in [`COLUMNS`].
     pub first: usize,
-    /// How many columns it has.
+    /// Number of its columns.
     pub len: usize,
 }
 

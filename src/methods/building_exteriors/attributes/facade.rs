@@ -1,7 +1,7 @@
 //! Facade attributes `F_c` (Appendix A.2): window-to-wall ratio, symmetry and alignment, each of
 //! the front, back, left and right side.
 
-use crate::shape::{Building, FacadeElement, FacadePiece, Side};
+use edifice_shape::{Building, FacadeElement, FacadePiece, Side};
 
 /// Offsets up to this share of a floor height count as none.
 const TOLERANCE: f64 = 0.02;
@@ -40,7 +40,7 @@ fn symmetry(pieces: &[&FacadePiece], tolerance: f64) -> f64 {
     symmetric.map(|f| f.area()).sum::<f64>() / total_area(pieces)
 }
 
-/// Whether the mirror image of every element meets an element of the same style.
+/// True if the mirror image of every element meets an element of the same style.
 fn is_symmetric(piece: &FacadePiece, tolerance: f64) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= tolerance;
     piece.elements.iter().all(|e| {
@@ -75,7 +75,7 @@ fn alignment(pieces: &[&FacadePiece], tolerance: f64) -> f64 {
     f64::from(aligned) / f64::from(candidates)
 }
 
-/// Whether two stacked pieces are aligned; `None` when they cannot be.
+/// True if two stacked pieces are aligned; `None` when they cannot be.
 fn aligned_pair(a: &FacadePiece, b: &FacadePiece, tolerance: f64) -> Option<bool> {
     let start = a.start.max(b.start);
     let end = (a.start + a.width).min(b.start + b.width);

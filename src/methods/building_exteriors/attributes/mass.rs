@@ -1,6 +1,6 @@
 //! Mass model attributes `M_c` (Appendix A.1): 27 numbers.
 
-use crate::shape::{BoxStyle, Building, MassBox, PlanUnion, Rect, visibility};
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Rect, visibility};
 
 /// `bbox`, `bcr`, `bdry`, `far`, `arf`, `garage`, `porch`, in the order of the columns.
 pub(super) fn attributes(building: &Building) -> Vec<f64> {

@@ -45,7 +45,7 @@ mod mass;
 
 pub use columns::{COLUMNS, GROUPS, Group, Level};
 
-use crate::shape::{Building, ElementStyle, RoofStyle, Special};
+use edifice_shape::{Building, ElementStyle, RoofStyle, Special};
 
 /// The attributes of one building, in the order of [`COLUMNS`]; `None` is missing.
 pub type AttributeRow = Vec<Option<f64>>;
@@ -58,7 +58,7 @@ pub enum AttributeError {
     TooManyFloors {
         /// Name of the building.
         name: String,
-        /// Its floors.
+        /// Number of its floors.
         floors: usize,
     },
 }

@@ -8,23 +8,19 @@ use rand::Rng;
 
 use super::observed::wanted_rows;
 use super::reconcile::{SAME, origins, reconciled};
-use crate::methods::building_exteriors::attributes::{AttributeRow, mass_attributes};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::facade::FixedPiece;
-use crate::methods::building_exteriors::house::walls::walls_of_pieces;
-use crate::methods::building_exteriors::house::{
-    Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft,
-};
-use crate::methods::building_exteriors::mass::contradiction::check_given;
-use crate::methods::building_exteriors::mass::repair::{changes, repair};
-use crate::methods::building_exteriors::mass::target::{PARTS, part_of};
-use crate::methods::building_exteriors::mass::{
-    Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search,
-};
-use crate::model::ModelError;
-use crate::model::hierarchy::Hierarchy;
-use crate::rng::stream;
-use crate::shape::{BoxStyle, Building, MassBox};
+use crate::attributes::{AttributeRow, mass_attributes};
+use crate::data::table;
+use crate::facade::FixedPiece;
+use crate::house::walls::walls_of_pieces;
+use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft};
+use crate::mass::contradiction::check_given;
+use crate::mass::repair::{changes, repair};
+use crate::mass::target::{PARTS, part_of};
+use crate::mass::{Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search};
+use edifice_base::rng::stream;
+use edifice_model::ModelError;
+use edifice_model::hierarchy::Hierarchy;
+use edifice_shape::{BoxStyle, Building, MassBox};
 
 /// Why observed parts cannot be completed.
 #[derive(Debug, thiserror::Error)]
@@ -34,15 +30,15 @@ pub enum CompleteError {
         "boxes[{index}] of the partial house reaches from {low:.3} to {high:.3} m, outside 0 to {bound} m ({column})"
     )]
     Outside {
-        /// The box.
+        /// Index of the box.
         index: usize,
-        /// Its lower end.
+        /// Its lower end, in metres.
         low: f64,
-        /// Its upper end.
+        /// Its upper end, in metres.
         high: f64,
         /// Column of the bounding box.
         column: &'static str,
-        /// Its value.
+        /// Value of that column, in metres.
         bound: f64,
     },
     /// An observed box has more floors than the house is to have.
@@ -50,17 +46,17 @@ pub enum CompleteError {
         "boxes[{index}] of the partial house has {floors} floors, the shares of the floors (arf) ask for {wanted}"
     )]
     Floors {
-        /// The box.
+        /// Index of the box.
         index: usize,
-        /// Its floors.
+        /// Number of its floors.
         floors: usize,
-        /// Those of the house.
+        /// Number of floors of the house.
         wanted: usize,
     },
     /// An observed facade piece stands on no wall of the observed boxes.
     #[error("facades[{index}] of the partial house stands on no wall of its boxes")]
     NoWall {
-        /// The piece.
+        /// Index of the facade piece.
         index: usize,
     },
     /// No arrangement of further boxes leaves the observed facades free.
@@ -71,9 +67,9 @@ pub enum CompleteError {
     /// No answer of the model could be built.
     #[error("none of {tried} answers of the model fits the observed parts; the first: {first}")]
     NoAnswer {
-        /// Answers tried.
+        /// Number of answers tried.
         tried: usize,
-        /// What was wrong with the first.
+        /// The reason why the first one fails.
         first: Box<CompleteError>,
     },
     /// The model refuses the evidence.
@@ -318,7 +314,7 @@ fn fixed_pieces(partial: &Building) -> Result<Vec<FixedPiece>, CompleteError> {
     fixed.collect()
 }
 
-/// Whether the pieces stand on their walls.
+/// True if the pieces stand on their walls.
 fn stands(building: &Building, fixed: &[FixedPiece]) -> bool {
     let walls = walls_of_pieces(building);
     fixed.iter().all(|f| {

@@ -4,15 +4,13 @@ use rand::Rng;
 
 use super::complete::{CompleteError, around};
 use super::observed::wanted_rows;
-use crate::methods::building_exteriors::attributes::{AttributeRow, COLUMNS, attributes};
-use crate::methods::building_exteriors::data::table;
-use crate::methods::building_exteriors::house::{
-    Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft,
-};
-use crate::methods::building_exteriors::mass::target::{PARTS, bounds};
-use crate::methods::building_exteriors::mass::{MASS, MassModel, Search, is_sound};
-use crate::model::hierarchy::Hierarchy;
-use crate::shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
+use crate::attributes::{AttributeRow, COLUMNS, attributes};
+use crate::data::table;
+use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft};
+use crate::mass::target::{PARTS, bounds};
+use crate::mass::{MASS, MassModel, Search, is_sound};
+use edifice_model::hierarchy::Hierarchy;
+use edifice_shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
 
 /// One edit of a house.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +21,7 @@ pub enum Edit {
     Move(usize, [f64; 2]),
     /// Gives a box another width, depth and height.
     Resize(usize, [f64; 3]),
-    /// Removes a box.
+    /// Removes the box of this index.
     Remove(usize),
 }
 
@@ -33,9 +31,9 @@ pub enum EditError {
     /// There is no such box.
     #[error("there is no boxes[{index}]: the house has {count} boxes")]
     NoBox {
-        /// The index.
+        /// The index that was given.
         index: usize,
-        /// Boxes of the house.
+        /// Number of boxes of the house.
         count: usize,
     },
     /// The boxes are no house: a size that is not positive, or none left.

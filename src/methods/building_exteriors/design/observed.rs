@@ -1,11 +1,9 @@
-//! What a partial house tells of its attributes.
+//! The attributes that are known from a partial house.
 
-use crate::methods::building_exteriors::attributes::{
-    AttributeError, AttributeRow, COLUMNS, GROUPS, attributes,
-};
-use crate::methods::building_exteriors::mass::target::PARTS;
-use crate::model::{Cell, Table};
-use crate::shape::Building;
+use crate::attributes::{AttributeError, AttributeRow, COLUMNS, GROUPS, attributes};
+use crate::mass::target::PARTS;
+use edifice_model::{Cell, Table};
+use edifice_shape::Building;
 
 /// First column of the facades and of the styles.
 const FACADES: usize = 27;

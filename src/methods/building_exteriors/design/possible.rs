@@ -6,10 +6,10 @@
 //! rejection, and with storeys of at most 4.5 m; its density is otherwise as it was learned.
 
 use super::observed::wanted_rows;
-use crate::methods::building_exteriors::mass::max_z;
-use crate::methods::building_exteriors::mass::repair::repair;
-use crate::methods::building_exteriors::mass::target::floors;
-use crate::model::Table;
+use crate::mass::max_z;
+use crate::mass::repair::repair;
+use crate::mass::target::floors;
+use edifice_model::Table;
 
 /// Most that a repair moves a number of a possible row, in standard deviations.
 pub const MOVED: f64 = 0.25;

@@ -1,9 +1,9 @@
 //! Wanted columns and observed boxes made to agree.
 
 use super::complete::CompleteError;
-use crate::methods::building_exteriors::attributes::COLUMNS;
-use crate::methods::building_exteriors::mass::target::bounds;
-use crate::shape::{Building, ElementStyle, MassBox, PlanUnion, RoofStyle, Special};
+use crate::attributes::COLUMNS;
+use crate::mass::target::bounds;
+use edifice_shape::{Building, ElementStyle, MassBox, PlanUnion, RoofStyle, Special};
 
 /// Lengths nearer than this are the same (m).
 pub(super) const SAME: f64 = 5e-3;

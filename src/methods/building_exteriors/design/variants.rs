@@ -2,12 +2,10 @@
 
 use rand::Rng;
 
-use crate::methods::building_exteriors::attributes::attributes;
-use crate::methods::building_exteriors::house::{
-    Database, GenerateError, Generated, Options, Wish, draft,
-};
-use crate::methods::building_exteriors::mass::{MassTarget, variations};
-use crate::shape::Building;
+use crate::attributes::attributes;
+use crate::house::{Database, GenerateError, Generated, Options, Wish, draft};
+use crate::mass::{MassTarget, variations};
+use edifice_shape::Building;
 
 /// Distance in standard deviations of a house that has all 39 numbers.
 const NEAR: f64 = 0.05;

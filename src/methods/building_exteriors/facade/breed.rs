@@ -18,11 +18,11 @@ use super::glaze::millimetres;
 use super::knapsack::widths;
 use super::layout::{FacadeTarget, Facades, door_strip};
 use super::room::{Room, Walls};
-use crate::methods::building_exteriors::attributes::facade_attributes;
-use crate::optim::Step;
-use crate::optim::genetic::{Breed, Genetic, GeneticError, Settings};
-use crate::shape::solid::Faces;
-use crate::shape::{Building, ElementStyle, FacadeElement, FacadePiece, Side};
+use crate::attributes::facade_attributes;
+use edifice_optim::Step;
+use edifice_optim::genetic::{Breed, Genetic, GeneticError, Settings};
+use edifice_shape::solid::Faces;
+use edifice_shape::{Building, ElementStyle, FacadeElement, FacadePiece, Side};
 
 /// Width of an element over its average (Eq. 5).
 const RANGE: [f64; 2] = [0.5, 1.5];
@@ -232,7 +232,7 @@ impl House<'_> {
 impl Breed for House<'_> {
     type Genome = Vec<Gene>;
 
-    /// Eq. 4.
+    /// The energy of a layout (Eq. 4).
     fn cost(&mut self, genome: &Vec<Gene>) -> f64 {
         self.evaluations += 1;
         let pieces = self.pieces(genome);

@@ -1,4 +1,4 @@
-//! Which strips are asymmetric: a subset and at most one cut that have exactly the wanted area.
+//! The asymmetric strips: a subset and at most one cut that have exactly the wanted area.
 
 /// A strip as symmetry sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]

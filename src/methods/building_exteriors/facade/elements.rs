@@ -4,9 +4,9 @@
 use rand::Rng;
 
 use super::styles::WINDOWS;
-use crate::cluster::kmeans;
-use crate::methods::building_exteriors::house::Database;
-use crate::shape::{ElementStyle, FacadeElement};
+use crate::house::Database;
+use edifice_cluster::kmeans;
+use edifice_shape::{ElementStyle, FacadeElement};
 
 /// Sub-styles of each style (Sec. 6.2).
 const SUB_STYLES: usize = 5;
@@ -28,16 +28,16 @@ pub struct SubStyle {
     pub sill: f64,
 }
 
-/// What the facades of a house are made of.
+/// The sub-styles of windows and doors of which the facades of a house are made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Elements {
     /// Sub-styles of the windows of the house with the most similar styles.
     pub windows: Vec<SubStyle>,
-    /// Those of its doors.
+    /// Sub-styles of the doors of that house.
     pub doors: Vec<SubStyle>,
     /// Average width of wall between its elements, and between these and the ends of a piece (m).
     pub gap: f64,
-    /// The house.
+    /// Index of that house in the database.
     pub house: usize,
 }
 

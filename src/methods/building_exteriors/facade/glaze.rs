@@ -1,7 +1,7 @@
 //! Windows on the strips of one side, at one scale that gives the wanted window-to-wall ratio.
 
 use super::room::{CLEAR, EYE, Room, Strip, Walls};
-use crate::shape::{ElementStyle, FacadeElement, FacadePiece};
+use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 
 /// Width and height of a window at scale 1 and of a door (m).
 const WINDOW: [f64; 2] = [1.1, 1.3];
@@ -12,7 +12,7 @@ const TALLEST: f64 = 2.2;
 const NARROWEST: f64 = 0.85;
 const SLIMMEST: f64 = 0.35;
 
-/// How a strip is to be furnished.
+/// The plan by which a strip is furnished.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Plan {
     pub symmetric: bool,
@@ -152,7 +152,7 @@ fn openings(walls: &Walls, strip: &Strip, room: &Room, plan: &Plan, spacing: f64
     Vec::new()
 }
 
-/// Whether some window can stand on a piece off its middle.
+/// True if some window can stand on a piece off its middle.
 pub(super) fn holds_asymmetric(walls: &Walls, strip: &Strip, room: &Room, spacing: f64) -> bool {
     let plan = Plan {
         symmetric: false,
@@ -163,7 +163,7 @@ pub(super) fn holds_asymmetric(walls: &Walls, strip: &Strip, room: &Room, spacin
     !openings(walls, strip, room, &plan, spacing).is_empty()
 }
 
-/// Which window of the ground floor becomes the door: the middle one, or the first that has room.
+/// Index of the window of the ground floor that becomes the door: the middle one, or the first that has room.
 fn door_place(
     walls: &Walls,
     strip: &Strip,

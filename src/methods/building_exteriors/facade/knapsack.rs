@@ -46,8 +46,8 @@ pub fn widths(suggested: &[f64], lower: &[f64], upper: &[f64], total: f64) -> Op
 #[cfg(test)]
 mod tests {
     use super::widths;
-    use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve};
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
+    use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve};
     use rand::RngExt;
 
     #[test]

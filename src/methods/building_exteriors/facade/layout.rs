@@ -4,18 +4,18 @@ use super::cut::{Candidate, Choice, NARROWEST, choices};
 use super::glaze::{Plan, glaze, holds_asymmetric, millimetres};
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
-use crate::methods::building_exteriors::attributes::facade_attributes;
-use crate::shape::solid::Faces;
-use crate::shape::{BoxStyle, Building, ElementStyle, FacadePiece, Side};
+use crate::attributes::facade_attributes;
+use edifice_shape::solid::Faces;
+use edifice_shape::{BoxStyle, Building, ElementStyle, FacadePiece, Side};
 
-/// What the facades are wanted to come to.
+/// The attributes that the facades are to reach.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FacadeTarget {
     /// Window-to-wall ratio, symmetry and alignment, each of front, back, left and right.
     pub wanted: [f64; 12],
     /// Sash, sliding, casement, bay, fixed.
     pub windows: [bool; 5],
-    /// Whether a strip may be cut.
+    /// True if a strip may be cut.
     pub cuts: bool,
     /// Observed pieces that stay as they are.
     pub fixed: Vec<FixedPiece>,
@@ -28,7 +28,7 @@ pub struct Facades {
     pub pieces: Vec<FacadePiece>,
     /// Largest distance from the wanted attributes in standard deviations.
     pub max_z: f64,
-    /// Layouts measured.
+    /// Number of layouts measured.
     pub evaluations: u64,
 }
 

@@ -1,9 +1,9 @@
-//! What a wall leaves free for windows.
+//! The free places of walls, in which windows can stand.
 
-use crate::methods::building_exteriors::house::model::garage_opening;
-use crate::methods::building_exteriors::house::walls::{WallPiece, wall_pieces};
-use crate::shape::solid::{Faces, Wall};
-use crate::shape::{Building, FacadePiece, Side};
+use crate::house::model::garage_opening;
+use crate::house::walls::{WallPiece, wall_pieces};
+use edifice_shape::solid::{Faces, Wall};
+use edifice_shape::{Building, FacadePiece, Side};
 
 /// Clear wall between a window and a corner, and over and under it (m).
 pub(super) const CLEAR: f64 = 0.13;
@@ -48,7 +48,7 @@ impl Strip {
 pub(super) struct Walls<'a> {
     pub shell: &'a Faces,
     pub floor_height: f64,
-    /// By side.
+    /// The strips of each side.
     pub strips: [Vec<Strip>; 4],
 }
 

@@ -1,6 +1,6 @@
-//! Which window style goes where.
+//! The styles of windows that a facade is to have, the main one first.
 
-use crate::shape::ElementStyle;
+use edifice_shape::ElementStyle;
 
 /// Window styles in the order of their attributes.
 pub(super) const WINDOWS: [ElementStyle; 5] = [

@@ -2,17 +2,15 @@
 
 use rayon::prelude::*;
 
-use crate::methods::building_exteriors::attributes::{
-    AttributeError, AttributeRow, COLUMNS, attributes,
-};
-use crate::shape::Building;
+use crate::attributes::{AttributeError, AttributeRow, COLUMNS, attributes};
+use edifice_shape::Building;
 
 /// Houses with their attributes.
 #[derive(Debug, Clone)]
 pub struct Database {
-    /// The houses.
+    /// The houses of the database.
     pub buildings: Vec<Building>,
-    /// Their 49 columns.
+    /// The 49 attributes of each house.
     pub rows: Vec<AttributeRow>,
     /// Standard deviation of each column; 1 where it does not vary.
     pub deviations: [f64; 49],
@@ -21,7 +19,7 @@ pub struct Database {
 /// Why houses cannot serve as a database.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DatabaseError {
-    /// There are none.
+    /// The database has no houses.
     #[error("the database has no houses")]
     Empty,
     /// One of them has no attributes.

@@ -8,21 +8,17 @@ use super::model::{Model, furnished};
 use super::roof_styles::roof;
 use super::roofs::Joining;
 use super::solids::prisms;
-use crate::methods::building_exteriors::attributes::{AttributeError, attributes};
-use crate::methods::building_exteriors::facade::{
-    FacadeTarget, Facades, FixedPiece, breed, elements, furnish,
-};
-use crate::methods::building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use crate::methods::building_exteriors::mass::contradiction::{Contradiction, check_given};
-use crate::methods::building_exteriors::mass::footprint::{DECIDED, PlanError, reconcile, stand};
-use crate::methods::building_exteriors::mass::repair::{Change, changes, repair};
-use crate::methods::building_exteriors::mass::{
-    MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations,
-};
-use crate::optim::annealing::AnnealingError;
-use crate::optim::genetic::{GeneticError, Settings};
-use crate::shape::solid::{Faces, SurfaceError, faces};
-use crate::shape::{Building, MassBox, Rect, Special};
+use crate::attributes::{AttributeError, attributes};
+use crate::facade::{FacadeTarget, Facades, FixedPiece, breed, elements, furnish};
+use crate::mass::anneal::{AnnealSettings, anneal};
+use crate::mass::contradiction::{Contradiction, check_given};
+use crate::mass::footprint::{DECIDED, PlanError, reconcile, stand};
+use crate::mass::repair::{Change, changes, repair};
+use crate::mass::{MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations};
+use edifice_optim::annealing::AnnealingError;
+use edifice_optim::genetic::{GeneticError, Settings};
+use edifice_shape::solid::{Faces, SurfaceError, faces};
+use edifice_shape::{Building, MassBox, Rect, Special};
 
 /// Continuous columns: mass and facades.
 const NUMBERS: usize = 39;
@@ -35,7 +31,7 @@ const ROUNDS: usize = 2;
 /// Generations of the genetic algorithm; the paper prints none.
 const GENERATIONS: u64 = 200;
 
-/// How mass models and facades are found.
+/// The method of finding mass models and facades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -46,7 +42,7 @@ pub enum Method {
     Paper,
 }
 
-/// What stays as it is, to the bit.
+/// The parts of a house that stay as they are, to the bit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Frozen {
     /// Boxes with their roofs.
@@ -57,22 +53,22 @@ pub struct Frozen {
     pub corner: Option<[f64; 2]>,
 }
 
-/// How to generate.
+/// Options of generation.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Limits of the search for mass models.
     pub search: Search,
-    /// How roofs are joined.
+    /// The way in which roofs are joined.
     pub joining: Joining,
-    /// Whether no strip of a facade may be cut in two.
+    /// True if no strip of a facade may be cut in two.
     pub no_cuts: bool,
-    /// How mass models and facades are found.
+    /// The method of finding mass models and facades.
     pub method: Method,
     /// Annealing of method `paper`.
     pub annealing: AnnealSettings,
     /// Generations of method `paper`.
     pub generations: u64,
-    /// What stays as it is; roofs and facades keep clear of it.
+    /// The parts that stay as they are; roofs and facades keep clear of them.
     pub frozen: Frozen,
     /// The ground plan, rectangles from the origin on, that the house has to cover exactly.
     pub footprint: Option<Vec<Rect>>,
@@ -126,7 +122,7 @@ pub struct Generated {
     pub building: Building,
     /// Its surface.
     pub model: Model,
-    /// How it came about.
+    /// The attributes wanted, repaired and reached.
     pub report: HouseReport,
 }
 
@@ -149,17 +145,17 @@ pub struct HouseReport {
     pub mean_z: f64,
     /// The same largest distance, from the repaired row.
     pub repaired_z: f64,
-    /// Whether all ten styles are as wanted.
+    /// True if all ten styles are as wanted.
     pub styles: bool,
     /// Name of the house of the database whose boxes it has; none for a random arrangement.
     pub donor: Option<String>,
-    /// How often attributes were measured.
+    /// Number of times that attributes were measured.
     pub evaluations: u64,
     /// Triangles of the surface.
     pub triangles: usize,
     /// Connected parts of the surface: 1.
     pub shells: usize,
-    /// Enclosed volume.
+    /// Enclosed volume in cubic metres.
     pub volume: f64,
     /// Windows and doors that no wall has room for: 0.
     pub unplaced: usize,
@@ -228,7 +224,7 @@ pub fn generate(
     best.build()
 }
 
-/// What a mass model is to become.
+/// The attributes that a mass model is to reach.
 #[derive(Debug, Clone)]
 pub struct Wish<'a> {
     /// Name of the house.
@@ -237,7 +233,7 @@ pub struct Wish<'a> {
     pub wanted: &'a [f64; 49],
     /// The columns to reach: those asked for, with repairs.
     pub row: &'a [f64; 49],
-    /// The repairs.
+    /// The sampled values that were moved.
     pub repaired: Vec<Change>,
 }
 

@@ -4,17 +4,17 @@ use super::roofs::Joining;
 use super::solids::prisms;
 use super::walls::{WallPiece, wall_pieces, walls_of_pieces};
 use super::windows::{bare, cased, garage_door};
-use crate::shape::solid::{
+use edifice_shape::solid::{
     Faces, Finish, Opening, Prism, Report, Span, Surface, SurfaceError, Wall, faces, integral,
 };
-use crate::shape::{BoxStyle, Building, ElementStyle, Side};
+use edifice_shape::{BoxStyle, Building, ElementStyle, Side};
 
 /// A house one could print.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// Its surface.
     pub surface: Surface,
-    /// What the check of the surface says.
+    /// Result of the check of the surface.
     pub report: Report,
     /// Elements that no wall has room for, as facade piece and element: hidden behind a lower roof, over a corner,
     /// or overlapping another.
@@ -98,7 +98,7 @@ fn place(shell: &mut Faces, wall: &Wall, style: ElementStyle, mut rect: Span) ->
     cut(cased(style, rect)).or_else(|| cut(bare(style, rect)))
 }
 
-/// Where the garage door goes: on the widest free stretch of a wall of the garage, in front if there is one.
+/// Wall and extent of the garage door: the widest free stretch of a wall of the garage, in front if there is one.
 pub(crate) fn garage_opening(building: &Building, shell: &Faces) -> Option<(Wall, Span)> {
     garage_walls(building)
         .into_iter()
@@ -158,7 +158,7 @@ pub(crate) fn garage_walls(building: &Building) -> Vec<(WallPiece, f64)> {
     found
 }
 
-/// Which finish a colour scheme must name.
+/// The finishes that a colour scheme must name.
 pub const FINISHES: [Finish; 9] = [
     Finish::Chimney,
     Finish::Wall,

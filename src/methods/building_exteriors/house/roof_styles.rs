@@ -1,6 +1,6 @@
 //! Roof styles on boxes, as the style attributes want them.
 
-use crate::shape::{BoxStyle, MassBox, Ridge, RoofStyle};
+use edifice_shape::{BoxStyle, MassBox, Ridge, RoofStyle};
 
 /// Gives every box a roof so that the flagged styles (flat, gable, hip), and no others, occur: the one that most of
 /// the area has already is the main one, the others go to porches, the garage and small boxes. Ridges run along the

@@ -1,9 +1,9 @@
 //! Roof planes over boxes (Sec. 6.1): flat, gable, hip, shed and cone, each the least of a few planes.
 
-use crate::shape::solid::exact::{Plane, SLOPES, units};
-use crate::shape::{Building, MassBox, PlanUnion, Rect, Ridge, RoofStyle};
+use edifice_shape::solid::exact::{Plane, SLOPES, units};
+use edifice_shape::{Building, MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 
-/// How roofs are joined.
+/// The way in which roofs are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Joining {

@@ -1,8 +1,8 @@
 //! Houses as scenes: colours by pre-designed templates (Sec. 6), one mesh a house.
 
 use super::model::FINISHES;
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
-use crate::shape::solid::{Finish, Surface};
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
+use edifice_shape::solid::{Finish, Surface};
 
 /// Colours of wall, roof, trim, door; the rest is the same for all.
 const TEMPLATES: [[[u8; 3]; 4]; 8] = [
@@ -70,9 +70,9 @@ pub struct Placed<'a> {
     pub name: &'a str,
     /// Its surface.
     pub surface: &'a Surface,
-    /// Where the origin of its coordinates comes to lie, x to the right, y away from the street (m).
+    /// Position of the origin of its coordinates, x to the right, y away from the street (m).
     pub at: [f64; 2],
-    /// Which colour template.
+    /// Index of the colour template.
     pub colours: usize,
 }
 

@@ -1,11 +1,11 @@
 //! A building as a union of prisms: walls up to the roof planes, eaves, open porches, chimney and tower.
 
 use super::roofs::{Joining, Roofed, merged, plan_units, planes};
-use crate::shape::solid::exact::{Line, Plane, UNIT, units};
-use crate::shape::solid::{Finish, Prism};
-use crate::shape::{BoxStyle, Building, MassBox, RoofStyle, Special};
+use edifice_shape::solid::exact::{Line, Plane, UNIT, units};
+use edifice_shape::solid::{Finish, Prism};
+use edifice_shape::{BoxStyle, Building, MassBox, RoofStyle, Special};
 
-/// How far sloped roofs reach over the walls, and flat ones (m).
+/// Length by which sloped roofs reach over the walls, and flat ones (m).
 const EAVES: f64 = 0.35;
 const CORNICE: f64 = 0.12;
 /// Thickness of a roof, upright (m).
@@ -178,7 +178,7 @@ fn porch(b: &MassBox, building: &Building, k: usize, out: &mut Vec<Prism>) {
     }
 }
 
-/// Whether a post would stand in or near a wall that reaches the beam and carries the roof.
+/// True if a post would stand in or near a wall that reaches the beam and carries the roof.
 fn is_near_walls(building: &Building, [x, y]: [i128; 2], post: i128, beam: i128) -> bool {
     let margin = post * 3;
     let carries = |b: &&MassBox| b.style != BoxStyle::Porch && units(b.height) > beam;
@@ -283,7 +283,7 @@ fn tower(b: &MassBox, out: &mut Vec<Prism>) {
     }
 }
 
-/// Whether the roof of a box slopes.
+/// True if the roof of a box slopes.
 pub fn is_sloped(b: &MassBox) -> bool {
     b.roof.style != RoofStyle::Flat && b.roof.pitch > 0.5
 }

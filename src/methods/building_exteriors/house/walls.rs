@@ -1,7 +1,7 @@
 //! The walls of a building: where its facade pieces are.
 
-use crate::shape::solid;
-use crate::shape::{BoxStyle, Building, FacadePiece, MassBox, PlanEdge, PlanUnion, Rect, Side};
+use edifice_shape::solid;
+use edifice_shape::{BoxStyle, Building, FacadePiece, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// The wall of one floor between two corners of the outline of any floor, on one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,11 +10,11 @@ pub struct WallPiece {
     pub side: Side,
     /// Its coordinate across: y for front and back, x for left and right.
     pub at: f64,
-    /// Where it starts along the side.
+    /// Its start along the side, in metres.
     pub start: f64,
-    /// Where it ends.
+    /// Its end along the side, in metres.
     pub end: f64,
-    /// Its floor.
+    /// Index of its floor, 0 for the ground floor.
     pub floor: usize,
 }
 

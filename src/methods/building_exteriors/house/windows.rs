@@ -1,9 +1,9 @@
 //! Windows, doors and garage doors as panels set into walls.
 
-use crate::shape::ElementStyle;
-use crate::shape::solid::{Finish, Panel, Span};
+use edifice_shape::ElementStyle;
+use edifice_shape::solid::{Finish, Panel, Span};
 
-/// How far a frame stands before the wall, a pane and a door behind it (m).
+/// Distance of a casing before the wall, and of a frame, a pane and a door behind it (m).
 const CASING: f64 = 0.035;
 const FRAME: f64 = 0.06;
 const PANE: f64 = 0.1;
@@ -11,7 +11,7 @@ const LEAF: f64 = 0.12;
 /// Width of a casing around an element, and of the bars of a frame (m).
 pub(super) const MARGIN: f64 = 0.09;
 const BAR: f64 = 0.055;
-/// How far a bay stands out, and how much narrower it gets on each side (m).
+/// Depth of a bay before the wall, and the length by which it gets narrower on each side (m).
 const BAY: f64 = 0.45;
 const TAPER: f64 = 0.22;
 

@@ -13,11 +13,11 @@ use rand::{Rng, RngExt};
 
 use super::target::MassTarget;
 use super::{MASS, MassModel, THINNEST, max_z};
-use crate::methods::building_exteriors::attributes::{GROUPS, Group, mass_attributes};
-use crate::methods::building_exteriors::mass::scheme::PLAIN;
-use crate::optim::Step;
-use crate::optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
-use crate::shape::{BoxStyle, Building, MassBox, PlanUnion};
+use crate::attributes::{GROUPS, Group, mass_attributes};
+use crate::mass::scheme::PLAIN;
+use edifice_optim::Step;
+use edifice_optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion};
 
 /// Settings of the paper, and temperatures that it does not print.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,7 +127,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Eq. 3.
+    /// The energy of an arrangement of boxes (Eq. 3).
     fn energy(&self, boxes: &[MassBox]) -> f64 {
         if boxes.is_empty() {
             return LARGE;

@@ -1,8 +1,8 @@
-//! How near any house can come to a row of attributes: a lower bound from what holds of every house.
+//! A lower bound on the distance of any house from a row of attributes, from what holds of every house.
 
 use super::repair::LEAST_FLOOR;
 use super::target::PARTS;
-use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::attributes::COLUMNS;
 
 /// Columns of a row, and its numbers; the flags of styles follow.
 const N: usize = COLUMNS.len();

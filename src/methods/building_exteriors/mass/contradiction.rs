@@ -1,7 +1,7 @@
 //! Given attributes that no house can have together, each with the columns and the bound.
 
 use super::target::{PARTS, part};
-use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::attributes::COLUMNS;
 
 /// Columns of a row.
 const N: usize = COLUMNS.len();
@@ -14,11 +14,11 @@ pub enum Contradiction {
     /// A size or share that is not positive or not finite.
     #[error("{column} is {value}, expected a number {expected}")]
     Range {
-        /// The column.
+        /// Name of the column.
         column: &'static str,
         /// Its value.
         value: f64,
-        /// What is asked of it.
+        /// The range that is asked of it, in words.
         expected: &'static str,
     },
     /// A garage or porch reaches outside the bounding box.
@@ -64,7 +64,7 @@ pub enum Contradiction {
         value: f64,
         /// Its bound.
         bound: f64,
-        /// The coverage.
+        /// The coverage, column `bcr`.
         bcr: f64,
     },
     /// The floor area ratio does not follow from coverage and share of the ground floor.
@@ -72,17 +72,17 @@ pub enum Contradiction {
     FloorArea {
         /// The floor area ratio.
         value: f64,
-        /// What it must be.
+        /// The value that follows from the other two.
         expected: f64,
     },
     /// Shares of the floors that do not sum to one or grow upwards.
     #[error("{upper} = {value} is more than {lower} = {below}: boxes stand on the ground")]
     Floors {
-        /// The upper share.
+        /// Name of the upper share.
         upper: &'static str,
         /// Its value.
         value: f64,
-        /// The share below.
+        /// Name of the share below.
         lower: &'static str,
         /// Its value.
         below: f64,
@@ -90,7 +90,7 @@ pub enum Contradiction {
     /// A part is higher than the house.
     #[error("{column} = {value} is more than bbox.h = {height}")]
     TooHigh {
-        /// The column.
+        /// Name of the column.
         column: &'static str,
         /// Its value.
         value: f64,

@@ -5,9 +5,9 @@ use std::cell::Cell;
 use super::scheme::{Block, Line, Scheme};
 use super::target::MassTarget;
 use super::{MASS, max_z};
-use crate::methods::building_exteriors::attributes::mass_attributes;
-use crate::optim::least_squares::{Limits, Residuals, minimize};
-use crate::shape::Building;
+use crate::attributes::mass_attributes;
+use edifice_optim::least_squares::{Limits, Residuals, minimize};
+use edifice_shape::Building;
 
 /// Boxes thinner than this are pushed to grow (m).
 const WISHED_THICKNESS: f64 = 0.6;

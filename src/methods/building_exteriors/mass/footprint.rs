@@ -7,10 +7,10 @@
 
 use super::target::{MassTarget, PARTS, floors};
 use super::{MassModel, is_sound};
-use crate::methods::building_exteriors::attributes::{COLUMNS, mass_attributes};
-use crate::methods::building_exteriors::house::roofs::largest_rectangles;
-use crate::methods::building_exteriors::mass::scheme::PLAIN;
-use crate::shape::{BoxStyle, Building, MassBox, PlanUnion, Rect};
+use crate::attributes::{COLUMNS, mass_attributes};
+use crate::house::roofs::largest_rectangles;
+use crate::mass::scheme::PLAIN;
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Rect};
 
 /// Why no house stands on a plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

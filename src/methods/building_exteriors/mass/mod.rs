@@ -9,7 +9,7 @@
 //! ```
 //!
 //! with `s_c` the standard deviation of column `c` in the database, by Levenberg and Marquardt
-//! ([`crate::optim::least_squares`]). Schemes come from the nearest houses of the database with the same
+//! ([`edifice_optim::least_squares`]). Schemes come from the nearest houses of the database with the same
 //! floors, garage and porches (plain and mirrored), then from random arrangements ([`random`]). The first
 //! sound one within [`Search::enough`] is taken, else the best of all; lines are rounded to millimetres.
 //!
@@ -21,7 +21,7 @@
 //!   wanted value is zero.
 //! - Attributes are those of [`super::attributes`], measured on the finished boxes; nothing here computes one.
 //! - A model is *sound* when the plan of each floor is nowhere thinner than 0.5 m and touches itself in no single
-//!   point, and the ground floor is in one piece without courtyards ([`crate::shape::Soundness`]).
+//!   point, and the ground floor is in one piece without courtyards ([`edifice_shape::Soundness`]).
 //! - The height of a floor is no attribute: it is the height over the number of floors with a share above 0.02.
 //! - A garage and a porch are one box each.
 
@@ -41,7 +41,7 @@ pub use scheme::Block;
 pub use search::{MassError, MassModel, Search, iou, nearest, search, variations};
 pub use target::{MassTarget, PartTarget};
 
-use crate::shape::{BoxStyle, Building, MassBox, PlanUnion};
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion};
 
 /// Number of mass model columns.
 pub const MASS: usize = 27;
@@ -49,7 +49,7 @@ pub const MASS: usize = 27;
 /// Least thickness of the plan of any floor in metres (Sec. 6.1).
 pub const THINNEST: f64 = 0.5;
 
-/// Whether boxes are connected without courtyards, nowhere too thin, on every floor, and garage and porches
+/// True if the boxes are connected without courtyards, nowhere too thin, on every floor, and garage and porches
 /// do not overlap each other.
 pub fn is_sound(building: &Building) -> bool {
     let ground = PlanUnion::new(&building.floor_plan(0)).soundness();

@@ -4,7 +4,7 @@ use rand::{Rng, RngExt};
 
 use super::scheme::{Block, PLAIN};
 use super::target::MassTarget;
-use crate::shape::Roof;
+use edifice_shape::Roof;
 
 /// Smallest box (m).
 const SMALLEST: f64 = 1.5;

@@ -2,7 +2,7 @@
 
 use super::contradiction::least_boundary;
 use super::target::{FLOOR_SHARE, PARTS, floors, part};
-use crate::methods::building_exteriors::attributes::COLUMNS;
+use crate::attributes::COLUMNS;
 
 /// Columns of a row.
 const N: usize = COLUMNS.len();
@@ -19,7 +19,7 @@ const APART: f64 = 0.05;
 /// A sampled value that was moved.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Change {
-    /// The column.
+    /// Name of the column.
     pub column: &'static str,
     /// The sampled value.
     pub from: f64,
@@ -114,7 +114,7 @@ pub fn repair(row: &mut [f64; N], given: &[bool; N], deviations: &[f64; N]) -> V
     changes(&before, row)
 }
 
-/// Where two rows differ.
+/// The columns in which two rows differ.
 pub fn changes(before: &[f64; N], after: &[f64; N]) -> Vec<Change> {
     let moved = (0..N).filter(|&c| (after[c] - before[c]).abs() > 1e-12);
     moved
@@ -195,7 +195,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     /// Any finite row is repaired to a finite one, and what was given stays: also heights that no storey has.
     #[test]

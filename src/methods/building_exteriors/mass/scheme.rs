@@ -1,13 +1,13 @@
 //! Boxes whose edges lie on named lines, some of them free.
 
 use super::target::{MassTarget, PARTS, bounds, part_of};
-use crate::shape::{BoxStyle, Building, MassBox, Ridge, Roof, RoofStyle};
+use edifice_shape::{BoxStyle, Building, MassBox, Ridge, Roof, RoofStyle};
 
 /// A line across one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Line {
     Fixed(f64),
-    /// A variable.
+    /// The position is the variable of this index.
     Free(usize),
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Scheme {
     pub boxes: Vec<OnLines>,
     /// Lines along x and along y.
     pub lines: [Vec<Line>; 2],
-    /// Where the variables start.
+    /// Start values of the variables, in metres.
     pub start: Vec<f64>,
 }
 
@@ -130,7 +130,7 @@ impl Scheme {
         blocks.iter().map(|b| b.edges[axis].map(find)).collect()
     }
 
-    /// Where a line lies.
+    /// Position of a line, in metres.
     pub fn at(&self, axis: usize, line: usize, x: &[f64]) -> f64 {
         match self.lines[axis][line] {
             Line::Fixed(at) => at,

@@ -7,9 +7,9 @@ use super::random;
 use super::scheme::{Block, PLAIN, Scheme, donated};
 use super::target::{MassTarget, bounds};
 use super::{MASS, is_sound};
-use crate::methods::building_exteriors::attributes::mass_attributes;
-use crate::methods::building_exteriors::house::Database;
-use crate::shape::{BoxStyle, Building, PlanUnion};
+use crate::attributes::mass_attributes;
+use crate::house::Database;
+use edifice_shape::{BoxStyle, Building, PlanUnion};
 
 /// Limits of a search.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +42,7 @@ pub struct MassModel {
     pub building: Building,
     /// Largest distance from the wanted columns in standard deviations.
     pub max_z: f64,
-    /// How often attributes were measured.
+    /// Number of times that attributes were measured.
     pub evaluations: u64,
     /// House of the database whose boxes it has; `None` for a random arrangement.
     pub donor: Option<usize>,
@@ -52,7 +52,7 @@ pub struct MassModel {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("no connected mass model without courtyards was found in {evaluations} evaluations")]
 pub struct MassError {
-    /// How often attributes were measured.
+    /// Number of times that attributes were measured.
     pub evaluations: u64,
 }
 
@@ -196,14 +196,14 @@ pub fn variations(
 
 /// Intersection over union of two ground floors, their bounding boxes laid corner on corner.
 pub fn iou(a: &Building, b: &Building) -> f64 {
-    let plan = |building: &Building| -> Vec<crate::shape::Rect> {
+    let plan = |building: &Building| -> Vec<edifice_shape::Rect> {
         let [[x, _], [y, _]] = bounds(building);
         let plan = building.floor_plan(0).into_iter();
-        plan.map(|r| crate::shape::Rect::new(r.x - x, r.y - y, r.width, r.height))
+        plan.map(|r| edifice_shape::Rect::new(r.x - x, r.y - y, r.width, r.height))
             .collect()
     };
     let (p, q) = (plan(a), plan(b));
-    let area = |plan: &[crate::shape::Rect]| PlanUnion::new(plan).area();
+    let area = |plan: &[edifice_shape::Rect]| PlanUnion::new(plan).area();
     let both: Vec<_> = p.iter().chain(&q).copied().collect();
     let union = area(&both);
     (area(&p) + area(&q) - union) / union

@@ -1,7 +1,7 @@
-//! What a mass model is wanted to come to.
+//! The attributes that a mass model is to reach.
 
 use super::MASS;
-use crate::shape::{BoxStyle, Building, MassBox};
+use edifice_shape::{BoxStyle, Building, MassBox};
 
 /// Columns of garage, front porch and back porch.
 pub const PARTS: [(&str, usize, BoxStyle); 3] = [
@@ -55,7 +55,7 @@ impl MassTarget {
         self.wanted[axis]
     }
 
-    /// Which of garage, front and back porch there are.
+    /// Presence of the garage, the front porch and the back porch, in this order.
     pub fn presence(&self) -> [bool; 3] {
         self.parts.map(|p| p.is_some())
     }

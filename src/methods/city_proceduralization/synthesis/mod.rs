@@ -27,8 +27,8 @@ use self::occupancy::Occupancy;
 pub use self::shape::Shape;
 use self::sources::{AREAS, HEIGHTS, Source, sources};
 use super::localization::Landmark;
-use crate::grammar::instance::{InstanceGrammar, InstanceGrammarError, InstanceRule};
-use crate::rng;
+use edifice_base::rng;
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, InstanceRule};
 
 /// Share of buildings whose neighbours are those of another building of the same type.
 const JUMP: f64 = 0.08;

@@ -1,9 +1,9 @@
-//! What ground is taken, on a grid of 1 m.
+//! The ground that is taken by buildings, on a grid of 1 m.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Shape, rotated};
-use crate::shape::triangles::{TriangleMesh, plan_area};
+use edifice_shape::triangles::{TriangleMesh, plan_area};
 
 /// Side of a cell, in metres.
 const CELL: f64 = 1.0;
@@ -23,7 +23,7 @@ const OUTSIDE: f64 = 0.004;
 pub(super) struct Footprint {
     /// Points whose four neighbours are covered; all points, if there are none.
     inner: Vec<[f64; 2]>,
-    /// The other points.
+    /// The points of the plan that are no inner ones.
     rim: Vec<[f64; 2]>,
     /// Points of the open ground that belongs to the building.
     pub(super) open: Vec<[f64; 2]>,

@@ -8,7 +8,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Whether a point is inside.
+    /// True if a point is inside.
     pub fn contains(&self, p: [f64; 2]) -> bool {
         let mut inside = false;
         for ring in &self.rings {

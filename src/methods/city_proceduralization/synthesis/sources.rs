@@ -2,10 +2,10 @@
 
 use super::super::localization::{Landmark, landmark};
 use super::occupancy::{Footprint, footprint, open_ground};
-use crate::grammar::instance::{
+use edifice_grammar::instance::{
     InstanceGrammar, InstanceGrammarError, Placement, TemplateInstance,
 };
-use crate::shape::triangles::TriangleMesh;
+use edifice_shape::triangles::TriangleMesh;
 
 /// Neighbours of a building are no farther from it, in metres,
 const REACH: f64 = 80.0;
@@ -18,7 +18,7 @@ pub(super) const HEIGHTS: usize = 2;
 
 /// A building of the grammar's city, to be copied.
 pub(super) struct Source {
-    /// What stands under the axiom: one symbol, or the templates of a building.
+    /// The placements under the axiom: one symbol, or the templates of a building.
     pub(super) placed: Vec<Placement>,
     pub(super) kind: usize,
     /// Class of plan area and height.

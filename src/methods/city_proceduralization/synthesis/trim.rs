@@ -90,7 +90,7 @@ struct Trimmed<'a> {
     counts: [Vec<i64>; MEASURES],
 }
 
-/// Which buildings of `new` stay, that it may be like `old`.
+/// For each building of `new`, true if it stays, so that the city is like `old`.
 pub(super) fn trim(old: &[Landmark], new: &[Landmark]) -> Vec<bool> {
     let all = vec![true; new.len()];
     if old.len() < 2 || new.len() < 2 {

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::shape::triangles::{Surface, Texture};
+use edifice_shape::triangles::{Surface, Texture};
 
 /// A rectangle on the side of `frame` that looks along +x, in metres from the lower left, `front` metres before the wall.
 fn quad(frame: &OrientedBox, [l, b, r, t]: [f64; 4], front: f64, grey: u8) -> [Painted; 2] {

@@ -2,10 +2,10 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Strips, TypeId};
-use crate::methods::facade_grammar::rules::Arrangement;
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Strips, TypeId};
+use crate::rules::Arrangement;
+use edifice_shape::Axis;
 
 /// A rule that seems reasonable: its lines are indices into the cuts, ends included.
 #[derive(Debug)]
@@ -141,7 +141,7 @@ impl Candidate {
 /// The lines of a type that no protected region blocks.
 #[derive(Debug)]
 pub(crate) struct OpenLines {
-    /// How many open lines come before each cut, and what they cost together.
+    /// Number of open lines before each cut, and the sum of their costs.
     before: Vec<(usize, f64)>,
 }
 

@@ -17,12 +17,12 @@ use super::feasible_candidates::{Blocked, FeasibleCache, FeasibleCandidates};
 use super::priced_candidates::{PricedCandidates, append_needs};
 use super::protection::{Protection, contains};
 use super::symmetry::Repeated;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Region, Strips, TypeId, Types, ends};
-use crate::methods::facade_grammar::rules::grid;
-use crate::methods::facade_grammar::rules::{Arrangement, RuleCandidate, operation_cost};
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Region, Strips, TypeId, Types, ends};
+use crate::rules::grid;
+use crate::rules::{Arrangement, RuleCandidate, operation_cost};
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 /// Weights of the two parts of Eq. 5.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,9 +42,9 @@ pub(crate) struct Exploration {
     repeated_types: FxHashSet<TypeId>,
     protection: Protection,
     lists: Vec<Option<Rc<CandidateList>>>,
-    /// Of the type last asked for: which lines cross a protected region.
+    /// The lines of the type last asked for that cross a protected region.
     blocked: Blocked,
-    /// What is left of lists, by type and blocked lines; walks meet the same again and again.
+    /// The feasible candidates found lately, by type and blocked lines: walks meet the same again and again.
     cache: FeasibleCache,
 }
 
@@ -56,7 +56,7 @@ struct CandidateList {
     /// `H` of each rule when nothing is protected, Eq. 5.
     h: Vec<f64>,
     line_costs: [Vec<f64>; 2],
-    /// What is left when nothing is protected: all.
+    /// The feasible candidates when nothing is protected: all of the list.
     open: Rc<FeasibleCandidates>,
 }
 
@@ -95,12 +95,12 @@ impl Exploration {
         }
     }
 
-    /// What the present walk protects (Sec. 4.7).
+    /// The regions that the present walk protects (Sec. 4.7).
     pub fn protection(&mut self) -> &mut Protection {
         &mut self.protection
     }
 
-    /// Protects nothing.
+    /// Ends the protection of all regions for the rest of the walk.
     pub fn unprotect(&mut self) {
         self.protection.lift();
         self.blocked.lift();
@@ -190,7 +190,7 @@ impl Exploration {
             .collect()
     }
 
-    /// Which lines of a type cross a protected region.
+    /// The lines of a type that cross a protected region.
     pub fn blocked(&mut self, types: &mut Types, id: TypeId) -> &Blocked {
         self.blocked.mark(&self.protection, types, id);
         &self.blocked

@@ -1,4 +1,4 @@
-//! What protection (Sec. 4.7) leaves of the rules that exploration draws from.
+//! The feasible candidates: the rules that protection (Sec. 4.7) leaves of those that exploration draws from.
 //!
 //! A walk splits a type with some of its lines blocked. The rules that are left and their weights depend
 //! on nothing else, and walks meet the same blocked lines again and again: they are weighed once.
@@ -11,14 +11,14 @@ use rustc_hash::FxHashMap;
 
 use super::priced_candidates::PricedCandidates;
 use super::protection::Protection;
-use crate::methods::facade_grammar::regions::{TypeId, Types, ends};
-use crate::methods::facade_grammar::rules::RuleCandidate;
-use crate::shape::Axis;
+use crate::regions::{TypeId, Types, ends};
+use crate::rules::RuleCandidate;
+use edifice_shape::Axis;
 
 /// The lines of one type that cross protected regions other than itself.
 #[derive(Debug, Default)]
 pub(crate) struct Blocked {
-    /// By axis and cut.
+    /// For each axis and cut, true if the cut is blocked.
     lines: [Vec<bool>; 2],
     any: [bool; 2],
 }
@@ -47,22 +47,22 @@ impl Blocked {
         self.any[0] || self.any[1]
     }
 
-    /// Blocks nothing.
+    /// Unblocks all lines.
     pub fn lift(&mut self) {
         self.any = [false; 2];
     }
 
-    /// Whether any line along an axis is blocked.
+    /// True if a line along an axis is blocked.
     pub fn any(&self, axis: Axis) -> bool {
         self.any[axis as usize]
     }
 
-    /// Which cuts along an axis are blocked.
+    /// For each cut along an axis, true if it is blocked.
     pub fn along(&self, axis: Axis) -> &[bool] {
         &self.lines[axis as usize]
     }
 
-    /// Those of some lines along an axis that are not blocked.
+    /// The lines, of those given along an axis, that are not blocked.
     pub fn without<'a>(&'a self, axis: Axis, lines: &'a [u16]) -> impl Iterator<Item = u16> + 'a {
         let along: &[bool] = if self.any(axis) {
             self.along(axis)
@@ -73,7 +73,7 @@ impl Blocked {
         lines.iter().copied().filter(move |line| !blocked(line))
     }
 
-    /// Whether a rule has a blocked line.
+    /// True if a rule has a blocked line.
     pub fn crosses(&self, rule: &RuleCandidate) -> bool {
         let along = |axis: Axis, lines: &[u16]| {
             self.any(axis) && lines.iter().any(|l| self.along(axis)[usize::from(*l)])
@@ -84,7 +84,7 @@ impl Blocked {
         }
     }
 
-    /// The type and its blocked lines, one bit each.
+    /// Writes the key of a type with its blocked lines: the type, then one bit for each line.
     fn key(&self, id: TypeId, key: &mut Vec<u64>) {
         key.clear();
         key.push(u64::from(id));
@@ -95,14 +95,14 @@ impl Blocked {
     }
 }
 
-/// The rules of a list that are left.
+/// The feasible candidates of one type: the rules of its list that have no blocked line.
 #[derive(Debug)]
 pub(crate) struct FeasibleCandidates {
     /// Their positions in the list.
     positions: Vec<u32>,
-    /// Their `exp(-H)`, up to a factor, summed up to each.
+    /// Sums of `exp(-H)`, up to a common factor, over the rules up to and with each.
     weights: Vec<f64>,
-    /// Those that were drawn, by position.
+    /// The rules that were drawn, by position.
     rules: RefCell<FxHashMap<usize, Rc<RuleCandidate>>>,
     /// All of them for Eq. 4, once they were asked for.
     priced: OnceCell<PricedCandidates>,
@@ -127,7 +127,7 @@ impl FeasibleCandidates {
         }
     }
 
-    /// Whether no rule is left.
+    /// True if no rule is left.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -155,7 +155,7 @@ impl FeasibleCandidates {
 
 /// Numbers that a generation of the cache may hold, eight bytes each.
 const HELD: usize = 4_000_000;
-/// Of these, what a list takes beside its rules' weights, and what a rule takes, about.
+/// Numbers that a list takes beside its rules' weights, and that a rule takes, about.
 const PER_LIST: usize = 24;
 const PER_RULE: usize = 24;
 
@@ -173,7 +173,7 @@ pub(crate) struct FeasibleCache {
 }
 
 impl FeasibleCache {
-    /// What is left of a type's list, if it is known.
+    /// The feasible candidates of a type under some blocked lines, if they are in the cache.
     pub fn get(&mut self, id: TypeId, blocked: &Blocked) -> Option<Rc<FeasibleCandidates>> {
         blocked.key(id, &mut self.key);
         if let Some(known) = self.young.get(self.key.as_slice()) {
@@ -184,7 +184,7 @@ impl FeasibleCache {
         Some(known)
     }
 
-    /// Keeps what is left of a type's list.
+    /// Puts the feasible candidates of a type under some blocked lines into the cache.
     pub fn keep(&mut self, id: TypeId, blocked: &Blocked, feasible: &Rc<FeasibleCandidates>) {
         blocked.key(id, &mut self.key);
         self.insert(self.key.as_slice().into(), Rc::clone(feasible));

@@ -2,15 +2,15 @@
 
 use std::cell::Cell;
 
-use crate::methods::facade_grammar::regions::TypeId;
+use crate::regions::TypeId;
 
 /// Rules for one type. Of rules with the same cost and needs, only the first.
 #[derive(Debug)]
 pub(crate) struct PricedCandidates {
-    /// By cost.
+    /// The rules, the cheapest first.
     priced: Vec<PricedCandidate>,
     needs: Vec<TypeId>,
-    /// Which was the cheapest last.
+    /// Index of the rule that was the cheapest in the last call.
     last: Cell<usize>,
 }
 

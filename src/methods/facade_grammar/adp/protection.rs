@@ -7,7 +7,7 @@ use rand::{Rng, RngExt};
 use rand_distr::{Distribution, Exp1};
 
 use super::symmetry::Repeated;
-use crate::methods::facade_grammar::regions::Region;
+use crate::regions::Region;
 
 /// The repeated regions of a layout, and those that the present walk protects.
 #[derive(Debug)]
@@ -15,18 +15,18 @@ pub(crate) struct Protection {
     repeated: Vec<Repeated>,
     /// Scores of the repeated regions, summed up to each.
     scores: Vec<f64>,
-    /// Whether the occurrences of a repeated region are disjoint from each other, once it was asked.
+    /// For each repeated region, true if its occurrences are disjoint from each other; `None` until it was asked.
     apart: Vec<Option<bool>>,
     /// The regions that were drawn.
     kept: Vec<usize>,
     /// Their occurrences, which no line may cross.
     occurrences: Vec<Region>,
-    /// Whether the present walk goes on without protection.
+    /// True if the present walk goes on without protection.
     lifted: bool,
 }
 
 impl Protection {
-    /// Protects nothing yet.
+    /// The protection of a layout with these repeated regions, of which none is protected yet.
     pub fn new(repeated: Vec<Repeated>) -> Self {
         let mut total = 0.0;
         let sums = repeated.iter().map(|r| {
@@ -106,7 +106,7 @@ impl Protection {
         self.occurrences.clear();
     }
 
-    /// Whether nothing is protected.
+    /// True if nothing is protected for the rest of the walk.
     pub fn is_lifted(&self) -> bool {
         self.lifted || self.occurrences.is_empty()
     }
@@ -162,7 +162,7 @@ fn cells(r: Region, columns: usize) -> impl Iterator<Item = Range<usize>> {
     (usize::from(r.y0)..usize::from(r.y1)).map(move |y| y * columns + from..y * columns + to)
 }
 
-/// Whether the first region contains the second.
+/// True if the first region contains the second.
 pub(crate) fn contains(outer: Region, inner: Region) -> bool {
     outer.layout == inner.layout
         && outer.x0 <= inner.x0
@@ -171,14 +171,14 @@ pub(crate) fn contains(outer: Region, inner: Region) -> bool {
         && inner.y1 <= outer.y1
 }
 
-/// Whether no two regions overlap.
+/// True if no two of the regions overlap.
 fn disjoint(regions: &[Region]) -> bool {
     let later = |i: usize| &regions[i + 1..];
     let mut places = regions.iter().enumerate();
     places.all(|(i, a)| !later(i).iter().any(|b| overlap(*a, *b)))
 }
 
-/// Whether two regions share a cell.
+/// True if the two regions have a cell in common.
 fn overlap(a: Region, b: Region) -> bool {
     a.layout == b.layout && a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1
 }
@@ -188,7 +188,7 @@ mod tests {
     use rand::SeedableRng;
 
     use super::*;
-    use crate::rng::Stream;
+    use edifice_base::rng::Stream;
 
     fn region(x0: u16, x1: u16) -> Region {
         Region {

@@ -1,28 +1,27 @@
-//! What the text leaves open in its own algorithm, as far as it can be set.
+//! Readings of the algorithm where the text leaves it open, as far as they can be set.
 
 use serde::{Deserialize, Serialize};
 
-/// How Wu et al. 2014 are read where they can be read in several ways. The default values are the
-/// readings that the parent module's list gives reasons for; the report's `readings` sets others beside
-/// them.
+/// The reading of Wu et al. 2014 for each passage that can be read in several ways. The default values are the
+/// readings that the parent module's list gives reasons for; the report's `readings` compares them with others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Readings {
-    /// When important regions are drawn (Sec. 4.7).
+    /// The time at which important regions are drawn (Sec. 4.7).
     pub protection: Protect,
-    /// What exploitation chooses from (Eq. 4, Sec. 4.5).
+    /// The rules that exploitation chooses from (Eq. 4, Sec. 4.5).
     pub exploitation: Exploit,
     /// Probability of exploring in the last iteration; the first has 0.9 (Sec. 4.2).
     pub last_epsilon: f64,
 }
 
-/// When the regions are drawn that walks keep whole.
+/// The time at which the protected regions are drawn, those that walks keep whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Protect {
     /// Nothing is protected.
     Never,
     /// Anew for each walk, in up to so many draws.
     Walk {
-        /// Draws at most.
+        /// Maximum number of draws, for each walk.
         draws: usize,
     },
     /// Once for all walks, until no other region fits between those drawn: against the text, but nearer
@@ -31,7 +30,7 @@ pub enum Protect {
     Run,
 }
 
-/// The actions of Eq. 4.
+/// The set of rules over which Eq. 4 minimizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Exploit {
     /// All reasonable rules that cut no protected region.
@@ -58,7 +57,7 @@ impl Protect {
     pub const DRAWS: usize = 8;
 
     /// The same for methods that learn nothing from walk to walk.
-    pub(in crate::methods::facade_grammar) fn anew(self) -> Self {
+    pub(crate) fn anew(self) -> Self {
         match self {
             Protect::Run => Protect::Walk { draws: Self::DRAWS },
             other => other,

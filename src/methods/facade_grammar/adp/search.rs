@@ -8,18 +8,18 @@ use super::exploration::{Exploration, Lambdas};
 use super::readings::{Exploit, Protect};
 use super::symmetry;
 use super::walk::{Explore, Inference, SharedTypes};
-use crate::grammar::Grammar;
-use crate::methods::facade_grammar::baselines;
-use crate::methods::facade_grammar::infer::{InferError, Pulse, Settings};
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::methods::facade_grammar::rules::extract;
-use crate::optim::Step;
-use crate::optim::adp::{Adp, Approximation, Epsilon};
-use crate::shape::Facade;
+use crate::baselines;
+use crate::infer::{InferError, Pulse, Settings};
+use crate::regions::Types;
+use crate::rules::AddRule;
+use crate::rules::extract;
+use edifice_grammar::Grammar;
+use edifice_optim::Step;
+use edifice_optim::adp::{Adp, Approximation, Epsilon};
+use edifice_shape::Facade;
 
-/// What every method starts from, and the methods.
-pub(in crate::methods::facade_grammar) struct Search<'a> {
+/// The common start of all methods: settings, facades, region types and the splitting heuristic; each method is a function of it.
+pub(crate) struct Search<'a> {
     pub settings: &'a Settings,
     /// The facades before symmetry detection.
     pub fresh: Types,

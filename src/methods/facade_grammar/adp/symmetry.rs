@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::methods::facade_grammar::regions::{LayoutIndex, Region, TypeId, Types};
+use crate::regions::{LayoutIndex, Region, TypeId, Types};
 
 /// A repeated region: `a` terminals and where it occurs, `o` times.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! Estimates of `V(R)` from one completed walk (Sec. 4.5).
 
-use crate::methods::facade_grammar::regions::TypeId;
-use crate::methods::facade_grammar::rules::AddRule;
+use crate::regions::TypeId;
+use crate::rules::AddRule;
 
 /// Sums the rules that each type of a walk needs; keeps its tables between calls.
 #[derive(Debug, Default)]
@@ -16,7 +16,7 @@ pub(crate) struct ValueEstimates {
     waiting: Vec<u32>,
 }
 
-/// No step.
+/// The entry of a type that has no rule in the walk.
 const NONE: u32 = u32::MAX;
 
 impl ValueEstimates {
@@ -72,8 +72,8 @@ mod tests {
     use std::rc::Rc;
 
     use super::*;
-    use crate::methods::facade_grammar::rules::{Arrangement, RuleCandidate};
-    use crate::shape::Axis;
+    use crate::rules::{Arrangement, RuleCandidate};
+    use edifice_shape::Axis;
 
     fn step(id: TypeId, successors: &[TypeId]) -> AddRule {
         let candidate = RuleCandidate {

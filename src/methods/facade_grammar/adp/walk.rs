@@ -12,11 +12,11 @@ use rand::Rng;
 use super::exploration::Exploration;
 use super::readings::Protect;
 use super::value_estimates::ValueEstimates;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::regions::{TypeId, Types};
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::methods::facade_grammar::rules::RulePricer;
-use crate::optim::adp::{Approximation, Heuristic, Process};
+use crate::regions::{TypeId, Types};
+use crate::rules::AddRule;
+use crate::rules::RulePricer;
+use edifice_grammar::Costs;
+use edifice_optim::adp::{Approximation, Heuristic, Process};
 
 /// Types are interned while the search discovers them, by every part of the solver.
 pub(crate) type SharedTypes = Rc<RefCell<Types>>;
@@ -26,14 +26,14 @@ pub(crate) type SharedTypes = Rc<RefCell<Types>>;
 pub(crate) struct Derivation {
     /// Types that have a rule or wait for one, in the order of their discovery.
     pub known: Vec<TypeId>,
-    /// Whether each type is among them, 64 types a word: small, for it is made anew for each walk.
+    /// One bit for each type, 64 a word, set if the type is known; small, since it is made anew for each walk.
     is_known: Vec<u64>,
     /// Types that wait, the next one last: place of the region (bottom to top, left to right), type.
     waiting: Vec<((u16, u16, u16), TypeId)>,
 }
 
 impl Derivation {
-    /// Whether the type has a rule or waits for one.
+    /// True if the type has a rule or waits for one.
     pub fn knows(&self, id: TypeId) -> bool {
         let word = self.is_known.get(id as usize / 64);
         word.is_some_and(|word| word >> (id % 64) & 1 == 1)
@@ -107,7 +107,7 @@ pub(crate) struct Explore {
     types: SharedTypes,
     exploration: Rc<RefCell<Exploration>>,
     protect: Protect,
-    /// Whether the regions of [`Protect::Run`] were drawn.
+    /// True once the regions of [`Protect::Run`] were drawn.
     drawn: bool,
 }
 
@@ -175,7 +175,7 @@ impl ShortestPathRules {
         }
     }
 
-    /// `V(R)` by type.
+    /// The least `V(R)` learnt, by type; infinite where nothing is known.
     pub fn into_values(self) -> Vec<f64> {
         self.values
     }

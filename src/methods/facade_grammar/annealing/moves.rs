@@ -5,9 +5,9 @@ use std::rc::Rc;
 use rand::{Rng, RngExt};
 
 use super::nonterminal_set::NonterminalSet;
-use crate::methods::facade_grammar::regions::TypeId;
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::optim::annealing::Landscape;
+use crate::regions::TypeId;
+use crate::rules::AddRule;
+use edifice_optim::annealing::Landscape;
 
 /// Maximum number of types that a move adds.
 const GROWTH: usize = 24;

@@ -3,13 +3,13 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use crate::methods::facade_grammar::adp::exploration::Exploration;
-use crate::methods::facade_grammar::adp::walk::SharedTypes;
-use crate::methods::facade_grammar::regions::{TypeId, Types};
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::methods::facade_grammar::rules::RuleCandidate;
-use crate::methods::facade_grammar::rules::RulePricer;
-use crate::shape::Axis;
+use crate::adp::exploration::Exploration;
+use crate::adp::walk::SharedTypes;
+use crate::regions::{TypeId, Types};
+use crate::rules::AddRule;
+use crate::rules::RuleCandidate;
+use crate::rules::RulePricer;
+use edifice_shape::Axis;
 
 /// A member's rule and its cost.
 pub(super) type Ruled = (f64, Rc<RuleCandidate>);
@@ -310,7 +310,7 @@ impl NonterminalSet {
         true
     }
 
-    /// NonterminalSet that no rule names leave, and so may those that only they named.
+    /// Takes out the members that no rule names, and then those that only they named.
     pub(super) fn drop_orphans(&mut self) {
         while let Some(id) = self.orphans.pop() {
             if self.uses[id as usize] == 0 && self.rules[id as usize].is_some() && !self.is_root(id)

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use super::top_down;
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::{AddRule, Arrangement, RuleCandidate};
-use crate::shape::Axis;
+use crate::regions::Types;
+use crate::rules::{AddRule, Arrangement, RuleCandidate};
+use edifice_shape::Axis;
 
 /// All full lines, floors first.
 pub(crate) fn all_lines(types: &mut Types) -> Vec<AddRule> {

@@ -1,9 +1,9 @@
 //! Greedy: always the best rule by the splitting heuristic (Eq. 5).
 
 use super::top_down;
-use crate::methods::facade_grammar::adp::exploration::Exploration;
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::AddRule;
+use crate::adp::exploration::Exploration;
+use crate::regions::Types;
+use crate::rules::AddRule;
 
 /// Always the best rule by the splitting heuristic.
 pub(crate) fn greedy(types: &mut Types, exploration: &mut Exploration) -> Vec<AddRule> {

@@ -1,13 +1,13 @@
 //! Importance sampling: the cheapest of many walks that always explore.
 
-use crate::methods::facade_grammar::adp::search::Search;
-use crate::methods::facade_grammar::adp::walk::{Derivation, Inference};
-use crate::methods::facade_grammar::infer::InferError;
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::optim::Step;
-use crate::optim::adp::{Approximation, Epsilon};
+use crate::adp::search::Search;
+use crate::adp::walk::{Derivation, Inference};
+use crate::infer::InferError;
+use crate::rules::AddRule;
+use edifice_optim::Step;
+use edifice_optim::adp::{Approximation, Epsilon};
 
-/// Importance sampling learns nothing.
+/// The approximation of importance sampling: it learns nothing, so that every step explores.
 pub(crate) struct NothingKnown;
 
 impl Approximation<Inference> for NothingKnown {

@@ -1,7 +1,7 @@
 //! The deterministic methods that the paper compares with (Sec. 6.1).
 //!
 //! All of them work top down: a rule is chosen for the facade, then for each region type that the
-//! rule needs. They differ in the candidate.
+//! rule needs. They differ in the choice.
 //!
 //! # Deviations and readings
 //! - *Greedy* takes the rule of least `H` (Eq. 5) among those that exploration draws from; ties go
@@ -33,8 +33,8 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashSet;
 
-use crate::methods::facade_grammar::regions::{TypeId, Types};
-use crate::methods::facade_grammar::rules::{AddRule, RuleCandidate};
+use crate::regions::{TypeId, Types};
+use crate::rules::{AddRule, RuleCandidate};
 
 /// Chooses a rule for every type that the facades need.
 fn top_down(

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use super::top_down;
-use crate::methods::facade_grammar::regions::{Offsets, Strips, TypeId, Types};
-use crate::methods::facade_grammar::rules::{AddRule, Arrangement, RuleCandidate};
-use crate::shape::Axis;
+use crate::regions::{Offsets, Strips, TypeId, Types};
+use crate::rules::{AddRule, Arrangement, RuleCandidate};
+use edifice_shape::Axis;
 
 /// The binary split that leaves the most symmetric parts.
 pub(crate) fn symmetry_maximization(types: &mut Types) -> Vec<AddRule> {

@@ -20,16 +20,16 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rayon::prelude::*;
 
-use crate::grammar::{Grammar, GrammarError, Sampler, scaled, size_independent};
-use crate::rng::{Stream, stream};
-use crate::scene::relief::{material, relief};
-use crate::scene::{Instance, Material, Scene};
-use crate::shape::Facade;
+use edifice_base::rng::{Stream, stream};
+use edifice_grammar::{Grammar, GrammarError, Sampler, scaled, size_independent};
+use edifice_scene::relief::{material, relief};
+use edifice_scene::{Instance, Material, Scene};
+use edifice_shape::Facade;
 
-/// What to build.
+/// The size of the city: number of buildings and of types, and the height of facades.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Buildings.
+    /// Number of buildings.
     pub buildings: usize,
     /// Types of buildings, at least one for each grammar.
     pub types: usize,
@@ -53,15 +53,15 @@ impl Default for Settings {
 pub struct City {
     /// The scene.
     pub scene: Scene,
-    /// Buildings.
+    /// Number of buildings.
     pub buildings: usize,
-    /// Different facades, each stored once.
+    /// Number of different facades, each stored once.
     pub facades: usize,
-    /// Facades shown.
+    /// Number of facades shown.
     pub facade_instances: usize,
-    /// Triangles shown.
+    /// Number of triangles shown.
     pub triangles: u64,
-    /// Triangles stored.
+    /// Number of triangles stored.
     pub stored_triangles: u64,
 }
 

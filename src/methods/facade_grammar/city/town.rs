@@ -3,8 +3,8 @@
 use rand::RngExt;
 
 use super::Type;
-use crate::rng::Stream;
-use crate::scene::{Group, Instance, Material, Mesh, Scene};
+use edifice_base::rng::Stream;
+use edifice_scene::{Group, Instance, Material, Mesh, Scene};
 
 /// Length of a block along x, without its pavement, in metres.
 const BLOCK: f32 = 104.0;

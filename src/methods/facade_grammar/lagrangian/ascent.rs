@@ -8,23 +8,23 @@ use super::{Dual, Incumbent};
 /// An item of a region type.
 pub(crate) type Item = (u32, usize);
 
-/// What some steps brought.
+/// Result of some subgradient steps.
 #[derive(Debug)]
 pub(crate) struct Ascent {
-    /// The greatest `L`.
+    /// The greatest `L` of all steps: a lower bound of the cost of every grammar.
     pub bound: f64,
-    /// In which part of the steps each item was used by the occurrence that used it most, of region types with several
-    /// occurrences; from this a branch can be chosen.
+    /// Share of the steps, 0 to 1, in which an occurrence used the item, of the occurrence that used it most; for items of region
+    /// types with several occurrences. From this a branch can be chosen.
     pub usage: BTreeMap<Item, f64>,
-    /// The last cheapest derivation.
+    /// The items of the last cheapest derivation.
     pub items: Vec<Item>,
 }
 
 /// Steps without progress after which the step length shrinks.
 const PATIENCE: u32 = 20;
-/// By how much it shrinks.
+/// Factor by which it shrinks.
 const SHRINK: f64 = 0.7;
-/// How much of the direction of one step is kept for the next.
+/// Share of the direction of one step that is kept for the next.
 const MOMENTUM: f64 = 0.7;
 
 /// Directions of the multipliers of an item, by clique of its region type; each sums to 0.
@@ -103,7 +103,7 @@ impl Dual<'_> {
         found
     }
 
-    /// PricedCandidates the best grammar over the region types of a derivation.
+    /// Offers the incumbent the best grammar over the region types of a derivation.
     fn offer(&mut self, derivation: &[(u32, Rule)], incumbent: &mut Incumbent) {
         let mut members: Vec<u32> = derivation
             .iter()
@@ -130,7 +130,7 @@ impl Dual<'_> {
             let index = self.program.occurrences[*occurrence as usize].index as usize;
             let paying = &region_type.cliques_of[index];
             let mean = paying.len() as f64 / count as f64;
-            // An item that costs nothing has nothing to multiplier.
+            // An item that costs nothing has nothing to be split by multipliers.
             for item in rule
                 .items(region_type)
                 .filter(|&item| region_type.costs[item] > 0.0)
@@ -146,7 +146,7 @@ impl Dual<'_> {
         }
     }
 
-    /// Moves the multipliers, which stay multipliers.
+    /// Moves the multipliers of each item along its direction, and back to where none is negative and they sum to the item's cost.
     fn shift(&mut self, direction: &Direction, step: f64) {
         for (&(region_type, item), along) in direction {
             let region_type = &self.program.region_types[region_type as usize];

@@ -1,9 +1,9 @@
 //! Branch and bound where the multipliers leave a gap.
 //!
-//! Branches decide which types have rules: in one the type has none, in the other it has one, and what all its rules have
-//! in common is item_costs whatever the multipliers. Where all types of the cheapest derivation have rules, branches decide which
-//! items these have: in one the rule may not have the item, in the other nothing that excludes it. A branch starts from the multipliers of the one that it branched off from, and
-//! without what variable fixing takes out.
+//! Branches decide which types have rules: in one the type has none, in the other it has one, and the part of the cost that all
+//! its rules have in common is paid whatever the multipliers. Where all types of the cheapest derivation have rules, branches
+//! decide which items these have: in one the rule may not have the item, in the other nothing that excludes it. A branch starts
+//! from the multipliers of the one that it branched off from, and without what variable fixing takes out.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -11,18 +11,18 @@ use std::rc::Rc;
 use super::fixing::Live;
 use super::{Ascent, Dual, Incumbent, Item, Program};
 
-/// How much work a bound may cost.
+/// Limits on the work that a bound may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoundLimits {
     /// Items of the rules of all occurrences (some 30 bytes each) beyond which only the weak bound is given.
     pub items: usize,
-    /// Subgradient steps at the root.
+    /// Maximum number of subgradient steps at the root.
     pub root_steps: u64,
-    /// Subgradient steps in every other branch.
+    /// Maximum number of subgradient steps in every other branch.
     pub branch_steps: u64,
-    /// Branches examined.
+    /// Maximum number of branches examined.
     pub nodes: u64,
-    /// Items that all steps may look at: those of all occurrences that variable fixing leaves, for each step.
+    /// Number of items that all steps may look at: those of all occurrences that variable fixing leaves, for each step.
     pub work: u64,
 }
 
@@ -88,16 +88,16 @@ fn ascend_root(
     let (mut round, mut made) = (FIRST_ROUND, 0);
     let mut multipliers = Dual::new(&program).multipliers;
     loop {
-        let mut at = Dual::from(&program, multipliers);
-        let found = at.ascend(incumbent, round.min(steps.saturating_sub(made)), work);
+        let mut dual = Dual::from(&program, multipliers);
+        let found = dual.ascend(incumbent, round.min(steps.saturating_sub(made)), work);
         let before = best;
         best = best.max(found.bound);
         let lower = incumbent.round_up(best);
         if incumbent.is_optimal(lower) {
             return None;
         }
-        let live = at.live(incumbent);
-        multipliers = at.multipliers;
+        let live = dual.live(incumbent);
+        multipliers = dual.multipliers;
         made += round;
         round *= 2;
         let converged = best - before < WORTH_A_ROUND * (incumbent.cost - best);
@@ -125,20 +125,20 @@ struct Expanded {
     live: Live,
 }
 
-/// A branch: what rules may have, and the bound inherited from where it branched off.
+/// A branch: the restriction of the rules, and the bound inherited from where it branched off.
 struct Branch {
     lower: f64,
     parent: Rc<Expanded>,
     decision: Decision,
 }
 
-/// What a branch decides, in terms of its parent's program.
+/// The decision of a branch, in terms of its parent's program.
 enum Decision {
     Nothing,
     /// The type has no rule.
-    WithoutKind(u32),
+    WithoutType(u32),
     /// The type has a rule.
-    WithKind(u32),
+    WithType(u32),
     /// No rule has any of these items, by their index among those of all region types.
     WithoutItems(Vec<usize>),
 }
@@ -153,16 +153,16 @@ fn expand(
     let Some((program, multipliers)) = branch.program() else {
         return;
     };
-    let mut multipliers = Dual::from(&program, multipliers);
-    let found = multipliers.ascend(incumbent, steps, work);
+    let mut dual = Dual::from(&program, multipliers);
+    let found = dual.ascend(incumbent, steps, work);
     let lower = branch.lower.max(incumbent.round_up(found.bound));
     if incumbent.is_optimal(lower) {
         return;
     }
-    let decisions = if let Some(region_type) = undecided_kind(&program, &found) {
+    let decisions = if let Some(region_type) = undecided_type(&program, &found) {
         [
-            Decision::WithoutKind(region_type),
-            Decision::WithKind(region_type),
+            Decision::WithoutType(region_type),
+            Decision::WithType(region_type),
         ]
     } else if let Some(item) = undecided_item(&program, &found) {
         let excluded = alternatives(&program, item).collect();
@@ -172,8 +172,8 @@ fn expand(
         // One derivation is left, and its grammar was offered.
         return;
     };
-    let live = multipliers.live(incumbent);
-    let multipliers = multipliers.multipliers;
+    let live = dual.live(incumbent);
+    let multipliers = dual.multipliers;
     let parent = Rc::new(Expanded {
         program,
         multipliers,
@@ -199,11 +199,11 @@ impl Branch {
             Decision::WithoutItems(items) => {
                 program.reduced(&live.without_items(items), multipliers)
             }
-            Decision::WithoutKind(region_type) => {
+            Decision::WithoutType(region_type) => {
                 let known = &program.region_types[*region_type as usize];
-                program.reduced(&live.without_kind(known), multipliers)
+                program.reduced(&live.without_type(known), multipliers)
             }
-            Decision::WithKind(region_type) => {
+            Decision::WithType(region_type) => {
                 let region = program.region_types[*region_type as usize].region;
                 let (mut program, mut multipliers) = program.reduced(live, multipliers)?;
                 // Where nothing of it is left, no cheaper grammar has it.
@@ -226,7 +226,7 @@ fn alternatives(program: &Program, (region_type, item): Item) -> impl Iterator<I
 
 /// The type to decide: the one that the derivations of the last steps were least sure of; `None` where the last one has
 /// only types that are known to have rules.
-fn undecided_kind(program: &Program, found: &Ascent) -> Option<u32> {
+fn undecided_type(program: &Program, found: &Ascent) -> Option<u32> {
     let mut doubts: BTreeMap<u32, f64> = BTreeMap::new();
     for (&(region_type, item), usage) in &found.usage {
         let known = &program.region_types[region_type as usize];

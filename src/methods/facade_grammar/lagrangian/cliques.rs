@@ -1,8 +1,8 @@
 //! Maximal cliques of overlapping occurrences.
 
-use crate::methods::facade_grammar::regions::Region;
+use crate::regions::Region;
 
-/// The largest groups of regions that multiplier a corner of one of them, each by its indices.
+/// The largest groups of regions that share a corner of one of them, each by its indices.
 pub(super) fn cliques(regions: &[Region]) -> Vec<Vec<u32>> {
     let covering = |corner: &Region| -> Vec<u32> {
         let covers = |r: &Region| {

@@ -18,11 +18,11 @@ impl Rule {
     }
 }
 
-/// What the rules of an occurrence cost.
+/// Costs under which the rules of an occurrence are compared.
 pub(crate) struct Prices<'a> {
-    /// By item of its region type.
+    /// Cost of each item of its region type.
     pub items: &'a [f64],
-    /// What it costs to derive a part, by occurrence; the entry behind all occurrences is that of terminals.
+    /// Cost of deriving a part, by occurrence; the entry behind all occurrences is that of terminals.
     pub parts: &'a [f64],
 }
 

@@ -10,11 +10,11 @@ use super::program::{Occurrence, Program};
 use super::region_type::{Operator, RegionType};
 use super::{Dual, Incumbent, prices};
 
-/// What a grammar cheaper than the incumbent can use.
+/// The occurrences and items that a grammar cheaper than the incumbent can use.
 #[derive(Clone)]
 pub(super) struct Live {
     occurrences: Vec<bool>,
-    /// By region type and item.
+    /// For each item of each region type, true if it can be used.
     items: Vec<bool>,
 }
 
@@ -29,7 +29,7 @@ impl Live {
     }
 
     /// The same without a type.
-    pub fn without_kind(&self, region_type: &RegionType) -> Self {
+    pub fn without_type(&self, region_type: &RegionType) -> Self {
         let mut left = self.clone();
         for &occurrence in &region_type.occurrences {
             left.occurrences[occurrence as usize] = false;
@@ -58,7 +58,7 @@ impl Live {
 }
 
 impl Dual<'_> {
-    /// What the reduced costs under the multipliers at hand leave.
+    /// The occurrences and items that the reduced costs under the present multipliers leave.
     pub(super) fn live(&mut self, incumbent: &Incumbent) -> Live {
         let program = self.program;
         let total = self.bound();
@@ -109,7 +109,7 @@ impl Dual<'_> {
 /// Shortest paths from the start of an operator and to its end.
 #[derive(Default)]
 struct Around {
-    /// By arc of the operator.
+    /// Cost of each arc of the operator, with the parts below it.
     costs: Vec<f64>,
     before: Vec<f64>,
     after: Vec<f64>,
@@ -244,8 +244,8 @@ impl Program {
         Some((reduced, multipliers))
     }
 
-    /// Every clique leaves its multipliers to one that has all its occurrences which are left, or any if none is. No occurrence pays less
-    /// than before.
+    /// Adds the multipliers of every old clique to those of a new one that has all its occurrences which are left, or of any one
+    /// if none is left. At no occurrence does an item then cost less than before.
     fn reduced_multipliers(
         &self,
         reduced: &Program,

@@ -3,11 +3,11 @@
 use super::derivation::{Paths, Prices, Rule};
 use super::program::Program;
 use super::region_type::Written;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::infer::Pulse;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::AddRule;
+use crate::infer::Pulse;
+use crate::operations::Operations;
+use crate::regions::Types;
+use crate::rules::AddRule;
+use edifice_grammar::Costs;
 
 /// Noise of sums of costs, which are 0 or between [`Costs::LEAST`] and [`Costs::GREATEST`].
 pub(crate) const NOISE: f64 = 1e-7;
@@ -19,7 +19,7 @@ pub(crate) struct Incumbent {
     pub pulse: Option<Pulse>,
     /// Its rules; none when only the cost is known.
     rules: Vec<Written>,
-    /// What all costs are multiples of.
+    /// A number of which all costs of grammars are multiples; `None` where there is none.
     granularity: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ impl Incumbent {
             .map_or(bound, |q| ((bound - NOISE) / q).ceil() * q)
     }
 
-    /// Whether a bound shows that no grammar is cheaper.
+    /// True if a lower bound shows that no grammar is cheaper than the incumbent.
     pub fn is_optimal(&self, bound: f64) -> bool {
         self.round_up(bound) >= self.cost - NOISE
     }

@@ -1,7 +1,7 @@
 //! Lagrangian bound of the cost of all grammars, and the cheapest grammar met on the way.
 //!
-//! [`super`] has the theory: weak duality, and why the dual decouples. Here are the program (types, rules, occurrences), the dynamic program over occurrences, the
-//! steps that raise the bound, and branch and bound.
+//! [`super`] has the theory: weak duality, and why the dual decouples. Here are the program (types, rules, occurrences), the
+//! dynamic program over occurrences, the steps that raise the bound, and branch and bound.
 
 mod ascent;
 mod branch;
@@ -24,24 +24,24 @@ use derivation::{Paths, Prices, Rule};
 use incumbent::Restricted;
 use region_type::RegionType;
 
-/// Dual of costs, and the dynamic program under them.
+/// The Lagrangian dual: multipliers that split the costs of items, and the dynamic program that evaluates `L` under them.
 #[derive(Debug)]
 pub(crate) struct Dual<'a> {
     program: &'a Program,
-    /// By clique and item.
+    /// Multiplier of each item, clique by clique.
     multipliers: Vec<f64>,
     /// Cost of each item at each occurrence: the sum of the multipliers over its cliques.
     item_costs: Vec<f64>,
-    /// `V`, by occurrence.
+    /// `V`: cost of the cheapest derivation of each occurrence.
     values: Vec<f64>,
-    /// Operator of the cheapest rule, by occurrence.
+    /// Operator of the cheapest rule of each occurrence.
     operators: Vec<usize>,
     paths: Paths,
     restricted: Restricted,
 }
 
 impl<'a> Dual<'a> {
-    /// Equal multipliers.
+    /// The dual with equal multipliers over the cliques of each region type.
     pub fn new(program: &'a Program) -> Self {
         let mut multipliers = Vec::with_capacity(program.multipliers);
         for region_type in &program.region_types {
@@ -53,7 +53,7 @@ impl<'a> Dual<'a> {
         Self::from(program, multipliers)
     }
 
-    /// Given multipliers, by clique and item.
+    /// The dual with given multipliers, by clique and item.
     pub fn from(program: &'a Program, multipliers: Vec<f64>) -> Self {
         let mut values = vec![f64::INFINITY; program.values()];
         values[program.occurrences.len()] = 0.0;
@@ -92,7 +92,7 @@ impl<'a> Dual<'a> {
         }
     }
 
-    /// `L`; infinite when what is left derives no facade.
+    /// `L`, a lower bound of the cost of every grammar; infinite when what is left derives no facade.
     fn bound(&mut self) -> f64 {
         for &occurrence in &self.program.order {
             let prices = prices(self.program, occurrence, &self.item_costs, &self.values);

@@ -5,12 +5,12 @@ use rustc_hash::FxHashMap;
 use super::cliques::cliques;
 use super::region_type::RegionType;
 use super::rules::region_type_of;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Region, TypeId, Types, part};
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Region, TypeId, Types, part};
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
-/// What stands for the occurrence of a terminal until all occurrences are known.
+/// The part that stands for a terminal until all occurrences are known.
 const TERMINAL: u32 = u32::MAX;
 
 /// A rectangle of a facade that a derivation can split.
@@ -31,8 +31,8 @@ pub(crate) struct Occurrence {
 pub(crate) struct Program {
     pub region_types: Vec<RegionType>,
     pub occurrences: Vec<Occurrence>,
-    /// Parts of all occurrences: the strips along x, then those along y. Each is an occurrence, the number of occurrences for a terminal,
-    /// or what [`Program::removed`] says.
+    /// Parts of all occurrences: the strips along x, then those along y. Each is the index of an occurrence, or the number of
+    /// occurrences for a terminal, or an index that [`Program::removed`] gives.
     pub(super) parts: Vec<u32>,
     /// Occurrences, parts before what they are parts of.
     pub order: Vec<u32>,
@@ -94,7 +94,7 @@ impl Program {
                 program.region_types.push(new);
             }
             program.add(types, &mut index_of, region, region_type);
-            // A occurrence has two successors and an operation at least.
+            // An occurrence has two successors and an operation at least.
             if program.items.max(3 * index_of.regions.len()) > limit {
                 return None;
             }
@@ -150,7 +150,7 @@ impl Program {
         }
     }
 
-    /// Groups the occurrences of each region type.
+    /// Finds the maximal cliques of overlapping occurrences of each region type.
     pub(super) fn fill_cliques(&mut self) {
         for region_type in &mut self.region_types {
             let region = |&occurrence: &u32| self.occurrences[occurrence as usize].region;
@@ -177,7 +177,7 @@ impl Program {
         &self.region_types[self.occurrences[occurrence as usize].region_type as usize]
     }
 
-    /// What an arc of a region type makes of one of its occurrences.
+    /// The parts into which an arc of a region type splits one of its occurrences.
     pub fn parts(
         &self,
         occurrence: u32,
@@ -197,7 +197,7 @@ impl Program {
             .map(move |&slot| self.parts[first + slot as usize])
     }
 
-    /// What the parts that an arc makes of an occurrence cost together, given what each occurrence costs.
+    /// The sum of the costs of the parts that an arc makes of an occurrence, given the cost of each occurrence.
     #[inline]
     pub fn below(
         &self,
@@ -216,17 +216,17 @@ impl Program {
             .sum()
     }
 
-    /// Whether a part is a terminal.
+    /// True if a part is a terminal.
     pub fn is_terminal(&self, part: u32) -> bool {
         part as usize == self.occurrences.len()
     }
 
-    /// What stands for the occurrences of a region type that variable fixing removed.
+    /// Index that stands for the occurrences of a region type that variable fixing removed.
     pub fn removed(&self, region_type: u32) -> u32 {
         self.occurrences.len() as u32 + 1 + region_type
     }
 
-    /// What stands for the occurrences of region types that were removed altogether.
+    /// Index that stands for the occurrences of region types that were removed altogether.
     pub(super) fn removed_types(&self) -> u32 {
         self.removed(self.region_types.len() as u32)
     }

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::rc::Rc;
 
-use crate::methods::facade_grammar::regions::{Region, Types};
-use crate::methods::facade_grammar::rules::{AddRule, Arrangement, RuleCandidate};
-use crate::shape::Axis;
+use crate::regions::{Region, Types};
+use crate::rules::{AddRule, Arrangement, RuleCandidate};
+use edifice_shape::Axis;
 
 /// A non-terminal type, and all rules that it can have. Each rule is a path: its *items* are
 /// the arcs of the path and, behind them, the operation.
@@ -15,17 +15,18 @@ pub(crate) struct RegionType {
     pub region: Region,
     pub operators: Vec<Operator>,
     pub arcs: Vec<Arc>,
-    /// Where the parts of arcs with several copies stand among those of an occurrence.
+    /// Positions, among the parts of an occurrence, of the parts of arcs with several copies.
     pub slots: Vec<u32>,
     /// Cost of each item: of the arcs, then of the operators.
     pub full_costs: Vec<f64>,
-    /// What of it is split by multipliers: all, unless the type is known to have a rule ([`Program::require`](super::Program::require)).
+    /// The part of each item's cost that is split by multipliers: all of it, unless the type is known to have a rule
+    /// ([`Program::require`](super::Program::require)).
     pub costs: Vec<f64>,
-    /// Whether it is.
+    /// True if the type is known to have a rule.
     pub required: bool,
     /// Index of the region type's first item among those of all region types.
     pub first: usize,
-    /// Where the type occurs.
+    /// Indices of the occurrences of the type.
     pub occurrences: Vec<u32>,
     /// Maximal cliques of overlapping occurrences, each by its indices in `occurrences`: of occurrences that overlap, a derivation
     /// splits one at most.
@@ -42,7 +43,7 @@ pub(crate) struct Operator {
     pub arrangement: Arrangement,
     pub axis: Axis,
     pub last: u16,
-    /// Sorted by where they lead.
+    /// Range of its arcs, sorted by the node to which they lead.
     pub arcs: Range<usize>,
 }
 
@@ -53,9 +54,9 @@ pub(crate) struct Arc {
     pub to: u16,
     /// The cuts between which the successor stands first.
     pub lines: (u16, u16),
-    /// How often the rule writes the successor out.
+    /// Number of times that the rule writes the successor out.
     pub copies: u32,
-    /// Where the only copy stands among the parts of an occurrence; of several copies, where their list begins.
+    /// Position of the only copy among the parts of an occurrence; of several copies, the start of their list in [`RegionType::slots`].
     pub slot: u32,
 }
 

@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use super::region_type::{Arc, Operator, RegionType};
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Region, Strips};
-use crate::methods::facade_grammar::rules::{Arrangement, operation_cost};
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Region, Strips};
+use crate::rules::{Arrangement, operation_cost};
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 /// A type with all rules that it can have, and no occurrences yet.
 pub(super) fn region_type_of(

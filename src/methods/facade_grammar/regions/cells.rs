@@ -2,7 +2,7 @@
 
 use super::types::part;
 use super::{Region, TypeId, Types};
-use crate::shape::Axis;
+use edifice_shape::Axis;
 
 /// Rectangles that a region may have between its full lines for grids of it to be looked for: about
 /// ten lines each way. A larger grid hardly ever pays: each of its cells is a successor.
@@ -16,7 +16,7 @@ pub(crate) struct Cells {
     types: Vec<TypeId>,
 }
 
-/// Place of the interval from `a` to `b` among all.
+/// Index of the interval from `a` to `b` among all.
 fn place((a, b): (u16, u16)) -> usize {
     let (a, b) = (usize::from(a), usize::from(b));
     b * (b - 1) / 2 + a
@@ -62,7 +62,7 @@ impl Cells {
         self.types[place(x) * (up * (up + 1) / 2) + place(y)]
     }
 
-    /// All types.
+    /// Types of all rectangles.
     pub fn all(&self) -> &[TypeId] {
         &self.types
     }

@@ -9,7 +9,7 @@
 //!   `sum_t h(label, w, h) P^(x_t - x_0) Q^(y_t - y_0) mod 2^61 - 1`.
 
 use super::lengths::{Lines, minus};
-use crate::shape::{Axis, Facade};
+use edifice_shape::{Axis, Facade};
 
 /// Modulus of the content hash, the Mersenne prime `2^61 - 1`.
 const MODULUS: u64 = (1 << 61) - 1;
@@ -150,7 +150,7 @@ impl LayoutIndex {
         }
     }
 
-    /// The whole layout.
+    /// The whole layout of this index as a region.
     pub fn root(&self, index: u16) -> Region {
         Region {
             layout: index,
@@ -218,13 +218,13 @@ impl LayoutIndex {
         (rect.x0 == r.x0 && rect.x1 == r.x1 && rect.y0 == r.y0 && rect.y1 == r.y1).then_some(label)
     }
 
-    /// Whether the vertical line at grid index `x` cuts a terminal between rows `y0` and `y1`.
+    /// True if the vertical line at grid index `x` cuts a terminal between rows `y0` and `y1`.
     pub fn cuts_terminal_x(&self, x: u16, y0: u16, y1: u16) -> bool {
         let at = |y: u16| self.cut_x[usize::from(y) * self.xs.len() + usize::from(x)];
         at(y1) > at(y0)
     }
 
-    /// Whether the horizontal line at grid index `y` cuts a terminal between columns `x0` and `x1`.
+    /// True if the horizontal line at grid index `y` cuts a terminal between columns `x0` and `x1`.
     pub fn cuts_terminal_y(&self, y: u16, x0: u16, x1: u16) -> bool {
         let row = usize::from(y) * self.xs.len();
         self.cut_y[row + usize::from(x1)] > self.cut_y[row + usize::from(x0)]

@@ -21,7 +21,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::shape::{Axis, Facade, IndexedLayout, LayoutError};
+use edifice_shape::{Axis, Facade, IndexedLayout, LayoutError};
 
 /// Lengths within this fraction of a facade's longer side are equal, except for chains of such lengths that
 /// together spread over ten times as much.

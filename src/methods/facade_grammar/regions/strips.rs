@@ -1,4 +1,4 @@
-//! What full lines along one axis can make of a region: strips, periods, alternations, mirrored pairs.
+//! The structure of a region along one axis, as full lines can cut it: strips, periods, alternations, mirrored pairs.
 
 use super::TypeId;
 use super::lengths::{minus, times};
@@ -23,7 +23,7 @@ impl Offsets {
         minus(self.residues[start + 1], self.residues[start])
     }
 
-    /// The last cut.
+    /// Distance and residue of the last cut.
     fn last(&self) -> (f64, u64) {
         let last = self.at.len() - 1;
         (self.at[last], self.residues[last])
@@ -107,7 +107,7 @@ impl Strips {
             .map_or(0, |(a, _)| *a)
     }
 
-    /// All strip types.
+    /// Types of all strips.
     pub fn all(&self) -> &[TypeId] {
         &self.types
     }

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::lengths::{lines, minus};
 use super::{Cells, LayoutIndex, Offsets, Region, Strips};
-use crate::shape::{Axis, Facade, LayoutError};
+use edifice_shape::{Axis, Facade, LayoutError};
 
 /// Index of a region type. Types below [`Types::label_count`] are the terminal labels.
 pub(crate) type TypeId = u32;
@@ -18,7 +18,7 @@ struct Type {
     terminals: u32,
 }
 
-/// What two regions share when they have one type: hash of contents, size, number of terminals.
+/// The key of a type, equal for regions of one type: hash of contents, width, height, number of terminals.
 type Key = (u64, u64, u64, u32);
 
 /// The region types of one or several facades.
@@ -29,7 +29,7 @@ pub(crate) struct Types {
     ids: FxHashMap<Key, TypeId>,
     types: Vec<Type>,
     strips: Vec<[Option<Rc<Strips>>; 2]>,
-    /// Of types that were asked for them; `None` where there are too many.
+    /// Rectangles between full lines, of the types that were asked for them; `None` where there are too many.
     cells: FxHashMap<TypeId, Option<Rc<Cells>>>,
     /// Type of each facade as a whole.
     pub roots: Vec<TypeId>,
@@ -106,12 +106,12 @@ impl Types {
         self.types.len()
     }
 
-    /// Whether there are as many strips as there may be.
+    /// True if there are as many strips as there may be.
     pub fn is_full(&self) -> bool {
         self.cut >= self.limit
     }
 
-    /// Whether the type is a terminal label.
+    /// True if the type is a terminal label.
     pub fn is_terminal(&self, id: TypeId) -> bool {
         id < self.label_count()
     }

@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
-use crate::grammar::Costs;
-use crate::shape::Axis;
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
-use crate::methods::facade_grammar::regions::{Strips, TypeId};
+use crate::regions::{Strips, TypeId};
 
-/// How a rule arranges its successors.
+/// The arrangement of the successors of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Arrangement {
     Split(Axis),
@@ -44,7 +44,7 @@ pub(crate) struct RuleCandidate {
 }
 
 impl RuleCandidate {
-    /// Eq. 2.
+    /// Cost of the rule (Eq. 2).
     pub fn cost(&self, costs: &Costs) -> f64 {
         operation_cost(self.arrangement, costs) + costs.successor * self.successors.len() as f64
     }

@@ -3,10 +3,10 @@
 use rustc_hash::FxHashMap;
 
 use super::candidate::{Arrangement, RuleCandidate};
-use crate::grammar::{Grammar, Operation, Rule, Size, Start, Successor};
-use crate::methods::facade_grammar::regions::{TypeId, Types};
-use crate::methods::facade_grammar::rules::AddRule;
-use crate::shape::{Axis, Facade};
+use crate::regions::{TypeId, Types};
+use crate::rules::AddRule;
+use edifice_grammar::{Grammar, Operation, Rule, Size, Start, Successor};
+use edifice_shape::{Axis, Facade};
 
 /// Writes the rules that the facades need as a grammar, top down, with symbols that no label uses.
 pub(crate) fn grammar(types: &mut Types, facades: &[Facade], rules: &[AddRule]) -> Grammar {

@@ -7,8 +7,8 @@
 
 use super::candidate::{Arrangement, RuleCandidate};
 use super::pricer::trace;
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::regions::{Cells, TypeId};
+use crate::regions::{Cells, TypeId};
+use edifice_grammar::Costs;
 
 /// The rule that cuts at `columns` and `rows`, indices into the cuts along x and y, ends included;
 /// its successors stand row by row, bottom to top.
@@ -84,8 +84,7 @@ pub(crate) fn cheapest(
     found.map(|(cost, columns, rows)| (cost, between(cells, columns, rows)))
 }
 
-/// The cheapest lines from 0 to `end` with at least one between; `None` when every way meets an
-/// infinite cost.
+/// The cheapest lines from 0 to `end` with at least one between; `None` when every path has an infinite cost.
 fn shortest(end: u16, cost: impl Fn(u16, u16) -> f64) -> Option<(f64, Vec<u16>)> {
     let mut distance = vec![f64::INFINITY; usize::from(end) + 1];
     let mut previous = vec![0; usize::from(end) + 1];

@@ -11,10 +11,10 @@
 //! where `c_1` is the cost of a written successor. No split needs to be sampled. Grids are found in
 //! [`super::grid`].
 
-use crate::grammar::Costs;
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::{Strips, TypeId, Types};
-use crate::shape::Axis;
+use crate::operations::Operations;
+use crate::regions::{Strips, TypeId, Types};
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 use super::candidate::{Arrangement, RuleCandidate};
 use super::grid;
@@ -43,8 +43,8 @@ impl RulePricer {
         }
     }
 
-    /// The cheapest rule for a type, `None` when every way meets an infinite price. `prices` is
-    /// indexed by type; types beyond its end cost `unknown(type)`.
+    /// The cheapest rule for a type, with its cost; `None` when every rule has an infinite price. `price` gives the price of each
+    /// type that a rule names.
     pub fn cheapest(
         &mut self,
         types: &mut Types,

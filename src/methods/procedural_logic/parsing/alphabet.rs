@@ -41,7 +41,7 @@ impl Alphabet {
         self.names.len()
     }
 
-    /// Whether no label was seen.
+    /// True if no label was seen.
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
     }

@@ -1,7 +1,7 @@
 //! A facade as the parser sees it: an irregular grid of labelled assets.
 
-use crate::methods::procedural_logic::alphabet::Alphabet;
-use crate::shape::{Axis, Facade, LabelGrid, LayoutError};
+use crate::alphabet::Alphabet;
+use edifice_shape::{Axis, Facade, LabelGrid, LayoutError};
 
 /// Labelled cells between sorted coordinates; an edge runs wherever two neighbouring cells belong
 /// to different assets.
@@ -18,7 +18,7 @@ pub struct Canvas {
     assets: Vec<u32>,
     /// Label of each asset, a number of the alphabet.
     labels: Vec<u32>,
-    /// Whether the assets are rectangles that no line may cut.
+    /// True if the assets are rectangles that no line may cut.
     rigid: bool,
 }
 
@@ -99,7 +99,7 @@ impl Canvas {
         self.ys[self.rows()] - self.ys[0]
     }
 
-    /// Whether no line may cut an asset.
+    /// True if no line may cut an asset.
     pub fn is_rigid(&self) -> bool {
         self.rigid
     }
@@ -110,7 +110,7 @@ impl Canvas {
     }
 
     /// The facade seen along `axis`.
-    pub(in crate::methods::procedural_logic) fn view(&self, axis: Axis) -> View<'_> {
+    pub(crate) fn view(&self, axis: Axis) -> View<'_> {
         let columns = self.columns();
         match axis {
             Axis::X => View {
@@ -134,7 +134,7 @@ impl Canvas {
 /// A canvas seen along one axis: `k` counts the cells along the axis, so that lines run between
 /// `k - 1` and `k`, and `t` counts the cells along a line.
 #[derive(Clone, Copy)]
-pub(in crate::methods::procedural_logic) struct View<'a> {
+pub(crate) struct View<'a> {
     canvas: &'a Canvas,
     /// Coordinates of the lines.
     pub cuts: &'a [f64],

@@ -1,9 +1,9 @@
 //! The terms of Eq. 3 along every line, summed so that any scope reads them in constant time.
 
-use crate::methods::procedural_logic::affinity::{Coefficients, for_each_edge};
-use crate::methods::procedural_logic::canvas::Canvas;
-use crate::methods::procedural_logic::parameters::{Extent, Parameters};
-use crate::shape::Axis;
+use crate::affinity::{Coefficients, for_each_edge};
+use crate::canvas::Canvas;
+use crate::parameters::{Extent, Parameters};
+use edifice_shape::Axis;
 
 /// Prefix sums along each line across one axis: entry `k * (span + 1) + t` sums the cells before
 /// `t` of line `k`.
@@ -11,7 +11,7 @@ struct Terms {
     span: usize,
     /// Cells on which the line is an edge.
     edges: Vec<u32>,
-    /// Their length.
+    /// Length of the edge cells, in the unit of the canvas.
     length: Vec<f64>,
     /// Affinity times length.
     affinity: Vec<f64>,
@@ -21,9 +21,9 @@ struct Terms {
     cuts: Vec<u32>,
 }
 
-/// How much a line may cut.
+/// The condition on the perpendicular edges that a line may cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::methods::procedural_logic) enum Rule {
+pub(crate) enum Rule {
     /// Condition b of Sec. 3.3: no perpendicular edge passes through.
     NoCrossing,
     /// Perpendicular edges may meet on the line, provided an edge of the line starts there.
@@ -36,26 +36,26 @@ pub(in crate::methods::procedural_logic) enum Rule {
 
 /// A part of the canvas: columns and rows of cells, `[start, end)` per axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::methods::procedural_logic) struct Scope {
+pub(crate) struct Scope {
     /// Start and end along x and along y.
     pub range: [(usize, usize); 2],
 }
 
 /// A line with its energy.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::methods::procedural_logic) struct Proposal {
+pub(crate) struct Proposal {
     /// Axis along which the line splits.
     pub axis: Axis,
     /// Index of the line.
     pub line: usize,
     /// `f(p)`, Eq. 3.
     pub energy: f64,
-    /// Perpendicular edges cut.
+    /// Number of perpendicular edges that the line cuts.
     pub cuts: u32,
 }
 
 /// Everything the recursion asks of one facade.
-pub(in crate::methods::procedural_logic) struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     canvas: &'a Canvas,
     terms: [Terms; 2],
 }
@@ -67,7 +67,7 @@ impl<'a> Lines<'a> {
         Self { canvas, terms }
     }
 
-    /// Whether some edge lies inside the scope.
+    /// True if some edge lies inside the scope.
     pub fn has_edge(&self, scope: &Scope) -> bool {
         Axis::BOTH.into_iter().any(|axis| {
             let (start, end) = scope.range[axis as usize];

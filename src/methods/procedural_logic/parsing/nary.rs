@@ -1,8 +1,8 @@
 //! Transformation to n-ary split nodes (Sec. 4.1.1, Eq. 9).
 
-use crate::methods::procedural_logic::alphabet::Alphabet;
-use crate::methods::procedural_logic::parse::{BinaryNode, BinaryTree};
-use crate::shape::{Axis, Rect, Region};
+use crate::alphabet::Alphabet;
+use crate::parse::{BinaryNode, BinaryTree};
+use edifice_shape::{Axis, Rect, Region};
 
 /// A node of an n-ary split tree.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,10 +39,7 @@ impl NaryTree {
 
     /// As [`NaryTree::from_binary`], but only the nodes that `join` picks are joined with a split of the same direction
     /// around them.
-    pub(in crate::methods::procedural_logic) fn joined(
-        tree: &BinaryTree,
-        join: impl Fn(usize) -> bool,
-    ) -> Self {
+    pub(crate) fn joined(tree: &BinaryTree, join: impl Fn(usize) -> bool) -> Self {
         let mut nodes = vec![NaryNode::Insert(0)];
         let mut todo = vec![(0_usize, 0_usize)];
         while let Some((from, to)) = todo.pop() {
@@ -69,7 +66,7 @@ impl NaryTree {
     }
 
     /// The binary tree as it stands, node by node.
-    pub(in crate::methods::procedural_logic) fn unjoined(tree: &BinaryTree) -> Self {
+    pub(crate) fn unjoined(tree: &BinaryTree) -> Self {
         let node = |node: &BinaryNode| match *node {
             BinaryNode::Insert(label) => NaryNode::Insert(label),
             BinaryNode::Split {
@@ -90,7 +87,7 @@ impl NaryTree {
     }
 
     /// Width and height of each node.
-    pub(in crate::methods::procedural_logic) fn extents(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn extents(&self) -> Vec<[f64; 2]> {
         let mut extents = vec![[self.width, self.height]; self.nodes.len()];
         for (node, content) in self.nodes.iter().enumerate() {
             if let NaryNode::Split {
@@ -109,7 +106,7 @@ impl NaryTree {
     }
 
     /// The regions that the inserts fill.
-    pub(in crate::methods::procedural_logic) fn regions(&self, alphabet: &Alphabet) -> Vec<Region> {
+    pub(crate) fn regions(&self, alphabet: &Alphabet) -> Vec<Region> {
         let mut regions = Vec::new();
         let mut todo = vec![(0_u32, Rect::new(0.0, 0.0, self.width, self.height))];
         while let Some((node, rect)) = todo.pop() {

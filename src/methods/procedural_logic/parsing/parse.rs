@@ -1,10 +1,10 @@
 //! Facade parse tree generation (Sec. 3.3): split lines of least energy, recursively.
 
-use crate::methods::procedural_logic::affinity::Coefficients;
-use crate::methods::procedural_logic::canvas::Canvas;
-use crate::methods::procedural_logic::lines::{Lines, Proposal, Rule, Scope};
-use crate::methods::procedural_logic::parameters::Parameters;
-use crate::shape::{Axis, Rect};
+use crate::affinity::Coefficients;
+use crate::canvas::Canvas;
+use crate::lines::{Lines, Proposal, Rule, Scope};
+use crate::parameters::Parameters;
+use edifice_shape::{Axis, Rect};
 
 /// A node of a binary split tree.
 #[derive(Debug, Clone, Copy, PartialEq)]

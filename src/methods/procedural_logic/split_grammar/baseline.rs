@@ -1,14 +1,14 @@
 //! The split-only baseline of Wu et al. 2014, Table 2: procedural logic for one facade.
 
-use crate::grammar::Grammar;
-use crate::methods::procedural_logic::affinity::Affinity;
-use crate::methods::procedural_logic::alphabet::Alphabet;
-use crate::methods::procedural_logic::canvas::Canvas;
-use crate::methods::procedural_logic::joining::Joining;
-use crate::methods::procedural_logic::parameters::{ParameterError, Parameters};
-use crate::methods::procedural_logic::parse::{NoSplit, parse};
-use crate::methods::procedural_logic::split_grammar::split_grammar;
-use crate::shape::{Facade, LayoutError};
+use crate::affinity::Affinity;
+use crate::alphabet::Alphabet;
+use crate::canvas::Canvas;
+use crate::joining::Joining;
+use crate::parameters::{ParameterError, Parameters};
+use crate::parse::{NoSplit, parse};
+use crate::split_grammar::split_grammar;
+use edifice_grammar::Grammar;
+use edifice_shape::{Facade, LayoutError};
 
 /// Why a facade has no baseline grammar.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,12 +1,12 @@
-//! Which binary splits become one n-ary split (Eq. 9), when the grammar of one facade is written.
+//! The binary splits that become one n-ary split (Eq. 9), when the grammar of one facade is written.
 
 use serde::{Deserialize, Serialize};
 
-use crate::methods::procedural_logic::nary::{NaryNode, NaryTree};
-use crate::methods::procedural_logic::parse::BinaryTree;
-use crate::methods::procedural_logic::split_grammar::{Classes, classes};
+use crate::nary::{NaryNode, NaryTree};
+use crate::parse::BinaryTree;
+use crate::split_grammar::{Classes, classes};
 
-/// Which nested splits of one direction are joined.
+/// The set of nested splits of one direction that are joined.
 ///
 /// The text joins first and finds common rules then (Sec. 4.1); after that, the order in which lines of one direction
 /// were found is forgotten.
@@ -24,7 +24,7 @@ pub enum Joining {
 
 impl Joining {
     /// The n-ary tree of a binary one.
-    pub(in crate::methods::procedural_logic) fn apply(self, tree: &BinaryTree) -> NaryTree {
+    pub(crate) fn apply(self, tree: &BinaryTree) -> NaryTree {
         match self {
             Joining::All => NaryTree::from_binary(tree),
             Joining::UsedOnce => {
@@ -36,7 +36,7 @@ impl Joining {
     }
 }
 
-/// How often the rules of the binary tree call the rule of each node, regions of identical content having one rule.
+/// The number of times that the rules of the binary tree call the rule of each node, regions of identical content having one rule.
 fn calls(tree: &BinaryTree) -> Vec<usize> {
     let binary = NaryTree::unjoined(tree);
     let Classes { class, example } = classes(&binary);

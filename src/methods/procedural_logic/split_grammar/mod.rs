@@ -5,12 +5,12 @@ pub(super) mod joining;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::grammar::{Grammar, Operation, Rule, Start, Successor};
-use crate::methods::procedural_logic::alphabet::Alphabet;
-use crate::methods::procedural_logic::nary::{NaryNode, NaryTree};
-use crate::shape::Axis;
+use crate::alphabet::Alphabet;
+use crate::nary::{NaryNode, NaryTree};
+use edifice_grammar::{Grammar, Operation, Rule, Start, Successor};
+use edifice_shape::Axis;
 
-/// What a region holds: its label; or its split, its extent across the split, and its parts with
+/// The content of a region: its label; or its split, its extent across the split, and its parts with
 /// their sizes, in units of the tolerance.
 #[derive(PartialEq, Eq, Hash)]
 enum Content {
@@ -39,7 +39,7 @@ pub fn split_grammar(tree: &NaryTree, alphabet: &Alphabet, name: &str, unit: &st
 }
 
 /// Regions of identical content.
-pub(in crate::methods::procedural_logic) struct Classes {
+pub(crate) struct Classes {
     /// Class of each node.
     pub class: Vec<usize>,
     /// A node of each class.
@@ -47,7 +47,7 @@ pub(in crate::methods::procedural_logic) struct Classes {
 }
 
 /// Numbers regions of identical content: label, offset and size (bottom-up hash-consing).
-pub(in crate::methods::procedural_logic) fn classes(tree: &NaryTree) -> Classes {
+pub(crate) fn classes(tree: &NaryTree) -> Classes {
     let tolerance = 1e-7 * tree.width.max(tree.height);
     let extents = tree.extents();
     let mut ids: FxHashMap<Content, usize> = FxHashMap::default();

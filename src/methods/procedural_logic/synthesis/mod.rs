@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::methods::procedural_logic::model::{Known, Model};
-use crate::methods::procedural_logic::rules::{Call, Instance, InstanceError};
+use crate::model::{Known, Model};
+use crate::rules::{Call, Instance, InstanceError};
 use similar::Structure;
 
 /// Facades of similar structure that a starting rule of one facade borrows from, at most.
@@ -52,7 +52,7 @@ pub enum StyleError {
     /// Too few facades in the model to see how the parameters vary.
     #[error("the model has {found} facades to learn from, at least 2 are needed")]
     TooFew {
-        /// Facades found.
+        /// Number of facades in the model.
         found: usize,
     },
     /// No facade of the model starts with the rule.
@@ -64,11 +64,11 @@ pub enum StyleError {
     /// A facade of the rule has another number of parameters.
     #[error("facade {name} has {found} parameters, the others {expected}")]
     Parameters {
-        /// Its name.
+        /// Name of the facade.
         name: String,
         /// Number of parameters of the others.
         expected: usize,
-        /// Its own number.
+        /// Number of parameters of this facade.
         found: usize,
     },
     /// `sigma` is out of range.

@@ -7,15 +7,15 @@
 //! and the shares are scaled to fill the split. The result is a parameter vector of the first facade's
 //! starting rule, whatever the second one's.
 
-use crate::methods::procedural_logic::nary::{NaryNode, NaryTree};
-use crate::methods::procedural_logic::rules::{Call, Instance, InstanceError, RuleSet};
+use crate::nary::{NaryNode, NaryTree};
+use crate::rules::{Call, Instance, InstanceError, RuleSet};
 
-/// What it counts in an alignment that two parts call the same rule, or insert the same labels.
+/// Gain of an alignment for two parts that call the same rule, and for two that insert the same labels.
 const SAME_RULE: u32 = 3;
 const SAME_LABELS: u32 = 1;
 
 /// A parse tree with the call and the labels of each node.
-pub(in crate::methods::procedural_logic) struct Structure {
+pub(crate) struct Structure {
     tree: NaryTree,
     calls: Vec<Call>,
     /// Sorted labels at and below each node.

@@ -13,9 +13,9 @@ use super::model::Model;
 use super::partial::PartialLayout;
 use super::policy::{Scene, added, paper_model};
 use super::score::{Change, Scored};
-use crate::optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
-use crate::rng::Stream;
-use crate::shape::Rect;
+use edifice_base::rng::Stream;
+use edifice_optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
+use edifice_shape::Rect;
 
 /// Standard deviation of a move, in sizes of the element.
 const OFFSET: f64 = 0.3;

@@ -1,11 +1,11 @@
 //! The lattice of the observed elements, continued at its typical spacing.
 
 use super::completion;
-use crate::methods::structure_completion::completion::{Completion, Reason};
-use crate::methods::structure_completion::layout::lines::{Line, lines, median};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::shape::{Axis, Rect};
+use crate::completion::{Completion, Reason};
+use crate::layout::lines::{Line, lines, median};
+use crate::layout::{Class, Element};
+use crate::partial::PartialLayout;
+use edifice_shape::{Axis, Rect};
 
 /// Lines that are added on a side, or in a gap, at most: no facade has as many, whatever outline its file gives.
 const MOST_LINES: u16 = 500;

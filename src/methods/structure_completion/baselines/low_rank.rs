@@ -1,12 +1,12 @@
 //! Low-rank completion of the matrix of cells (Fig. 19).
 
 use super::completion;
-use crate::methods::structure_completion::completion::{Completion, Reason};
-use crate::methods::structure_completion::layout::lines::lines;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::model::low_rank::{Limits, soft_impute};
-use crate::shape::{Axis, Rect};
+use crate::completion::{Completion, Reason};
+use crate::layout::lines::lines;
+use crate::layout::{Class, Element};
+use crate::partial::PartialLayout;
+use edifice_model::low_rank::{Limits, soft_impute};
+use edifice_shape::{Axis, Rect};
 
 /// Penalty of the nuclear norm.
 const LAMBDA: f64 = 0.5;

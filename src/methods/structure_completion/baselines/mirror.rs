@@ -1,10 +1,10 @@
 //! Mirror images about the facade's vertical axis.
 
 use super::completion;
-use crate::methods::structure_completion::completion::{Completion, Reason};
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::shape::Rect;
+use crate::completion::{Completion, Reason};
+use crate::layout::Element;
+use crate::partial::PartialLayout;
+use edifice_shape::Rect;
 
 /// Adds the mirror image of every observed element where it may stand.
 pub fn mirror(partial: &PartialLayout) -> Completion {

@@ -1,4 +1,4 @@
-//! What a completion is compared with: simple ways to complete a layout. Each returns one completion.
+//! Baselines of completion: simple ways to complete a layout. Each returns one completion.
 
 mod lattice;
 mod low_rank;

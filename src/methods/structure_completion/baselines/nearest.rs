@@ -1,12 +1,12 @@
 //! The nearest facade of the database, scaled to the outline.
 
 use super::completion;
-use crate::methods::structure_completion::completion::{Completion, Reason};
-use crate::methods::structure_completion::layout::{Element, Layout};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::shape::Rect;
+use crate::completion::{Completion, Reason};
+use crate::layout::{Element, Layout};
+use crate::measure::agreement;
+use crate::model::Model;
+use crate::partial::PartialLayout;
+use edifice_shape::Rect;
 
 /// Pastes the facade whose elements in the known part agree best with the observed ones (F1 at an intersection over
 /// union of 0.25, then the share of observed elements that it has; the first of equals).

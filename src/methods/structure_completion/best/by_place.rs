@@ -3,9 +3,9 @@
 use std::cell::Cell;
 use std::ops::Deref;
 
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::layout::places::Places;
-use crate::shape::Rect;
+use crate::layout::Element;
+use crate::layout::places::Places;
+use edifice_shape::Rect;
 
 /// Elements of a facade by place.
 #[derive(Debug, Clone)]
@@ -15,7 +15,7 @@ pub struct ByPlace {
 }
 
 impl ByPlace {
-    /// None yet, on a facade of this extent; elements of about `size`, some `most` of them.
+    /// An empty set on a facade of this extent, made for some `most` elements of about `size`.
     pub fn new(facade: [f64; 2], size: (f64, f64), most: usize) -> Self {
         Self {
             elements: Vec::new(),
@@ -30,13 +30,13 @@ impl ByPlace {
         self.elements.push(element);
     }
 
-    /// Whether the test, which only elements that meet the rectangle can pass, holds for any.
+    /// True if the test, which only elements that meet the rectangle can pass, holds for any.
     pub fn any_near(&self, rect: &Rect, test: impl Fn(&Element) -> bool) -> bool {
         let test = |k: u32| test(&self.elements[k as usize]);
         self.places.any_near(rect, test)
     }
 
-    /// Whether one of the elements excludes another one.
+    /// True if one of the elements excludes another one.
     pub fn exclude(&self, other: &Element) -> bool {
         self.any_near(&other.rect, |e| e.excludes(other))
     }
@@ -72,8 +72,8 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::methods::structure_completion::layout::Class;
-    use crate::rng::stream;
+    use crate::layout::Class;
+    use edifice_base::rng::stream;
 
     /// Random elements, some beyond the outline, against a look at all of them.
     #[test]
@@ -85,7 +85,7 @@ mod tests {
             let mut all = ByPlace::new(facade, sizes[case as usize % 4], 20);
             let mut element = || {
                 let class = Class::ALL[rng.random_range(0..Class::ALL.len())];
-                let side = |rng: &mut crate::rng::Stream, k: usize| {
+                let side = |rng: &mut edifice_base::rng::Stream, k: usize| {
                     facade[k] * rng.random_range(-0.1..1.1)
                 };
                 let (x, y) = (side(&mut rng, 0), side(&mut rng, 1));

@@ -31,7 +31,7 @@ pub struct Candidate {
 
 /// The candidates of a pool, and which candidates each layout has.
 pub struct Candidates {
-    /// All of them.
+    /// All candidates.
     pub all: Vec<Candidate>,
     /// For each layout of the pool, its candidates.
     pub of_draw: Vec<Vec<usize>>,
@@ -39,7 +39,7 @@ pub struct Candidates {
     pub alike: Vec<Vec<(usize, f64)>>,
 }
 
-/// How alike two elements are: from 0 at an intersection over union of 0.35 to 1 at 0.65.
+/// Likeness of two elements: from 0 at an intersection over union of 0.35 to 1 at 0.65.
 fn likeness(iou: f64) -> f64 {
     ((iou - 0.35) / 0.3).clamp(0.0, 1.0)
 }
@@ -240,7 +240,7 @@ impl Index {
     }
 }
 
-/// What the features of all candidates of a scene share.
+/// The quantities of a scene that the features of all its candidates have in common.
 struct Context<'a> {
     scene: &'a Scene<'a>,
     /// Observed elements by class, for each observed window.

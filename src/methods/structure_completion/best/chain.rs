@@ -124,7 +124,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// What a line at `bin` multiplies by.
+    /// Factor of a line at `bin`: 1 for an observed one, else the evidence there.
     fn factor(&self, bin: usize) -> f64 {
         match self.problem.observed.binary_search(&bin) {
             Ok(_) => 1.0,

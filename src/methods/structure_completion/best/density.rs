@@ -41,7 +41,7 @@ impl RatioDensity {
         self.cells[(place as usize).min(CELLS - 1)]
     }
 
-    /// Whether a table read from a file can serve.
+    /// True if a table read from a file has the right number of positive finite cells.
     pub fn is_valid(&self) -> bool {
         self.cells.len() == CELLS && self.cells.iter().all(|v| v.is_finite() && *v > 0.0)
     }
@@ -89,14 +89,14 @@ impl Ending {
         self.probability[(place.max(0.0) as usize).min(STEPS - 1)]
     }
 
-    /// Whether a table read from a file can serve.
+    /// True if a table read from a file has the right number of probabilities.
     pub fn is_valid(&self) -> bool {
         let probability = |p: &f64| (0.0..=1.0).contains(p);
         self.probability.len() == STEPS && self.probability.iter().all(probability)
     }
 }
 
-/// How lines follow each other along one axis.
+/// The distribution of the distances of lines along one axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spacing {
     /// First gap in units of the elements' extent.
@@ -105,7 +105,7 @@ pub struct Spacing {
     pub border: RatioDensity,
     /// A gap in units of the one before.
     pub ratio: RatioDensity,
-    /// When lines end.
+    /// Probability that a line is the last one.
     pub ending: Ending,
 }
 
@@ -131,7 +131,7 @@ impl Spacing {
         }
     }
 
-    /// Whether tables read from a file can serve.
+    /// True if tables read from a file have the right sizes and ranges.
     pub fn is_valid(&self) -> bool {
         self.first.is_valid()
             && self.border.is_valid()

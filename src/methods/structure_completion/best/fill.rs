@@ -4,9 +4,9 @@ use rand::{Rng, RngExt};
 
 use super::by_place::ByPlace;
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::layout::lines::{Line, median};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Rect;
+use crate::layout::lines::{Line, median};
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
 
 /// Share of cells of a line that hold a window, before any is seen.
 const OCCUPANCY: f64 = 0.9;
@@ -57,7 +57,7 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
     added.into_elements()
 }
 
-/// Whether an element may stand there: observed elements are among those of the scene.
+/// True if an element may stand there: observed elements are among those of the scene.
 fn is_free(scene: &Scene, added: &ByPlace, element: &Element) -> bool {
     !scene.elements.exclude(element) && !added.exclude(element) && scene.partial.has_room(element)
 }
@@ -94,7 +94,7 @@ fn repeat<R: Rng>(
     }
 }
 
-/// What is observed in a cell.
+/// The observation in a cell of the lattice: known or not, its window, its balcony.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell {
     known: bool,

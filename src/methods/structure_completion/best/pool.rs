@@ -11,13 +11,13 @@ use super::regular::regular;
 use super::scene::Scene;
 use super::symmetry;
 use super::transfer;
-use crate::methods::structure_completion::baselines::lattice;
-use crate::methods::structure_completion::completion::Reason;
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::model::{Example, Model};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::rng::Stream;
-use crate::shape::Axis;
+use crate::baselines::lattice;
+use crate::completion::Reason;
+use crate::layout::Element;
+use crate::model::{Example, Model};
+use crate::partial::PartialLayout;
+use edifice_base::rng::Stream;
+use edifice_shape::Axis;
 
 /// Draws of each kind.
 pub const DRAWS: usize = 16;
@@ -26,7 +26,7 @@ const BINS_PER_SIZE: f64 = 8.0;
 /// Most bins of an axis.
 const MOST_BINS: usize = 480;
 
-/// Where a layout of the pool comes from.
+/// The origin of a layout of the pool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// Lines by the chain.
@@ -46,7 +46,7 @@ pub enum Origin {
 }
 
 impl Origin {
-    /// All origins.
+    /// All origins, in the order of the features.
     pub const ALL: [Origin; 7] = [
         Origin::Chain,
         Origin::Mirrored,
@@ -57,7 +57,7 @@ impl Origin {
         Origin::Lattice,
     ];
 
-    /// Whether a layout of this origin is a draw of a whole completion.
+    /// True if a layout of this origin is a draw of a whole completion.
     pub fn is_whole(self) -> bool {
         !matches!(self, Origin::Mirror | Origin::Lattice)
     }
@@ -66,7 +66,7 @@ impl Origin {
 /// A layout of the pool.
 #[derive(Debug, Clone)]
 pub struct Draw {
-    /// Where it comes from.
+    /// Its origin.
     pub origin: Origin,
     /// Share among the layouts of its origin.
     pub weight: f64,

@@ -1,10 +1,10 @@
-//! What a partial layout says of its lattice: lines of its windows, how much of them is seen, typical sizes.
+//! The lattice of a partial layout: lines of its windows, the share of them that is seen, typical sizes.
 
 use super::by_place::ByPlace;
-use crate::methods::structure_completion::layout::lines::{Line, lines, median};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::shape::{Axis, Rect};
+use crate::layout::lines::{Line, lines, median};
+use crate::layout::{Class, Element};
+use crate::partial::PartialLayout;
+use edifice_shape::{Axis, Rect};
 
 /// Share of the cells of a lattice that hold a window, where nothing else is known.
 const OCCUPANCY: f64 = 0.9;
@@ -12,7 +12,7 @@ const OCCUPANCY: f64 = 0.9;
 /// A partial layout with the lattice of its elements.
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
-    /// The input.
+    /// The partial layout to complete.
     pub partial: &'a PartialLayout,
     /// Observed elements, and those that are taken as observed (mirrored ones).
     pub elements: ByPlace,

@@ -7,8 +7,8 @@
 use super::by_place::ByPlace;
 use super::density::Spacing;
 use super::scene::Scene;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::{Axis, Rect};
+use crate::layout::{Class, Element};
+use edifice_shape::{Axis, Rect};
 
 /// Largest offset of an axis from the middle, as a share of the width.
 const REACH: f64 = 0.08;
@@ -66,7 +66,7 @@ fn log_weight(scene: &Scene, spacing: &Spacing, axis: f64) -> f64 {
     prior.ln() + of_lines(scene, spacing, axis) + of_elements(scene, axis)
 }
 
-/// How well the mirrored columns continue the observed ones.
+/// Logarithmic score of the mirrored columns as a continuation of the observed ones.
 fn of_lines(scene: &Scene, spacing: &Spacing, axis: f64) -> f64 {
     let size = scene.extent(Axis::X);
     let mut at: Vec<f64> = scene.columns.iter().map(|l| l.at).collect();
@@ -86,7 +86,7 @@ fn of_lines(scene: &Scene, spacing: &Spacing, axis: f64) -> f64 {
     regular - 2.0 * narrow
 }
 
-/// How well mirrored elements agree with what is known.
+/// Logarithmic score of the agreement of mirrored elements with what is known.
 fn of_elements(scene: &Scene, axis: f64) -> f64 {
     let masked = scene.partial.unknown.is_some();
     let mut log = 0.0;

@@ -2,10 +2,10 @@
 
 use super::fill::typical_gap;
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::layout::lines::Line;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::model::Example;
-use crate::shape::Rect;
+use crate::layout::lines::Line;
+use crate::layout::{Class, Element};
+use crate::model::Example;
+use edifice_shape::Rect;
 
 /// A row of a database facade that may correspond to the lowest seen row.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +18,7 @@ pub struct Below {
     pub weight: f64,
 }
 
-/// What is compared between the surroundings of two rows.
+/// The features by which the surroundings of two rows are compared.
 struct Style {
     balconies: f64,
     wide: f64,

@@ -5,7 +5,7 @@
 //! - Layouts that spell out windows (`glass`, `frame`): connected pieces are one window.
 
 use super::{Class, Element, Layout};
-use crate::shape::{Facade, GridError, LabelGrid, Rect, Span, components};
+use edifice_shape::{Facade, GridError, LabelGrid, Labelled, Rect, Span, components};
 
 /// Labels around a facade in a picture.
 const AROUND: [&str; 5] = ["sky", "void", "chimney", "unlabelled", "background"];
@@ -13,6 +13,17 @@ const AROUND: [&str; 5] = ["sky", "void", "chimney", "unlabelled", "background"]
 const WINDOW_PARTS: [&str; 3] = ["glass", "frame", "window"];
 /// Elements thinner than this share of the facade's longer side are specks.
 const SPECK: f64 = 0.004;
+
+/// Elements of a facade in either form.
+///
+/// # Errors
+/// [`GridError`] as [`of_facade`] and [`of_picture`].
+pub fn elements(labelled: &Labelled) -> Result<Layout, GridError> {
+    match labelled {
+        Labelled::Layout(facade) => of_facade(facade),
+        Labelled::Picture(grid) => of_picture(grid),
+    }
+}
 
 /// Elements of a layout of rectangles. With exactly one region `facade` the layout is cropped to it.
 ///

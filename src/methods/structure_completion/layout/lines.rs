@@ -1,6 +1,6 @@
 //! Lines of a lattice: where the columns and rows of elements lie along one axis.
 
-use crate::shape::{Axis, Rect};
+use edifice_shape::{Axis, Rect};
 
 /// Elements are on one line when their centres differ by less than this share of their typical extent.
 const SAME_LINE: f64 = 0.35;

@@ -7,7 +7,7 @@ pub mod scope;
 
 use serde::{Deserialize, Serialize};
 
-use crate::shape::Rect;
+use edifice_shape::{Facade, LayoutError, Rect, Region};
 
 /// Label of an element that takes part in completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -51,7 +51,7 @@ impl Class {
         })
     }
 
-    /// Whether elements of the two classes may overlap: only a balcony with something else.
+    /// True if elements of the two classes may overlap: only a balcony with something else.
     pub fn may_overlap(self, other: Self) -> bool {
         (self == Class::Balcony) != (other == Class::Balcony)
     }
@@ -60,7 +60,7 @@ impl Class {
 /// An element: a class and its bounding box.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Element {
-    /// Its label.
+    /// Class of the element.
     pub class: Class,
     /// Its place, in the unit of the layout.
     pub rect: Rect,
@@ -72,7 +72,7 @@ impl Element {
         Self { class, rect }
     }
 
-    /// Whether two elements exclude each other: their common area is above a tenth of the smaller
+    /// True if two elements exclude each other: their common area is above a tenth of the smaller
     /// one, and their classes may not overlap.
     pub fn excludes(&self, other: &Element) -> bool {
         let (a, b) = (&self.rect, &other.rect);
@@ -100,6 +100,19 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// The layout as a facade of element regions, in pixels.
+    ///
+    /// # Errors
+    /// [`LayoutError`] when the outline has no area or an element leaves it.
+    pub fn facade(&self) -> Result<Facade, LayoutError> {
+        let regions = self.elements.iter().map(|e| Region {
+            label: e.class.name().to_string(),
+            rect: e.rect,
+        });
+        let (width, height) = (self.width, self.height);
+        Facade::new(self.name.clone(), "px", width, height, regions.collect())
+    }
+
     /// The elements of a class.
     pub fn of(&self, class: Class) -> impl Iterator<Item = &Element> {
         self.elements.iter().filter(move |e| e.class == class)

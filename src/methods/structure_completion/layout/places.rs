@@ -3,7 +3,7 @@
 //! The facade is cut into cells of about the mean size of an element; an item is listed in every cell that its
 //! rectangle meets. For elements that hardly overlap a query looks at a bounded number of items.
 
-use crate::shape::Rect;
+use edifice_shape::Rect;
 
 /// Ends the list of a cell.
 const END: u32 = u32::MAX;
@@ -64,7 +64,7 @@ impl Places {
         }
     }
 
-    /// Whether the test holds for an item that may meet the rectangle; one item may be tested several times.
+    /// True if the test holds for an item that may meet the rectangle; one item may be tested several times.
     pub fn any_near(&self, rect: &Rect, test: impl Fn(u32) -> bool) -> bool {
         let [across, up] = spans(rect);
         let columns = self.cell_of(0, across.0)..=self.cell_of(0, across.1);
@@ -117,7 +117,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::rng::stream;
+    use edifice_base::rng::stream;
 
     /// Random rectangles, some beyond the outline, against a look at all of them.
     #[test]

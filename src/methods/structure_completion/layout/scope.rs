@@ -1,10 +1,10 @@
-//! Which facades the benchmark is about: those with a lattice of windows.
+//! The scope of the benchmark: facades with a lattice of windows.
 
 use super::lines::lines;
 use super::{Class, Layout};
-use crate::shape::{Axis, Rect};
+use edifice_shape::{Axis, Rect};
 
-/// Whether a layout has at least 8 windows, occupies at least half of the cells of its lattice, and at
+/// True if a layout has at least 8 windows, occupies at least half of the cells of its lattice, and at
 /// least 70 % of its windows have another one in their row and in their column.
 pub fn in_scope(layout: &Layout) -> bool {
     let windows: Vec<Rect> = layout.of(Class::Window).map(|e| e.rect).collect();

@@ -7,10 +7,10 @@ use super::growing::{Growing, most};
 use super::scene::{Extent, Item, Scene};
 use super::tried::{Step, Tried};
 use super::{Direction, FAILURES, Policy};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Rect;
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
 
-/// How far an element is snapped, relative to its size.
+/// The distance within which an element is snapped, relative to its size.
 const SNAP: f64 = 0.3;
 /// Standard deviation of the random offset, relative to the spacing.
 const OFFSET: f64 = 0.1;
@@ -24,7 +24,7 @@ pub fn grow<R: Rng>(scene: &Scene, policy: &Policy, rng: &mut R) -> Vec<Element>
     growing.elements()
 }
 
-/// What the policy adds next; `None` when the candidate is complete. What it tried is of this growing layout only.
+/// The item that the policy adds next; `None` when the candidate is complete. `tried` belongs to this growing layout only.
 pub(super) fn next<R: Rng>(
     scene: &Scene,
     growing: &Growing,

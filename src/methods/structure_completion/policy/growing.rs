@@ -3,7 +3,7 @@
 use rand::{Rng, RngExt};
 
 use super::scene::{Extent, Item, Scene};
-use crate::methods::structure_completion::layout::Element;
+use crate::layout::Element;
 
 use super::super::layout::places::Places;
 
@@ -117,7 +117,7 @@ impl Growing {
         self.groups[item.grid as usize].include(number, &self.items);
     }
 
-    /// Whether an element may be added.
+    /// True if an element may be added.
     pub(super) fn fits(&self, scene: &Scene, element: &Element) -> bool {
         let excluded = |i: u32| self.items[i as usize].element.excludes(element);
         scene.open.allows(element) && !self.places.any_near(&element.rect, excluded)

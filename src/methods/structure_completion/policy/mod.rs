@@ -50,7 +50,7 @@ use super::completion::{Completed, Completion, Reason};
 use super::layout::Element;
 use super::model::Model;
 use super::partial::PartialLayout;
-use crate::rng::Stream;
+use edifice_base::rng::Stream;
 
 /// Consecutive failed actions that end a candidate.
 pub const FAILURES: usize = 40;
@@ -63,7 +63,7 @@ const MUTATION: f64 = 0.2;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Policy(pub [f64; PARAMETERS]);
 
-/// Where an action extends to.
+/// The direction in which an action extends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// Along an axis (0: x, 1: y), forward or backward.
@@ -76,7 +76,7 @@ impl Policy {
     /// A policy that a user might write down (Fig. 8, right): continue grids with their own spacing.
     pub const FIXED: Self = Self([0.5, 0.5, 0.5, 0.0, 0.9, 0.5, 0.3, 0.6, 0.3, 0.5, 0.05]);
 
-    /// Every parameter uniform.
+    /// A policy with every parameter drawn uniformly from 0 to 1.
     pub fn random<R: Rng>(rng: &mut R) -> Self {
         Self(std::array::from_fn(|_| rng.random()))
     }
@@ -116,8 +116,8 @@ impl Policy {
         left
     }
 
-    /// Which of three options: the first with probability λ_i, the second with λ_j (both divided by their sum
-    /// where that is above 1), else the third.
+    /// Draws one of three options: 0 with probability λ_i, 1 with λ_j (both divided by their sum where that is
+    /// above 1), else 2.
     fn option<R: Rng>(&self, i: usize, j: usize, rng: &mut R) -> usize {
         let sum = (self.0[i] + self.0[j]).max(1.0);
         let at = rng.random::<f64>() * sum;

@@ -1,4 +1,4 @@
-//! What the paper's method learns from a database: densities, weights, policies, labels and spacings.
+//! The model that the paper's method learns from a database: densities, weights, policies, labels and spacings.
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -6,15 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::optimize::{Budget, optimize};
 use super::{PARAMETERS, Policy, Scene, grow};
-use crate::methods::structure_completion::layout::{Class, Layout};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::methods::structure_completion::score::{
-    ScoreModel, Sites, TERMS, Training, grids, learn_weights,
-};
-use crate::methods::structure_completion::task::Task;
-use crate::model::ModelError;
-use crate::model::factor_graph::Settings;
-use crate::rng::{Stream, stream};
+use crate::layout::{Class, Layout};
+use crate::partial::PartialLayout;
+use crate::score::{ScoreModel, Sites, TERMS, Training, grids, learn_weights};
+use crate::task::Task;
+use edifice_base::rng::{Stream, stream};
+use edifice_model::ModelError;
+use edifice_model::factor_graph::Settings;
 
 /// Facades that weights are learnt from, and facades that policies are learnt on.
 const WEIGHT_FACADES: usize = 100;
@@ -155,7 +153,7 @@ impl PaperModel {
         let (mut exemplars, mut spacings) = (Vec::new(), [Vec::new(), Vec::new()]);
         for layout in layouts {
             let windows = layout.count(Class::Window).max(1) as f64;
-            let sum = |f: &dyn Fn(&crate::shape::Rect) -> f64| {
+            let sum = |f: &dyn Fn(&edifice_shape::Rect) -> f64| {
                 layout.of(Class::Window).map(|e| f(&e.rect)).sum::<f64>() / windows
             };
             let (width, height) = (sum(&|r| r.width), sum(&|r| r.height));

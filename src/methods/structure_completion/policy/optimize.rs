@@ -3,11 +3,11 @@
 use rand::Rng;
 
 use super::{Policy, Scene, grow};
-use crate::methods::structure_completion::layout::Element;
-use crate::optim::genetic::{Breed, Genetic, GeneticError, Settings};
-use crate::rng::{Stream, stream};
+use crate::layout::Element;
+use edifice_base::rng::{Stream, stream};
+use edifice_optim::genetic::{Breed, Genetic, GeneticError, Settings};
 
-/// How many candidates are made.
+/// The number of candidates to make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Budget {
     /// Policies of a generation; 10 in Sec. 5.2.
@@ -32,7 +32,7 @@ impl Budget {
         draws: 3,
     };
 
-    /// Candidates in all.
+    /// Total number of candidates.
     pub fn candidates(&self) -> usize {
         let policies = self.population + (self.population - 1) * self.generations as usize;
         policies * self.draws
@@ -42,11 +42,11 @@ impl Budget {
 /// One candidate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
-    /// Its score.
+    /// Score of the candidate, `w · f`.
     pub score: f64,
     /// Its added elements.
     pub added: Vec<Element>,
-    /// How many candidates had this score.
+    /// Number of candidates that had this score.
     pub times: usize,
 }
 
@@ -57,7 +57,7 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     /// The policy of greatest mean score.
     pub policy: Policy,
-    /// Candidates made.
+    /// Number of candidates made.
     pub made: usize,
 }
 

@@ -11,9 +11,9 @@ use super::growing::Growing;
 use super::scene::Item;
 use super::tried::Tried;
 use super::{Policy, Scene};
-use crate::methods::structure_completion::layout::Element;
-use crate::optim::adp::{Adp, AdpError, Approximation, Epsilon, Heuristic, Process};
-use crate::rng::{Stream, stream};
+use crate::layout::Element;
+use edifice_base::rng::{Stream, stream};
+use edifice_optim::adp::{Adp, AdpError, Approximation, Epsilon, Heuristic, Process};
 
 /// Completion of one partial layout.
 pub struct Growth<'a>(pub &'a Scene<'a>);

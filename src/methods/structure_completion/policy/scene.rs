@@ -1,12 +1,12 @@
-//! What the actions of a policy look up: the observed layout, its spacings, labels and grids.
+//! The scene in which a policy acts: the observed layout, its spacings, labels and grids.
 
 use rand::{Rng, RngExt};
 
 use super::growing::Growing;
 use super::model::{Exemplar, PaperModel};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::methods::structure_completion::score::{TERMS, grids};
+use crate::layout::{Class, Element};
+use crate::partial::PartialLayout;
+use crate::score::{TERMS, grids};
 
 /// Bounding box of a grid as it grows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ pub struct Scene<'a> {
     pub weights: [f64; TERMS],
     /// Extent of the facade.
     pub facade: [f64; 2],
-    /// Where elements may be added; without the observed elements, which are among the items.
+    /// The part of the facade where elements may be added; without the observed elements, which are among the items.
     pub(super) open: PartialLayout,
     /// The observed layout.
     pub(super) start: Growing,
@@ -66,13 +66,13 @@ impl Extent {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
 
-    /// Whether an element is inside, and not on the boundary.
+    /// True if an element is inside, and not on the boundary.
     pub fn surrounds(&self, element: &Element) -> bool {
         let other = Self::of(element);
         (0..2).all(|axis| self.low[axis] < other.low[axis] && other.high[axis] < self.high[axis])
     }
 
-    /// Whether a point is inside.
+    /// True if a point is inside.
     pub fn holds(&self, at: [f64; 2]) -> bool {
         (0..2).all(|axis| self.low[axis] < at[axis] && at[axis] < self.high[axis])
     }

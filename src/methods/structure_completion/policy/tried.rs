@@ -1,4 +1,4 @@
-//! What earlier actions of a candidate found out: most actions fail, and many of them ask again.
+//! The findings of earlier actions of a candidate: most actions fail, and many of them ask again.
 //!
 //! Elements are only added, so a place that was taken once stays taken. A place that depends on other items (by the
 //! opposite neighbour's spacing, by snapping) is the same as long as none is added.
@@ -12,7 +12,7 @@ pub(super) enum Step {
     Opposite(f64),
     /// The observed one of this number.
     Observed(usize, f64),
-    /// Any other.
+    /// Any other spacing.
     Other(f64),
 }
 
@@ -33,7 +33,7 @@ impl Step {
     }
 }
 
-/// What is known of one item as a seed, by direction (twice the axis, and one more forward).
+/// The findings about one item as a seed, by direction (twice the axis, and one more forward).
 #[derive(Debug, Clone, Copy)]
 struct Known {
     /// Observed spacings at which the place for an element like the seed is taken.
@@ -53,7 +53,7 @@ const NOTHING: Known = Known {
     opposite: [None; 4],
 };
 
-/// What is known of all items.
+/// The findings about all items.
 #[derive(Debug, Default)]
 pub(super) struct Tried(Vec<Known>);
 
@@ -90,7 +90,7 @@ impl Tried {
             .get_or_insert_with(|| growing.opposite(&growing.items[seed], axis, forward))
     }
 
-    /// Whether the place for an element like the seed is known to be taken.
+    /// True if the place for an element like the seed is known to be taken.
     pub fn is_taken(
         &mut self,
         growing: &Growing,

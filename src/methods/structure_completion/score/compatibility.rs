@@ -1,4 +1,4 @@
-//! Which element types occur together (Eq. 7 and 8).
+//! Compatibility: the element types that occur together (Eq. 7 and 8).
 //!
 //! An element type is a class, smaller or larger, and lower or taller than the median of that class in the
 //! database: 16 types. A coherence set holds the types of one facade. The smallest cover of the types
@@ -9,8 +9,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::grid::Grid;
-use crate::methods::structure_completion::layout::Class;
-use crate::model::ModelError;
+use crate::layout::Class;
+use edifice_model::ModelError;
 
 const TYPES: usize = 16;
 
@@ -22,7 +22,7 @@ pub struct Compatibility {
     cover: Vec<u8>,
 }
 
-/// What a file holds.
+/// The content of a file: medians of sizes, and coherence sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Parts {
     /// Per class: median of sqrt(element area / facade area), and of height / width.

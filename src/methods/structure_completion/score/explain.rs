@@ -1,4 +1,4 @@
-//! Which grid, pair or side of the facade makes each term what it is.
+//! The explanation of a score: the grid, the pair or the side of the facade that makes each term what it is.
 
 use super::grid::Grid;
 use super::pair::{alignment, pattern};
@@ -15,7 +15,7 @@ pub struct Line {
     pub feature: f64,
     /// The least of its values over grids, pairs or the facade.
     pub least: f64,
-    /// Where that value arises, in words.
+    /// The grid, pair or facade at which that value arises, in words.
     pub culprit: String,
 }
 

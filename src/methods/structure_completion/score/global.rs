@@ -1,9 +1,9 @@
-//! What a facade is as a whole (Sec. 4.3): coverage, symmetry, door position.
+//! Global features of a facade (Sec. 4.3): coverage, symmetry, door position.
 
 use std::sync::Arc;
 
 use super::grid::Grid;
-use crate::methods::structure_completion::layout::Class;
+use crate::layout::Class;
 
 /// Area of the union of the grids' bounding boxes over the area of the facade.
 pub fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {

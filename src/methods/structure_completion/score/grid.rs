@@ -1,6 +1,6 @@
 //! Grids (Sec. 3.2) extracted from elements, and what the scoring functions need of each.
 
-use crate::methods::structure_completion::layout::{Class, Element};
+use crate::layout::{Class, Element};
 
 /// Elements of one class belong to different grids where their sizes differ by a greater factor: e^0.3.
 const SIZE_STEP: f64 = 1.349_858_807_576_003;

@@ -1,4 +1,4 @@
-//! Learning the weights (Sec. 4.4): contrastive divergence through [`log_linear`](crate::model::log_linear).
+//! Learning the weights (Sec. 4.4): contrastive divergence through [`log_linear`](edifice_model::log_linear).
 //!
 //! The states of a facade are finite, so that the model is a proper distribution: each element of the
 //! layout, and as many spurious ones as a fifth of them at random places, is a *site* that is present or
@@ -14,12 +14,12 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 
 use super::{Change, ScoreModel, Scored, TERMS};
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::model::ModelError;
-use crate::model::factor_graph::Settings;
-use crate::model::log_linear::LogLinear;
-use crate::rng::Stream;
-use crate::shape::Rect;
+use crate::layout::{Class, Element, Layout};
+use edifice_base::rng::Stream;
+use edifice_model::ModelError;
+use edifice_model::factor_graph::Settings;
+use edifice_model::log_linear::LogLinear;
+use edifice_shape::Rect;
 
 /// Offsets along each axis, in tenths of the size.
 const OFFSETS: [f64; 5] = [0.0, -0.2, -0.1, 0.1, 0.2];
@@ -271,7 +271,7 @@ fn from_prior(differences: &[f64]) -> [f64; TERMS] {
 /// draws each weight to 1, at which the score is the sum of the log densities.
 ///
 /// # Errors
-/// As [`fit`](crate::model::factor_graph::fit).
+/// As [`fit`](edifice_model::factor_graph::fit).
 pub fn learn_weights<X: State>(
     model: &ScoreModel,
     data: &[X],

@@ -14,7 +14,7 @@
 //! ```
 //!
 //! # Deviations and readings
-//! - Equations 1 to 11 define ten functions; two are called f_gc. Coverage is `gv` here and has its own weight.
+//! - Equations 1 to 11 define ten functions; two are called `f_gc`. Coverage is `gv` here and has its own weight.
 //! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is taken relative to
 //!   that of a typical value of the database (the median, [`Training::typical`]), and is at most 0 and at
 //!   least [`LEAST`]. Completeness, regularity and symmetry are relative to the most probable value of the database: half of the
@@ -54,7 +54,7 @@ use self::compatibility::Compatibility;
 use self::grid::{Grid, clusters};
 use self::pair::Pattern;
 use super::layout::{Class, Element};
-use crate::model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
+use edifice_model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
 pub use explain::Line;
 pub use learn::{Sites, State, learn_weights};
 pub use state::{Change, Scored};
@@ -65,7 +65,7 @@ pub const LEAST: f64 = -30.0;
 
 /// The scoring functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
     /// Element aspect ratio (Eq. 1).

@@ -1,4 +1,4 @@
-//! What two grids are to each other (Sec. 4.2): the pattern of their elements, and their alignment.
+//! Features of pairs of grids (Sec. 4.2): the pattern of their elements, and their alignment.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +17,7 @@ const SAME_LINE: f64 = 0.35;
 pub struct Pattern {
     /// Number of elements of the sequence.
     pub length: u8,
-    /// Its Bs.
+    /// Bit i is set where element i is a B.
     pub bits: u8,
 }
 
@@ -46,12 +46,12 @@ impl Pattern {
     }
 }
 
-/// Whether the extents of two grids overlap along an axis.
+/// True if the extents of two grids overlap along an axis.
 fn overlapping(a: &Grid, b: &Grid, axis: usize) -> bool {
     a.low[axis] < b.high[axis] && b.low[axis] < a.high[axis]
 }
 
-/// Whether a line of one grid is also one of the other.
+/// True if a line of one grid is also one of the other.
 fn share_a_line(a: &Grid, b: &Grid, axis: usize) -> bool {
     let tolerance = SAME_LINE * a.size[axis].min(b.size[axis]);
     matches(&a.lines[axis], &b.lines[axis], tolerance) > 0

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::grid::{Grid, clusters};
 use super::{Evaluation, ScoreModel, TERMS, dot};
-use crate::methods::structure_completion::layout::{Class, Element};
+use crate::layout::{Class, Element};
 
 /// A change of one element.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,11 +29,11 @@ pub struct Scored<'a> {
     elements: Vec<Element>,
     now: Evaluation,
     score: f64,
-    /// What it takes to go back: the elements, the evaluation and the score before the last change.
+    /// The elements, the evaluation and the score before the last change.
     before: Option<(Undo, Evaluation, f64)>,
 }
 
-/// What takes the last change of the elements back.
+/// The inverse of the last change of the elements.
 #[derive(Debug, Clone, Copy)]
 enum Undo {
     /// Removes the last element.
@@ -75,17 +75,17 @@ impl<'a> Scored<'a> {
         &self.elements
     }
 
-    /// f.
+    /// The features f.
     pub fn features(&self) -> &[f64; TERMS] {
         &self.now.features
     }
 
-    /// `w · f`.
+    /// The score `w · f`.
     pub fn score(&self) -> f64 {
         self.score
     }
 
-    /// The evaluation.
+    /// The evaluation of the layout.
     pub fn evaluation(&self) -> &Evaluation {
         &self.now
     }

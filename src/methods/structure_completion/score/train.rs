@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::compatibility::Compatibility;
 use super::grid::Grid;
 use super::{Ratio, ScoreModel, Share, TERMS, global, grids, pair};
-use crate::methods::structure_completion::layout::Layout;
-use crate::model::ModelError;
-use crate::model::density::{Conditional, ScalarMixture, SmoothHistogram, Typical};
+use crate::layout::Layout;
+use edifice_model::ModelError;
+use edifice_model::density::{Conditional, ScalarMixture, SmoothHistogram, Typical};
 
 /// Ranges of the gap, or of the door position, that have their own density.
 const RANGES: usize = 4;

@@ -134,7 +134,7 @@ impl<'a, 'd> Climb<'a, 'd> {
         found
     }
 
-    /// What may be done to the edge from `p` to `c`: added, or taken out or turned round.
+    /// The possible moves of the edge from `p` to `c`: to add it, or to take it out or turn it round.
     fn changes(&self, p: usize, c: usize) -> [Option<Move>; 2] {
         let room = |v: usize| self.parents[v].len() < self.settings.most_parents;
         if !self.parents[c].contains(&p) {

@@ -1,4 +1,4 @@
-//! Which edges a structure may, must and must not have.
+//! The edges that a structure may, must and must not have.
 
 use super::super::super::error::ModelError;
 use super::super::super::graph::order;
@@ -67,12 +67,12 @@ impl Allowed {
         Ok(Self { edge, required })
     }
 
-    /// Whether p may be a parent of c.
+    /// True if p may be a parent of c.
     pub fn may(&self, p: usize, c: usize) -> bool {
         self.edge[p][c]
     }
 
-    /// Whether the edge from p to c has to stay.
+    /// True if the edge from p to c has to stay.
     pub fn must(&self, p: usize, c: usize) -> bool {
         self.required[c].contains(&p)
     }

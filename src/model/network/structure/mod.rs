@@ -1,7 +1,7 @@
 //! Structure search: the graph of a discrete network from complete rows.
 //!
 //! A structure's score is a sum over families, a variable X_i with parents U_i, r_i categories and q_i configurations of
-//! the parents; N_ijk rows have category k in configuration j:
+//! the parents; `N_ijk` rows have category k in configuration j:
 //!
 //! ```text
 //! BIC   Σ_i [ Σ_jk N_ijk log(N_ijk / N_ij) - (r_i - 1) q_i / 2 log N ]                              (Schwarz 1978)
@@ -29,32 +29,32 @@ mod families;
 use super::super::error::ModelError;
 use super::super::table::Table;
 use super::{FitSettings, Network, Variable};
-use crate::rng::stream;
 use climb::Climb;
 use constraints::Allowed;
+use edifice_base::rng::stream;
 use families::Families;
 
-/// What is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
+/// The score that is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
 ///
 /// [`score`] computes it for a given structure, [`search`] looks for the structure of most. Of the two, BDeu is the exact
 /// log marginal likelihood under its prior; BIC approximates it for many rows.
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, network::structure::{Score, score}};
+/// use edifice_model::{Table, network::structure::{Score, score}};
 /// // Four times yes of eight: Beta(1, 1) gives 4! 4! / 9! = 1 / 630.
 /// let data = Table::new().binary("garage", (0..8).map(|i| Some(i % 2 == 0)))?;
 /// let bdeu = score(&data, &[vec![]], Score::Bdeu(2.0))?;
 /// assert!((bdeu + 630.0_f64.ln()).abs() < 1e-9);
 /// let bic = score(&data, &[vec![]], Score::Bic)?;
 /// assert!((bic - (8.0 * 0.5_f64.ln() - 0.5 * 8.0_f64.ln())).abs() < 1e-9);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Score {
     /// Log likelihood less `log N / 2` for each free parameter.
     Bic,
-    /// Log marginal likelihood under Dirichlet priors worth so many rows in all (equivalent sample size).
+    /// Log marginal likelihood under Dirichlet priors with this equivalent sample size, in rows.
     Bdeu(f64),
 }
 
@@ -66,7 +66,7 @@ pub enum Score {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, network::structure::{Search, search}};
+/// use edifice_model::{Table, network::structure::{Search, search}};
 /// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
 /// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
 /// let data = Table::new().binary("wet", wet)?.binary("rain", rain)?;
@@ -77,11 +77,11 @@ pub enum Score {
 /// let forbidden = vec![(own("rain"), own("wet")), (own("wet"), own("rain"))];
 /// let none = search(&data, &Search { forbidden, ..Search::default() }, 1)?;
 /// assert!(none.edges.is_empty() && none.score < found.score);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// What is maximised.
+    /// The score that is maximised.
     pub score: Score,
     /// Most parents of one variable.
     pub most_parents: usize,
@@ -141,14 +141,14 @@ pub struct Found {
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, network::structure::{Search, search}};
+/// use edifice_model::{Table, network::structure::{Search, search}};
 /// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
 /// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
 /// let noise: Vec<Option<bool>> = (0..200).map(|i| Some(i / 7 % 2 == 0)).collect();
 /// let data = Table::new().binary("rain", rain)?.binary("wet", wet)?.binary("noise", noise)?;
 /// let found = search(&data, &Search::default(), 1)?;
 /// assert_eq!(found.edges.len(), 1);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, ModelError> {
     let mut families = Families::new(data, settings.score)?;
@@ -191,7 +191,7 @@ pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, Model
 ///
 /// # Examples
 /// ```
-/// use edifice::model::{Table, network::structure::{Score, score}};
+/// use edifice_model::{Table, network::structure::{Score, score}};
 /// let column = |m: usize| (0..120).map(move |i| Some(i % m == 0));
 /// let data = Table::new().binary("a", column(2))?.binary("b", column(4))?.binary("c", column(8))?;
 /// let bdeu = |parents: [Vec<usize>; 3]| score(&data, &parents, Score::Bdeu(1.0));
@@ -200,7 +200,7 @@ pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, Model
 /// let apart = bdeu([vec![], vec![], vec![]])?;
 /// // One equivalence class, one score; the columns are not independent.
 /// assert!((chain - fork).abs() < 1e-9 && chain > apart + 10.0);
-/// # Ok::<(), edifice::model::ModelError>(())
+/// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn score(data: &Table, parents: &[Vec<usize>], score: Score) -> Result<f64, ModelError> {
     let mut families = Families::new(data, score)?;

@@ -1,11 +1,12 @@
 //! The linear program whose dual the multipliers climb, solved by Clarabel.
 
 use super::super::Program;
-use crate::optim::Outcome;
-use crate::optim::qp::{QpOptions, QuadraticProgram, Row, solve};
+use edifice_optim::Outcome;
+use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 
-/// Its optimum. Variables: how much each occurrence uses each item, then how much each type has it. What enters a
-/// occurrence leaves it by its operators, each operator's arcs are a flow, and a type has what the occurrences of any clique use.
+/// The optimum of the linear program. Variables: how much each occurrence uses each item, then how much each type has it. What
+/// enters an occurrence leaves it by its operators, the arcs of each operator are a flow, and a type has an item as much as the
+/// occurrences of any clique use it together.
 pub fn optimum(program: &Program) -> f64 {
     let (used, had) = (program.items, program.type_items);
     let mut lp = QuadraticProgram::new(used + had);
@@ -24,11 +25,11 @@ pub fn optimum(program: &Program) -> f64 {
                 }
             }
         }
-        for (operator, known_way) in region_type.operators.iter().enumerate() {
-            let operation = known.first + region_type.operation(operator);
-            for node in 0..known_way.last {
+        for (index, operator) in region_type.operators.iter().enumerate() {
+            let operation = known.first + region_type.operation(index);
+            for node in 0..operator.last {
                 let mut flow: Vec<(usize, f64)> = Vec::new();
-                for item in known_way.arcs.clone() {
+                for item in operator.arcs.clone() {
                     let arc = &region_type.arcs[item];
                     if arc.from == node {
                         flow.push((known.first + item, 1.0));

@@ -1,11 +1,11 @@
 mod linear_program;
 
 use super::*;
-use crate::grammar::{Costs, evaluate};
-use crate::methods::facade_grammar::operations::Operations;
-use crate::methods::facade_grammar::regions::Types;
-use crate::methods::facade_grammar::rules::extract;
-use crate::shape::{Facade, Rect, Region};
+use crate::operations::Operations;
+use crate::regions::Types;
+use crate::rules::extract;
+use edifice_grammar::{Costs, evaluate};
+use edifice_shape::{Facade, Rect, Region};
 
 /// A facade of unit cells, one character a cell, rows from bottom to top.
 fn facade(rows: &[&str]) -> Facade {
@@ -57,9 +57,9 @@ fn one_rule_is_its_own_optimum() {
 }
 
 #[test]
-fn extensions_are_ways_of_their_own() {
+fn extensions_are_operators_of_their_own() {
     let cost = |rows: &[&str]| solved(&[facade(rows)], EXTENSIONS, 1).1;
-    // a b a b a as an alternation, a b c b a mirrored about a cell, a b c c b a about a line.
+    // `ababa` as an alternation, `abcba` mirrored about a cell, `abccba` about a line.
     assert!((cost(&["ababa"]) - 2.5).abs() < 1e-9);
     assert!((cost(&["abcba"]) - 3.1).abs() < 1e-9);
     assert!((cost(&["abccba"]) - 3.1).abs() < 1e-9);
@@ -142,7 +142,7 @@ fn steps_climb_to_the_optimum_of_the_linear_program() {
 #[test]
 fn overlapping_occurrences_share_a_clique() {
     let costs = Costs::default();
-    // `ab` stands at three occurrences apart, `abab` at two that overlap, `ba` at two apart.
+    // `ab` has three occurrences apart, `abab` two that overlap, `ba` two apart.
     let facades = [facade(&["ababab"])];
     let split = Operations::split_only();
     let program = Program::new(Types::new(&facades).unwrap(), &costs, split, usize::MAX).unwrap();
@@ -188,18 +188,18 @@ fn multipliers_of_an_item_sum_to_its_cost() {
         usize::MAX,
     )
     .unwrap();
-    let mut multipliers = Dual::new(&program);
+    let mut dual = Dual::new(&program);
     let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
-    multipliers.ascend(&mut incumbent, 50, &mut { u64::MAX });
+    dual.ascend(&mut incumbent, 50, &mut { u64::MAX });
     for region_type in &program.region_types {
         for (item, cost) in region_type.costs.iter().enumerate() {
             let multiplier = |clique| {
-                multipliers.multipliers
+                dual.multipliers
                     [region_type.first_multiplier + clique * region_type.costs.len() + item]
             };
-            let item_costs: Vec<f64> = (0..region_type.cliques.len()).map(multiplier).collect();
-            assert!(item_costs.iter().all(|s| *s >= 0.0));
-            assert!((item_costs.iter().sum::<f64>() - cost).abs() < 1e-9);
+            let split: Vec<f64> = (0..region_type.cliques.len()).map(multiplier).collect();
+            assert!(split.iter().all(|s| *s >= 0.0));
+            assert!((split.iter().sum::<f64>() - cost).abs() < 1e-9);
         }
     }
 }
@@ -228,7 +228,7 @@ fn too_many_items_and_grids_are_refused() {
 }
 
 #[test]
-fn costs_that_a_bound_allows_are_multiples_of_their_quantum() {
+fn costs_that_a_bound_allows_are_multiples_of_their_granularity() {
     let incumbent = Incumbent::new(38.1, &Costs::default(), Operations::default());
     assert!((incumbent.round_up(37.93) - 38.0).abs() < 1e-9);
     assert!(incumbent.is_optimal(38.01) && !incumbent.is_optimal(37.99));

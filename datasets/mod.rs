@@ -4,10 +4,14 @@ use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, DirEntry, include_dir};
 
-use crate::{Error, Result};
+use edifice_base::{Error, Result};
+
+/// The model of facades with which a completion starts, learnt from the shipped layouts by `edifice facade train`.
+pub const DEFAULT_COMPLETION_MODEL: &str =
+    include_str!("structure_completion/default.completion.json");
 
 /// `datasets/` of the checkout that the program was built from.
-static DATASETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/datasets");
+static DATASETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR");
 
 /// Nothing ships under this name.
 #[derive(Debug, thiserror::Error)]
@@ -17,7 +21,8 @@ struct NotShipped;
 /// Every shipped file: its path below `datasets/`, with `/` between folders, and its bytes.
 pub fn files() -> Vec<(String, &'static [u8])> {
     let mut found = Vec::new();
-    let mut folders = vec![&DATASETS];
+    // At the top stand the crate's own sources.
+    let mut folders: Vec<&Dir<'static>> = DATASETS.dirs().collect();
     while let Some(folder) = folders.pop() {
         folders.extend(folder.dirs());
         found.extend(folder.files().map(|file| {
@@ -72,7 +77,7 @@ pub fn unpack(name: &str, folder: &Path) -> Result<PathBuf> {
     Ok(place)
 }
 
-/// Whether a shipped folder stands below `folder` with all its files and no others.
+/// True if a shipped folder stands below `folder` with all its files and no others.
 fn is_whole(name: &str, folder: &Path) -> bool {
     let within = format!("{name}/");
     let mut wanted = 0;
@@ -110,9 +115,10 @@ mod tests {
 
     #[test]
     fn the_program_carries_what_the_checkout_has() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
+        let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
         let mut found = Vec::new();
-        let mut folders = vec![root.clone()];
+        let top = std::fs::read_dir(&root).unwrap().map(|e| e.unwrap().path());
+        let mut folders: Vec<PathBuf> = top.filter(|path| path.is_dir()).collect();
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(folder).unwrap() {
                 let path = entry.unwrap().path();
@@ -131,7 +137,7 @@ mod tests {
         let carried = files();
         let ours: Vec<&String> = carried.iter().map(|(name, _)| name).collect();
         assert!(ours.len() > 70);
-        // A file that is new needs `touch experiments/frame/datasets.rs`.
+        // A file that is new needs `touch datasets/mod.rs`.
         assert_eq!(ours, names.iter().collect::<Vec<_>>());
         for (name, bytes) in &carried {
             assert!(std::fs::read(root.join(name)).unwrap() == *bytes, "{name}");

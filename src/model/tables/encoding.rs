@@ -17,9 +17,9 @@ use serde::{Deserialize, Serialize};
 use super::Dataset;
 use super::marginal::choose;
 use super::transform::{Bounds, Tails, Transform};
-use crate::model::conjugate::LinearPrior;
-use crate::model::hierarchy::Group;
-use crate::model::{Cell, Column, ModelError, Table};
+use crate::conjugate::LinearPrior;
+use crate::hierarchy::Group;
+use crate::{Cell, Column, ModelError, Table};
 
 /// Share of a column's known cells from which a value is an atom.
 pub const ATOM: f64 = 0.05;
@@ -30,7 +30,7 @@ const NEIGHBOURS: usize = 5;
 /// The category of cells that are at no atom.
 const OTHER: &str = "other";
 
-/// How a real column enters a model.
+/// The form in which a real column enters a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Encoded {
@@ -44,7 +44,7 @@ pub struct Encoded {
     pub transform: Transform,
 }
 
-/// How the real columns of a table enter a model.
+/// The form in which the real columns of a table enter a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Encoding {
     columns: Vec<Encoded>,
@@ -60,14 +60,14 @@ impl Encoding {
     ///
     /// # Examples
     /// ```
-    /// use edifice::model::{Table, hierarchy::{Group, Priors}};
-    /// use edifice::tables::{Dataset, encoding::Encoding};
+    /// use edifice_model::{Table, hierarchy::{Group, Priors}};
+    /// use edifice_model::tables::{Dataset, encoding::Encoding};
     /// let area = (0..40).map(|i| Some(if i % 2 == 0 { 0.0 } else { 20.0 + i as f64 }));
     /// let table = Table::new().real("garage", area)?;
     /// let data = Dataset { table, groups: vec![Group::new("garage", &["garage"])] };
     /// let encoding = Encoding::learn(&data, &Priors::default().linear, 1)?;
     /// assert_eq!(encoding.columns()[0].atoms, [0.0]);
-    /// # Ok::<(), edifice::model::ModelError>(())
+    /// # Ok::<(), edifice_model::ModelError>(())
     /// ```
     pub fn learn(data: &Dataset, prior: &LinearPrior, seed: u64) -> Result<Self, ModelError> {
         let table = &data.table;
@@ -301,9 +301,9 @@ fn atoms(values: &[f64]) -> Vec<f64> {
     atoms
 }
 
-/// Whether value `at` (of ascending values with their counts, n in all) is more frequent than the values around it explain,
-/// by the score: with e expected from the density of its neighbours, a Poisson count of c gains `c log(c / e) - (c - e)`
-/// nats, to be more than log n. Values that are equal only since they were rounded do not stand out.
+/// True if value `at` (of ascending values with their counts, n in all) is more frequent than the values around it
+/// explain, by the score: with e expected from the density of its neighbours, a Poisson count of c gains
+/// `c log(c / e) - (c - e)` nats, to be more than log n. Values that are equal only since they were rounded do not stand out.
 fn stands_out(counted: &[(f64, f64)], at: usize, n: f64) -> bool {
     let mut gaps: Vec<f64> = counted.windows(2).map(|w| w[1].0 - w[0].0).collect();
     gaps.sort_by(f64::total_cmp);

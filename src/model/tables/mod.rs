@@ -9,7 +9,7 @@
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
 //! | [`compare`] | held-out likelihoods of models on the same splits |
 //!
-//! Texts become numbers and categories here; the models themselves are in [`crate::model`].
+//! Texts become numbers and categories here; the models themselves are in [`crate`].
 
 pub mod compare;
 pub mod encoding;
@@ -20,15 +20,15 @@ pub mod schema;
 pub mod table_model;
 pub mod transform;
 
-use crate::model::hierarchy::Group;
-use crate::model::{ModelError, Table};
+use crate::hierarchy::Group;
+use crate::{ModelError, Table};
 
 /// A table and its attributes.
 #[derive(Debug, Clone)]
 pub struct Dataset {
     /// One thing (a house, say) a row.
     pub table: Table,
-    /// Which columns belong together.
+    /// The groups of columns that belong together.
     pub groups: Vec<Group>,
 }
 

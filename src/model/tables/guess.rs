@@ -10,7 +10,7 @@ const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
 const FEW_CATEGORIES: usize = 10;
 /// Different texts beyond which it is free text, whatever the number of rows.
 const MOST_CATEGORIES: usize = 100;
-/// A category has at least so many rows on average.
+/// Least mean number of rows of a category.
 const ROWS_PER_CATEGORY: usize = 5;
 
 impl Schema {

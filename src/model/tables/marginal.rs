@@ -1,11 +1,11 @@
 //! The transform of one column, chosen by the score of a small mixture.
 
 use super::transform::{Bounds, Tails, Transform};
-use crate::model::ModelError;
-use crate::model::conjugate::LinearPrior;
-use crate::model::gmm::{Criterion, Points, Prior, Settings, select};
+use crate::ModelError;
+use crate::conjugate::LinearPrior;
+use crate::gmm::{Criterion, Points, Prior, Settings, select};
 
-/// Values that a choice is made on: of more, so many spread over the ranks.
+/// Most values that a choice is made on; of more, this number is taken, spread over the ranks.
 const LOOKED_AT: usize = 400;
 /// Components of the mixture at most.
 const COMPONENTS: usize = 3;
@@ -13,7 +13,7 @@ const COMPONENTS: usize = 3;
 const OFFSETS: [f64; 3] = [0.01, 0.1, 1.0];
 /// Offsets tried for shares.
 const SHARES: [f64; 2] = [0.01, 0.1];
-/// Where tails begin, in robust standard deviations.
+/// The distances from the centre at which tails begin, in robust standard deviations.
 const TAILS: [f64; 2] = [1.0, 3.0];
 
 /// The transform of `values` under which a mixture of at most four Gaussians has the least BIC, as a density of the values

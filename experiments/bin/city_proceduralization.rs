@@ -1,5 +1,5 @@
 //! Tables and figures of Demir, Aliaga and Benes 2014.
 
 fn main() -> std::process::ExitCode {
-    edifice::experiments::main(&edifice::experiments::city_proceduralization::EXPERIMENT)
+    edifice_experiments::main(&edifice_experiments::city_proceduralization::EXPERIMENT)
 }

@@ -1,4 +1,4 @@
-//! Which columns of a table are which attributes: `*.schema.json`.
+//! The columns of each attribute of a table: `*.schema.json`.
 //!
 //! ```json
 //! { "format": "edifice/attributes", "version": 1,
@@ -17,15 +17,15 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Dataset;
-use crate::model::hierarchy::Group;
-use crate::model::{ModelError, Table};
+use crate::hierarchy::Group;
+use crate::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/attributes";
 /// The only version.
 pub const VERSION: u64 = 1;
 
-/// How the cells of a group are read.
+/// The interpretation of the cells of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -42,7 +42,7 @@ pub enum Kind {
 pub struct SchemaGroup {
     /// Name of the attribute.
     pub name: String,
-    /// How its cells are read.
+    /// The interpretation of its cells.
     pub kind: Kind,
     /// Names of its columns.
     pub columns: Vec<String>,

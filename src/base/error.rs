@@ -1,4 +1,4 @@
-//! What failed, and where.
+//! Errors of files and commands: the failure and its place.
 //!
 //! Each layer has its own error type with one variant per way to be wrong, carrying the culprit
 //! (`LayoutError`, `GrammarError`, ...). [`Error`] is what a user of files and commands meets: it
@@ -20,7 +20,7 @@ pub enum Error {
     Io {
         /// File or folder concerned.
         path: PathBuf,
-        /// What was tried, as a verb: `read`, `create`, ...
+        /// The attempted action, as a verb: `read`, `create`, ...
         action: &'static str,
         /// The system's answer.
         source: std::io::Error,
@@ -32,7 +32,7 @@ pub enum Error {
         path: PathBuf,
         /// Place in the file: `line 3, column 7`, `regions[17].width`, `pixel (3, 9)`, ...
         place: String,
-        /// What is wrong there.
+        /// The defect at that place.
         source: Cause,
     },
     /// The content of a file as a whole cannot serve.
@@ -40,7 +40,7 @@ pub enum Error {
     Content {
         /// File concerned.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The defect of the content.
         source: Cause,
     },
     /// A value that the user gave on the command line cannot serve.

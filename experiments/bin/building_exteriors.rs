@@ -1,5 +1,5 @@
 //! Tables and figures of Fan and Wonka 2016.
 
 fn main() -> std::process::ExitCode {
-    edifice::experiments::main(&edifice::experiments::building_exteriors::EXPERIMENT)
+    edifice_experiments::main(&edifice_experiments::building_exteriors::EXPERIMENT)
 }

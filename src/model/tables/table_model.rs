@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::encoding::Encoding;
 use super::schema::Schema;
-use crate::model::hierarchy::Hierarchy;
-use crate::model::{ModelError, Table};
+use crate::hierarchy::Hierarchy;
+use crate::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/table_model";
@@ -18,9 +18,9 @@ pub const ENCODED_VERSION: u64 = 2;
 /// A model and how to read tables for it.
 #[derive(Debug, Clone)]
 pub struct TableModel {
-    /// How tables are read.
+    /// The schema by which tables are read.
     pub schema: Schema,
-    /// How their real columns enter the model; `None`: as they are.
+    /// The form in which their real columns enter the model; `None` if they enter as they are.
     pub encoding: Option<Encoding>,
     /// The model, of encoded tables.
     pub model: Hierarchy,

@@ -1,5 +1,5 @@
 //! The benchmark and the figures of Fan et al. 2014.
 
 fn main() -> std::process::ExitCode {
-    edifice::experiments::main(&edifice::experiments::structure_completion::EXPERIMENT)
+    edifice_experiments::main(&edifice_experiments::structure_completion::EXPERIMENT)
 }

@@ -9,11 +9,11 @@
 
 use rand::{Rng, RngExt};
 
-use crate::model::conjugate::LinearPrior;
-use crate::model::gmm::{Criterion, Mixture, Points, Prior, Settings, select};
-use crate::model::linalg::LN_2PI;
-use crate::model::{Cell, ModelError, Table};
-use crate::rng::stream;
+use crate::conjugate::LinearPrior;
+use crate::gmm::{Criterion, Mixture, Points, Prior, Settings, select};
+use crate::linalg::LN_2PI;
+use crate::{Cell, ModelError, Table};
+use edifice_base::rng::stream;
 
 /// Deviation of the background, in deviations of the columns.
 const WIDTH: f64 = 3.0;

@@ -14,11 +14,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What bounds a column.
+/// The bounds of a column's values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bounds {
-    /// Nothing.
+    /// No bound: `y = x`.
     None,
     /// `y = log(1 + x / c)`.
     Positive {
@@ -120,7 +120,7 @@ impl Transform {
         usize::from(self.bounds != Bounds::None) + 2 * usize::from(self.tails.is_some())
     }
 
-    /// Whether every parameter is in its range: for transforms from a file.
+    /// True if every parameter is in its range: for transforms from a file.
     pub(super) fn valid(&self) -> bool {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         let bounds = match self.bounds {

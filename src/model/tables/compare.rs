@@ -4,8 +4,8 @@
 use super::Dataset;
 use super::encoding::Encoding;
 use super::mixture::Baseline;
-use crate::model::ModelError;
-use crate::model::hierarchy::{Settings, Variant, learn};
+use crate::ModelError;
+use crate::hierarchy::{Settings, Variant, learn};
 
 /// Share of the background in comparisons ([`Settings::background`], of the mixture likewise): with none, a single row of an
 /// unforeseen kind decides a mean over hundreds.
@@ -16,9 +16,9 @@ pub const BACKGROUND: f64 = 0.002;
 pub enum Contender {
     /// The hierarchical model with lateral edges.
     Ours,
-    /// Without lateral edges.
+    /// The hierarchical model without lateral edges.
     Model1,
-    /// Without the second hidden level (Fig. 4b).
+    /// The hierarchical model without the second hidden level (Fig. 4b).
     Model2,
     /// A directed model without hidden variables (Fig. 4a).
     Model3,
@@ -114,7 +114,7 @@ pub fn extended(settings: &Settings) -> Settings {
     }
 }
 
-/// How a learned model fares on unseen rows.
+/// The fit of a learned model to unseen rows.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Judged {
     /// Mean negative log-likelihood of a row, nats.
@@ -166,7 +166,7 @@ pub fn judge(
 pub fn split(rows: usize, share: f64, seed: u64, index: u64) -> (Vec<usize>, Vec<usize>) {
     use rand::seq::SliceRandom;
     let mut order: Vec<usize> = (0..rows).collect();
-    order.shuffle(&mut crate::rng::stream(
+    order.shuffle(&mut edifice_base::rng::stream(
         seed,
         "building_exteriors/split",
         index,

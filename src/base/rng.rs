@@ -18,7 +18,7 @@ pub type Stream = Pcg64Mcg;
 ///
 /// # Examples
 /// ```
-/// use edifice::rng::stream;
+/// use edifice_base::rng::stream;
 /// use rand::RngExt;
 /// let a: u64 = stream(7, "facade", 0).random();
 /// let b: u64 = stream(7, "facade", 0).random();
@@ -40,7 +40,7 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
 ///
 /// # Examples
 /// ```
-/// use edifice::rng::{categorical, stream};
+/// use edifice_base::rng::{categorical, stream};
 /// assert_eq!(categorical(&[0.0, 2.0, 0.0], &mut stream(7, "index", 0)), 1);
 /// ```
 pub fn categorical<R: Rng + ?Sized>(weights: &[f64], rng: &mut R) -> usize {
