@@ -1,16 +1,16 @@
 //! The first test of a method: perfect grids of which a part is seen.
 
 use super::row;
-use crate::experiments::Context;
-use crate::methods::structure_completion::layout::Element;
-use crate::methods::structure_completion::made::grids::{self, Sight};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::method::{Method, complete};
-use crate::methods::structure_completion::model::shipped_model;
-use crate::methods::structure_completion::score::Scored;
-use crate::report::{Align, Table};
-use crate::rng::stream;
-use crate::{Error, Result};
+use crate::Context;
+use edifice_structure_completion::layout::Element;
+use edifice_structure_completion::made::grids::{self, Sight};
+use edifice_structure_completion::measure::agreement;
+use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::model::shipped_model;
+use edifice_structure_completion::score::Scored;
+use edifice_report::{Align, Table};
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
 
 /// Intersection over union at which a completion is perfect.
 const PERFECT: f64 = 0.9;
@@ -61,7 +61,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let truth = scored.score();
             let mut without = |k: usize| {
                 let score = scored.apply(
-                    crate::methods::structure_completion::score::Change::Remove(k),
+                    edifice_structure_completion::score::Change::Remove(k),
                 );
                 scored.undo();
                 score

@@ -1,7 +1,7 @@
 //! Agreement of a completion with the truth, computed without knowledge of any method.
 
 use super::layout::{Class, Element};
-use crate::shape::{Axis, Rect};
+use edifice_shape::{Axis, Rect};
 
 /// Precision, recall and their harmonic mean.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,10 +9,10 @@
 use super::regular::Host;
 use super::scene::{Scene, of};
 use super::shared::Lines;
-use crate::methods::structure_completion::completion::Reason;
-use crate::methods::structure_completion::layout::lines::median;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Rect;
+use crate::completion::Reason;
+use crate::layout::lines::median;
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
 
 /// A balcony is one of a floor above this width, in typical widths of a window.
 pub const WIDE: f64 = 2.0;

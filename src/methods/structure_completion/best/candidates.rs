@@ -4,10 +4,10 @@ use super::fill::typical_gap;
 use super::pool::{Draw, Origin};
 use super::scene::{Scene, of};
 use super::votes::Votes;
-use crate::methods::structure_completion::completion::Reason;
-use crate::methods::structure_completion::layout::lines::Line;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::model::boosting::Boosting;
+use crate::completion::Reason;
+use crate::layout::lines::Line;
+use crate::layout::{Class, Element};
+use edifice_model::boosting::Boosting;
 
 /// Elements of the pool this alike are one candidate.
 const SAME: f64 = 0.8;

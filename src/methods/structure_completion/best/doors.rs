@@ -9,8 +9,8 @@ use super::candidates::Candidates;
 use super::pool::Draw;
 use super::regular::clash;
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Rect;
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
 
 /// Number of features of a place.
 pub const FEATURES: usize = 28;

@@ -13,8 +13,8 @@
 
 use super::regular::clash;
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::{Axis, Rect};
+use crate::layout::{Class, Element};
+use edifice_shape::{Axis, Rect};
 
 /// Exact up to this share of the extent of a window.
 const EXACT: f64 = 0.02;
@@ -117,7 +117,7 @@ const MOST: f64 = 500.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::structure_completion::partial::PartialLayout;
+    use crate::partial::PartialLayout;
 
     fn window(c: usize, r: usize) -> Element {
         let (x, y) = (15.0 + 30.0 * c as f64, 20.0 + 50.0 * r as f64);

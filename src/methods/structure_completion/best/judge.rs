@@ -13,9 +13,9 @@
 use super::candidates::Candidates;
 use super::regular::{Regular, clash, regular, without_loners};
 use super::scene::Scene;
-use crate::methods::structure_completion::completion::Reason;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::Axis;
+use crate::completion::Reason;
+use crate::layout::{Class, Element};
+use edifice_shape::Axis;
 
 /// A window is on a line of a lattice when its centre is nearer than this share of the typical extent.
 const ON_LINE: f64 = 0.15;

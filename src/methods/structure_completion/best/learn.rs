@@ -6,12 +6,12 @@ use super::candidates::{Candidate, Candidates};
 use super::doors;
 use super::pool::pool;
 use super::scene::Scene;
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::methods::structure_completion::measure::agreement;
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::task::Task;
-use crate::model::boosting::{Boosting, BoostingError, Settings};
-use crate::rng::stream;
+use crate::layout::{Class, Element, Layout};
+use crate::measure::agreement;
+use crate::model::Model;
+use crate::task::Task;
+use edifice_model::boosting::{Boosting, BoostingError, Settings};
+use edifice_base::rng::stream;
 
 /// Most candidates that are learnt from; of more, every second, third, ... is.
 const MOST_ROWS: usize = 120_000;

@@ -11,11 +11,11 @@ use super::exact;
 use super::judge::{Judge, Layout};
 use super::pool::{Draw, pool};
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::completion::{Completed, Completion, Reason};
-use crate::methods::structure_completion::layout::Class;
-use crate::methods::structure_completion::model::Model;
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::rng::Stream;
+use crate::completion::{Completed, Completion, Reason};
+use crate::layout::Class;
+use crate::model::Model;
+use crate::partial::PartialLayout;
+use edifice_base::rng::Stream;
 
 /// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`](super::pool::Origin::ALL).
 const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];

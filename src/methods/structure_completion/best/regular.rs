@@ -12,9 +12,9 @@ use super::belong;
 use super::by_place::ByPlace;
 use super::scene::{Scene, of};
 use super::shared::Lines;
-use crate::methods::structure_completion::completion::Reason;
-use crate::methods::structure_completion::layout::{Class, Element};
-use crate::shape::{Axis, Rect};
+use crate::completion::Reason;
+use crate::layout::{Class, Element};
+use edifice_shape::{Axis, Rect};
 
 /// Share of the smaller of two elements up to which they do not overlap: rounding only.
 const TOUCH: f64 = 1e-6;

@@ -7,8 +7,8 @@
 
 use super::scene::Scene;
 use super::spacing::by_rule;
-use crate::methods::structure_completion::layout::lines::{lines, median};
-use crate::shape::{Axis, Rect};
+use crate::layout::lines::{lines, median};
+use edifice_shape::{Axis, Rect};
 
 /// A window is on a seen line when its centre is nearer than this share of the typical extent.
 const ON_LINE: f64 = 0.35;

@@ -6,7 +6,7 @@
 //! images about the middle of the facade. Of these the sequence nearest to the draw is taken, if each of its lines
 //! lies within 0.35 of the extent of an element from its own; else the lines stay where they were drawn.
 
-use crate::methods::structure_completion::layout::lines::median;
+use crate::layout::lines::median;
 
 /// Largest way of a line to its place by rule, in units of the extent of an element.
 const REACH: f64 = 0.35;

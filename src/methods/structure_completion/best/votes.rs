@@ -6,8 +6,8 @@
 //! better than the closure of their rows and columns.)
 
 use super::scene::{Scene, of};
-use crate::methods::structure_completion::layout::Class;
-use crate::methods::structure_completion::layout::lines::Line;
+use crate::layout::Class;
+use crate::layout::lines::Line;
 
 /// A cell is on a line when it is nearer than this share of the typical extent.
 const ON_LINE: f64 = 0.35;

@@ -8,9 +8,9 @@
 
 use rand::RngExt;
 
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::rng::{Stream, categorical, stream};
-use crate::shape::Rect;
+use crate::layout::{Class, Element, Layout};
+use edifice_base::rng::{Stream, categorical, stream};
+use edifice_shape::Rect;
 
 /// The bays of a facade: centres and widths of their windows.
 struct Bays {
@@ -116,7 +116,7 @@ pub fn facade(index: usize, rng: &mut Stream) -> Layout {
     let mut high = window_high;
     for floor in 0..floors {
         let top = floor + 1 == floors;
-        let by = if attic && top {
+        let by: f64 = if attic && top {
             rng.random_range(0.55..0.9)
         } else {
             1.0
@@ -263,7 +263,7 @@ fn rounded(length: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::structure_completion::layout::scope::in_scope;
+    use crate::layout::scope::in_scope;
 
     #[test]
     fn facades_are_whole_layouts_and_differ() {

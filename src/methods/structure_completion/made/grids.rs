@@ -3,10 +3,10 @@
 use rand::RngExt;
 use rand::seq::SliceRandom;
 
-use crate::methods::structure_completion::layout::{Class, Element, Layout};
-use crate::methods::structure_completion::partial::PartialLayout;
-use crate::rng::{Stream, stream};
-use crate::shape::Rect;
+use crate::layout::{Class, Element, Layout};
+use crate::partial::PartialLayout;
+use edifice_base::rng::{Stream, stream};
+use edifice_shape::Rect;
 
 /// A perfect grid: equal windows, equal gaps, equal margins on both sides.
 pub fn grid(
