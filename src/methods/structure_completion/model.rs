@@ -51,13 +51,14 @@ pub struct Model {
     pub columns: Spacing,
     /// Rows from the top down.
     pub rows: Spacing,
-    /// Probability that a candidate element is true at an intersection over union of 0.5, given its features; `None` before it is learnt.
+    /// Probability that a candidate element is true at an intersection over union of 0.5, given its features; `None` before it
+    /// is learnt.
     pub elements: Option<Boosting>,
     /// The same at an intersection over union of 0.75; `None` before it is learnt, and in files of before.
     pub tight: Option<Boosting>,
     /// Probability that a place holds the door, given its features; `None` before it is learnt, and in files of before.
     pub doors: Option<Boosting>,
-    /// What the paper's own method learns; `None` before it is learnt.
+    /// The model of the paper's own method; `None` before it is learnt.
     pub paper: Option<PaperModel>,
 }
 
@@ -160,5 +161,7 @@ impl Model {
 /// # Errors
 /// [`ModelFileError`]; a test keeps it readable.
 pub fn shipped_model() -> Result<Model, ModelFileError> {
-    Model::from_json(edifice_datasets::DEFAULT_COMPLETION_MODEL)
+    let file = "structure_completion/default.completion.json";
+    // An empty text is refused below.
+    Model::from_json(edifice_datasets::shipped_text(file).unwrap_or_default())
 }
