@@ -100,7 +100,11 @@ pub fn placed(
 }
 
 fn hanging(scene: &Scene, hosts: &[Host], drawn: &[(usize, Rect)]) -> Vec<(usize, Rect)> {
-    let seen_hosts: Vec<Host> = hosts.iter().filter(|h| h.seen).copied().collect();
+    let seen_hosts: Vec<Host> = hosts
+        .iter()
+        .filter(|h| h.given.is_none())
+        .copied()
+        .collect();
     let pair = |hosts: &[Host], r: &Rect| Some(Hanging::new(host(hosts, r)?, r));
     let seen: Vec<Hanging> = of(&scene.elements, Class::Balcony)
         .filter(|b| b.rect.width <= WIDE * scene.size.0)

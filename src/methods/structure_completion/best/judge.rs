@@ -10,6 +10,7 @@
 //! lines ([`super::regular`]), and windows that then stand alone on a line are left out. The layout of the highest score is
 //! the one of least expected risk among those that were tried.
 
+use super::by_place::ByPlace;
 use super::candidates::Candidates;
 use super::regular::{Regular, clash, regular, without_loners};
 use super::scene::Scene;
@@ -79,18 +80,19 @@ impl<'a> Judge<'a> {
 
     /// The candidates that `allowed` allows, taken greedily.
     fn greedy(&self, allowed: impl Fn(&Element) -> bool) -> Vec<usize> {
-        let element = |c: usize| &self.candidates.all[c].element;
+        let partial = self.scene.partial;
+        let facade = [partial.width, partial.height];
+        let mut taken = ByPlace::new(facade, self.scene.size, self.expected as usize);
         let mut chosen: Vec<usize> = Vec::new();
         let (mut sum, mut score) = (0.0, 0.0);
         for c in self.door.into_iter().chain(self.order.iter().copied()) {
-            let own = element(c);
-            let met = |&o: &usize| {
-                let other = element(o);
-                clash(other, own) || (other.class == own.class && other.rect.iou(&own.rect) > SAME)
+            let own = &self.candidates.all[c].element;
+            let met = |o: &Element| {
+                clash(o, own) || (o.class == own.class && o.rect.iou(&own.rect) > SAME)
             };
             // A facade that is seen without a door gets one.
             let second = own.class == Class::Door && self.door.is_some_and(|d| d != c);
-            if second || !allowed(own) || chosen.iter().any(met) {
+            if second || !allowed(own) || taken.any_near(&own.rect, met) {
                 continue;
             }
             let with = sum + self.value[c];
@@ -100,6 +102,7 @@ impl<'a> Judge<'a> {
             }
             (sum, score) = (with, next);
             chosen.push(c);
+            taken.push(*own);
         }
         chosen
     }

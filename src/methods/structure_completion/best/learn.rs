@@ -10,8 +10,8 @@ use crate::layout::{Class, Element, Layout};
 use crate::measure::agreement;
 use crate::model::Model;
 use crate::task::Task;
-use edifice_model::boosting::{Boosting, BoostingError, Settings};
 use edifice_base::rng::stream;
+use edifice_model::boosting::{Boosting, BoostingError, Settings};
 
 /// Most candidates that are learnt from; of more, every second, third, ... is.
 const MOST_ROWS: usize = 120_000;

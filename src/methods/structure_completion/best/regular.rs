@@ -8,6 +8,8 @@
 //!
 //! Observed elements are read, never moved.
 
+use std::collections::HashSet;
+
 use super::belong;
 use super::by_place::ByPlace;
 use super::scene::{Scene, of};
@@ -34,8 +36,8 @@ pub struct Host {
     pub row: usize,
     /// Its place.
     pub rect: Rect,
-    /// Whether it is seen.
-    pub seen: bool,
+    /// Its index among the elements given; `None` of a seen one.
+    pub given: Option<usize>,
 }
 
 /// A regular layout: added elements in the order in which they were given, each with the index of the element that it was,
@@ -62,7 +64,7 @@ pub fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
             column: columns.of_seen[k],
             row: rows.of_seen[k],
             rect,
-            seen: true,
+            given: None,
         })
         .collect();
     let mut taken = vec![false; columns.all.len() * rows.all.len()];
@@ -86,12 +88,12 @@ pub fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
         let rect = Rect::new(x - width / 2.0, y - height / 2.0, width, height);
         if kept.add(Element::new(Class::Window, rect), added[k].1, k) {
             taken[cell] = true;
-            let seen = false;
+            let given = Some(k);
             hosts.push(Host {
                 column,
                 row,
                 rect,
-                seen,
+                given,
             });
         }
     }
@@ -146,21 +148,21 @@ pub fn without_loners(scene: &Scene, layout: Regular) -> Vec<(Element, Reason, u
         hosts.retain(|h| {
             let alone =
                 (in_column[h.column] < 2 && !single[0]) || (in_row[h.row] < 2 && !single[1]);
-            h.seen || !alone
+            h.given.is_none() || !alone
         });
         if hosts.len() == before {
             break;
         }
     }
-    let stands = |rect: &Rect| hosts.iter().any(|h| h.rect == *rect);
+    let stands: HashSet<usize> = hosts.iter().filter_map(|h| h.given).collect();
     let held = |b: &Rect| {
         // A balcony of one window goes with it.
         let wide = b.width > belong::WIDE * scene.size.0;
         wide || hosts.iter().any(|h| belong::is_host(&h.rect, b))
     };
     let mut added = layout.added;
-    added.retain(|(e, ..)| match e.class {
-        Class::Window => stands(&e.rect),
+    added.retain(|(e, _, k)| match e.class {
+        Class::Window => stands.contains(k),
         Class::Balcony => held(&e.rect),
         Class::Door | Class::Shop => true,
     });

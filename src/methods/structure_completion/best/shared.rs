@@ -35,8 +35,6 @@ pub struct Shared {
     pub at: f64,
     /// Extent across the line.
     pub size: f64,
-    /// Whether a seen window is on it.
-    pub seen: bool,
     members: Vec<Member>,
 }
 
@@ -85,7 +83,6 @@ fn seen_lines(rects: &[Rect], axis: Axis) -> (Vec<Shared>, Vec<usize>) {
         Shared {
             at: median(members.iter().map(|m| m.at)).unwrap_or(found[k].at),
             size: median(members.iter().map(|m| m.size)).unwrap_or(found[k].size),
-            seen: true,
             members,
         }
     };
@@ -134,7 +131,6 @@ impl Lines {
             *line = Shared {
                 at,
                 size: tied(&all, line.size, at, length),
-                seen: false,
                 members: Vec::new(),
             };
         }

@@ -1,4 +1,4 @@
-//! A generator of facades with the variety of real ones, from which the default model is learnt.
+//! A generator of facades with the variety of real ones, from which a model may be learnt beside real ones.
 //!
 //! A generated facade has a pattern of bays (equal, in turn, in pairs, or wide in the middle, nearly always symmetric), floors
 //! whose heights and window heights follow from their place (ground floor, main floors, attic), balconies (none, of single
