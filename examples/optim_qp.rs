@@ -27,14 +27,13 @@ fn main() -> Result<(), QpError> {
             .equalities
             .push(Row::new([(i, 1.0), (0, -1.0)], 0.0));
     }
-    let run = solve(&program, QpOptions::default())?;
-    println!(
-        "{:?}: windows {:.3}, gaps {:.3?}",
-        run.outcome,
-        run.best[0],
-        &run.best[4..]
-    );
-    assert_eq!(run.outcome, Outcome::Converged);
-    assert!((run.best.iter().sum::<f64>() - 12.0).abs() < 1e-6);
+    let found = solve(&program, QpOptions::default())?;
+    assert_eq!(found.outcome, Outcome::Converged);
+    let widths = found.best.unwrap_or_default();
+    println!("windows {:.3}, gaps {:.3?}", widths[0], &widths[4..]);
+    assert!((widths.iter().sum::<f64>() - 12.0).abs() < 1e-6);
+    if let Some(duals) = found.duals {
+        println!("a wider wall would cost {:.3} a unit", -duals.equalities[0]);
+    }
     Ok(())
 }

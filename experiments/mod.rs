@@ -4,7 +4,7 @@
 //! 1. Write `experiments/<slug>.rs` with a `pub const EXPERIMENT: Experiment` that lists its artefacts: the name of a
 //!    table or figure (`table_1`, `figure_14`), a title, and a function `fn(&mut Context) -> Result<()>`.
 //! 2. Add `pub mod <slug>;` and `&<slug>::EXPERIMENT` to [`ALL`] below.
-//! 3. Write `src/bin/<slug>.rs`: `fn main() -> std::process::ExitCode { edifice_experiments::main(&edifice_experiments::<slug>::EXPERIMENT) }`.
+//! 3. Write `experiments/bin/<slug>.rs` and its `[[bin]]` in `experiments/Cargo.toml`: `fn main() -> std::process::ExitCode { edifice_experiments::main(&edifice_experiments::<slug>::EXPERIMENT) }`.
 //!
 //! # What an artefact's function does
 //! ```ignore

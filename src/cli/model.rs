@@ -3,6 +3,7 @@
 pub mod data;
 mod drawing;
 pub mod evaluate;
+mod fit;
 pub mod given;
 pub mod learning;
 mod network;
@@ -43,9 +44,10 @@ pub enum Command {
     #[command(after_help = "Examples:
   edifice model score penguins.table-model.json others.csv")]
     Score(tables::ScoreArgs),
-    /// Sample rows from a model of a table; prints CSV.
+    /// Sample rows from a model of a table or a Bayesian network; prints CSV.
     #[command(after_help = "Examples:
-  edifice model sample penguins.table-model.json -n 5 --given species=Adelie")]
+  edifice model sample penguins.table-model.json -n 5 --given species=Adelie
+  edifice model sample datasets/model/asia.bif -n 5 --given smoke=yes")]
     Sample(tables::SampleArgs),
     /// Complete rows whose cells are partly missing; prints CSV.
     #[command(after_help = "Examples:
@@ -78,6 +80,12 @@ pub enum Command {
   edifice model structure patients.csv -o patients.bif
   edifice model structure patients.csv --score bic --forbid 'xray>smoke' --tier age,smoke --tier lung,xray -o patients.svg")]
     Structure(structure::Args),
+    /// Learn the parameters of a Bayesian network from a table, by expectation maximisation: variables without a column are hidden,
+    /// cells may be missing.
+    #[command(after_help = "Examples:
+  edifice model fit asia.bif patients.csv -o fitted.bif
+  edifice model fit asia.bif patients.csv --from -o fitted.json")]
+    Fit(fit::Args),
     /// Convert a Bayesian network between BIF, XMLBIF and JSON, or draw it.
     #[command(after_help = "Examples:
   edifice model convert datasets/model/asia.bif -o asia.json
@@ -136,6 +144,7 @@ pub fn run(command: Command) -> Result<()> {
             Any::Other(kind, bytes) => (kind.show)(&bytes, &model, json)?,
         },
         Command::Structure(args) => return structure::run(&args),
+        Command::Fit(args) => return fit::run(&args),
         Command::Convert {
             network,
             output,
@@ -154,6 +163,14 @@ pub fn run(command: Command) -> Result<()> {
 
 fn at(path: &Path) -> impl Fn(ModelError) -> Error + '_ {
     move |error| Error::content(path, error)
+}
+
+/// The network of a file; `None` for a model of another kind.
+fn network_of(path: &Path) -> Result<Option<Network>> {
+    match read(path)? {
+        Any::Network(network) => Ok(Some(network)),
+        Any::Other(..) => Ok(None),
+    }
 }
 
 fn read(path: &Path) -> Result<Any> {

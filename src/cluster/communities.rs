@@ -361,7 +361,7 @@ impl Level {
     }
 }
 
-fn renumbered(labels: &[usize]) -> Vec<usize> {
+pub(super) fn renumbered(labels: &[usize]) -> Vec<usize> {
     let mut numbers = BTreeMap::new();
     let mut out = Vec::with_capacity(labels.len());
     for &l in labels {

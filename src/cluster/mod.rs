@@ -4,7 +4,7 @@
 //! - [`agglomerate`]: hierarchical clustering of a distance matrix, with its [`Dendrogram`].
 //! - [`ward()`]: Ward's hierarchy of points in near-linear time; [`kmeans()`] and [`lloyd`].
 //! - [`shortest_description`]: how many clusters of a hierarchy the points ask for.
-//! - [`girvan_newman`], [`louvain`]: communities of graphs, and their [`modularity`].
+//! - [`girvan_newman`], [`louvain`], [`leiden`]: communities of graphs, and their [`modularity`].
 //! - [`cumulative_match`]: how soon a ranked retrieval finds what is relevant; [`purity`].
 //! - [`adjusted_rand_index`]: agreement of two partitions.
 
@@ -15,6 +15,7 @@ mod communities;
 mod description;
 mod kd_tree;
 mod kmeans;
+mod leiden;
 mod retrieval;
 mod ward;
 
@@ -27,6 +28,7 @@ pub use communities::{
 pub use description::shortest_description;
 pub use kd_tree::KdTree;
 pub use kmeans::{KMeans, kmeans, lloyd, means, sum_of_squares};
+pub use leiden::leiden;
 pub use retrieval::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve, purity,
 };

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::packed::unpacked;
 use super::read_bytes;
+use super::table_text::{points, refuse, separator};
 use edifice_base::{Error, Result};
 
 /// Most cells of a table: a compressed one may have half as many as bytes, each a text of its own.
@@ -14,15 +15,19 @@ const MOST_CELLS: usize = 1 << 24;
 pub struct TextTable {
     /// Names of the columns.
     pub header: Vec<String>,
-    /// Cells, row by row.
+    /// Cells, row by row; numbers with points.
     pub rows: Vec<Vec<String>>,
+    /// A sentence for each way in which the file was not plain CSV: another separator, decimal commas, columns without a name.
+    pub notes: Vec<String>,
 }
 
-/// Reads a CSV file with a header line.
+/// Reads a CSV file with a header line. The separator may be `;`, a tab or `|` as well, and numbers may have decimal commas; both are
+/// found, and said in the notes.
 ///
 /// # Errors
 /// Names the file and the line of a row that is malformed or has too few or too many cells; a file
-/// without rows is an error too.
+/// without rows is an error too, as are two columns of one name, numbers that could be read in two ways, and files of other formats
+/// (Parquet, ARFF, JSON, ...), each by its name.
 pub fn read(path: &Path) -> Result<TextTable> {
     parse(&read_bytes(path)?, path)
 }
@@ -38,9 +43,17 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
         let line = e.position().map_or(1, csv::Position::line);
         Error::input(path, format!("line {line}"), e)
     };
-    let mut reader = csv::Reader::from_reader(text.as_slice());
+    refuse(&text, path)?;
+    let mark = separator(&text);
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader.delimiter(mark).from_reader(text.as_slice());
     let header = reader.headers().map_err(at)?;
-    let header: Vec<String> = header.iter().map(str::to_owned).collect();
+    let mut header: Vec<String> = header.iter().map(str::to_owned).collect();
+    let mut notes = Vec::new();
+    if mark != b',' {
+        notes.push(format!("cells are separated by {:?}", char::from(mark)));
+    }
+    names(&mut header, &mut notes, path)?;
     let most_rows = MOST_CELLS / header.len().max(1);
     let mut rows = Vec::new();
     for record in reader.records() {
@@ -53,5 +66,40 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
     if rows.is_empty() {
         return Err(Error::content(path, "the table has no rows"));
     }
-    Ok(TextTable { header, rows })
+    notes.extend(points(&header, &mut rows, mark, path)?);
+    Ok(TextTable {
+        header,
+        rows,
+        notes,
+    })
+}
+
+/// Gives nameless columns a name, and refuses a name that stands twice.
+fn names(header: &mut [String], notes: &mut Vec<String>, path: &Path) -> Result<()> {
+    if header.iter().all(|name| name.trim().parse::<f64>().is_ok()) {
+        notes.push(
+            "the first line is taken for the names of the columns, though all are numbers"
+                .to_owned(),
+        );
+    }
+    for (i, name) in header.iter_mut().enumerate() {
+        if name.trim().is_empty() {
+            *name = format!("column_{}", i + 1);
+            notes.push(format!(
+                "column {} has no name: it is called `{name}`",
+                i + 1
+            ));
+        }
+    }
+    let mut seen = std::collections::BTreeMap::new();
+    for (i, name) in header.iter().enumerate() {
+        if let Some(before) = seen.insert(name, i + 1) {
+            let message = format!(
+                "the header has `{name}` twice, as columns {before} and {}",
+                i + 1
+            );
+            return Err(Error::content(path, message));
+        }
+    }
+    Ok(())
 }

@@ -33,6 +33,7 @@ pub mod raster;
 pub mod scene_png;
 pub mod scene_svg;
 pub mod surface_obj;
+mod table_text;
 
 use std::path::Path;
 

@@ -81,6 +81,20 @@ impl Information {
         let step = |j: usize| (j..n).map(|i| inverse[i * n + j] * white[i]).sum::<f64>() * shrink;
         (0..n).map(step).collect()
     }
+
+    /// Roots of the diagonal of `(I + λ)⁻¹ / n`: standard errors of the weights from n examples. Infinite where I is singular.
+    pub fn standard_errors(&self, penalty: f64, examples: usize) -> Vec<f64> {
+        let n = self.n;
+        let mut factor = self.mean.clone();
+        (0..n).for_each(|i| factor[i * n + i] += penalty);
+        if !cholesky(&mut factor, n) {
+            return vec![f64::INFINITY; n];
+        }
+        let inverse = lower_inverse(&factor, n);
+        let variance = |j: usize| (j..n).map(|i| inverse[i * n + j].powi(2)).sum::<f64>();
+        let error = |j: usize| (variance(j) / examples.max(1) as f64).sqrt();
+        (0..n).map(error).collect()
+    }
 }
 
 #[cfg(test)]

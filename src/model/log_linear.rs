@@ -14,7 +14,7 @@
 //! rate serves for all and the weights do not depend on the features' units.
 
 use super::ModelError;
-use super::factor_graph::{Chain, Settings, fit};
+use super::factor_graph::{Chain, Fitted, Settings, fit};
 use edifice_base::rng::Stream;
 
 /// A model by its features and its negative sampler.
@@ -35,9 +35,8 @@ use edifice_base::rng::Stream;
 ///     |x: &mut bool, weights: &[f64], rng: &mut Stream| *x = rng.random::<f64>() < 1.0 / (1.0 + (-100.0 * weights[0]).exp()),
 /// );
 /// let data = [true, true, true, false].repeat(250);
-/// let settings = Settings { newton: true, ..Settings::default() };
-/// let weights = model.fit(&data, &settings, 1)?;
-/// assert!((100.0 * weights[0] - 3.0_f64.ln()).abs() < 0.1);
+/// let fitted = model.fit(&data, &Settings::default(), 1)?;
+/// assert!((100.0 * fitted.weights[0] - 3.0_f64.ln()).abs() < 0.1);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub struct LogLinear<X, F, S> {
@@ -69,12 +68,7 @@ where
     ///
     /// # Errors
     /// As [`fit`].
-    pub fn fit(
-        mut self,
-        data: &[X],
-        settings: &Settings,
-        seed: u64,
-    ) -> Result<Vec<f64>, ModelError> {
+    pub fn fit(mut self, data: &[X], settings: &Settings, seed: u64) -> Result<Fitted, ModelError> {
         let all: Vec<Vec<f64>> = data.iter().map(&self.features).collect();
         for (i, scale) in self.scales.iter_mut().enumerate() {
             let (_, deviation) = super::density::moments(all.iter().map(|f| f[i]));
@@ -82,7 +76,13 @@ where
             *scale = if deviation > 0.0 { deviation } else { 1.0 };
         }
         let scaled = fit(&self, data, settings, seed)?;
-        Ok(self.unscaled(&scaled))
+        let gap = scaled.gap.iter().zip(&self.scales).map(|(g, s)| g * s);
+        Ok(Fitted {
+            gap: gap.collect(),
+            weights: self.unscaled(&scaled.weights),
+            standard_errors: self.unscaled(&scaled.standard_errors),
+            ..scaled
+        })
     }
 
     fn unscaled(&self, weights: &[f64]) -> Vec<f64> {

@@ -9,7 +9,8 @@
 //! | [`density`] | mixtures, smoothed histograms, kernels, conditional densities | EM, counting |
 //! | [`boosting`] | probabilities from features by oblivious trees | gradient boosting |
 //! | [`low_rank`] | matrix completion | soft-impute |
-//! | [`factor_graph`] | log-linear features with shared weights | contrastive divergence |
+//! | [`factor_graph`] | log-linear features with shared weights, hidden variables, inputs | contrastive divergence, or exactly |
+//! | [`program`] | models as code: choices, observations, factors | – (posteriors of their choices) |
 //! | [`log_linear`] | the same for a user's features and negative sampler | contrastive divergence |
 //!
 //! # Which model when
@@ -22,6 +23,7 @@
 //! | points of one kind of number; clusters, a density | [`gmm`] | scikit-learn, linfa |
 //! | one number, bounded, multimodal or given another | [`density`] | rv, SciPy |
 //! | states of any kind with features that you can compute, but no sum over states | [`factor_graph`], [`log_linear`] | – |
+//! | a model that is easily written as a function that draws; posteriors of what it draws | [`program`], whose page says which engine when | Stan, Gen, Pyro |
 //! | a probability of yes or no from features | [`boosting`] | CatBoost, scikit-learn |
 //! | a matrix with holes | [`low_rank`] | softImpute |
 //!
@@ -56,6 +58,7 @@ pub(crate) mod linalg;
 pub mod log_linear;
 pub mod low_rank;
 pub mod network;
+pub mod program;
 pub(crate) mod standardize;
 mod table;
 pub mod tables;

@@ -294,6 +294,20 @@ impl Table {
         }
     }
 
+    /// Adds the rows of a table with the same columns: names, kinds and categories are the caller's to keep equal.
+    pub(crate) fn append(&mut self, other: &Self) {
+        for (own, more) in self.columns.iter_mut().zip(&other.columns) {
+            match (&mut own.values, &more.values) {
+                (Values::Real(own), Values::Real(more)) => own.extend(more),
+                (Values::Codes { codes: own, .. }, Values::Codes { codes: more, .. }) => {
+                    own.extend(more);
+                }
+                _ => {}
+            }
+        }
+        self.rows += other.rows;
+    }
+
     /// The columns of these names, in this order.
     ///
     /// # Errors

@@ -61,6 +61,7 @@
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, State, TerminationReason};
 use rand::{Rng, RngExt};
 
+use super::limits::Answer;
 use super::run::{Run, Search, Step, execute};
 use edifice_base::rng::{Stream, stream};
 
@@ -266,10 +267,10 @@ impl<H, V> Adp<H, V> {
     /// # Errors
     /// [`AdpError`] when there is no iteration to run, an exploration probability is out of range, or no walk has a cost that
     /// is a number.
-    pub fn run<P>(
+    pub fn run<P, A: Answer>(
         self,
         process: &mut P,
-        observer: impl FnMut(Step) + 'static,
+        observer: impl FnMut(Step) -> A + 'static,
     ) -> Result<Run<Vec<P::Action>>, AdpError>
     where
         P: Process,

@@ -10,6 +10,7 @@
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
+use super::limits::Answer;
 use super::run::{Run, Search, Step, execute};
 use edifice_base::rng::{Stream, stream};
 
@@ -181,10 +182,10 @@ impl Annealing {
     ///
     /// # Errors
     /// [`AnnealingError::Stopped`] when argmin fails.
-    pub fn run<L: Landscape>(
+    pub fn run<L: Landscape, A: Answer>(
         self,
         landscape: &mut L,
-        observer: impl FnMut(Step) + 'static,
+        observer: impl FnMut(Step) -> A + 'static,
     ) -> Result<Run<L::Solution>, AnnealingError> {
         let (iterations, goal) = (self.iterations, self.goal);
         let (start, cost) = (landscape.solution(), landscape.cost());

@@ -25,6 +25,7 @@ use std::time::Duration;
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
+use super::limits::Answer;
 use super::run::{Run, Search, Step, execute};
 use edifice_base::rng::{Stream, stream};
 
@@ -209,10 +210,10 @@ impl<G: Clone> Genetic<G> {
     ///
     /// # Errors
     /// [`GeneticError::Stopped`] when argmin fails.
-    pub fn run<B: Breed<Genome = G>>(
+    pub fn run<B: Breed<Genome = G>, A: Answer>(
         self,
         breed: &mut B,
-        observer: impl FnMut(Step) + 'static,
+        observer: impl FnMut(Step) -> A + 'static,
     ) -> Result<(Run<G>, Population<G>), GeneticError> {
         let settings = self.settings;
         let limits = |state: Search<G>| {

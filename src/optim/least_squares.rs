@@ -10,6 +10,7 @@ use argmin::core::{
 };
 use nalgebra::{DMatrix, DVector};
 
+use super::limits::Answer;
 use super::run::{Run, Search, Step, execute};
 
 /// A vector of residuals that depends on a vector of variables.
@@ -73,11 +74,11 @@ pub struct LeastSquaresError(String);
 /// assert!(fit.cost < 1e-12);
 /// # Ok::<(), edifice_optim::least_squares::LeastSquaresError>(())
 /// ```
-pub fn minimize<R: Residuals>(
+pub fn minimize<R: Residuals, A: Answer>(
     residuals: &R,
     start: Vec<f64>,
     limits: Limits,
-    observer: impl FnMut(Step) + 'static,
+    observer: impl FnMut(Step) -> A + 'static,
 ) -> Result<Run<Vec<f64>>, LeastSquaresError> {
     let mut first = Vec::new();
     residuals.residuals(&start, &mut first);

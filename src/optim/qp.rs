@@ -19,7 +19,7 @@ use clarabel::solver::{
 };
 
 pub use super::qp_problem::{QpError, QuadraticProgram, Row};
-use super::run::{Outcome, Run, Search, Step};
+use super::run::{Outcome, Search};
 
 /// Limits of a run of [`solve`], whose example uses the default: 200 iterations, no limit of time, tolerance 1e-9. A limit
 /// that is reached is an [`Outcome`], not an error.
@@ -43,8 +43,41 @@ impl Default for QpOptions {
     }
 }
 
-/// Solves a convex quadratic program. The solution means something where the outcome
-/// [is solved](Outcome::is_solved); the trace has one step, the last of the interior-point iterations.
+/// Result of [`solve`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The point; `None` where there is none: the program is infeasible or unbounded, or the run ended before it was solved.
+    pub best: Option<Vec<f64>>,
+    /// The cost at the point; infinity for an infeasible program, minus infinity for an unbounded one, else not a number without a point.
+    pub cost: f64,
+    /// The price of each constraint, where there is a point.
+    pub duals: Option<Duals>,
+    /// The reason for which the run ended.
+    pub outcome: Outcome,
+    /// Interior-point iterations.
+    pub iterations: u32,
+}
+
+/// Multipliers of the constraints: by how much the least cost falls for each unit by which the right-hand side of a row, or an upper bound, is
+/// raised, or a lower bound lowered.
+///
+/// At the solution `P x + q + E' y + A' z + (upper - lower) = 0`; all but those of equalities are at least 0, and 0 where the
+/// constraint is not tight. Source: Boyd and Vandenberghe 2004, Sec. 5.6.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Duals {
+    /// y, of each equality.
+    pub equalities: Vec<f64>,
+    /// z, of each inequality.
+    pub inequalities: Vec<f64>,
+    /// Of each lower bound; 0 where there is none.
+    pub lower: Vec<f64>,
+    /// Of each upper bound; 0 where there is none.
+    pub upper: Vec<f64>,
+}
+
+/// Solves a convex quadratic program.
+///
+/// Sparse throughout: memory and time are Clarabel's, and those of one sparse factor of P, which tells whether it is positive semidefinite.
 ///
 /// # Errors
 /// [`QpError`] when the program is not one: dimensions that do not fit, numbers that are not finite,
@@ -59,42 +92,37 @@ impl Default for QpOptions {
 /// program.pull(0, 3.0, 1.0).pull(1, 1.0, 1.0);
 /// program.equalities.push(Row::new([(0, 1.0), (1, 1.0)], 2.0));
 /// program.upper[0] = 1.5;
-/// let run = solve(&program, QpOptions::default()).unwrap();
-/// assert_eq!(run.outcome, Outcome::Converged);
-/// assert!((run.best[0] - 1.5).abs() < 1e-6 && (run.best[1] - 0.5).abs() < 1e-6);
+/// let found = solve(&program, QpOptions::default()).unwrap();
+/// assert_eq!(found.outcome, Outcome::Converged);
+/// let (x, duals) = (found.best.unwrap(), found.duals.unwrap());
+/// assert!((x[0] - 1.5).abs() < 1e-6 && (x[1] - 0.5).abs() < 1e-6);
+/// // One more on the right moves y towards 1 and spares 0.5; the bound spares 1.
+/// assert!((duals.equalities[0] - 0.5).abs() < 1e-5 && (duals.upper[0] - 1.0).abs() < 1e-5);
+/// // No point is both at most 0 and at least 1.
+/// program.lower = vec![1.0; 2];
+/// program.inequalities.push(Row::new([(1, 1.0)], 0.0));
+/// let found = solve(&program, QpOptions::default()).unwrap();
+/// assert_eq!((found.best, found.outcome), (None, Outcome::Infeasible));
 /// ```
-pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<Run<Vec<f64>>, QpError> {
+pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<Solution, QpError> {
     program.check()?;
     let solver = InteriorPoint {
         options,
-        outcome: Outcome::Stalled,
-        iterations: 0,
+        found: None,
     };
     let result = Executor::new(program, solver)
-        .configure(|state| state.max_iters(1))
+        .configure(|state: Search<Vec<f64>>| state.max_iters(1))
         .timer(false)
         .run()
         .map_err(|e| QpError::Solver(e.to_string()))?;
-    let mut state = result.state;
-    let cost = state.get_cost();
-    Ok(Run {
-        // argmin's best point has a cost that is a number; where there is no solution, the last may have none.
-        best: state.take_param().unwrap_or_default(),
-        cost,
-        outcome: result.solver.outcome,
-        trace: vec![Step {
-            iteration: u64::from(result.solver.iterations),
-            cost,
-            best: cost,
-        }],
-    })
+    let found = result.solver.found;
+    found.ok_or_else(|| QpError::Solver("no iteration was run".to_owned()))
 }
 
 /// The interior-point method as an argmin solver: one argmin iteration is a whole run.
 struct InteriorPoint {
     options: QpOptions,
-    outcome: Outcome,
-    iterations: u32,
+    found: Option<Solution>,
 }
 
 impl Solver<&QuadraticProgram, Search<Vec<f64>>> for InteriorPoint {
@@ -110,12 +138,11 @@ impl Solver<&QuadraticProgram, Search<Vec<f64>>> for InteriorPoint {
         let program = problem
             .problem
             .ok_or_else(|| ArgminError::msg("no program"))?;
-        let (x, status, iterations) = run_clarabel(program, self.options)?;
-        self.iterations = iterations;
-        self.outcome = outcome(status);
-        let cost = program.value(&x);
+        let found = run_clarabel(program, self.options)?;
+        let cost = found.cost;
+        self.found = Some(found);
         let done = TerminationReason::SolverConverged;
-        Ok((state.param(x).cost(cost).terminate_with(done), None))
+        Ok((state.cost(cost).terminate_with(done), None))
     }
 }
 
@@ -134,10 +161,7 @@ fn outcome(status: SolverStatus) -> Outcome {
 }
 
 /// Clarabel's form: equalities, then inequalities, then bounds as rows of one matrix.
-fn run_clarabel(
-    program: &QuadraticProgram,
-    options: QpOptions,
-) -> Result<(Vec<f64>, SolverStatus, u32), QpError> {
+fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Solution, QpError> {
     let n = program.dimension();
     let mut rows = Triplets::default();
     for row in &program.equalities {
@@ -147,11 +171,15 @@ fn run_clarabel(
     for row in &program.inequalities {
         rows.push(row.terms.iter().copied(), row.right);
     }
+    // The rows of the bounds.
+    let (mut upper_at, mut lower_at) = (vec![None; n], vec![None; n]);
     for i in 0..n {
         if program.upper[i] < f64::INFINITY {
+            upper_at[i] = Some(rows.count());
             rows.push([(i, 1.0)], program.upper[i]);
         }
         if program.lower[i] > f64::NEG_INFINITY {
+            lower_at[i] = Some(rows.count());
             rows.push([(i, -1.0)], -program.lower[i]);
         }
     }
@@ -185,8 +213,33 @@ fn run_clarabel(
     let mut solver = DefaultSolver::new(&p, &program.linear, &a, &right, &cones, settings)
         .map_err(|e| QpError::Solver(e.to_string()))?;
     solver.solve();
-    let solution = solver.solution;
-    Ok((solution.x, solution.status, solution.iterations))
+    let found = solver.solution;
+    let outcome = outcome(found.status);
+    let point = outcome.is_solved() && found.x.iter().all(|v| v.is_finite());
+    let bound = |at: Vec<Option<usize>>| -> Vec<f64> {
+        let at = at.into_iter();
+        at.map(|row| row.map_or(0.0, |row| found.z[row])).collect()
+    };
+    let inequalities = equalities + program.inequalities.len();
+    let duals = Duals {
+        equalities: found.z[..equalities].to_vec(),
+        inequalities: found.z[equalities..inequalities].to_vec(),
+        lower: bound(lower_at),
+        upper: bound(upper_at),
+    };
+    let cost = match outcome {
+        Outcome::Infeasible => f64::INFINITY,
+        Outcome::Unbounded => f64::NEG_INFINITY,
+        _ if point => program.value(&found.x),
+        _ => f64::NAN,
+    };
+    Ok(Solution {
+        cost,
+        duals: point.then_some(duals),
+        outcome,
+        iterations: found.iterations,
+        best: point.then_some(found.x),
+    })
 }
 
 /// A sparse matrix while it is written.
@@ -275,7 +328,7 @@ mod tests {
             }
             let solution = solve(&program, QpOptions::default()).unwrap();
             prop_assert_eq!(solution.outcome, Outcome::Converged);
-            for (found, expected) in solution.best.iter().zip(x) {
+            for (found, expected) in solution.best.unwrap().iter().zip(x) {
                 prop_assert!((found - expected).abs() < 1e-4);
             }
         }

@@ -1,12 +1,14 @@
 //! The result of every optimizer, and the one way in which argmin runs them.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{
-    Error, Executor, IterState, KV, Solver, State, TerminationReason, TerminationStatus,
+    Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus,
 };
+
+use super::limits::{Answer, EVALUATIONS};
 
 /// The result of a run.
 ///
@@ -68,6 +70,10 @@ pub enum Outcome {
     MaxIterations,
     /// The time limit was reached.
     TimeLimit,
+    /// The limit of evaluations was reached.
+    MaxEvaluations,
+    /// The observer asked to stop.
+    Stopped,
     /// The problem asked to stop, for example because memory is used up.
     Exhausted,
     /// No point satisfies the constraints.
@@ -84,6 +90,11 @@ impl Outcome {
         matches!(self, Self::Converged | Self::AlmostConverged)
     }
 
+    /// The same while a run may still go on; `None` where it does.
+    pub(super) fn reached(status: &TerminationStatus) -> Option<Self> {
+        matches!(status, TerminationStatus::Terminated(_)).then(|| Self::of(status))
+    }
+
     /// The outcome that argmin's status of termination means.
     fn of(status: &TerminationStatus) -> Self {
         let TerminationStatus::Terminated(reason) = status else {
@@ -94,6 +105,8 @@ impl Outcome {
             TerminationReason::TargetCostReached => Self::TargetReached,
             TerminationReason::MaxItersReached => Self::MaxIterations,
             TerminationReason::Timeout => Self::TimeLimit,
+            TerminationReason::SolverExit(why) if why == STOPPED => Self::Stopped,
+            TerminationReason::SolverExit(why) if why == EVALUATIONS => Self::MaxEvaluations,
             // Our solvers exit by themselves for this reason only; no run listens to signals.
             TerminationReason::SolverExit(_) | TerminationReason::Interrupt => Self::Exhausted,
         }
@@ -108,19 +121,25 @@ pub(super) type Search<S> = IterState<S, (), (), (), (), f64>;
 ///
 /// # Errors
 /// Those of the solver, and when it ends without a solution.
-pub(super) fn execute<O, M, S: Clone>(
+pub(super) fn execute<O, M, S: Clone, A: Answer>(
     problem: O,
     solver: M,
-    configure: impl FnOnce(Executor<O, M, Search<S>>) -> Executor<O, M, Search<S>>,
-    observer: impl FnMut(Step) + 'static,
+    configure: impl FnOnce(Executor<O, Stoppable<M>, Search<S>>) -> Executor<O, Stoppable<M>, Search<S>>,
+    observer: impl FnMut(Step) -> A + 'static,
 ) -> Result<(Run<S>, M), Error>
 where
     M: Solver<O, Search<S>>,
 {
     let trace = Rc::new(RefCell::new(Vec::new()));
+    let stop = Rc::new(Cell::new(false));
     let steps = Steps {
         trace: Rc::clone(&trace),
+        stop: Rc::clone(&stop),
         observer,
+    };
+    let solver = Stoppable {
+        inner: solver,
+        stop,
     };
     let result = configure(Executor::new(problem, solver))
         .ctrlc(false)
@@ -133,19 +152,51 @@ where
         outcome: Outcome::of(&state.termination_status),
         trace: trace.take(),
     };
-    Ok((run, result.solver))
+    Ok((run, result.solver.inner))
+}
+
+/// Name of the exit of argmin when the observer stops the run.
+const STOPPED: &str = "stopped";
+
+/// A solver that ends when its observer says so.
+pub(super) struct Stoppable<M> {
+    inner: M,
+    stop: Rc<Cell<bool>>,
+}
+
+impl<O, I: State, M: Solver<O, I>> Solver<O, I> for Stoppable<M> {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn init(&mut self, problem: &mut Problem<O>, state: I) -> Result<(I, Option<KV>), Error> {
+        self.inner.init(problem, state)
+    }
+
+    fn next_iter(&mut self, problem: &mut Problem<O>, state: I) -> Result<(I, Option<KV>), Error> {
+        self.inner.next_iter(problem, state)
+    }
+
+    fn terminate(&mut self, state: &I) -> TerminationStatus {
+        if self.stop.get() {
+            let reason = TerminationReason::SolverExit(STOPPED.to_owned());
+            return TerminationStatus::Terminated(reason);
+        }
+        self.inner.terminate(state)
+    }
 }
 
 /// Records every iteration and passes it on.
 struct Steps<F> {
     trace: Rc<RefCell<Vec<Step>>>,
+    stop: Rc<Cell<bool>>,
     observer: F,
 }
 
-impl<I, F> Observe<I> for Steps<F>
+impl<I, F, A: Answer> Observe<I> for Steps<F>
 where
     I: State<Float = f64>,
-    F: FnMut(Step),
+    F: FnMut(Step) -> A,
 {
     fn observe_iter(&mut self, state: &I, _: &KV) -> Result<(), Error> {
         let step = Step {
@@ -154,7 +205,9 @@ where
             best: state.get_best_cost(),
         };
         self.trace.borrow_mut().push(step);
-        (self.observer)(step);
+        if (self.observer)(step).stops() {
+            self.stop.set(true);
+        }
         Ok(())
     }
 }

@@ -132,7 +132,7 @@ impl Case {
         program.lower.clone_from(&self.lower);
         program.upper.clone_from(&self.upper);
         let run = solve(&program, QpOptions::default()).expect("a convex program");
-        (run.best, run.outcome)
+        (run.best.unwrap_or_default(), run.outcome)
     }
 }
 

@@ -285,6 +285,7 @@ fn lines_for_programs_have_the_keys_of_the_page() {
     let city = at("town.obj");
     let table = at("table.csv");
     let bif = at("t.bif");
+    let fitted = at("fitted.bif");
     let rows = "b,c\nx,yes\ny,no\nx,yes\ny,no\nx,no\nx,yes\ny,yes\nx,no\n";
     std::fs::write(&table, rows).expect("a written file");
     let view = at("view.json");
@@ -332,6 +333,7 @@ fn lines_for_programs_have_the_keys_of_the_page() {
             "model structure",
             &["model", "structure", &table, "-o", &bif, "--restarts", "1"],
         ),
+        ("model fit", &["model", "fit", &bif, &table, "-o", &fitted]),
         ("building show", &["building", "show", houses]),
         (
             "building generate",

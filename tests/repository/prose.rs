@@ -6,7 +6,8 @@
 use std::path::Path;
 
 /// Names that look like identifiers and are none.
-const NAMES: [&str; 31] = [
+const NAMES: [&str; 32] = [
+    "ArviZ",
     "CatBoost",
     "CityEngine",
     "CityGML",

@@ -1,5 +1,7 @@
 //! `edifice building evaluate`.
 
+use edifice_model::tables::compare::Contender;
+
 use super::data::Input;
 use crate::model::evaluate::Splits;
 
@@ -15,5 +17,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
     let data = args.input.read()?;
-    args.splits.evaluate(&data, &args.input.input)
+    // `building learn` learns the model as published.
+    args.splits
+        .evaluate(&data, &args.input.input, Contender::Ours)
 }

@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_io::{building_csv, json, read_bytes};
+use edifice_io::building_csv::{self, TextTable};
+use edifice_io::{json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 use edifice_model::tables::table_model::TableModel;
 use edifice_model::{Cell, Table};
+
+use crate::print;
 
 /// A table, and how to read it.
 #[derive(clap::Args)]
@@ -22,7 +25,7 @@ pub struct TableInput {
 impl TableInput {
     /// Reads the table; the schema is returned besides.
     pub fn read(&self) -> Result<(Dataset, Schema)> {
-        let text = building_csv::read(&self.table)?;
+        let text = read_table(&self.table)?;
         let at = |e| Error::content(&self.table, e);
         let schema = match &self.schema {
             Some(path) => read_schema(path)?,
@@ -32,12 +35,24 @@ impl TableInput {
         Ok((data, schema))
     }
 
-    /// The guessed schema.
+    /// The guessed schema, of the columns that can be in one; the others are said.
     pub fn guess(&self) -> Result<Schema> {
-        let text = building_csv::read(&self.table)?;
-        let guessed = Schema::guess(&text.header, &text.rows);
-        guessed.map_err(|e| Error::content(&self.table, e))
+        let text = read_table(&self.table)?;
+        let (schema, left_out) = Schema::guess_some(&text.header, &text.rows);
+        for reason in left_out {
+            print::message(&format!("left out: {reason}"));
+        }
+        Ok(schema)
     }
+}
+
+/// Reads a table, and says how it was read where that was not as plain CSV.
+pub fn read_table(path: &Path) -> Result<TextTable> {
+    let table = building_csv::read(path)?;
+    for note in &table.notes {
+        print::message(&format!("{}: {note}", path.display()));
+    }
+    Ok(table)
 }
 
 /// Reads a schema.
@@ -56,7 +71,11 @@ pub fn read_model(path: &Path) -> Result<TableModel> {
 
 /// Reads a table by a model's schema. Of the schema's columns the table may lack some: they are missing.
 pub fn read_rows(model: &TableModel, path: &Path) -> Result<Dataset> {
-    let text = building_csv::read(path)?;
+    rows(model, &read_table(path)?, path)
+}
+
+/// The rows of a table that was read, by a model's schema; `path` names it in errors.
+pub fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset> {
     let mut schema = model.schema.clone();
     for group in &mut schema.groups {
         group.columns.retain(|column| text.header.contains(column));

@@ -29,10 +29,13 @@ pub struct Splits {
     /// Share of the rows that is learned from.
     #[arg(long, default_value_t = 0.8)]
     share: f64,
-    /// Models to compare; differences are to the first. Besides the five of the paper there is `extended`, which `model
-    /// learn` learns; at values that many rows share its density is a probability, so that its numbers are to be compared
-    /// with those of others only where there are none such.
-    #[arg(long, value_delimiter = ',', default_values_t = Contender::ALL.map(|c| c.name().to_owned()))]
+    /// Models to compare, separated by commas; differences are to the first. `ours` is what the command beside learns by default
+    /// (`model learn`, `building learn`), `published` the hierarchical model of the paper, `model_1` to `model_3` and `gmm` its
+    /// peers: these unless given. Further ones are `extended`, the hierarchical model of an encoded table whose real columns share one
+    /// hidden variable or have one each, by the higher score; `one_group`, the same where they share one; `gaussian`, one Gaussian; `kde`, a
+    /// kernel density. At values that many rows share the density of an encoded table is a probability: there its numbers are not to be
+    /// compared with those of densities.
+    #[arg(long, value_delimiter = ',')]
     models: Vec<String>,
     #[command(flatten)]
     search: Search,
@@ -41,18 +44,19 @@ pub struct Splits {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let (data, _) = args.input.read()?;
-    args.splits.evaluate(&data, &args.input.table)
+    args.splits
+        .evaluate(&data, &args.input.table, Contender::Extended)
 }
 
 impl Splits {
-    /// Prints the mean negative log-likelihood of unseen rows by model and split as CSV; means, standard errors and paired
+    /// `learned` is the model that `ours` names. Prints the mean negative log-likelihood of unseen rows by model and split as CSV; means, standard errors and paired
     /// differences go to standard error. `path` names the data in errors.
-    pub fn evaluate(&self, data: &Dataset, path: &Path) -> Result<()> {
+    pub fn evaluate(&self, data: &Dataset, path: &Path, learned: Contender) -> Result<()> {
         if !(self.share > 0.0 && self.share < 1.0) {
             return Err(Error::option("--share", "must lie between 0 and 1"));
         }
         let settings = self.search.settings(BACKGROUND)?;
-        let contenders = self.contenders()?;
+        let contenders = self.contenders(learned)?;
         print::line("model,split,nll")?;
         let mut losses = vec![Vec::new(); contenders.len()];
         for index in 0..self.splits {
@@ -62,35 +66,47 @@ impl Splits {
             }
             let rows = (train.clone(), test.clone());
             let (train, test) = (data.select(&train), data.select(&test));
-            for (contender, losses) in contenders.iter().zip(&mut losses) {
+            for ((name, contender), losses) in contenders.iter().zip(&mut losses) {
                 let found = held_out(*contender, &train, &test, &settings, self.search.seed);
                 let found = found.map_err(|e| Error::content(path, within(&e, &rows, index)))?;
                 let mean = found.iter().sum::<f64>() / found.len() as f64;
-                print::line(&format!("{},{},{mean:.4}", contender.name(), index + 1))?;
+                print::line(&format!("{name},{},{mean:.4}", index + 1))?;
                 losses.push(mean);
             }
         }
         let reference = &losses[0];
-        for (contender, own) in contenders.iter().zip(&losses) {
+        for ((name, _), own) in contenders.iter().zip(&losses) {
             let s = summary(own, reference);
             print::message(&format!(
-                "{}: {:.3} +- {:.3} nats a row, {:+.3} +- {:.3} beside {}",
-                contender.name(),
-                s.mean,
-                s.error,
-                s.difference,
-                s.difference_error,
-                contenders[0].name()
+                "{name}: {:.3} +- {:.3} nats a row, {:+.3} +- {:.3} beside {}",
+                s.mean, s.error, s.difference, s.difference_error, contenders[0].0
             ));
         }
         Ok(())
     }
 
-    fn contenders(&self) -> Result<Vec<Contender>> {
+    /// The models by name.
+    fn contenders(&self, learned: Contender) -> Result<Vec<(String, Contender)>> {
+        let mut all = vec![("ours", learned), ("published", Contender::Ours)];
+        let peers = Contender::ALL.into_iter().filter(|c| *c != Contender::Ours);
+        all.extend(peers.map(|c| (c.name(), c)));
+        if self.models.is_empty() {
+            // Each model once.
+            all.retain(|(name, c)| *name != "published" || *c != learned);
+            return Ok(all
+                .iter()
+                .map(|(name, c)| ((*name).to_owned(), *c))
+                .collect());
+        }
+        let further = Contender::EVERY
+            .into_iter()
+            .filter(|c| !Contender::ALL.contains(c));
+        all.extend(further.map(|c| (c.name(), c)));
         let known = |name: &String| {
-            let all = || Contender::ALL.into_iter().chain([Contender::Extended]);
-            all().find(|c| c.name() == name).ok_or_else(|| {
-                let names: Vec<&str> = all().map(Contender::name).collect();
+            let found = all.iter().find(|(known, _)| known == name);
+            let found = found.map(|(_, contender)| (name.clone(), *contender));
+            found.ok_or_else(|| {
+                let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
                 let names = names.join(", ");
                 Error::option("--models", format!("{name:?} is none of {names}"))
             })

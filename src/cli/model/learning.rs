@@ -13,6 +13,7 @@ use edifice_model::hierarchy::{
     Hierarchy, Learned, Settings, Step, fit_observed, learn_observed, refine,
 };
 use edifice_model::tables::Dataset;
+use edifice_model::tables::joined::learn_joined;
 use edifice_model::{ModelError, Table};
 
 use super::search::{Search, warnings};
@@ -117,6 +118,22 @@ impl Learning {
         }
         let learned: Learned = match start {
             Some(model) => refine(model, &data.table, settings, seed, &observer)?,
+            // The extended model: the real columns may share one hidden variable.
+            None if settings.category_edges => {
+                let (table, groups) = (&data.table, &data.groups);
+                let found = learn_joined(table, groups, settings, seed, &observer)?;
+                if let Some(other) = found.other_score {
+                    let (ours, theirs) = match found.joined {
+                        true => ("share one hidden variable", "one each"),
+                        false => ("have a hidden variable each", "one together"),
+                    };
+                    let score = found.learned.score;
+                    print::message(&format!(
+                        "real columns {ours}: score {score:.1}, with {theirs} {other:.1}"
+                    ));
+                }
+                found.learned
+            }
             None => learn_observed(&data.table, &data.groups, settings, seed, &observer)?,
         };
         Ok(Found {

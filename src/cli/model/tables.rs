@@ -11,10 +11,10 @@ use edifice_model::tables::compare::{BACKGROUND, extended};
 use edifice_model::tables::encoding::Encoding;
 use edifice_model::tables::table_model::{FORMAT, TableModel};
 
-use super::Shown;
-use super::data::{TableInput, csv_lines, read_model, read_rows};
+use super::data::{TableInput, csv_lines, read_model, read_rows, read_table, rows};
 use super::given::evidence;
 use super::learning::Learning;
+use super::{Shown, fit, network_of};
 use crate::print;
 
 /// Options of `learn`.
@@ -39,7 +39,7 @@ pub struct LearnArgs {
 /// Options of `score`.
 #[derive(clap::Args)]
 pub struct ScoreArgs {
-    /// The model (`*.table-model.json`).
+    /// The model (`*.table-model.json`), or a Bayesian network (`*.bif`, `*.xmlbif`, or as JSON).
     model: PathBuf,
     /// The table.
     table: PathBuf,
@@ -48,7 +48,7 @@ pub struct ScoreArgs {
 /// Options of `sample`.
 #[derive(clap::Args)]
 pub struct SampleArgs {
-    /// The model (`*.table-model.json`).
+    /// The model (`*.table-model.json`), or a Bayesian network (`*.bif`, `*.xmlbif`, or as JSON).
     model: PathBuf,
     /// Rows to draw.
     #[arg(short = 'n', long, default_value_t = 10)]
@@ -64,7 +64,7 @@ pub struct SampleArgs {
 /// Options of `complete`.
 #[derive(clap::Args)]
 pub struct CompleteArgs {
-    /// The model (`*.table-model.json`).
+    /// The model (`*.table-model.json`), or a Bayesian network (`*.bif`, `*.xmlbif`, or as JSON).
     model: PathBuf,
     /// The table; empty cells and columns that it lacks are completed.
     table: PathBuf,
@@ -157,6 +157,9 @@ fn at(path: &Path) -> impl Fn(ModelError) -> Error + '_ {
 
 /// Runs `score`: the log-likelihood of every row, missing cells integrated out.
 pub fn score(args: &ScoreArgs) -> Result<()> {
+    if let Some(network) = network_of(&args.model)? {
+        return fit::score(&network, &args.table);
+    }
     let model = read_model(&args.model)?;
     let data = read_rows(&model, &args.table)?;
     let logs = model.log_likelihood(&data.table);
@@ -172,10 +175,13 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
 
 /// Runs `sample`.
 pub fn sample(args: &SampleArgs) -> Result<()> {
-    let model = read_model(&args.model)?;
     if args.count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
+    if let Some(network) = network_of(&args.model)? {
+        return fit::sample(&network, &args.given, args.count, args.seed);
+    }
+    let model = read_model(&args.model)?;
     let mut rng = stream(args.seed, "model/sample", 0);
     let kinds = model.sample(1, &mut rng).map_err(Error::method)?;
     let given = evidence(&model.schema.groups(), &kinds, &args.given)
@@ -190,16 +196,30 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
 
 /// Runs `complete`.
 pub fn complete(args: &CompleteArgs) -> Result<()> {
+    if let Some(network) = network_of(&args.model)? {
+        return fit::complete(&network, &args.table, args.count, args.seed);
+    }
     let model = read_model(&args.model)?;
-    let data = read_rows(&model, &args.table)?;
+    let text = read_table(&args.table)?;
+    let data = rows(&model, &text, &args.table)?;
+    let known: Vec<String> = match model.schema.keep.is_empty() {
+        true => (model.schema.groups.iter().flat_map(|g| g.columns.clone())).collect(),
+        // Rows are left out: what they had else is left out as well.
+        false => text.header.clone(),
+    };
+    let passed = fit::Passed::new(&text, &known);
     for row in 0..data.table.rows() {
         let mut rng = stream(args.seed, "model/complete", row as u64);
         let given = data.table.select(&[row]);
         let draws = model.complete(&given, args.count, &mut rng);
         let draws = draws.map_err(|e| Error::content(&args.table, e.in_row(row)))?;
-        // The header stands once, before the first row.
-        let lines = csv_lines(&draws);
-        print::line(&lines[usize::from(row > 0)..].join("\n"))?;
+        let mut lines = csv_lines(&draws).into_iter();
+        if let Some(header) = lines.next().filter(|_| row == 0) {
+            print::line(&passed.header(&header))?;
+        }
+        for line in lines {
+            print::line(&passed.line(row, &line))?;
+        }
     }
     Ok(())
 }

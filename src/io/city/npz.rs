@@ -5,8 +5,10 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use npyz::npz::NpzArchive;
-use npyz::{DType, Deserialize, TypeChar};
+use npyz::{DType, Deserialize, NpyFile, TypeChar};
+use zip::ZipArchive;
+use zip::read::ZipFile;
+use zip::result::ZipError;
 
 use super::CityError;
 use edifice_base::{Error, Result};
@@ -28,7 +30,7 @@ pub fn read(path: &Path) -> Result<City> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: Vec<u8>, path: &Path) -> Result<City> {
-    let archive = NpzArchive::new(Cursor::new(bytes)).map_err(|e| Error::content(path, e))?;
+    let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| Error::content(path, e))?;
     let mut arrays = Arrays { archive, path };
     let (positions, unit) = arrays.positions()?;
     let triangles = arrays.integers("F")?;
@@ -90,8 +92,11 @@ pub fn parse(bytes: Vec<u8>, path: &Path) -> Result<City> {
     })
 }
 
+/// A file in the archive.
+type Member<'a> = ZipFile<'a, Cursor<Vec<u8>>>;
+
 struct Arrays<'a> {
-    archive: NpzArchive<Cursor<Vec<u8>>>,
+    archive: ZipArchive<Cursor<Vec<u8>>>,
     path: &'a Path,
 }
 
@@ -101,15 +106,21 @@ impl Arrays<'_> {
         Error::input(self.path, format!("array {array}"), error)
     }
 
+    /// An array of the archive: the file of its name with the ending `.npy`; `None` when there is none.
+    fn open(&mut self, array: &str) -> std::io::Result<Option<NpyFile<Member<'_>>>> {
+        match self.archive.by_name(&format!("{array}.npy")) {
+            Ok(file) => NpyFile::new(file).map(Some),
+            Err(ZipError::FileNotFound) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
     /// All items of an array; grows with what is read, never with what a header says.
     fn items<T: Deserialize>(&mut self, array: &str) -> Result<Vec<T>> {
         let path = self.path;
         let fail =
             |error: String| Error::input(path, format!("array {array}"), CityError::Format(error));
-        let file = self
-            .archive
-            .by_name(array)
-            .map_err(|e| fail(e.to_string()))?;
+        let file = self.open(array).map_err(|e| fail(e.to_string()))?;
         let file = file.ok_or_else(|| fail("missing from the archive".to_owned()))?;
         let mut items = Vec::new();
         for item in file.data::<T>().map_err(|e| fail(e.to_string()))? {
@@ -120,7 +131,7 @@ impl Arrays<'_> {
 
     /// An array's letter of type and its size in bytes; `None` when there is no such array.
     fn kind(&mut self, array: &str) -> Result<Option<(TypeChar, u64)>> {
-        let found = self.archive.by_name(array);
+        let found = self.open(array);
         let kind = found.map(|file| file.map(|f| f.dtype()));
         match kind.map_err(|e| self.fail(array, e))? {
             None => Ok(None),

@@ -146,11 +146,10 @@ impl Axis<'_> {
             }
         }
         let found = solve_qp(&program, QpOptions::default())?;
-        let solved = found.outcome.is_solved();
-        if solved && found.best.iter().all(|v| v.is_finite()) {
+        if let Some(best) = found.best {
             let positions = match self.lattice.whole {
-                true => round_together(&found.best),
-                false => found.best,
+                true => round_together(&best),
+                false => best,
             };
             if system.holds(&positions) {
                 return Ok(Some(positions));

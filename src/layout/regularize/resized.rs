@@ -171,15 +171,14 @@ impl Lines<'_> {
             }
         }
         let found = solve_qp(&program, QpOptions::default())?;
-        let solved = found.outcome.is_solved();
-        if !solved || found.best.iter().any(|v| !v.is_finite()) {
+        let Some(best) = found.best else {
             return Ok(None);
-        }
+        };
         // Lines of a group are equal, and the sides stay, to the bit.
         let position = |&first: &usize| match first {
             0 => cuts[0],
             first if self.group[n - 1] == first => cuts[n - 1],
-            first => found.best[first],
+            first => best[first],
         };
         Ok(Some(self.group.iter().map(position).collect()))
     }

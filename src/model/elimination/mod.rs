@@ -27,12 +27,14 @@
 
 mod beliefs;
 mod factor;
+mod messages;
 pub mod order;
 mod tree;
 
 pub use beliefs::Beliefs;
 pub use factor::Factor;
 pub(crate) use factor::advance;
+pub(crate) use messages::Messages;
 pub use order::{Order, TooWide};
 pub use tree::BucketTree;
 

@@ -1,9 +1,9 @@
 //! Discrete variables under factors with local features: Gibbs sampling, and exact sums by elimination.
 
-use super::super::elimination::{self, BucketTree, Mode};
+use super::super::elimination;
 use super::super::error::ModelError;
 use super::super::linalg::categorical_of_logs;
-use super::{Chain, dot};
+use super::Chain;
 use edifice_base::rng::Stream;
 
 /// A feature of the values of a few variables.
@@ -49,13 +49,17 @@ pub struct Factor {
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub struct Gibbs {
-    sizes: Vec<usize>,
-    factors: Vec<Factor>,
-    weights: usize,
+    pub(super) sizes: Vec<usize>,
+    pub(super) factors: Vec<Factor>,
+    pub(super) weights: usize,
     /// Factors of each variable.
-    around: Vec<Vec<usize>>,
+    pub(super) around: Vec<Vec<usize>>,
     /// Per factor, its feature for every configuration of its variables, the last fastest; empty beyond [`TABULATED`].
-    tables: Vec<Vec<f64>>,
+    pub(super) tables: Vec<Vec<f64>>,
+    /// Variables that are not in the data.
+    hidden: Vec<usize>,
+    /// Variables that chains move.
+    free: Vec<usize>,
 }
 
 /// Most configurations of a factor whose feature is tabulated.
@@ -93,11 +97,72 @@ impl Gibbs {
         let tables = factors.iter().map(|f| tabulate(f, &sizes)).collect();
         Ok(Self {
             weights: factors.iter().map(|f| f.weight + 1).max().unwrap_or(0),
+            hidden: Vec::new(),
+            free: (0..sizes.len()).collect(),
             sizes,
             factors,
             around,
             tables,
         })
+    }
+
+    /// The same with hidden variables: their values in examples are not looked at; they are drawn given the others
+    /// instead, so that [`super::fit`] climbs the likelihood of the observed ones (a restricted Boltzmann machine).
+    ///
+    /// # Errors
+    /// [`ModelError::Parameter`] for a variable that is not there.
+    ///
+    /// # Examples
+    /// Two bits that are equal, tied by a hidden one:
+    /// ```
+    /// use edifice_model::factor_graph::{Factor, Gibbs, fit_exact};
+    /// let tie = |a, b, weight| Factor { variables: vec![a, b], weight, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
+    /// let machine = Gibbs::new(vec![2; 3], vec![tie(0, 2, 0), tie(1, 2, 0)])?.hidden(&[2])?;
+    /// let data = [vec![0, 0, 0], vec![1, 1, 0], vec![0, 0, 0], vec![0, 1, 0], vec![1, 1, 0]];
+    /// let weights = fit_exact(&machine, &data, 0.0)?.weights;
+    /// // P(equal) = (1 + e^2w) / (1 + e^w)^2 = 4/5.
+    /// let w: f64 = weights[0].abs().exp();
+    /// assert!(((1.0 + w * w) / (1.0 + w).powi(2) - 0.8).abs() < 1e-6);
+    /// # Ok::<(), edifice_model::ModelError>(())
+    /// ```
+    pub fn hidden(mut self, variables: &[usize]) -> Result<Self, ModelError> {
+        self.check(variables)?;
+        self.hidden = variables.to_vec();
+        Ok(self)
+    }
+
+    /// The same with inputs: variables that are always known and whose distribution is not modelled, `p(others | inputs)` is (a conditional
+    /// random field). Chains leave them as they are in the examples.
+    ///
+    /// # Errors
+    /// [`ModelError::Parameter`] for a variable that is not there.
+    pub fn inputs(mut self, variables: &[usize]) -> Result<Self, ModelError> {
+        self.check(variables)?;
+        self.free.retain(|v| !variables.contains(v));
+        Ok(self)
+    }
+
+    fn check(&self, variables: &[usize]) -> Result<(), ModelError> {
+        match variables.iter().find(|v| **v >= self.sizes.len()) {
+            Some(v) => Err(ModelError::parameter(
+                format!("variable {v}"),
+                "is not there",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// The known values of an example: all but those of hidden variables.
+    pub(super) fn observed(&self, state: &[usize]) -> Vec<Option<usize>> {
+        let one = |(v, x): (usize, &usize)| (!self.hidden.contains(&v)).then_some(*x);
+        state.iter().enumerate().map(one).collect()
+    }
+
+    /// The values of the inputs of an example.
+    pub(super) fn given(&self, state: &[usize]) -> Vec<Option<usize>> {
+        let mut known: Vec<Option<usize>> = state.iter().map(|x| Some(*x)).collect();
+        self.free.iter().for_each(|&v| known[v] = None);
+        known
     }
 
     fn value(&self, factor: usize, state: &[usize]) -> f64 {
@@ -116,34 +181,30 @@ impl Gibbs {
     /// [`ModelError::TooWide`]; [`ModelError::Parameter`] for a factor of more than 2¹² configurations, or weights of
     /// another number.
     pub fn exact(&self, weights: &[f64]) -> Result<(f64, Vec<f64>), ModelError> {
-        if weights.len() != self.weights {
-            return Err(ModelError::parameter("weights", "of another number"));
-        }
-        let mut factors = Vec::with_capacity(self.factors.len());
-        for (i, (factor, table)) in self.factors.iter().zip(&self.tables).enumerate() {
-            if table.is_empty() {
-                let problem = "has too many configurations to be tabulated";
-                return Err(ModelError::parameter(format!("factor {i}"), problem));
+        let question = self.ask(weights)?;
+        Ok((question.log_partition()?, question.expectations()?))
+    }
+
+    /// Draws each of some variables given all others, once.
+    pub(super) fn sweep(
+        &self,
+        variables: &[usize],
+        state: &mut [usize],
+        weights: &[f64],
+        rng: &mut Stream,
+    ) {
+        let mut logs = vec![0.0; self.sizes.iter().copied().max().unwrap_or(0)];
+        for &v in variables {
+            let logs = &mut logs[..self.sizes[v]];
+            for (value, log) in logs.iter_mut().enumerate() {
+                state[v] = value;
+                let factors = self.around[v].iter();
+                *log = factors
+                    .map(|&f| weights[self.factors[f].weight] * self.value(f, state))
+                    .sum();
             }
-            let logs = table.iter().map(|f| weights[factor.weight] * f).collect();
-            factors.push(elimination::Factor::new(factor.variables.clone(), logs));
+            state[v] = categorical_of_logs(logs, rng);
         }
-        // Variables without a factor are free.
-        let alone = (0..self.sizes.len()).filter(|&v| self.around[v].is_empty());
-        let free: f64 = alone.map(|v| (self.sizes[v] as f64).ln()).sum();
-        let tree = BucketTree::new(factors, &self.sizes, Mode::Sum);
-        let tree = tree.map_err(|e| ModelError::TooWide {
-            variable: e.variable.to_string(),
-            width: e.width,
-            cells: e.cells,
-        })?;
-        let beliefs = tree.beliefs();
-        let mut mean = vec![0.0; self.weights];
-        for (factor, table) in self.factors.iter().zip(&self.tables) {
-            let joint = beliefs.of(&factor.variables);
-            mean[factor.weight] += dot(table, &joint);
-        }
-        Ok((tree.total + free, mean))
     }
 }
 
@@ -181,17 +242,11 @@ impl Chain for Gibbs {
     }
 
     fn step(&self, state: &mut Vec<usize>, weights: &[f64], rng: &mut Stream) {
-        let mut logs = vec![0.0; self.sizes.iter().copied().max().unwrap_or(0)];
-        for v in 0..self.sizes.len() {
-            let logs = &mut logs[..self.sizes[v]];
-            for (value, log) in logs.iter_mut().enumerate() {
-                state[v] = value;
-                let factors = self.around[v].iter();
-                *log = factors
-                    .map(|&f| weights[self.factors[f].weight] * self.value(f, state))
-                    .sum();
-            }
-            state[v] = categorical_of_logs(logs, rng);
-        }
+        self.sweep(&self.free, state, weights, rng);
+    }
+
+    fn clamp(&self, state: &mut Vec<usize>, weights: &[f64], rng: &mut Stream) -> bool {
+        self.sweep(&self.hidden, state, weights, rng);
+        !self.hidden.is_empty()
     }
 }

@@ -12,22 +12,31 @@
 //! Metropolis-Hastings: from x, a proposal x' with `log q(x | x') - log q(x' | x)` is accepted with
 //! probability `min(1, exp(wᵀ(f(x') - f(x)) + log q ratio))`.
 //!
+//! With hidden parts h of examples v, `p(v; w) = Σ_h p(v, h; w)`, the first term of the gradient is `mean E_w[f | v_n]`, by moves that
+//! keep v ([`Chain::clamp`]). A graph of discrete variables is asked by [`Gibbs::ask`], and where elimination fits it is fitted without
+//! chains ([`fit_exact`]).
+//!
 //! # Deviations and readings
-//! - With [`Settings::newton`] a step is the gradient over the information that the chains give of the weights,
+//! - Unless [`Settings::newton`] is switched off a step is the gradient over the information that the chains give of the weights,
 //!   half the covariance of `f(x) - f(x')` between examples and the ends of their chains, so that the rate has no unit and correlated features do not slow the ascent.
 //! - Step sizes fall as `rate / (1 + round / decay)`; the result is the mean of the weights over
 //!   the second half of the rounds (Polyak and Juditsky 1992).
 //!
 //! Sources: Hinton 2002, *Training products of experts*; Koller and Friedman 2009, Sec. 20.6.
 
+mod annealed;
+mod ask;
+mod exact;
+mod fit;
 mod gibbs;
 
 use rand::RngExt;
-use rayon::prelude::*;
 
-use super::error::ModelError;
-use super::information::Information;
-use edifice_base::rng::{Stream, stream};
+pub use annealed::{Annealing, LogPartition};
+pub use ask::{Beliefs, Question};
+use edifice_base::rng::Stream;
+pub use exact::{ExactFit, exact_gradient, fit_exact};
+pub use fit::{Fitted, Outcome, Settings, fit, gradient};
 pub use gibbs::{Factor, Feature, Gibbs};
 
 /// A model family: features of a state, and a way to move between states.
@@ -47,6 +56,12 @@ pub trait Chain: Sync {
 
     /// One move of a Markov chain that leaves `p(x; w)` invariant.
     fn step(&self, state: &mut Self::State, weights: &[f64], rng: &mut Stream);
+
+    /// One move of the hidden part of an example that leaves `p(hidden | observed; w)` invariant; false where nothing is hidden, as unless
+    /// overridden. With it [`fit`] climbs the likelihood of the observed part.
+    fn clamp(&self, _: &mut Self::State, _: &[f64], _: &mut Stream) -> bool {
+        false
+    }
 }
 
 /// A proposal for Metropolis-Hastings, and with it a [`Chain`] through [`Metropolis`].
@@ -109,204 +124,6 @@ impl<P: Propose> Chain for Metropolis<P> {
             *state = proposed;
         }
     }
-}
-
-/// Settings of [`fit`].
-///
-/// The example of [`fit`] uses them. `rate` has the unit of a weight over a feature, or none with `newton`; `penalty` is the
-/// precision of a Gaussian prior of each weight, divided by the number of examples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Rounds of gradient ascent.
-    pub rounds: usize,
-    /// Moves of each chain in a round.
-    pub moves: usize,
-    /// True if chains go on from round to round (persistent), false if they restart at the data.
-    pub persistent: bool,
-    /// First step size.
-    pub rate: f64,
-    /// Rounds after which the step size is halved.
-    pub decay: f64,
-    /// λ of the penalty `λ/2 |w|²` per example.
-    pub penalty: f64,
-    /// True if steps are Newton's, with the information that the chains give of the weights; false for plain gradient
-    /// steps.
-    pub newton: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            rounds: 500,
-            moves: 1,
-            persistent: true,
-            rate: 0.1,
-            decay: 100.0,
-            penalty: 1e-4,
-            newton: false,
-        }
-    }
-}
-
-/// Estimate of the gradient `mean f(data) - E_w f` (without penalty) at fixed weights: chains of
-/// `moves` moves, one from each example. As moves grow it tends to the exact gradient.
-///
-/// O(N moves) moves of chains, in parallel, and 2 N evaluations of features. Its standard error falls as `1 / sqrt(N)`; with
-/// few moves it is biased (Hinton 2002).
-///
-/// # Errors
-/// As [`fit`].
-///
-/// # Examples
-/// ```
-/// use edifice_model::factor_graph::{Factor, Gibbs, gradient};
-/// // One bit whose feature is itself: E_w f = 1 / (1 + exp(-w)). One sweep of a single variable is exact.
-/// let bit = Factor { variables: vec![0], weight: 0, feature: Box::new(|x| x[0] as f64) };
-/// let gibbs = Gibbs::new(vec![2], vec![bit])?;
-/// let data = vec![vec![1]; 10_000];
-/// let slope = gradient(&gibbs, &data, &[3.0_f64.ln()], 1, 1)?;
-/// assert!((slope[0] - (1.0 - 0.75)).abs() < 0.02);
-/// # Ok::<(), edifice_model::ModelError>(())
-/// ```
-pub fn gradient<C: Chain>(
-    chain: &C,
-    data: &[C::State],
-    weights: &[f64],
-    moves: usize,
-    seed: u64,
-) -> Result<Vec<f64>, ModelError> {
-    let examples = all_features(chain, data)?;
-    let mut states = data.to_vec();
-    advance(chain, &mut states, weights, moves, seed, 0);
-    Ok(mean_difference(&examples, &all_features(chain, &states)?))
-}
-
-/// Fits the weights to examples, starting at zero.
-///
-/// Chains run in parallel, each with its own random stream, so that the result does not depend on
-/// the number of threads.
-///
-/// Returns one weight per feature. A round of N examples and K weights is O(N moves) moves of chains and O(N K), with `newton`
-/// O(N K² + K³); memory is N states and N K features. Formulas and sources are in the [module](self).
-///
-/// # Errors
-/// [`ModelError::Empty`] without examples; [`ModelError::Parameter`] for a feature that is not
-/// finite or settings out of range.
-///
-/// # Examples
-/// Two bits that are equal in 3 of 4 examples: the weight of "equal" is the log odds, `log 3`.
-/// ```
-/// use edifice_model::factor_graph::{Factor, Gibbs, Settings, fit};
-/// let equal = Factor { variables: vec![0, 1], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
-/// let gibbs = Gibbs::new(vec![2, 2], vec![equal])?;
-/// let examples = [[0, 0], [1, 1], [0, 0], [0, 1]].repeat(100);
-/// let data: Vec<Vec<usize>> = examples.into_iter().map(Vec::from).collect();
-/// let settings = Settings { newton: true, moves: 3, ..Settings::default() };
-/// let weights = fit(&gibbs, &data, &settings, 1)?;
-/// assert!((weights[0] - 3.0_f64.ln()).abs() < 0.1);
-/// # Ok::<(), edifice_model::ModelError>(())
-/// ```
-pub fn fit<C: Chain>(
-    chain: &C,
-    data: &[C::State],
-    settings: &Settings,
-    seed: u64,
-) -> Result<Vec<f64>, ModelError> {
-    let fine = settings.rate > 0.0 && settings.decay > 0.0 && settings.penalty >= 0.0;
-    if !fine || settings.rounds == 0 || settings.moves == 0 {
-        return Err(ModelError::parameter(
-            "settings",
-            "rounds, moves, rate and decay must be positive",
-        ));
-    }
-    let examples = all_features(chain, data)?;
-    let mut weights = vec![0.0; chain.weights()];
-    let mut information = Information::new(weights.len());
-    let mut mean = vec![0.0; weights.len()];
-    let mut states = data.to_vec();
-    let half = settings.rounds / 2;
-    for round in 0..settings.rounds {
-        if !settings.persistent {
-            states.clone_from_slice(data);
-        }
-        advance(
-            chain,
-            &mut states,
-            &weights,
-            settings.moves,
-            seed,
-            round as u64,
-        );
-        let negatives = all_features(chain, &states)?;
-        let gap = mean_difference(&examples, &negatives);
-        let ascent = weights.iter().zip(&gap);
-        let mut step: Vec<f64> = ascent.map(|(w, g)| g - settings.penalty * w).collect();
-        if settings.newton {
-            information.observe(&examples, &negatives, &gap);
-            step = information.newton(&step, settings.penalty);
-        }
-        let rate = settings.rate / (1.0 + round as f64 / settings.decay);
-        for (w, s) in weights.iter_mut().zip(&step) {
-            *w += rate * s;
-        }
-        if round >= half {
-            for (m, w) in mean.iter_mut().zip(&weights) {
-                *m += w / (settings.rounds - half) as f64;
-            }
-        }
-    }
-    match mean.iter().position(|w| !w.is_finite()) {
-        Some(i) => Err(ModelError::parameter(
-            format!("weight {i}"),
-            "diverged: lower the rate",
-        )),
-        None => Ok(mean),
-    }
-}
-
-fn advance<C: Chain>(
-    chain: &C,
-    states: &mut [C::State],
-    weights: &[f64],
-    moves: usize,
-    seed: u64,
-    round: u64,
-) {
-    states.par_iter_mut().enumerate().for_each(|(i, state)| {
-        let mut rng = stream(seed ^ round.rotate_left(32), "chain", i as u64);
-        for _ in 0..moves {
-            chain.step(state, weights, &mut rng);
-        }
-    });
-}
-
-/// Features of all states, row by row.
-fn all_features<C: Chain>(chain: &C, states: &[C::State]) -> Result<Vec<Vec<f64>>, ModelError> {
-    if states.is_empty() {
-        return Err(ModelError::Empty { what: "examples" });
-    }
-    let all: Vec<Vec<f64>> = states.par_iter().map(|s| chain.features(s)).collect();
-    for (row, features) in all.iter().enumerate() {
-        if let Some(i) = features.iter().position(|f| !f.is_finite()) {
-            return Err(ModelError::NotFinite {
-                column: format!("feature {i}"),
-                row,
-                value: features[i],
-            });
-        }
-    }
-    Ok(all)
-}
-
-/// Mean of a row of `a` less the row of `b`.
-fn mean_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<f64> {
-    let mut mean = vec![0.0; a.first().map_or(0, Vec::len)];
-    for (x, y) in a.iter().zip(b) {
-        for (m, (x, y)) in mean.iter_mut().zip(x.iter().zip(y)) {
-            *m += (x - y) / a.len() as f64;
-        }
-    }
-    mean
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

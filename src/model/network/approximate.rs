@@ -5,10 +5,10 @@
 
 use rand::Rng;
 
-use super::super::elimination::{Factor, advance};
+use super::super::elimination::{Factor, Messages};
 use super::super::error::ModelError;
 use super::super::gaussian::{Particles, extend, gaussian};
-use super::super::linalg::{categorical_of_logs, log_sum_exp};
+use super::super::linalg::categorical_of_logs;
 use super::evidence::{Asked, Evidence, Known, softmax};
 use super::{Answer, Cpd, Network};
 
@@ -250,7 +250,7 @@ impl Network {
                 Some(v) => (0..self.sizes[n])
                     .map(|i| f64::from(u8::from(i == v)))
                     .collect(),
-                None if messages.around[n].is_empty() => continue,
+                None if messages.is_free(n) => continue,
                 None => messages
                     .belief(n)
                     .ok_or_else(|| ModelError::Contradiction {
@@ -268,97 +268,5 @@ impl Network {
             rounds: made,
             converged,
         })
-    }
-}
-
-/// Messages from factors to variables, logarithms that sum to probability 1.
-struct Messages<'a> {
-    factors: &'a [Factor],
-    sizes: &'a [usize],
-    /// Per factor and place in its scope.
-    to: Vec<Vec<Vec<f64>>>,
-    /// Per variable, the factors and places that speak to it.
-    around: Vec<Vec<(usize, usize)>>,
-}
-
-impl<'a> Messages<'a> {
-    fn new(factors: &'a [Factor], sizes: &'a [usize]) -> Self {
-        let mut around = vec![Vec::new(); sizes.len()];
-        let mut to = Vec::with_capacity(factors.len());
-        for (f, factor) in factors.iter().enumerate() {
-            for (place, &v) in factor.vars.iter().enumerate() {
-                around[v].push((f, place));
-            }
-            let vars = factor.vars.iter();
-            to.push(
-                vars.map(|&v| vec![-(sizes[v] as f64).ln(); sizes[v]])
-                    .collect(),
-            );
-        }
-        Self {
-            factors,
-            sizes,
-            to,
-            around,
-        }
-    }
-
-    /// The sum of the log messages to a variable from all factors but one.
-    fn without(&self, v: usize, factor: usize) -> Vec<f64> {
-        let mut sum = vec![0.0; self.sizes[v]];
-        for &(f, place) in self.around[v].iter().filter(|(f, _)| *f != factor) {
-            sum.iter_mut()
-                .zip(&self.to[f][place])
-                .for_each(|(s, m)| *s += m);
-        }
-        sum
-    }
-
-    /// Sends every message anew; the largest change of a probability.
-    fn round(&mut self) -> f64 {
-        let mut moved: f64 = 0.0;
-        for (f, factor) in self.factors.iter().enumerate() {
-            let vars = &factor.vars;
-            let heard: Vec<Vec<f64>> = vars.iter().map(|&v| self.without(v, f)).collect();
-            let mut said: Vec<Vec<Vec<f64>>> = vars
-                .iter()
-                .map(|&v| vec![Vec::new(); self.sizes[v]])
-                .collect();
-            let mut assignment = vec![0; self.sizes.len()];
-            for value in &factor.values {
-                let all: Vec<f64> = (vars.iter().zip(&heard))
-                    .map(|(&v, h)| h[assignment[v]])
-                    .collect();
-                for (place, &v) in vars.iter().enumerate() {
-                    let others = all.iter().enumerate().filter(|(p, _)| *p != place);
-                    let sum = value + others.map(|(_, h)| h).sum::<f64>();
-                    said[place][assignment[v]].push(sum);
-                }
-                advance(vars, self.sizes, &mut assignment);
-            }
-            for (place, terms) in said.into_iter().enumerate() {
-                let logs: Vec<f64> = terms.iter().map(|t| log_sum_exp(t)).collect();
-                let old = &mut self.to[f][place];
-                let damped: Vec<f64> = old.iter().zip(&logs).map(|(o, n)| 0.5 * (o + n)).collect();
-                let total = log_sum_exp(&damped);
-                for (o, d) in old.iter_mut().zip(damped) {
-                    let new = if total == f64::NEG_INFINITY {
-                        total
-                    } else {
-                        d - total
-                    };
-                    moved = moved.max((new.exp() - o.exp()).abs());
-                    *o = new;
-                }
-            }
-        }
-        moved
-    }
-
-    /// The belief of a variable; `None` when nothing is possible.
-    fn belief(&self, v: usize) -> Option<Vec<f64>> {
-        let sum = self.without(v, usize::MAX);
-        let total = log_sum_exp(&sum);
-        (total > f64::NEG_INFINITY).then(|| sum.iter().map(|s| (s - total).exp()).collect())
     }
 }

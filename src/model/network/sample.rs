@@ -7,7 +7,7 @@ use super::super::error::ModelError;
 use super::super::gaussian::gaussian;
 use super::super::linalg::{categorical, categorical_of_logs};
 use super::super::table::Table;
-use super::evidence::{Asked, Evidence, Question, softmax};
+use super::evidence::{Asked, Evidence, Known, Question, softmax};
 use super::{Cpd, Network};
 
 impl Network {
@@ -23,7 +23,50 @@ impl Network {
         count: usize,
         rng: &mut R,
     ) -> Result<Table, ModelError> {
-        let question = self.question(self.known(evidence)?, Asked::Evidence)?;
+        self.draws(self.known(evidence)?, count, rng)
+    }
+
+    /// Completes every row of a table `count` times: draws given what the row has; columns that the table lacks, and missing
+    /// cells, are drawn. Rows of the result are those of the first row, then of the second, and so on, with all columns of the network.
+    ///
+    /// # Errors
+    /// As [`Network::log_likelihood`].
+    pub fn complete<R: Rng>(
+        &self,
+        data: &Table,
+        count: usize,
+        rng: &mut R,
+    ) -> Result<Table, ModelError> {
+        let mut all: Option<Table> = None;
+        for (i, row) in self.table_rows(data)?.into_iter().enumerate() {
+            let drawn = self.draws(row, count, rng).map_err(|e| e.in_row(i))?;
+            all = Some(match all {
+                None => drawn,
+                Some(mut before) => {
+                    before.append(&drawn);
+                    before
+                }
+            });
+        }
+        all.ok_or(ModelError::Empty { what: "rows" })
+    }
+
+    /// Names of the columns that a table of the network has, with the categories of discrete ones: the variables' names, `name[i]` for
+    /// the coordinates of a vector of several.
+    pub fn table_columns(&self) -> Vec<(String, Option<&[String]>)> {
+        let mut all = Vec::new();
+        for (n, node) in self.nodes.iter().enumerate() {
+            if node.is_discrete() {
+                all.push((node.name.clone(), Some(&node.categories[..])));
+            }
+            let real = (0..node.coordinates.len()).map(|i| (self.column_name(n, i), None));
+            all.extend(real);
+        }
+        all
+    }
+
+    fn draws<R: Rng>(&self, known: Known, count: usize, rng: &mut R) -> Result<Table, ModelError> {
+        let question = self.question(known, Asked::Evidence)?;
         let tree = self.tree(&question, Mode::Sum)?;
         let mut codes: Vec<Vec<Option<usize>>> = vec![Vec::new(); self.nodes.len()];
         let mut reals: Vec<Vec<Option<f64>>> = vec![Vec::new(); self.width];

@@ -1,11 +1,15 @@
 //! Models of tables (those of Fan and Wonka 2016, Fig. 12), learned from the same rows with the same priors and judged
 //! on others.
 
+use std::ops::ControlFlow;
+
 use super::Dataset;
 use super::encoding::Encoding;
+use super::joined::{learn_joined, one_group};
+use super::kernels::Kernels;
 use super::mixture::Baseline;
 use crate::ModelError;
-use crate::hierarchy::{Settings, Variant, learn};
+use crate::hierarchy::{Settings, Step, Variant, learn};
 
 /// Share of the background in comparisons ([`Settings::background`], of the mixture likewise): with none, a single row of an
 /// unforeseen kind decides a mean over hundreds.
@@ -27,6 +31,12 @@ pub enum Contender {
     /// The hierarchical model of an encoded table ([`Encoding`]), with lateral edges from categories as well: none of the
     /// paper's. At an atom its density is a probability.
     Extended,
+    /// The same with all real columns in one group, which share one hidden variable ([`one_group`]).
+    OneGroup,
+    /// One Gaussian over all columns.
+    Gaussian,
+    /// A kernel density ([`Kernels`]).
+    Kde,
 }
 
 impl Contender {
@@ -39,6 +49,19 @@ impl Contender {
         Contender::Gmm,
     ];
 
+    /// All that there are.
+    pub const EVERY: [Contender; 9] = [
+        Contender::Ours,
+        Contender::Model1,
+        Contender::Model2,
+        Contender::Model3,
+        Contender::Gmm,
+        Contender::Extended,
+        Contender::OneGroup,
+        Contender::Gaussian,
+        Contender::Kde,
+    ];
+
     /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -48,16 +71,19 @@ impl Contender {
             Contender::Model3 => "model_3",
             Contender::Gmm => "gmm",
             Contender::Extended => "extended",
+            Contender::OneGroup => "one_group",
+            Contender::Gaussian => "gaussian",
+            Contender::Kde => "kde",
         }
     }
 
     fn variant(self) -> Option<Variant> {
         match self {
-            Contender::Ours | Contender::Extended => Some(Variant::Full),
+            Contender::Ours | Contender::Extended | Contender::OneGroup => Some(Variant::Full),
             Contender::Model1 => Some(Variant::NoLateral),
             Contender::Model2 => Some(Variant::NoSecondLevel),
             Contender::Model3 => Some(Variant::Directed),
-            Contender::Gmm => None,
+            Contender::Gmm | Contender::Gaussian | Contender::Kde => None,
         }
     }
 }
@@ -75,16 +101,29 @@ pub fn held_out(
     settings: &Settings,
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
-    if contender == Contender::Extended {
+    if let Contender::Extended | Contender::OneGroup = contender {
         let encoding = Encoding::learn(train, &settings.priors.linear, seed)?;
         let table = encoding.encode(&train.table)?;
         let settings = extended(settings);
-        let learned = learn(&table, &encoding.groups(&train.groups), &settings, seed)?;
-        let logs = learned
-            .model
-            .log_likelihood(&encoding.encode(&test.table)?)?;
+        let groups = encoding.groups(&train.groups);
+        let model = match contender {
+            Contender::OneGroup => {
+                let together = one_group(&table, &groups)?;
+                learn(&table, &together.unwrap_or(groups), &settings, seed)?.model
+            }
+            _ => {
+                let go_on = |_: Option<&Step>| ControlFlow::Continue(());
+                let found = learn_joined(&table, &groups, &settings, seed, &go_on)?;
+                found.learned.model
+            }
+        };
+        let logs = model.log_likelihood(&encoding.encode(&test.table)?)?;
         let slopes = encoding.log_slopes(&test.table);
         return Ok(logs.iter().zip(slopes).map(|(l, s)| -l - s).collect());
+    }
+    if contender == Contender::Kde {
+        let logs = Kernels::learn(&train.table)?.log_likelihood(&test.table)?;
+        return Ok(logs.into_iter().map(|log| -log).collect());
     }
     let logs = match contender.variant() {
         Some(variant) => {
@@ -96,7 +135,10 @@ pub fn held_out(
             learned.model.log_likelihood(&test.table)?
         }
         None => {
-            let most = *settings.styles.end();
+            let most = match contender {
+                Contender::Gaussian => 1,
+                _ => *settings.styles.end(),
+            };
             let prior = &settings.priors.linear;
             let baseline = Baseline::learn(&train.table, prior, most, seed)?;
             baseline.log_likelihood(&test.table, settings.background, seed)?

@@ -20,23 +20,37 @@ impl Schema {
     ///
     /// # Errors
     /// [`SchemaError::FreeText`] for a column of many different texts, [`SchemaError::NoValues`] for one without any: a
-    /// schema written by hand can leave them out.
+    /// schema written by hand can leave them out, and [`Schema::guess_some`] does.
     pub fn guess(header: &[String], rows: &[Vec<String>]) -> Result<Self, SchemaError> {
+        let (schema, left_out) = Self::guess_some(header, rows);
+        match left_out.into_iter().next() {
+            Some(error) => Err(error),
+            None => Ok(schema),
+        }
+    }
+
+    /// As [`Schema::guess`] for every table: columns of free text and columns without a value are left out, and returned with the reason.
+    pub fn guess_some(header: &[String], rows: &[Vec<String>]) -> (Self, Vec<SchemaError>) {
         let mut groups = Vec::with_capacity(header.len());
+        let mut left_out = Vec::new();
         for (c, column) in header.iter().enumerate() {
             let texts = rows.iter().filter_map(|row| row.get(c)).map(|t| t.trim());
             let texts: Vec<&str> = texts.filter(|t| !MISSING.contains(t)).collect();
-            groups.push(SchemaGroup {
-                name: column.clone(),
-                kind: kind(column, &texts)?,
-                columns: vec![column.clone()],
-            });
+            match kind(column, &texts) {
+                Ok(kind) => groups.push(SchemaGroup {
+                    name: column.clone(),
+                    kind,
+                    columns: vec![column.clone()],
+                }),
+                Err(error) => left_out.push(error),
+            }
         }
-        Ok(Self {
+        let schema = Self {
             keep: BTreeMap::new(),
             missing: MISSING.map(str::to_owned).to_vec(),
             groups,
-        })
+        };
+        (schema, left_out)
     }
 }
 

@@ -6,6 +6,8 @@
 //! | [`encoding`] | values that many rows share as categories, the others transformed |
 //! | [`transform`] | monotone transforms of a real column |
 //! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
+//! | [`joined`] | real columns with one hidden variable together or one each, by the higher score |
+//! | [`kernels`] | a kernel density over mixed columns, a peer |
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
 //! | [`compare`] | held-out likelihoods of models on the same splits |
 //!
@@ -14,6 +16,8 @@
 pub mod compare;
 pub mod encoding;
 mod guess;
+pub mod joined;
+pub mod kernels;
 mod marginal;
 pub mod mixture;
 pub mod schema;

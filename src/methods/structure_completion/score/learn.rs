@@ -283,6 +283,6 @@ pub fn learn_weights<X: State>(
     let step = |x: &mut X, weights: &[f64], rng: &mut Stream| {
         sampler(x, &from_prior(weights), rng);
     };
-    let weights = LogLinear::new(TERMS, features, step).fit(data, settings, seed)?;
-    Ok(from_prior(&weights))
+    let fitted = LogLinear::new(TERMS, features, step).fit(data, settings, seed)?;
+    Ok(from_prior(&fitted.weights))
 }

@@ -1,0 +1,221 @@
+//! `edifice model fit`, and `sample`, `score` and `complete` of Bayesian networks.
+
+use std::path::{Path, PathBuf};
+
+use edifice_base::rng::stream;
+use edifice_base::{Error, Result};
+use edifice_io::building_csv::TextTable;
+use edifice_model::network::{Evidence, FitSettings, Network};
+use edifice_model::{ModelError, Table};
+
+use super::data::{csv_lines, read_table};
+use super::{network, query};
+use crate::print;
+
+/// Texts that commonly mean "not known".
+const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
+
+/// Options of `fit`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The network (`*.bif`, `*.xmlbif`, or as JSON): its structure, and its categories.
+    network: PathBuf,
+    /// The table (`*.csv`, `*.csv.gz`), columns named as the variables; a variable without a column is hidden, empty cells are
+    /// missing.
+    table: PathBuf,
+    /// The file to write: `*.bif`, `*.xmlbif`, `*.json`, `*.dot` or `*.svg`.
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Go on from the network's own parameters instead of random starts.
+    #[arg(long)]
+    from: bool,
+    /// Random starts of EM.
+    #[arg(long, default_value_t = FitSettings::default().restarts)]
+    restarts: usize,
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print a line of JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs `fit`.
+pub fn run(args: &Args) -> Result<()> {
+    let own = network::network(&args.network)?;
+    let text = read_table(&args.table)?;
+    let table = table(&own, &text).map_err(|e| Error::content(&args.table, e))?;
+    let hidden: Vec<&str> = own
+        .names()
+        .filter(|name| !table.columns().iter().any(|c| covers(c.name(), name)))
+        .collect();
+    if !hidden.is_empty() {
+        print::message(&format!("hidden: {}", hidden.join(", ")));
+    }
+    let settings = FitSettings {
+        restarts: args.restarts,
+        ..FitSettings::default()
+    };
+    let fitted = match args.from {
+        true => own.fit_from(&table, &settings),
+        false => own.fit(&table, &settings, &mut stream(args.seed, "model/fit", 0)),
+    };
+    let fitted = fitted.map_err(|e| Error::content(&args.table, e))?;
+    let logs = fitted.network.log_likelihood(&table);
+    let logs = logs.map_err(|e| Error::content(&args.table, e))?;
+    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+    network::write(&fitted.network, &args.output)?;
+    print::message(&format!(
+        "{} rows: log-likelihood {mean:.4} nats a row",
+        table.rows()
+    ));
+    match args.json {
+        true => print::line(
+            &serde_json::json!({
+                "rows": table.rows(), "log_likelihood": mean, "hidden": hidden, "seed": args.seed, "file": args.output,
+            })
+            .to_string(),
+        ),
+        false => Ok(()),
+    }
+}
+
+/// True for a column of the variable, or of one of its coordinates.
+fn covers(column: &str, variable: &str) -> bool {
+    column == variable
+        || column
+            .strip_prefix(variable)
+            .is_some_and(|rest| rest.starts_with('['))
+}
+
+/// The columns of a table that a network has, read by its categories.
+fn table(network: &Network, text: &TextTable) -> Result<Table, ModelError> {
+    let mut table = Table::new();
+    for (name, categories) in network.table_columns() {
+        let Some(c) = text.header.iter().position(|h| *h == name) else {
+            continue;
+        };
+        let cells = text
+            .rows
+            .iter()
+            .map(|row| row.get(c).map_or("", |t| t.trim()));
+        table = match categories {
+            Some(all) => {
+                let names: Vec<&str> = all.iter().map(String::as_str).collect();
+                let known = |t: &&str| names.contains(t) || !MISSING.contains(t);
+                table.categorical(&name, &names, cells.map(|t| Some(t).filter(known)))?
+            }
+            None => {
+                let mut values = Vec::with_capacity(text.rows.len());
+                for (row, cell) in cells.enumerate() {
+                    let number = match MISSING.contains(&cell) {
+                        true => None,
+                        false => Some(cell.parse::<f64>().map_err(|_| {
+                            let problem = format!("row {}: {cell:?} is not a number", row + 1);
+                            ModelError::parameter(&name, problem)
+                        })?),
+                    };
+                    values.push(number);
+                }
+                table.real(&name, values)?
+            }
+        };
+    }
+    match table.columns().is_empty() {
+        true => Err(ModelError::Empty {
+            what: "columns of the network's variables",
+        }),
+        false => Ok(table),
+    }
+}
+
+/// Runs `sample` of a network.
+pub fn sample(network: &Network, given: &[String], count: usize, seed: u64) -> Result<()> {
+    let evidence = query::hard(network, given, Evidence::new())?;
+    let mut rng = stream(seed, "model/sample", 0);
+    let drawn = network.sample(&evidence, count, &mut rng);
+    let drawn = drawn.map_err(|e| Error::option("--given", e.to_string()))?;
+    print::line(&csv_lines(&drawn).join("\n"))
+}
+
+/// Runs `score` of a network.
+pub fn score(network: &Network, path: &Path) -> Result<()> {
+    let text = read_table(path)?;
+    let at = |e| Error::content(path, e);
+    let logs = network
+        .log_likelihood(&table(network, &text).map_err(at)?)
+        .map_err(at)?;
+    print::line("row,log_likelihood")?;
+    for (row, log) in logs.iter().enumerate() {
+        print::line(&format!("{},{log}", row + 1))?;
+    }
+    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+    print::message(&format!("mean {mean:.4} nats a row"));
+    Ok(())
+}
+
+/// Runs `complete` of a network: other columns of the table pass through, before its own.
+pub fn complete(network: &Network, path: &Path, count: usize, seed: u64) -> Result<()> {
+    let text = read_table(path)?;
+    let at = |e| Error::content(path, e);
+    let table = table(network, &text).map_err(at)?;
+    let mut rng = stream(seed, "model/complete", 0);
+    let drawn = network.complete(&table, count, &mut rng).map_err(at)?;
+    let own: Vec<String> = drawn
+        .columns()
+        .iter()
+        .map(|c| c.name().to_owned())
+        .collect();
+    let kept = Passed::new(&text, &own);
+    let mut lines = csv_lines(&drawn).into_iter();
+    if let Some(header) = lines.next() {
+        print::line(&kept.header(&header))?;
+    }
+    for (i, line) in lines.enumerate() {
+        print::line(&kept.line(i / count.max(1), &line))?;
+    }
+    Ok(())
+}
+
+/// Columns of a table that a model does not know, as CSV.
+pub struct Passed<'t> {
+    text: &'t TextTable,
+    columns: Vec<usize>,
+}
+
+impl<'t> Passed<'t> {
+    /// Those that are not among `known`.
+    pub fn new(text: &'t TextTable, known: &[String]) -> Self {
+        let columns = (0..text.header.len()).filter(|&c| !known.contains(&text.header[c]));
+        Self {
+            text,
+            columns: columns.collect(),
+        }
+    }
+
+    /// Their names before a header.
+    pub fn header(&self, line: &str) -> String {
+        self.before(&self.text.header, line)
+    }
+
+    /// Their cells in a row before a line.
+    pub fn line(&self, row: usize, line: &str) -> String {
+        match self.text.rows.get(row) {
+            Some(cells) => self.before(cells, line),
+            None => line.to_owned(),
+        }
+    }
+
+    fn before(&self, cells: &[String], line: &str) -> String {
+        let quoted = |text: &String| match text.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", text.replace('"', "\"\"")),
+            false => text.clone(),
+        };
+        let own = self
+            .columns
+            .iter()
+            .filter_map(|&c| cells.get(c))
+            .map(quoted);
+        own.chain([line.to_owned()]).collect::<Vec<_>>().join(",")
+    }
+}

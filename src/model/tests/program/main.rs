@@ -1,0 +1,10 @@
+//! Engines of probabilistic programs against truths that they share no code with.
+
+mod calibration;
+mod densities;
+mod diagnostics;
+#[cfg(feature = "nuts")]
+mod gym;
+#[cfg(feature = "nuts")]
+mod gym_data;
+mod random;
