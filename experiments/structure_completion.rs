@@ -13,7 +13,6 @@ mod picture;
 mod plausibility;
 mod published;
 mod results;
-mod sanity;
 pub mod study;
 mod timing;
 mod weights;
@@ -29,11 +28,6 @@ pub const EXPERIMENT: Experiment = Experiment {
 };
 
 const ARTEFACTS: &[Artefact] = &[
-    Artefact {
-        name: "sanity",
-        title: "made grids, of which a part is seen, completed exactly",
-        run: sanity::run,
-    },
     Artefact {
         name: "completion",
         title: "parts of whole facades hidden and completed: five tasks, all methods, cross-validated",

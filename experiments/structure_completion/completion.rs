@@ -5,21 +5,18 @@ use std::time::Instant;
 
 use super::data::{self, Item};
 use super::plausibility::statistics;
-use super::results::{Answer, DEFAULT, MASKLESS, OTHER_SETS, Results};
+use super::results::{Answer, OTHER_SETS, Results};
 use super::{folds, row};
 use crate::{Budget, Context};
+use edifice_base::Result;
+use edifice_base::rng::stream;
 use edifice_structure_completion::best::modes;
 use edifice_structure_completion::completion::Completion;
-use edifice_structure_completion::layout::lines::lines;
 use edifice_structure_completion::layout::{Class, Element};
-use edifice_structure_completion::measure::{agreement, area_iou, off_lines, overlaps};
+use edifice_structure_completion::measure::{agreement, area_iou};
 use edifice_structure_completion::method::{self, Method};
-use edifice_structure_completion::model::{Model, shipped_model};
-use edifice_structure_completion::partial::PartialLayout;
+use edifice_structure_completion::model::Model;
 use edifice_structure_completion::task::Task;
-use edifice_base::rng::stream;
-use edifice_shape::{Axis, Rect};
-use edifice_base::{Error, Result};
 
 /// Folds of the cross-validation.
 const FOLDS: usize = 5;
@@ -55,7 +52,6 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let models: Vec<Model> = (0..FOLDS)
         .map(|f| folds::model(&used, ctx.seed(), |i| fold[i] != f))
         .collect::<Result<_>>()?;
-    let default = shipped_model().map_err(Error::method)?;
     let mut others: BTreeMap<&str, Model> = BTreeMap::new();
     if !shipped && ctx.budget() != Budget::Smoke {
         for set in ["ecp2011", "graz50", "cmp"] {
@@ -78,7 +74,6 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 let own = own.map(|m| (m.name(), m, &models[fold[k]]));
                 let mut all: Vec<_> = own.collect();
                 let other = others.get(item.dataset);
-                all.push((DEFAULT, Method::Best, &default));
                 all.extend(other.map(|model| (OTHER_SETS, Method::Best, model)));
                 units.push(Unit {
                     item,
@@ -174,9 +169,13 @@ fn answer(unit: &Unit, run_seed: u64) -> Result<Option<Answer>> {
         let mut put = |metric: &str, value: f64| {
             values.push((label.to_string(), metric.to_string(), value));
         };
-        for (metric, value) in measures(&partial, &first, &hidden) {
-            put(metric, value);
-        }
+        put("f1", agreement(&first, &hidden, 0.5).f1);
+        put("f1_25", agreement(&first, &hidden, 0.25).f1);
+        put("iou", area_iou(&first, &hidden));
+        put(
+            "count_error",
+            (first.len() as f64 - hidden.len() as f64).abs(),
+        );
         put("seconds", seconds);
         for class in Class::ALL {
             let of = |e: &[Element]| -> Vec<Element> {
@@ -198,17 +197,6 @@ fn answer(unit: &Unit, run_seed: u64) -> Result<Option<Answer>> {
                 put("calibration", inside);
             }
         }
-        if method == Method::Best && partial.unknown.is_some() {
-            let maskless = PartialLayout {
-                unknown: None,
-                ..partial.clone()
-            };
-            let mut rng = stream(run_seed, &format!("completion/{name}"), unit.seed);
-            let done = modes::complete(&maskless, model, 1, &mut rng).completions;
-            let first = added(done.first());
-            let f1 = agreement(&first, &hidden, 0.5).f1;
-            values.push((format!("{label}{MASKLESS}"), "f1".into(), f1));
-        }
         let whole: Vec<Element> = partial.observed.iter().copied().chain(first).collect();
         made.push((
             label.to_string(),
@@ -220,52 +208,6 @@ fn answer(unit: &Unit, run_seed: u64) -> Result<Option<Answer>> {
         statistics: made,
         truth: statistics(layout.width, layout.height, &layout.elements),
     }))
-}
-
-/// How near the added elements are to the hidden ones, and how coherent.
-fn measures(
-    partial: &PartialLayout,
-    added: &[Element],
-    hidden: &[Element],
-) -> Vec<(&'static str, f64)> {
-    let at = |least: f64| agreement(added, hidden, least).f1;
-    let ten: f64 = (0..10).map(|k| at(0.5 + 0.05 * f64::from(k))).sum();
-    let count = |elements: &[Element], class: Class| {
-        let own = elements.iter().filter(|e| e.class == class);
-        own.count() as f64
-    };
-    let mut all = vec![
-        ("f1", at(0.5)),
-        ("f1_25", at(0.25)),
-        ("f1_75", at(0.75)),
-        ("f1_50_95", ten / 10.0),
-        ("iou", area_iou(added, hidden)),
-        (
-            "count_error",
-            (added.len() as f64 - hidden.len() as f64).abs(),
-        ),
-        (
-            "overlapping",
-            f64::from(u8::from(overlaps(&partial.observed, added) > 0)),
-        ),
-        ("doors_added", count(added, Class::Door)),
-    ];
-    let windows = count(added, Class::Window);
-    if windows > 0.0 {
-        let off = off_lines(&partial.observed, added) as f64;
-        all.push(("off_lines", off / windows));
-    }
-    for (name, axis) in [("columns_right", Axis::X), ("rows_right", Axis::Y)] {
-        let lattice = |elements: &[Element]| {
-            let all = partial.observed.iter().chain(elements);
-            let windows = all.filter(|e| e.class == Class::Window);
-            let rects: Vec<Rect> = windows.map(|e| e.rect).collect();
-            lines(&rects, axis).0.len()
-        };
-        let right = lattice(added).abs_diff(lattice(hidden)) <= 1;
-        all.push((name, f64::from(u8::from(right))));
-    }
-    all
 }
 
 fn added(completion: Option<&Completion>) -> Vec<Element> {

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use edifice_base::{Error, Result};
 use edifice_io::write_atomic;
 use edifice_structure_completion::layout::scope::in_scope;
 use edifice_structure_completion::made::facades;
 use edifice_structure_completion::model::Model;
-use edifice_base::{Error, Result};
 
 use super::input;
 use crate::print;
