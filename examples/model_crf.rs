@@ -50,8 +50,8 @@ fn main() -> Result<(), ModelError> {
     let (mut right, mut by_sign) = (0, 0);
     for example in &test {
         let mut question = field.ask(&weights)?;
-        for i in LENGTH..2 * LENGTH {
-            question = question.given(i, example[i])?;
+        for (i, sign) in example.iter().enumerate().skip(LENGTH) {
+            question = question.given(i, *sign)?;
         }
         let (labels, _) = question.explain()?;
         right += (0..LENGTH).filter(|&i| labels[i] == example[i]).count();

@@ -13,6 +13,7 @@ mod figure_14;
 mod figure_9;
 mod joint_real;
 mod judge;
+mod library;
 mod likeness;
 pub mod made;
 mod optimality;
@@ -32,6 +33,8 @@ mod table_2;
 mod table_3;
 mod table_4;
 mod table_5;
+mod tolerance;
+mod trial;
 
 use super::{Artefact, Budget, Experiment, picture};
 use edifice_facade_grammar::Method;
@@ -104,6 +107,16 @@ const ARTEFACTS: &[Artefact] = &[
         name: "figure_13",
         title: "joint extraction from four facades",
         run: figure_13::run,
+    },
+    Artefact {
+        name: "library",
+        title: "one parametric library for many real facades",
+        run: library::run,
+    },
+    Artefact {
+        name: "tolerance",
+        title: "cost against the share of the area that may become wrong",
+        run: tolerance::run,
     },
     Artefact {
         name: "figure_14",

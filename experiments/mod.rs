@@ -44,7 +44,9 @@ use std::process::ExitCode;
 
 use sweep::Study;
 
-pub use frame::{Args, Artefact, Budget, Context, Experiment, Options, Report, run, run_to_end};
+pub use frame::{
+    Args, Artefact, Budget, Context, Experiment, Options, Own, Report, run, run_to_end,
+};
 
 /// Every paper's experiment, in the order of the report.
 pub const ALL: &[&Experiment] = &[

@@ -11,6 +11,10 @@ type Infer = fn(&Facade) -> Result<Grammar>;
 /// By name.
 const GRAMMARS: &[(&str, Infer)] = &[
     ("procedural_logic", super::procedural_logic::grammar), // one line each
+    (
+        "procedural_logic_picture",
+        super::procedural_logic::picture_grammar,
+    ),
 ];
 
 /// The grammar that a method finds of a facade.

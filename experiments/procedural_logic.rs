@@ -15,17 +15,19 @@ pub mod noise;
 pub mod outline;
 mod readings;
 mod retrieval_search;
+mod segmentation;
 pub mod shipped;
 pub mod study;
+pub mod trial;
 pub mod trivial;
 pub mod words;
 
 use super::{Artefact, Experiment};
 use edifice_base::{Error, Result};
 use edifice_grammar::Grammar;
-use edifice_procedural_logic::{Parameters, baseline_grammar};
+use edifice_procedural_logic::{Extent, Parameters, baseline_grammar};
 use edifice_report::{Align, Row, Table};
-use edifice_shape::Facade;
+use edifice_shape::{Facade, LabelGrid};
 
 /// The paper's figures and the numbers of its text.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -40,6 +42,20 @@ pub const EXPERIMENT: Experiment = Experiment {
 /// Those of the method.
 pub fn grammar(facade: &Facade) -> Result<Grammar> {
     baseline_grammar(facade, &Parameters::COMPRESSION).map_err(Error::method)
+}
+
+/// The grammar of the picture of one facade: areas of one label, Eq. 3 divided by the size of the facade as it is written,
+/// the parameters for compression. It derives the picture, not the tiling.
+///
+/// # Errors
+/// Those of the method.
+pub fn picture_grammar(facade: &Facade) -> Result<Grammar> {
+    let grid = LabelGrid::from_facade(facade, None).map_err(Error::method)?;
+    let parameters = Parameters {
+        extent: Extent::Facade,
+        ..Parameters::COMPRESSION
+    };
+    edifice_procedural_logic::picture_grammar(&grid, &parameters).map_err(Error::method)
 }
 
 const ARTEFACTS: &[Artefact] = &[
@@ -82,6 +98,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "frequent_rules",
         title: "the most frequent rules, in words (Sec. 5.5)",
         run: frequent_rules::run,
+    },
+    Artefact {
+        name: "segmentation",
+        title: "inexact labels of the same facades, as given and cleaned",
+        run: segmentation::run,
     },
     Artefact {
         name: "noise",

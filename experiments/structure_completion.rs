@@ -15,6 +15,7 @@ mod published;
 mod results;
 pub mod study;
 mod timing;
+mod trial;
 mod weights;
 
 use super::{Artefact, Experiment};

@@ -16,6 +16,9 @@ use edifice_model::hierarchy::{Constant, Settings};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{Contender, held_out, split};
 
+/// Crates that results depend on, with those that they are built on.
+const MADE_OF: &[&str] = &["edifice-building-exteriors", "edifice-io"];
+
 /// A model of Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -75,6 +78,7 @@ pub fn learn() -> Study {
         METRICS,
         run_learn,
     )
+    .made_of(MADE_OF, "building_exteriors")
 }
 
 fn run_learn(settings: &Learn, given: &Given) -> Result<Outcome> {
@@ -165,6 +169,7 @@ pub fn generate() -> Study {
         METRICS,
         run_generate,
     )
+    .made_of(MADE_OF, "building_exteriors")
 }
 
 /// A file of houses, and the attributes of each.

@@ -87,6 +87,10 @@ pub fn proceduralize() -> Study {
         METRICS,
         run,
     )
+    .made_of(
+        &["edifice-city-proceduralization", "edifice-io"],
+        "city_proceduralization",
+    )
 }
 
 fn run(settings: &Proceduralize, given: &Given) -> Result<Outcome> {

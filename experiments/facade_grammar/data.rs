@@ -6,7 +6,7 @@ use crate::facade_grammar::made;
 use crate::{Budget, Context, layouts};
 use edifice_base::{Error, Result, file};
 use edifice_grammar::{Grammar, derive};
-use edifice_io::{facade_json, grammar_cga, grammar_json, read_label_grid};
+use edifice_io::{ReadOptions, facade_json, grammar_cga, grammar_json, read_label_grid};
 use edifice_layout::regularize::regularize_grid;
 use edifice_shape::{Facade, LabelGrid, decompose, splittable};
 
@@ -18,7 +18,7 @@ pub const LAYOUT_SEED: u64 = 1;
 /// A facade and where it comes from.
 #[derive(Debug, Clone)]
 pub struct Instance {
-    /// `shipped`, `ecp2011`, `graz50` or `cmp`.
+    /// `shipped`, `ecp2011`, `graz50`, `cmp`, or the name of a set of one's own.
     pub dataset: &'static str,
     /// The facade.
     pub facade: Facade,
@@ -59,27 +59,37 @@ pub fn known(ctx: &mut Context) -> Result<Vec<(Facade, Grammar)>> {
 /// decomposed into tilings; at most `limit` of each set, evenly spread. Facades that no full line can
 /// split are left out and counted in a note (Sec. 6.3).
 pub fn real(ctx: &mut Context, limit: usize) -> Result<Vec<Instance>> {
-    let sets = [
+    let known = [
         ("ecp2011", "facades/ecp2011/labels", ".png"),
         ("graz50", "facades/graz50/labels", ".png"),
         ("cmp", "facades/cmp", ".xml"),
     ];
-    let mut instances = Vec::new();
-    for (dataset, place, ending) in sets {
+    let mut sets = Vec::new();
+    for (dataset, place, ending) in known {
         let Some(folder) = ctx.real(place)? else {
             continue;
         };
         let all = files(&folder, ending)?;
+        sets.push((dataset, all, ending, ReadOptions::default()));
+    }
+    for set in ctx.own()? {
+        sets.push((set.name, set.files, "", set.options));
+    }
+    let mut instances = Vec::new();
+    for (dataset, all, ending, options) in sets {
         let chosen = spread(all.len(), limit).map(|i| &all[i]);
         let mut unsplittable = Vec::new();
         for path in chosen {
-            let grid = read_label_grid(path, &Default::default())?;
+            let grid = read_label_grid(path, &options)?;
             let (grid, _) =
                 regularize_grid(&grid, tolerance(&grid)).map_err(|e| Error::content(path, e))?;
             let mut facade = decompose(&grid)
                 .map_err(|e| Error::content(path, e))?
                 .facade;
-            facade.name = stem(path, ending);
+            facade.name = match ending {
+                "" => grid.name,
+                ending => stem(path, ending),
+            };
             match splittable(&facade) {
                 Ok(()) => instances.push(Instance { dataset, facade }),
                 Err(_) => unsplittable.push(facade.name),

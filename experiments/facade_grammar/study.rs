@@ -1,19 +1,13 @@
 //! The studies of this paper, for sweeps.
 
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
-use std::rc::Rc;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::likeness::likeness;
-use crate::sweep::{Better, Given, Outcome, Study};
-use edifice_base::{Error, Result};
+use super::trial::Inference;
+use crate::sweep::{Better, Study};
 use edifice_facade_grammar as facade_grammar;
-use edifice_facade_grammar::{Exploit, Method, Operations, Protect, Readings, infer_observed};
-use edifice_grammar::{Costs, Grammar, evaluate};
-use edifice_io::{ReadOptions, read_facade, read_grammar};
+use edifice_facade_grammar::{Exploit, Method, Operations, Protect, Readings};
+use edifice_grammar::Costs;
 
 /// The method of search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -30,7 +24,7 @@ enum MethodName {
 /// Operations of rules beside the split.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-enum Operation {
+pub(super) enum Operation {
     Repeat,
     RepeatAba,
     SymSplit,
@@ -49,21 +43,21 @@ enum Protection {
 /// Settings of grammar inference.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-struct Infer {
+pub(super) struct Infer {
     /// Method of inference.
     method: MethodName,
     /// Walks, of the methods that repeat them; of `best` a measure of work.
     iterations: u64,
     /// Runs with different chance, of which the cheapest grammar counts.
-    restarts: u64,
+    pub restarts: u64,
     /// Operations that rules may use beside the split.
-    ops: Vec<Operation>,
+    pub ops: Vec<Operation>,
     /// Cost of a split.
-    split_cost: f64,
+    pub split_cost: f64,
     /// Cost of a repeat.
-    repeat_cost: f64,
+    pub repeat_cost: f64,
     /// Cost of each symbol of a rule.
-    successor_cost: f64,
+    pub successor_cost: f64,
     /// `lambda_1` of Eq. 5.
     lambda_rule: f64,
     /// `lambda_2` of Eq. 5.
@@ -109,82 +103,13 @@ pub fn infer() -> Study {
         ("f_score", Better::Higher),
     ];
     let about = "grammar inference on facade layouts (Wu et al. 2014); precision, recall and F where a grammar `NAME.grammar.json` or `NAME.cga` lies beside the facade";
-    Study::new(
-        "facade_grammar/infer",
-        about,
-        "facade_grammar",
-        METRICS,
-        run,
-    )
+    Study::trial::<Inference>("facade_grammar/infer", about, "facade_grammar", METRICS)
+        .made_of(&["edifice-facade-grammar", "edifice-io"], "facade_grammar")
+        .asking(&["ops", "split_cost", "repeat_cost", "successor_cost"])
 }
 
-fn run(settings: &Infer, given: &Given) -> Result<Outcome> {
-    let facade = read_facade(given.path, &ReadOptions::default())?;
-    let reference = reference(given.path)?;
-    let costs = Costs {
-        split: settings.split_cost,
-        repeat: settings.repeat_cost,
-        successor: settings.successor_cost,
-        ..Costs::default()
-    };
-    let mut found = Outcome::default();
-    let mut best = f64::INFINITY;
-    let mut evaluations = 0.0;
-    for restart in 0..settings.restarts.max(1) {
-        let trace: Rc<RefCell<Vec<[f64; 2]>>> = Rc::default();
-        let told = Rc::clone(&trace);
-        let observer = move |step: edifice_optim::Step| {
-            told.borrow_mut().push([step.iteration as f64, step.best])
-        };
-        let seed = given
-            .seed
-            .wrapping_mul(settings.restarts.max(1))
-            .wrapping_add(restart);
-        let asked = asked(settings, costs, seed);
-        let outcome = infer_observed(std::slice::from_ref(&facade), &asked, observer)
-            .map_err(Error::method)?;
-        // The one evaluator, not the method, says what the grammar costs.
-        let report = evaluate(&outcome.grammar, std::slice::from_ref(&facade), &costs)
-            .map_err(Error::method)?;
-        for &[steps, value] in trace.borrow().iter() {
-            if found.trace.last().is_none_or(|last| value < last[1]) {
-                found.trace.push([evaluations + steps, value]);
-            }
-        }
-        evaluations += asked.steps() as f64;
-        if report.cost < best {
-            best = report.cost;
-            found.metrics.insert("cost".into(), report.cost);
-            found
-                .metrics
-                .insert("rules".into(), outcome.grammar.rules.len() as f64);
-            if let Some(reference) = &reference {
-                let like = likeness(&outcome.grammar, reference)?;
-                for (name, value) in [
-                    ("precision", like.precision),
-                    ("recall", like.recall),
-                    ("f_score", like.f_score),
-                ] {
-                    found.metrics.insert(name.into(), value);
-                }
-            }
-        }
-        found.bound = outcome.lower_bound.or(found.bound);
-    }
-    Ok(found)
-}
-
-/// The grammar that lies beside a facade, where there is one.
-fn reference(path: &Path) -> Result<Option<Grammar>> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let stem = name.split('.').next().unwrap_or_default();
-    let beside =
-        ["grammar.json", "cga"].map(|ending| path.with_file_name(format!("{stem}.{ending}")));
-    let found: Option<PathBuf> = beside.into_iter().find(|p| p.is_file());
-    found.map(|path| read_grammar(&path)).transpose()
-}
-
-fn asked(settings: &Infer, costs: Costs, seed: u64) -> facade_grammar::Settings {
+/// The settings of the method.
+pub(super) fn asked(settings: &Infer, costs: Costs, seed: u64) -> facade_grammar::Settings {
     let has = |operation| settings.ops.contains(&operation);
     facade_grammar::Settings {
         method: match settings.method {

@@ -12,6 +12,7 @@ use sha2::{Digest, Sha256};
 use super::document::Document;
 use super::journal::Journal;
 use super::options::{Budget, Options};
+use super::own::Own;
 use super::progress::{self, Progress};
 use super::provenance::{self, Comparison};
 use edifice_base::{Error, Result};
@@ -122,6 +123,22 @@ impl<'a> Context<'a> {
         self.data
             .insert(format!("DATA/{name}"), provenance::digest(&path)?);
         Ok(Some(path))
+    }
+
+    /// Facades of one's own (`--dataset`), with their digests recorded.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when they cannot be read.
+    pub fn own(&mut self) -> Result<Vec<Own>> {
+        let own = self.options.own.clone();
+        for set in &own {
+            for file in &set.files {
+                let name = file.file_name().unwrap_or_default().to_string_lossy();
+                let name = format!("{}/{name}", set.name);
+                self.data.insert(name, provenance::digest(file)?);
+            }
+        }
+        Ok(own)
     }
 
     /// Runs `work` on every unit, on all threads, and returns the results in the order of the

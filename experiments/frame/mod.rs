@@ -6,12 +6,14 @@ mod journal;
 pub(super) mod lock;
 pub(super) mod memory;
 mod options;
+mod own;
 mod progress;
 pub(super) mod provenance;
 mod run;
 
 pub use context::Context;
 pub use options::{Args, Budget, Options};
+pub use own::Own;
 pub use progress::Progress;
 pub use run::{Report, main, run, run_to_end};
 pub(super) use run::{SWEEPS, write_index};

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::own::Own;
 use edifice_base::{Error, Result};
 
 /// The budget of a run.
@@ -39,6 +40,10 @@ pub struct Args {
     /// ships with the project is used
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
+    /// Facades of your own, beside those that ship: label images, .facade.json or any other format that `facade convert` reads, with a label map
+    /// where one is needed; repeatable
+    #[arg(long, value_name = "NAME=GLOB[:MAP.json]")]
+    pub dataset: Vec<String>,
     /// Seed of all random streams
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -60,6 +65,8 @@ pub struct Options {
     pub only: Vec<String>,
     /// Folder with the real data sets.
     pub data: Option<PathBuf>,
+    /// Facades of one's own.
+    pub own: Vec<Own>,
     /// Seed of all random streams.
     pub seed: u64,
     /// Budget of the run.
@@ -93,6 +100,11 @@ impl Args {
         Ok(Options {
             only: self.only,
             data,
+            own: self
+                .dataset
+                .iter()
+                .map(|text| Own::parse(text))
+                .collect::<Result<_>>()?,
             seed: self.seed,
             budget: self.budget,
             out: self.out,

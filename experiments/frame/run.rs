@@ -15,6 +15,7 @@ use super::options::{Args, Options};
 use super::progress::line;
 use super::provenance::{Machine, Made, Run};
 use super::{Artefact, Experiment};
+use crate::sweep::definition::suggestion;
 use edifice_base::{Error, Result};
 use edifice_report as report;
 use edifice_report::{Page, Section};
@@ -133,7 +134,11 @@ fn choose(
         let known: Vec<_> = all().map(|a| a.name).collect();
         return Err(Error::option(
             "--only",
-            format!("no artefact {unknown:?}; known are {}", known.join(", ")),
+            format!(
+                "no artefact {unknown:?}{}; known are {}",
+                suggestion(unknown, known.iter().copied()),
+                known.join(", ")
+            ),
         ));
     }
     let wanted = |a: &&'static Artefact| only.is_empty() || only.iter().any(|n| n == a.name);

@@ -57,6 +57,7 @@ fn options(out: &std::path::Path) -> Options {
     Options {
         only: Vec::new(),
         data: None,
+        own: Vec::new(),
         seed: 1,
         budget: Budget::Smoke,
         out: out.to_path_buf(),

@@ -39,6 +39,7 @@ pub fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("left_out", Better::Lower), ("optimal", Better::Higher)];
     let about = "simulated annealing on knapsacks of known optimum: value left out of the knapsack";
     Study::new("optim/annealing", about, "optim", METRICS, run)
+        .made_of(&["edifice-optim"], "generic")
 }
 
 fn run(settings: &Settings, given: &Given) -> Result<Outcome> {

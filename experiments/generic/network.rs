@@ -48,7 +48,7 @@ const UNSEEN: usize = 1_000;
 pub fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("excess", Better::Lower)];
     let about = "parameters of a discrete Bayesian network (BIF) learnt from its own draws: log-likelihood of unseen rows below the true network's, nats a row";
-    Study::new("model/network", about, "model", METRICS, run)
+    Study::new("model/network", about, "model", METRICS, run).made_of(&["edifice-model"], "generic")
 }
 
 /// The errors of a setting.

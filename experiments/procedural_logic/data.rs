@@ -14,7 +14,7 @@ const SIZES: u64 = 5;
 
 /// Facades of one style with their architecture, and facades of another style.
 pub struct Source {
-    /// `shipped_houses` or `ecp2011`.
+    /// `shipped_houses`, `ecp2011`, or the name of a set of one's own.
     pub dataset: &'static str,
     /// Facades of the style that is studied.
     pub grids: Vec<LabelGrid>,
@@ -45,8 +45,11 @@ impl Source {
 
     /// Name of this set's picture of an artefact: the paper's set has the plain name.
     pub fn figure(&self, artefact: &str) -> String {
-        let suffix = if self.is_paper() { "" } else { "_shipped" };
-        format!("{artefact}{suffix}")
+        match self.dataset {
+            "ecp2011" => artefact.to_owned(),
+            "shipped_houses" => format!("{artefact}_shipped"),
+            own => format!("{artefact}_{own}"),
+        }
     }
 }
 
@@ -62,6 +65,18 @@ pub fn sources(ctx: &mut Context) -> Result<Vec<Source>> {
             source.other.truncate(8);
         }
         sources.push(source);
+    }
+    for set in ctx.own()? {
+        let read = |path: &std::path::PathBuf| read_label_grid(path, &set.options);
+        let grids = set.files.iter().map(read).collect::<Result<Vec<_>>>()?;
+        sources.push(Source {
+            dataset: set.name,
+            architecture: grids.iter().map(outline::architecture).collect(),
+            grids,
+            by_hand: Vec::new(),
+            other_dataset: "none",
+            other: Vec::new(),
+        });
     }
     Ok(sources)
 }

@@ -53,7 +53,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let wanted = correlations(&training);
             let layout = model.layout(known[0]).map_err(Error::method)?;
             figure =
-                figure.panel(tiles(format!("real: {}", known[0].name), &layout).without_borders());
+                figure.panel(tiles(format!("given: {}", known[0].name), &layout).without_borders());
             let words = Structure::new(&model.inference.rules, &model.alphabet, start);
             let words = words.map_or_else(|| format!("{start:?}"), |w| w.sentence());
             for sigma in SIGMAS {

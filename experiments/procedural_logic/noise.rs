@@ -17,7 +17,7 @@ use edifice_procedural_logic::{Measure, Model, Parameters};
 use edifice_report::{Chart, Corner, Figure, Scale, Series};
 use edifice_shape::{LabelGrid, clean};
 
-/// Tolerance of the cleaning in pixels, whatever the faults: that of `edifice logic --clean`.
+/// Tolerance of the cleaning in pixels, whatever the faults: that of `edifice logic --clean=3`.
 const TOLERANCE: f64 = 3.0;
 
 /// Height of the shipped layouts in pixels, about that of the real label images.
@@ -152,7 +152,7 @@ const NOTE: &str = "Faults are seeded and made by `experiments/procedural_logic/
     through 3k % of the elements; *merged*, 2k % of the windows joined with the next; *missing*, 2k % of the windows gone; \
     *all*, edges k px, specks 0.7k %, gaps k %, merged and missing 0.5k % each. *As given* leaves the labels alone; *cleaned* \
     is `shape::clean` at a tolerance of 3 px whatever the faults (also on exact labels, where it is not needed and \
-    costs something), which is `--clean` on the command line. The gold standard is always that of the exact labels. *counts* is \
+    costs something), which is `--clean=3` on the command line. The gold standard is always that of the exact labels. *counts* is \
     the trivial baseline of Fig. 4 on the same labels: it breaks down with the specks, but on cleaned labels it is again as \
     good as powersets or better. Purity: average linkage, two clusters, both styles with the same faults. Shipped \
     layouts are painted at a height of 540 px, about that of the real images, and each house stands at two sizes; elements \

@@ -11,7 +11,7 @@ use edifice_base::{Error, Result};
 /// A facade of a data set.
 #[derive(Debug, Clone)]
 pub struct Item {
-    /// `shipped`, `ecp2011`, `graz50` or `cmp`.
+    /// `shipped`, `ecp2011`, `graz50`, `cmp`, or the name of a set of one's own.
     pub dataset: &'static str,
     /// Its elements.
     pub layout: Layout,
@@ -29,8 +29,15 @@ pub fn items(ctx: &mut Context) -> Result<Vec<Item>> {
         ("cmp", "facades/cmp", ".xml"),
     ] {
         if let Some(folder) = ctx.real(folder)? {
-            items.extend(read(dataset, &layouts::files(&folder, ending)?)?);
+            items.extend(read(
+                dataset,
+                &layouts::files(&folder, ending)?,
+                &ReadOptions::default(),
+            )?);
         }
+    }
+    for set in ctx.own()? {
+        items.extend(read(set.name, &set.files, &set.options)?);
     }
     if items.is_empty() {
         items = shipped(ctx)?;
@@ -48,12 +55,12 @@ const SMOKE: usize = 12;
 /// The shipped layouts.
 pub fn shipped(ctx: &mut Context) -> Result<Vec<Item>> {
     let folder = layouts::folder(ctx)?;
-    read("shipped", &layouts::made(&folder)?)
+    read("shipped", &layouts::made(&folder)?, &ReadOptions::default())
 }
 
-fn read(dataset: &'static str, files: &[PathBuf]) -> Result<Vec<Item>> {
+fn read(dataset: &'static str, files: &[PathBuf], options: &ReadOptions) -> Result<Vec<Item>> {
     let item = |path: &PathBuf| {
-        let source = read_source(path, &ReadOptions::default())?;
+        let source = read_source(path, options)?;
         let one = match &source {
             // A photograph of several facades has no outline to complete.
             Source::Cmp(cmp, ..) => cmp.objects.iter().filter(|o| o.label == "facade").count() == 1,

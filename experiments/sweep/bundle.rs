@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 use zip::write::SimpleFileOptions;
@@ -11,7 +12,7 @@ use zip::{ZipArchive, ZipWriter};
 use super::collect::{RESULTS, TIMES, collect};
 use super::instances::belonging;
 use super::journal::{Keep, read_all};
-use super::plan::{Head, PLAN, Plan, Task, program};
+use super::plan::{Head, PLAN, Plan, Task};
 use super::run::entry;
 use super::study::Study;
 use crate::frame::provenance::{self, Machine};
@@ -35,9 +36,16 @@ enum BundleError {
     NotABundle(String),
     #[error("`{0}` is not what the manifest says: the bundle was changed")]
     Changed(String),
-    #[error("it was made by version {made} of the program, this is {ours}: a rerun could differ")]
-    Program { made: String, ours: String },
+    #[error("`{0}` leads out of the folder that it is unpacked to")]
+    LeadsOut(String),
+    #[error("`{0}` is not in the manifest")]
+    Unlisted(String),
+    #[error("its files are larger than {} GB", LARGEST >> 30)]
+    TooLarge,
 }
+
+/// Most bytes that a bundle may unpack to.
+const LARGEST: u64 = 8 << 30;
 
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,6 +54,8 @@ pub struct Verified {
     pub rerun: usize,
     /// Tasks that found something else: arm, instance, seed.
     pub different: Vec<String>,
+    /// Tasks of arms that are commands, which were not run.
+    pub not_run: usize,
 }
 
 /// Packs a sweep's file, plan, results, times, instances and what was learnt from.
@@ -69,6 +79,12 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
             }
         }
     }
+    for (index, arm) in plan.head.arms.iter().enumerate() {
+        for needed in arm.command.iter().flat_map(|command| &command.files) {
+            let name = format!("files/{index}/{}", needed.name);
+            files.push((name, needed.path.clone()));
+        }
+    }
     let mut listed = Vec::new();
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     // A fixed date: the same content is the same bytes.
@@ -84,7 +100,7 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
     let manifest = Manifest {
         format: "edifice/sweep-bundle".into(),
         version: 1,
-        program: program().into(),
+        program: plan.head.program.clone(),
         machine: Machine::this(rayon::current_num_threads()),
         files: listed,
     };
@@ -99,10 +115,17 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
 }
 
 /// Unpacks a bundle into an empty folder, checks its digests, and runs `sample` of its finished tasks again, evenly spread.
+/// Arms that are commands are run only with `commands`: a bundle from elsewhere may hold any program.
 ///
 /// # Errors
-/// [`Error::Content`] when it is no bundle, was changed, or is of another version; [`Error::Io`].
-pub fn verify(bundle: &Path, folder: &Path, studies: &[Study], sample: usize) -> Result<Verified> {
+/// [`Error::Content`] when it is no bundle, was changed, holds names that lead out of it, or is of other sources; [`Error::Io`].
+pub fn verify(
+    bundle: &Path,
+    folder: &Path,
+    studies: &[Study],
+    sample: usize,
+    commands: bool,
+) -> Result<Verified> {
     let bytes = std::fs::read(bundle).map_err(|e| Error::io(bundle, "read", e))?;
     let not =
         |e: &dyn std::fmt::Display| Error::content(bundle, BundleError::NotABundle(e.to_string()));
@@ -114,15 +137,28 @@ pub fn verify(bundle: &Path, folder: &Path, studies: &[Study], sample: usize) ->
         .map_err(|e| not(&e))?;
     drop(entry_of);
     let manifest: Manifest = serde_json::from_str(&manifest).map_err(|e| not(&e))?;
-    if manifest.program != program() {
-        let (made, ours) = (manifest.program, program().to_owned());
-        return Err(Error::content(bundle, BundleError::Program { made, ours }));
+    let listed: HashSet<&str> = manifest.files.iter().map(|(n, _)| n.as_str()).collect();
+    let mut bytes = 0u64;
+    for index in 0..archive.len() {
+        let inside = archive.by_index(index).map_err(|e| not(&e))?;
+        let name = inside.name().map_err(|e| not(&e))?.into_owned();
+        let wrong = |error| Err(Error::content(bundle, error));
+        if inside.enclosed_name().is_none() || name.split(['/', '\\']).any(|part| part == "..") {
+            return wrong(BundleError::LeadsOut(name));
+        }
+        if name != "manifest.json" && !listed.contains(name.as_str()) {
+            return wrong(BundleError::Unlisted(name));
+        }
+        bytes = bytes.saturating_add(inside.size());
+        if bytes > LARGEST {
+            return wrong(BundleError::TooLarge);
+        }
     }
     for (name, digest) in &manifest.files {
         let mut inside = archive.by_name(name).map_err(|e| not(&e))?;
         let place = inside
             .enclosed_name()
-            .ok_or_else(|| not(&format!("`{name}` leads out of it")))?;
+            .ok_or_else(|| Error::content(bundle, BundleError::LeadsOut(name.clone())))?;
         let mut content = Vec::new();
         inside.read_to_end(&mut content).map_err(|e| not(&e))?;
         let path = folder.join(place);
@@ -134,7 +170,7 @@ pub fn verify(bundle: &Path, folder: &Path, studies: &[Study], sample: usize) ->
             return Err(Error::content(bundle, BundleError::Changed(name.clone())));
         }
     }
-    let mut plan = Plan::read(folder)?;
+    let mut plan = Plan::read(folder, studies)?;
     let Head {
         instances, learn, ..
     } = &mut plan.head;
@@ -144,11 +180,27 @@ pub fn verify(bundle: &Path, folder: &Path, studies: &[Study], sample: usize) ->
             instance.path = PathBuf::from(format!("{place}/{index}")).join(name);
         }
     }
-    rerun(&plan, folder, plan.study(studies)?, sample)
+    for (index, arm) in plan.head.arms.iter_mut().enumerate() {
+        for needed in arm
+            .command
+            .iter_mut()
+            .flat_map(|command| &mut command.files)
+        {
+            let place = folder.join(format!("files/{index}"));
+            needed.path = place.join(Path::new(&needed.name).file_name().unwrap_or_default());
+        }
+    }
+    rerun(&plan, folder, plan.study(studies)?, sample, commands)
 }
 
 /// Compares the results in the folder's table with those of a sample that is run again.
-fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Verified> {
+fn rerun(
+    plan: &Plan,
+    folder: &Path,
+    study: &Study,
+    sample: usize,
+    commands: bool,
+) -> Result<Verified> {
     let path = folder.join(RESULTS);
     let table = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
     let again = folder.join("again");
@@ -159,15 +211,18 @@ fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Ver
         let instance = plan.head.instances[task.instance].name.clone();
         finished.contains(&(arm, instance, task.seed.to_string()))
     };
-    let tasks: Vec<&Task> = plan.tasks.iter().filter(has_result).collect();
+    let all: Vec<&Task> = plan.tasks.iter().filter(has_result).collect();
+    let is_run = |task: &&Task| commands || plan.head.arms[task.arm].command.is_none();
+    let tasks: Vec<&Task> = all.iter().copied().filter(is_run).collect();
+    let never = AtomicBool::new(false);
     let chosen = sample.min(tasks.len());
     let mut different = Vec::new();
     let journal = super::journal::Journal::open(&again, (0, 1))?;
     for k in 0..chosen {
         let task = tasks[k * tasks.len() / chosen];
-        journal.put(&entry(plan, folder, study, task))?;
+        journal.put(&entry(plan, folder, study, task, &never)?)?;
     }
-    let known = read_all(&again, Keep::Presence)?;
+    let known = read_all(&again, &plan.head.program, Keep::Presence)?;
     let sampled = Plan {
         head: plan.head.clone(),
         tasks: plan
@@ -190,6 +245,7 @@ fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Ver
     Ok(Verified {
         rerun: sampled.tasks.len(),
         different,
+        not_run: all.len() - tasks.len(),
     })
 }
 

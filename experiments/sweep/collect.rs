@@ -6,6 +6,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::bounds;
 use super::journal::{Damaged, Entry, Keep, Known, read_all};
 use super::plan::Plan;
 use super::study::Outcome;
@@ -40,7 +41,7 @@ pub struct State {
     pub mean_seconds: Option<f64>,
     /// Lines of journals that could not be read.
     pub damaged: Vec<Damaged>,
-    /// Results of other versions of the program, which do not count.
+    /// Results of other sources of the study, which do not count.
     pub foreign: usize,
 }
 
@@ -53,7 +54,7 @@ pub fn state(plan: &Plan, out: &Path) -> Result<State> {
         entries,
         damaged,
         foreign,
-    } = read_all(out, Keep::Presence)?;
+    } = read_all(out, &plan.head.program, Keep::Presence)?;
     let name = |arm: &super::definition::Arm| ArmState {
         arm: arm.name.clone(),
         ..ArmState::default()
@@ -110,7 +111,7 @@ pub struct Record {
 /// # Errors
 /// [`Error::Io`].
 pub fn records(plan: &Plan, out: &Path, keep: Keep) -> Result<Vec<Record>> {
-    let mut entries = read_all(out, keep)?.entries;
+    let mut entries = read_all(out, &plan.head.program, keep)?.entries;
     let record = |task: &super::plan::Task| {
         let entry = entries.remove(&task.key);
         let (outcome, failure, seconds) = match entry {
@@ -126,7 +127,9 @@ pub fn records(plan: &Plan, out: &Path, keep: Keep) -> Result<Vec<Record>> {
             seconds,
         }
     };
-    Ok(plan.tasks.iter().map(record).collect())
+    let mut records: Vec<Record> = plan.tasks.iter().map(record).collect();
+    bounds::refuse(plan, &mut records);
+    Ok(records)
 }
 
 /// Writes [`RESULTS`], one row per metric of each task and one per failure, and [`TIMES`]; returns the numbers of rows.

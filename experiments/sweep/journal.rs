@@ -11,7 +11,6 @@ use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::program;
 use super::study::Outcome;
 use crate::frame::lock;
 use edifice_base::{Error, Result};
@@ -24,7 +23,7 @@ const FOLDER: &str = "journal";
 pub struct Entry {
     /// The task's key.
     pub key: String,
-    /// Version of the program that ran it.
+    /// Digest of the sources of the study that ran it.
     pub program: String,
     /// Its outcome; `None` if it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -114,7 +113,7 @@ pub struct Known {
     pub entries: HashMap<String, Entry>,
     /// Lines that could not be read.
     pub damaged: Vec<Damaged>,
-    /// Entries of other versions of the program, which do not count.
+    /// Entries of other sources of the study, which do not count.
     pub foreign: usize,
 }
 
@@ -129,11 +128,11 @@ pub enum Keep {
     All,
 }
 
-/// Reads all journals of a sweep's folder, whether or not they are being written.
+/// Reads all journals of a sweep's folder, whether or not they are being written. Entries of other sources than `program` do not count.
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn read_all(out: &Path, keep: Keep) -> Result<Known> {
+pub fn read_all(out: &Path, program: &str, keep: Keep) -> Result<Known> {
     let folder = out.join(FOLDER);
     let mut known = Known::default();
     let listed = match std::fs::read_dir(&folder) {
@@ -147,13 +146,13 @@ pub fn read_all(out: &Path, keep: Keep) -> Result<Known> {
     paths.retain(|path| path.extension().is_some_and(|e| e == "jsonl"));
     paths.sort();
     for path in paths {
-        known.read(&path, keep)?;
+        known.read(&path, program, keep)?;
     }
     Ok(known)
 }
 
 impl Known {
-    fn read(&mut self, path: &Path, keep: Keep) -> Result<()> {
+    fn read(&mut self, path: &Path, program: &str, keep: Keep) -> Result<()> {
         let fail = |e| Error::io(path, "read", e);
         let mut reader = BufReader::new(File::open(path).map_err(fail)?);
         let mut line = Vec::new();
@@ -165,7 +164,7 @@ impl Known {
                 break;
             }
             match serde_json::from_slice::<Entry>(&line) {
-                Ok(entry) if entry.program != program() => self.foreign += 1,
+                Ok(entry) if entry.program != program => self.foreign += 1,
                 Ok(mut entry) => {
                     if let Some(outcome) = entry.outcome.as_mut().filter(|_| keep != Keep::All) {
                         outcome.trace = Vec::new();

@@ -12,11 +12,16 @@
 //! | `report/` | tables and figures |
 //! | `data/` | unpacked data sets |
 //!
-//! A key is a hash of study, settings, instance, what is learnt from, seed and version of the program. So a changed arm is run alone, and results
-//! of another version are not mixed in.
+//! A key is a hash of study, settings, command with its files, instance, what is learnt from, seed, and the sources that the study is made of
+//! ([`Study::sources`]). So a changed arm is run alone, and results of changed methods are not mixed in.
+//!
+//! An arm is a built-in method, or a [`command`]: a program in any language that reads a question from files and writes an answer to a file. Both
+//! pass the same judge ([`trial`]).
 
+mod bounds;
 pub mod bundle;
 pub mod collect;
+pub mod command;
 pub mod definition;
 pub mod examples;
 pub mod instances;
@@ -25,9 +30,11 @@ pub mod plan;
 pub mod report;
 pub mod run;
 mod shared;
+mod sources;
 pub mod statistics;
 pub mod study;
 pub mod submit;
+pub mod trial;
 
 pub use plan::Plan;
 pub(super) use shared::Shared;

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use super::definition::{Arm, ReportOptions, TaskOptions, arms, read};
+use super::command::Command;
+use super::definition::{Arm, Definition, ReportOptions, TaskOptions, arms, read};
 use super::instances::{Instance, files};
-use super::study::Study;
+use super::study::{Better, Study};
 use crate::frame::lock::Lock;
 use crate::frame::provenance;
 use edifice_base::{Error, Result, file};
@@ -20,7 +21,7 @@ pub const PLAN: &str = "plan.jsonl";
 /// One run of one arm on one instance with one seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Task {
-    /// Hash of study, settings, instance, what is learnt from, seed and version of the program.
+    /// Hash of study, settings, command, instance, what is learnt from, seed and sources of the study.
     pub key: String,
     /// Index of the arm.
     pub arm: usize,
@@ -35,7 +36,7 @@ pub struct Task {
 pub struct Head {
     format: String,
     version: u32,
-    /// Version of the program that made the plan.
+    /// Digest of the sources of the study when the plan was made.
     pub program: String,
     /// Name of the study.
     pub study: String,
@@ -54,6 +55,12 @@ pub struct Head {
     /// Files that are learnt from; none where the study does not learn, or learns from the other instances.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub learn: Vec<Instance>,
+    /// The first metric and the values of it that are better, which bounds are about.
+    #[serde(default)]
+    pub first: Option<(String, Better)>,
+    /// Names of the settings that make the question, as far as the study tells them from those of its methods.
+    #[serde(default)]
+    pub question: Option<Vec<String>>,
     /// Number of tasks.
     pub tasks: usize,
 }
@@ -77,7 +84,7 @@ enum PlanError {
     #[error("this is no plan of a sweep: {0}")]
     NotAPlan(String),
     #[error(
-        "the plan was made by version {made} of the program, this is {ours}; make it anew with `edifice sweep plan`"
+        "the plan was made with other sources of its study ({made}, these are {ours}); make it anew with `edifice sweep plan`"
     )]
     Program { made: String, ours: String },
     #[error(
@@ -92,22 +99,36 @@ enum PlanError {
     Study(String),
 }
 
-/// The program's version, as far as it can change results.
-pub fn program() -> &'static str {
-    env!("CARGO_PKG_VERSION")
-}
-
 impl Plan {
-    /// Makes the plan of a sweep file. Data sets that ship are unpacked below `out`, which is there; another process that does the same
-    /// is waited for.
+    /// Makes the plan of a sweep file. Data sets that ship are unpacked below `out`, which is made where it is not there; another process that does
+    /// the same is waited for. What is refused leaves no folder behind.
     ///
     /// # Errors
     /// Those of reading the file; [`Error::Content`] if there is no instance.
     pub fn make(sweep: &Path, out: &Path, studies: &[Study]) -> Result<Self> {
         let definition = read(sweep, studies)?;
-        let _lock = Lock::wait(out)?;
         let study = &studies[definition.study];
         let arms = arms(sweep, &definition, study)?;
+        let fresh = !out.exists();
+        std::fs::create_dir_all(out).map_err(|e| Error::io(out, "create", e))?;
+        let lock = Lock::wait(out)?;
+        let planned = Self::planned(sweep, out, study, &definition, arms);
+        drop(lock);
+        if fresh && planned.is_err() {
+            // The reason of the refusal is what counts, not what could not be removed.
+            let _ = std::fs::remove_dir_all(out);
+        }
+        planned
+    }
+
+    /// The plan of a sweep whose arms are known.
+    fn planned(
+        sweep: &Path,
+        out: &Path,
+        study: &Study,
+        definition: &Definition,
+        arms: Vec<Arm>,
+    ) -> Result<Self> {
         let instances = files(sweep, out, study, &definition.data)?;
         let mut learn = files(sweep, out, study, &definition.learn)?;
         learn.retain(|file| instances.iter().all(|instance| instance.path != file.path));
@@ -121,12 +142,17 @@ impl Plan {
         let mut tasks = Vec::with_capacity(arms.len() * instances.len() * definition.seeds.len());
         for (a, arm) in arms.iter().enumerate() {
             let settings = Value::Object(arm.settings.clone()).to_string();
+            let command = arm
+                .command
+                .as_ref()
+                .map_or_else(String::new, Command::identity);
             for (i, instance) in instances.iter().enumerate() {
                 let mut common = Sha256::new();
                 for part in [
-                    program(),
+                    study.sources(),
                     study.name,
                     &settings,
+                    &command,
                     &instance.name,
                     &instance.digest,
                     &database,
@@ -151,7 +177,7 @@ impl Plan {
         let head = Head {
             format: "edifice/sweep-plan".into(),
             version: 1,
-            program: program().into(),
+            program: study.sources().into(),
             study: study.name.into(),
             sweep: provenance::digest(sweep)?,
             paired_seeds: definition.paired_seeds,
@@ -160,6 +186,9 @@ impl Plan {
             arms,
             instances,
             learn,
+            first: (study.metrics.first()).map(|(name, better)| ((*name).to_owned(), *better)),
+            question: (!study.asks.is_empty())
+                .then(|| study.asks.iter().map(|name| (*name).to_owned()).collect()),
             tasks: tasks.len(),
         };
         Ok(Self { head, tasks })
@@ -179,11 +208,11 @@ impl Plan {
         file::write_atomic(&out.join(PLAN), &bytes)
     }
 
-    /// Reads the plan of a sweep's folder, of this version of the program.
+    /// Reads the plan of a sweep's folder, of the study's sources as they are.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Input`] or [`Error::Content`] where it is none, not whole, or of another version.
-    pub fn read(out: &Path) -> Result<Self> {
+    /// [`Error::Io`]; [`Error::Input`] or [`Error::Content`] where it is none, not whole, or of other sources.
+    pub fn read(out: &Path, studies: &[Study]) -> Result<Self> {
         let path = out.join(PLAN);
         let text = std::fs::read_to_string(&path).map_err(|e| match e.kind() {
             std::io::ErrorKind::NotFound => Error::content(out, PlanError::NoPlan),
@@ -193,8 +222,10 @@ impl Plan {
         let head = lines.next().unwrap_or_default();
         let not = |e: serde_json::Error| Error::content(&path, PlanError::NotAPlan(e.to_string()));
         let head: Head = serde_json::from_str(head).map_err(not)?;
-        if head.program != program() {
-            let (made, ours) = (head.program.clone(), program().to_owned());
+        let study = studies.iter().find(|study| study.name == head.study);
+        let study = study.ok_or_else(|| Error::method(PlanError::Study(head.study.clone())))?;
+        if head.program != study.sources() {
+            let (made, ours) = (head.program.clone(), study.sources().to_owned());
             return Err(Error::content(&path, PlanError::Program { made, ours }));
         }
         let mut tasks = Vec::new();
@@ -225,15 +256,15 @@ impl Plan {
             plan.write(out)?;
             return Ok(plan);
         }
-        Self::current(sweep, out)
+        Self::current(sweep, out, studies)
     }
 
     /// The plan in a folder, which is that of the sweep file as it stands.
     ///
     /// # Errors
     /// As [`Plan::read`]; [`Error::Content`] when the file has changed since.
-    pub fn current(sweep: &Path, out: &Path) -> Result<Self> {
-        let plan = Self::read(out)?;
+    pub fn current(sweep: &Path, out: &Path, studies: &[Study]) -> Result<Self> {
+        let plan = Self::read(out, studies)?;
         match plan.head.sweep == provenance::digest(sweep)? {
             true => Ok(plan),
             false => Err(Error::content(sweep, PlanError::Changed)),

@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
+use super::command;
 use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
-use super::plan::{Plan, Task, program};
+use super::plan::{Plan, Task};
 use super::study::{Given, Study};
 use crate::frame::Progress;
 use edifice_base::rng::stream;
@@ -76,7 +77,12 @@ pub fn run(
     if let Some(path) = changed(files, out)? {
         return Err(Error::content(&path, Changed));
     }
-    let known = read_all(out, Keep::Presence)?.entries;
+    for command in plan.head.arms.iter().filter_map(|arm| arm.command.as_ref()) {
+        if let Some(path) = command.changed()? {
+            return Err(Error::content(path, Changed));
+        }
+    }
+    let known = read_all(out, &plan.head.program, Keep::Presence)?.entries;
     let ours: Vec<&Task> = plan.tasks.iter().skip(shard.0).step_by(shard.1).collect();
     let open = |task: &&&Task| match known.get(&task.key) {
         None => true,
@@ -90,7 +96,7 @@ pub fn run(
         if stop.load(Ordering::Relaxed) {
             return Err(Error::Interrupted);
         }
-        let entry = entry(plan, out, study, task);
+        let entry = entry(plan, out, study, task, stop)?;
         journal.put(&entry)?;
         let counted = if entry.outcome.is_some() {
             &finished
@@ -110,7 +116,16 @@ pub fn run(
 }
 
 /// Runs one task.
-pub fn entry(plan: &Plan, out: &Path, study: &Study, task: &Task) -> Entry {
+///
+/// # Errors
+/// [`Error::Interrupted`] when `stop` is set while a command runs; a task that fails is an entry.
+pub fn entry(
+    plan: &Plan,
+    out: &Path,
+    study: &Study,
+    task: &Task,
+    stop: &AtomicBool,
+) -> Result<Entry> {
     let arm = &plan.head.arms[task.arm];
     let database = match study.learns {
         true => plan.database(out, task),
@@ -121,20 +136,43 @@ pub fn entry(plan: &Plan, out: &Path, study: &Study, task: &Task) -> Entry {
         database: &database,
         seed: chance(plan, task),
     };
-    let start = ThreadTime::now();
-    let found = study.run(&arm.settings, &given);
-    let seconds = start.elapsed().as_secs_f64();
+    let (found, seconds) = match &arm.command {
+        None => {
+            let start = ThreadTime::now();
+            let found = study.run(&arm.settings, &given);
+            (found, start.elapsed().as_secs_f64())
+        }
+        Some(command) => {
+            let about = command::Circumstances {
+                settings: &arm.settings,
+                seed: given.seed,
+                memory: &plan.head.task.mem,
+                stop,
+            };
+            let seconds = std::cell::Cell::new(0.0);
+            let found = study.run_foreign(&arm.settings, &given, &|posed, output| {
+                let start = std::time::Instant::now();
+                let answer = command::ask(command, posed, output, &about);
+                seconds.set(start.elapsed().as_secs_f64());
+                answer
+            });
+            (found, seconds.get())
+        }
+    };
+    if matches!(found, Err(Error::Interrupted)) {
+        return Err(Error::Interrupted);
+    }
     let (outcome, failure) = match found {
         Ok(outcome) => (Some(outcome), None),
         Err(error) => (None, Some(error.to_string())),
     };
-    Entry {
+    Ok(Entry {
         key: task.key.clone(),
-        program: program().into(),
+        program: plan.head.program.clone(),
         outcome,
         failure,
         seconds,
-    }
+    })
 }
 
 /// The seed that a task hands on: the same for all arms where they are paired.

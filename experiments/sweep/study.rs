@@ -8,6 +8,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::sources;
+use super::trial::{Answered, Posed, Trial};
 use edifice_base::{Error, Result};
 
 /// The values of a metric that are better.
@@ -59,6 +61,12 @@ pub struct Given<'a> {
 }
 
 type Run = Box<dyn Fn(&Map<String, Value>, &Given) -> Result<Outcome> + Send + Sync>;
+type Settings = Map<String, Value>;
+/// Asks for an answer: files of the question and of the answer in, the metrics that the answer's author states out.
+pub type Ask<'a> = dyn Fn(&Posed, &Path) -> Result<BTreeMap<String, f64>> + 'a;
+type Foreign = Box<dyn Fn(&Settings, &Given, &Ask) -> Result<Outcome> + Send + Sync>;
+type Reply =
+    Box<dyn Fn(&Settings, &Posed, &Path, u64) -> Result<BTreeMap<String, f64>> + Send + Sync>;
 type Check = Box<dyn Fn(&Map<String, Value>) -> std::result::Result<(), String> + Send + Sync>;
 
 /// A method that sweeps can run: a function and the type of its settings.
@@ -77,6 +85,23 @@ pub struct Study {
     defaults: Map<String, Value>,
     check: Check,
     run: Run,
+    foreign: Option<(Foreign, Reply)>,
+    /// Names of metrics that a candidate states of itself.
+    pub claims: &'static [&'static str],
+    /// Names of the settings that make the question; the others are those of built-in methods. Empty where the study does not tell.
+    pub asks: &'static [&'static str],
+    sources: String,
+}
+
+/// The faults of an answer that any study finds.
+#[derive(Debug, thiserror::Error)]
+enum AnswerError {
+    #[error("the answer states the metric `{0}`, which only the judge measures")]
+    Claim(String),
+    #[error("the metric `{0}` is {1}, which is no number")]
+    NotFinite(String, f64),
+    #[error("the study takes no command")]
+    NoCommand,
 }
 
 impl Study {
@@ -111,7 +136,105 @@ impl Study {
                 let settings = typed(settings).map_err(Error::method)?;
                 run(&settings, given)
             }),
+            foreign: None,
+            claims: &[],
+            asks: &[],
+            sources: String::new(),
         }
+    }
+
+    /// A study whose candidate can be a command.
+    pub fn trial<T: Trial>(
+        name: &'static str,
+        about: &'static str,
+        data: &'static str,
+        metrics: &'static [(&'static str, Better)],
+    ) -> Self {
+        fn typed<S: DeserializeOwned>(settings: &Settings) -> Result<S> {
+            serde_json::from_value(Value::Object(settings.clone())).map_err(Error::method)
+        }
+        let run = |settings: &T::Settings, given: &Given| {
+            let (question, truth) = T::prepare(settings, given)?;
+            let answered = T::candidate(settings, &question, given.seed)?;
+            judged::<T>(settings, &question, &truth, answered)
+        };
+        let foreign = |settings: &Settings, given: &Given, ask: &Ask| {
+            let settings: T::Settings = typed(settings)?;
+            let (question, truth) = T::prepare(&settings, given)?;
+            let folder =
+                tempfile::tempdir().map_err(|e| Error::io("answer".as_ref(), "make", e))?;
+            let found = answered::<T>(&question, folder.path(), ask)
+                .and_then(|answered| judged::<T>(&settings, &question, &truth, answered));
+            // The same failure has the same words in every run: the folder is another each time.
+            let place = format!("{}{}", folder.path().display(), std::path::MAIN_SEPARATOR);
+            found.map_err(|error| match error {
+                Error::Interrupted => Error::Interrupted,
+                error => Error::method(error.to_string().replace(&place, "")),
+            })
+        };
+        let reply = |settings: &Settings, posed: &Posed, output: &Path, seed: u64| {
+            let settings: T::Settings = typed(settings)?;
+            let question = T::posed(posed)?;
+            let answered = T::candidate(&settings, &question, seed)?;
+            T::write(&question, &answered.answer, output)?;
+            Ok(answered.claims)
+        };
+        Self {
+            foreign: Some((Box::new(foreign), Box::new(reply))),
+            claims: T::CLAIMS,
+            ..Self::new(name, about, data, metrics, run)
+        }
+    }
+
+    /// The same study, whose results depend on the sources of these crates and of its part of the experiments.
+    #[must_use]
+    pub fn made_of(self, crates: &[&str], part: &str) -> Self {
+        Self {
+            sources: sources::digest(crates, part),
+            ..self
+        }
+    }
+
+    /// The same study, whose question is made by these settings alone.
+    #[must_use]
+    pub fn asking(self, asks: &'static [&'static str]) -> Self {
+        Self { asks, ..self }
+    }
+
+    /// Digest of the sources that its results depend on.
+    pub fn sources(&self) -> &str {
+        &self.sources
+    }
+
+    /// True if an arm can be a command.
+    pub fn takes_commands(&self) -> bool {
+        self.foreign.is_some()
+    }
+
+    /// Runs one task whose answer comes from elsewhere.
+    ///
+    /// # Errors
+    /// Those of asking, and why the answer is none.
+    pub fn run_foreign(&self, settings: &Settings, given: &Given, ask: &Ask) -> Result<Outcome> {
+        let foreign = self.foreign.as_ref();
+        let (foreign, _) = foreign.ok_or_else(|| Error::method(AnswerError::NoCommand))?;
+        foreign(settings, given, ask)
+    }
+
+    /// Answers a question that lies in files by the built-in method; the metrics that it states are returned.
+    ///
+    /// # Errors
+    /// Those of reading, of the method and of writing.
+    pub fn reply(
+        &self,
+        settings: &Settings,
+        posed: &Posed,
+        output: &Path,
+        seed: u64,
+    ) -> Result<BTreeMap<String, f64>> {
+        let foreign = self.foreign.as_ref();
+        let (_, reply) = foreign.ok_or_else(|| Error::method(AnswerError::NoCommand))?;
+        reply(settings, posed, output, seed)
     }
 
     /// The same study, which learns from files beside the instance ([`Given::database`]).
@@ -152,6 +275,45 @@ impl Study {
     pub fn run(&self, settings: &Map<String, Value>, given: &Given) -> Result<Outcome> {
         (self.run)(settings, given)
     }
+}
+
+/// Asks for an answer to a question, whose files lie in a folder.
+fn answered<T: Trial>(
+    question: &T::Question,
+    folder: &Path,
+    ask: &Ask,
+) -> Result<Answered<T::Answer>> {
+    let posed = T::pose(question, folder)?;
+    let output = folder.join(T::OUTPUT);
+    let claims = ask(&posed, &output)?;
+    Ok(Answered {
+        claims,
+        ..Answered::plain(T::read(question, &output)?)
+    })
+}
+
+/// The outcome of an answer: what the judge measures, and what only its author can state.
+fn judged<T: Trial>(
+    settings: &T::Settings,
+    question: &T::Question,
+    truth: &T::Truth,
+    answered: Answered<T::Answer>,
+) -> Result<Outcome> {
+    let mut metrics = T::judge(settings, question, truth, &answered.answer)?;
+    for (name, value) in answered.claims {
+        if !T::CLAIMS.contains(&name.as_str()) {
+            return Err(Error::method(AnswerError::Claim(name)));
+        }
+        metrics.insert(name, value);
+    }
+    if let Some((name, value)) = metrics.iter().find(|(_, value)| !value.is_finite()) {
+        return Err(Error::method(AnswerError::NotFinite(name.clone(), *value)));
+    }
+    Ok(Outcome {
+        metrics,
+        trace: answered.trace,
+        bound: answered.bound,
+    })
 }
 
 /// The properties of a JSON schema with their defaults.

@@ -3,6 +3,7 @@
 mod attributes;
 mod build;
 mod check;
+mod compare;
 mod data;
 mod design;
 mod draw;
@@ -43,6 +44,8 @@ pub enum Command {
   edifice building complete ames.houses.json some.csv --schema datasets/building_exteriors/ames.schema.json
 A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
     Complete(draw::CompleteArgs),
+    /// Compare houses with the true ones: attributes, soundness, closed surfaces.
+    Compare(compare::Args),
     /// Compare models by the negative log-likelihood of houses they have not seen.
     #[command(after_help = "Examples:
   edifice building evaluate datasets/building_exteriors/houses.buildings.jsonl --splits 2 --models ours,gmm")]
@@ -95,6 +98,7 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Show(args) => show::run(&args),
         Command::Sample(args) => draw::sample(&args),
         Command::Complete(args) => draw::complete(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Build(args) => build::build(&args),
         Command::Generate(args) => build::generate(&args),

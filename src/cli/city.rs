@@ -1,12 +1,15 @@
 //! Cities on the command line.
 
+mod colours;
 mod compare;
+mod convert;
 mod data;
 mod derive;
 mod draw;
 mod edit;
 mod locate;
 mod proceduralize;
+mod residuals;
 mod show;
 mod synthesize;
 mod tiles;
@@ -20,6 +23,7 @@ pub enum Command {
     #[command(after_help = "Examples:
   edifice city proceduralize midtown.npz -o midtown.city-grammar.json
   edifice city proceduralize delft.city.json --templates 500 -o delft.city-grammar.json.gz --glb delft.glb
+  edifice city proceduralize delft.npz --bytes 560000 --residuals drop --keep shape -o delft.city-grammar.bin
   edifice city proceduralize midtown.npz --mode paper --level 2 --weights height=3 -o paper.city-grammar.json
 Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metres.")]
     Proceduralize(proceduralize::Args),
@@ -27,14 +31,23 @@ Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metr
     #[command(after_help = "Examples:
   edifice city derive midtown.city-grammar.json -o midtown.glb
   edifice city derive midtown.city-grammar.json -o midtown.obj
+  edifice city derive midtown.city-grammar.json --rules-only -o rules.glb
 OBJ and CityJSON are z up, in metres; glTF is y up.")]
     Derive(derive::Args),
     /// Change sizes of templates and weights of rules.
     #[command(after_help = "Examples:
-  edifice city edit midtown.city-grammar.json 'scale t12=1,1,1.5' -o taller.city-grammar.json
-Edits, made in turn: scale TEMPLATE=FX,FY,FZ (factors of width, depth and height wherever it stands); weight RULE=W, the rules
-counted from 0 as in the file.")]
+  edifice city edit midtown.city-grammar.json 'scale B1=1,1,1.5' -o taller.city-grammar.json
+  edifice city edit midtown.city-grammar.json 'scale B*=1,1,1.5' 'scale E*=1,1,1.5' -o taller.city-grammar.json
+Edits, made in turn: scale NAME=FX,FY,FZ (factors of width, depth and height of a type of building, B1 or E1, or of a template,
+T1, wherever it stands; NAME may end in * for all names that begin so); weight RULE=W, the rules counted from 0 as in the file.
+Residuals are carried along, or left out with --residuals drop.")]
     Edit(edit::Args),
+    /// Write a city in another format.
+    #[command(after_help = "Examples:
+  edifice city convert berlin.gml -o berlin.city.json
+  edifice city convert midtown.npz -o midtown.obj
+Reads .npz, .obj, .gml (CityGML 2 and 3), .city.json, .city.jsonl, .glb, .gltf and grammars; writes .obj and .city.json.")]
+    Convert(convert::Args),
     /// Compare two cities, or a city and a grammar.
     #[command(after_help = "Examples:
   edifice city compare midtown.npz midtown.city-grammar.json --resolution 0.5")]
@@ -61,7 +74,8 @@ The view lists buildings near each other: { \"format\": \"edifice/city-view\", \
     Tiles(tiles::Args),
     /// Draw a city or a grammar.
     #[command(after_help = "Examples:
-  edifice city draw midtown.city-grammar.json --beside midtown.npz -o midtown.png")]
+  edifice city draw midtown.city-grammar.json --beside midtown.npz -o midtown.png
+  edifice city draw midtown.city-grammar.json --colour type --plan --at 300000,61000 --radius 400 --size 1600x1600 -o types.png")]
     Draw(draw::Args),
 }
 
@@ -72,6 +86,7 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Derive(args) => derive::run(&args),
         Command::Edit(args) => edit::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Show(args) => show::run(&args),
         Command::Draw(args) => draw::run(&args),
         Command::Synthesize(args) => synthesize::run(&args),

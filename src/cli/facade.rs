@@ -1,5 +1,6 @@
 //! Facade files on the command line.
 
+mod compare;
 mod complete;
 mod edit;
 mod hide;
@@ -13,14 +14,17 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use edifice_base::{Error, Result};
+use edifice_facade_grammar::Settings;
 use edifice_io as io;
 use edifice_io::Source;
 use edifice_layout::regularize::{RegularizeError, Report, regularize_facade, regularize_grid};
 use edifice_shape as shape;
 use edifice_shape::{Decomposition, Facade, LabelGrid};
 
+use super::cleaning::Cleaning;
 use super::print;
 use super::reading::{self, Reading};
+use super::tolerance;
 
 /// Commands.
 #[derive(Subcommand)]
@@ -33,6 +37,7 @@ pub enum Command {
     /// lines can split; boxes become element layouts, which are drawn on a wall.
     #[command(after_help = "Examples:
   edifice facade convert monge_42.png -o monge_42.facade.json --regularize 2
+  edifice facade convert segmented.png -o short.facade.json --tolerance 1%
   edifice facade convert labels.txt.gz --label-map map.json -o labels.svg
   edifice facade convert labels.jpg --nearest-colour -o labels.png
   edifice facade convert instances.json --image house_7 -o house_7.facade.json
@@ -53,6 +58,8 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
         after_help = "Example:\n  edifice facade hide monge_42.png --task side50 --seed 1 -o partial.facade.json"
     )]
     Hide(hide::Args),
+    /// Compare predicted layouts with the true one: agreement, areas, counts, regularity, probabilities.
+    Compare(compare::Args),
     /// Score a facade by the statistical model of Fan et al. 2014, term by term.
     Score(score::Args),
 }
@@ -67,6 +74,8 @@ pub struct Convert {
     output: PathBuf,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    cleaning: Cleaning,
     /// Keep only elements (windows, doors, ...), not the wall.
     #[arg(long)]
     elements: bool,
@@ -74,6 +83,10 @@ pub struct Convert {
     /// this, in the unit of the facade. What is equal stays equal; applied again it changes nothing more.
     #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     regularize: Option<f64>,
+    /// Retile so that the grammar becomes shorter, with at most so many per cent of the area wrong: lines a few pixels
+    /// apart are merged. The cost never rises with the tolerance; 0 changes nothing.
+    #[arg(long, value_name = "P%", value_parser = tolerance::per_cent, conflicts_with_all = ["regularize", "elements"])]
+    tolerance: Option<f64>,
 }
 
 /// Runs the command.
@@ -84,6 +97,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Complete(args) => complete::run(&args),
         Command::Edit(args) => edit::run(&args),
         Command::Hide(args) => hide::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Score(args) => score::run(&args),
     }
 }
@@ -91,6 +105,11 @@ pub fn run(command: Command) -> Result<()> {
 fn convert(options: &Convert) -> Result<()> {
     let path = &options.input;
     let source = reading::source(path, &options.reading.options()?)?;
+    let source = options.cleaning.source(source, path)?;
+    if let Some(share) = options.tolerance {
+        let facade = tolerance::retiled(source, path, share, &Settings::default())?;
+        return written(&facade, &options.output);
+    }
     let source = match (source, options.regularize) {
         (source, None) => source,
         (Source::Layout(facade), Some(tolerance)) => {
@@ -116,18 +135,22 @@ fn convert(options: &Convert) -> Result<()> {
         (Source::Cmp(cmp, width, height), false) => tiling(path, &cmp.label_grid(width, height)?)?,
         (Source::Picture(grid), false) => tiling(path, &grid)?,
     };
-    io::write_facade(&facade, &options.output)?;
-    if options
-        .output
+    written(&facade, &options.output)
+}
+
+/// Writes a facade, and tells what cannot be seen in a picture.
+fn written(facade: &Facade, output: &Path) -> Result<()> {
+    io::write_facade(facade, output)?;
+    if output
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("png"))
     {
-        for labels in io::draw::shared_colours(&facade) {
+        for labels in io::draw::shared_colours(facade) {
             print::message(&format!("note: drawn in one colour: {}", labels.join(", ")));
         }
     }
     let count = facade.regions.len();
-    print::line(&format!("{}: {count} regions", options.output.display()))
+    print::line(&format!("{}: {count} regions", output.display()))
 }
 
 /// Decomposes a picture and tells what had to be cut.

@@ -2,7 +2,9 @@
 
 mod derive;
 mod edit;
+mod evaluate;
 mod infer;
+mod library;
 mod merge;
 mod show;
 
@@ -20,7 +22,19 @@ pub enum Command {
     Edit(edit::Args),
     /// Merge the facades of a grammar and further ones into one joint grammar.
     Merge(merge::Args),
-    /// Show the rules of a grammar, what it costs and what it derives.
+    /// Combine grammars of several facades into a stochastic one, part by part.
+    Combine(library::Combine),
+    /// Draw new facades from a library (`infer --sizes free`).
+    Draw(library::Draw),
+    /// Tell how many bits facades cost given a library: how like its facades they are.
+    Score(library::Score),
+    /// Write a facade with a library, as few bits as they are.
+    Encode(library::Encode),
+    /// Read a facade that was written with a library.
+    Decode(library::Decode),
+    /// Judge a grammar: does it derive the facades, at which cost, how far from a proven bound.
+    Evaluate(evaluate::Args),
+    /// Show the rules of a grammar or library, what it costs and what it derives.
     Show(show::Args),
 }
 
@@ -31,6 +45,12 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Derive(args) => derive::run(&args),
         Command::Edit(args) => edit::run(&args),
         Command::Merge(args) => merge::run(&args),
+        Command::Combine(args) => library::combine(&args),
+        Command::Draw(args) => library::draw(&args),
+        Command::Score(args) => library::score(&args),
+        Command::Encode(args) => library::encode(&args),
+        Command::Decode(args) => library::decode(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
         Command::Show(args) => show::run(&args),
     }
 }

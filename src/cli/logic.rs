@@ -2,6 +2,7 @@
 
 mod cluster;
 mod compare;
+mod evaluate;
 mod fit;
 mod input;
 mod parse;
@@ -20,6 +21,8 @@ pub enum Command {
     Parse(parse::Args),
     /// Rank facades by structural distance.
     Compare(compare::Args),
+    /// Judge distances between facades by the architecture of the facades.
+    Evaluate(evaluate::Args),
     /// Cluster facades by structural distance.
     Cluster(cluster::Args),
     /// Draw new facades from learned rules.
@@ -32,6 +35,7 @@ pub fn run(command: Command) -> edifice_base::Result<()> {
         Command::Fit(args) => fit::run(&args),
         Command::Parse(args) => parse::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
         Command::Cluster(args) => cluster::run(&args),
         Command::Synthesize(args) => synthesize::run(&args),
     }

@@ -3,6 +3,9 @@
 
 mod building;
 mod city;
+mod cleaning;
+mod data;
+mod documents;
 mod facade;
 mod grammar;
 mod logic;
@@ -13,10 +16,11 @@ mod reproduce;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
+mod tolerance;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Probabilistic programming and optimization for buildings.
 #[derive(Parser)]
@@ -54,6 +58,13 @@ enum Command {
     Studio(studio::Args),
     /// Run the experiments of the papers and write the report.
     Reproduce(reproduce::Args),
+    /// Describe data sets of your own, check and list them.
+    #[command(subcommand)]
+    Data(data::Command),
+    /// Print the completions of a shell.
+    Completions(documents::Completions),
+    /// Write the manual pages.
+    Man(documents::Man),
 }
 
 /// Kinds of models that `model show` knows besides Bayesian networks.
@@ -75,6 +86,9 @@ pub fn run() -> ExitCode {
         #[cfg(feature = "studio")]
         Command::Studio(args) => studio::run(args),
         Command::Reproduce(args) => reproduce::run(args),
+        Command::Data(command) => data::run(command),
+        Command::Completions(args) => documents::completions(&args, Cli::command()),
+        Command::Man(args) => documents::man(&args, Cli::command()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,6 +2,9 @@
 
 use edifice_experiments as experiments;
 use edifice_experiments::ALL;
+use edifice_experiments::sweep::definition::suggestion;
+
+use super::print;
 
 /// Options of `edifice reproduce`.
 #[derive(clap::Args)]
@@ -15,14 +18,28 @@ pub struct Args {
     options: experiments::Args,
 }
 
-/// Runs the experiments.
+/// Runs the experiments; wrong names of papers, artefacts and data sets are wrong usage.
 pub fn run(args: Args) -> edifice_base::Result<()> {
+    match chosen(args) {
+        Err(error @ edifice_base::Error::Option { .. }) => {
+            print::error(&error);
+            std::process::exit(2)
+        }
+        outcome => outcome,
+    }
+}
+
+fn chosen(args: Args) -> edifice_base::Result<()> {
     for name in &args.papers {
         if ALL.iter().all(|experiment| experiment.slug != name) {
             let known: Vec<_> = ALL.iter().map(|experiment| experiment.slug).collect();
             return Err(edifice_base::Error::option(
                 "PAPERS",
-                format!("no paper {name:?}; known are {}", known.join(", ")),
+                format!(
+                    "no paper {name:?}{}; known are {}",
+                    suggestion(name, known.iter().copied()),
+                    known.join(", ")
+                ),
             ));
         }
     }

@@ -1,10 +1,11 @@
 //! `edifice sweep`: ablations and comparisons from one file.
 
+mod candidate;
 mod examples;
 mod studies;
 mod submit;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
@@ -34,6 +35,8 @@ pub enum Command {
     Retry(Run),
     /// Write the scripts of a cluster, and submit them
     Submit(submit::Options),
+    /// Answer one question by a study's built-in method, as a command of an arm does
+    Candidate(candidate::Options),
     /// Say what is finished, failed and missing
     Status(Common),
     /// Write results.csv
@@ -103,6 +106,9 @@ pub struct Verify {
     /// Tasks to run again
     #[arg(long, default_value_t = 10)]
     sample: usize,
+    /// Run the commands of its arms too: programs that lie in the bundle
+    #[arg(long)]
+    commands: bool,
     /// Print one JSON object as the last line
     #[arg(long)]
     json: bool,
@@ -118,9 +124,10 @@ pub fn run(command: Command) -> Result<()> {
         Command::Run(options) => tasks(&options, &studies, Wanted::Missing),
         Command::Retry(options) => tasks(&options, &studies, Wanted::MissingAndFailed),
         Command::Submit(options) => submit::submit(&options, &studies),
-        Command::Status(common) => status(&common),
+        Command::Candidate(options) => candidate::answer(&options, &studies),
+        Command::Status(common) => status(&common, &studies),
         Command::Collect(common) => {
-            let plan = Plan::current(&common.sweep, &common.out)?;
+            let plan = Plan::current(&common.sweep, &common.out, &studies)?;
             let (rows, tasks) = collect(&plan, &common.out)?;
             print::message(&format!(
                 "{rows} rows of {tasks} finished tasks in {}",
@@ -132,7 +139,7 @@ pub fn run(command: Command) -> Result<()> {
             )
         }
         Command::Report(options) => {
-            let plan = Plan::current(&options.common.sweep, &options.common.out)?;
+            let plan = Plan::current(&options.common.sweep, &options.common.out, &studies)?;
             collect(&plan, &options.common.out)?;
             let study = plan.study(&studies)?;
             let text = report::report(&plan, &options.common.out, study, options.allow_missing)?;
@@ -144,7 +151,7 @@ pub fn run(command: Command) -> Result<()> {
             Ok(())
         }
         Command::Bundle(options) => {
-            let plan = Plan::current(&options.common.sweep, &options.common.out)?;
+            let plan = Plan::current(&options.common.sweep, &options.common.out, &studies)?;
             let files = bundle::bundle(
                 &plan,
                 &options.common.sweep,
@@ -165,12 +172,7 @@ fn json(common: &Common, value: &serde_json::Value) -> Result<()> {
     }
 }
 
-fn make(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))
-}
-
 fn plan(common: &Common, studies: &[Study]) -> Result<()> {
-    make(&common.out)?;
     let plan = Plan::make(&common.sweep, &common.out, studies)?;
     plan.write(&common.out)?;
     let state = state(&plan, &common.out)?;
@@ -203,7 +205,6 @@ fn plan(common: &Common, studies: &[Study]) -> Result<()> {
 fn tasks(options: &Run, studies: &[Study], wanted: Wanted) -> Result<()> {
     let common = &options.common;
     let shard = shard(&options.shard)?;
-    make(&common.out)?;
     let plan = Plan::of(&common.sweep, &common.out, studies)?;
     let study = plan.study(studies)?;
     static STOP: AtomicBool = AtomicBool::new(false);
@@ -224,8 +225,8 @@ fn tasks(options: &Run, studies: &[Study], wanted: Wanted) -> Result<()> {
     )
 }
 
-fn status(common: &Common) -> Result<()> {
-    let plan = Plan::current(&common.sweep, &common.out)?;
+fn status(common: &Common, studies: &[Study]) -> Result<()> {
+    let plan = Plan::current(&common.sweep, &common.out, studies)?;
     let state = state(&plan, &common.out)?;
     print::line("finished  failed  missing  arm")?;
     let mut left = 0;
@@ -251,7 +252,7 @@ fn status(common: &Common) -> Result<()> {
     }
     if state.foreign > 0 {
         print::message(&format!(
-            "warning: {} results of other versions of the program do not count",
+            "warning: {} results of other sources of the study do not count",
             state.foreign
         ));
     }
@@ -270,7 +271,13 @@ fn status(common: &Common) -> Result<()> {
 
 fn verify(options: &Verify, studies: &[Study]) -> Result<()> {
     let folder = tempfile::tempdir().map_err(|e| Error::io(&options.bundle, "unpack", e))?;
-    let found = bundle::verify(&options.bundle, folder.path(), studies, options.sample)?;
+    let found = bundle::verify(
+        &options.bundle,
+        folder.path(),
+        studies,
+        options.sample,
+        options.commands,
+    )?;
     for line in &found.different {
         print::message(&format!("different: {line}"));
     }
@@ -279,6 +286,12 @@ fn verify(options: &Verify, studies: &[Study]) -> Result<()> {
         found.rerun,
         found.different.len()
     ));
+    if found.not_run > 0 {
+        print::message(&format!(
+            "{} tasks of arms that are commands were left out; --commands runs them",
+            found.not_run
+        ));
+    }
     if options.json {
         print::line(&serde_json::to_string(&found).map_err(Error::method)?)?;
     }

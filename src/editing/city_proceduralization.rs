@@ -215,7 +215,7 @@ impl City {
         if edits.is_empty() {
             return Err(CommandError::Nothing.into());
         }
-        let edited = edit(&self.made()?.grammar, &edits).map_err(Error::method)?;
+        let edited = edit(&self.made()?.grammar, &edits, true).map_err(Error::method)?;
         let mut shell = Shell::new(["city", "edit", "--output", ">", "--", "<"]);
         for text in texts {
             shell = shell.arg(text);

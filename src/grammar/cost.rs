@@ -95,10 +95,10 @@ impl Costs {
 
     /// Eq. 1: cost of a grammar, the sum over its rules.
     pub fn grammar(&self, grammar: &Grammar) -> f64 {
-        grammar
-            .rules
-            .iter()
+        // The sum of nothing is -0: a facade of one region costs 0.
+        let rules = grammar.rules.iter();
+        rules
             .map(|rule| self.rule(&rule.operation))
-            .sum()
+            .fold(0.0, |sum, cost| sum + cost)
     }
 }

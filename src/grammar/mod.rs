@@ -13,6 +13,7 @@ mod error;
 mod evaluate;
 pub mod instance;
 mod listing;
+pub mod parametric;
 mod place;
 mod resize;
 mod rule;

@@ -50,15 +50,33 @@ pub fn parse_json<T: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<T> {
 /// # Errors
 /// [`Error::Input`] at `format` or `version`.
 pub fn check_header(bytes: &[u8], path: &Path, format: &str, version: u64) -> Result<()> {
+    check_versions(bytes, path, format, version..=version)
+}
+
+/// As [`check_header`], for a format of which several versions are read.
+///
+/// # Errors
+/// Names what is unknown and what was expected.
+pub fn check_versions(
+    bytes: &[u8],
+    path: &Path,
+    format: &str,
+    versions: std::ops::RangeInclusive<u64>,
+) -> Result<()> {
     let header: Header = parse_json(bytes, path)?;
     if header.format != format {
         let found = header.format;
         let message = format!("unknown format {found:?}, expected {format:?}");
         return Err(Error::input(path, "format", message));
     }
-    if header.version != version {
+    if !versions.contains(&header.version) {
         let found = header.version;
-        let message = format!("unknown version {found}, expected {version}");
+        let (first, last) = (versions.start(), versions.end());
+        let expected = match first == last {
+            true => last.to_string(),
+            false => format!("{first} to {last}"),
+        };
+        let message = format!("unknown version {found}, expected {expected}");
         return Err(Error::input(path, "version", message));
     }
     Ok(())

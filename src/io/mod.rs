@@ -19,6 +19,7 @@ pub mod gltf;
 pub mod grammar_cga;
 mod grammar_file;
 pub mod grammar_json;
+pub mod grammar_library_json;
 pub mod json;
 pub mod label_image;
 pub mod label_map;

@@ -2,3 +2,4 @@
 
 pub mod regularize;
 pub mod resize;
+pub mod retile;

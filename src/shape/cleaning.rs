@@ -17,11 +17,13 @@
 //! with a small weight `w`, puts a line at the median of the edges that belong to it; `c = (6t)^2` is the
 //! area that a line has to explain. A strip is wider than `2t`, since it has to have an inside.
 
+mod lattice;
 mod lines;
 mod specks;
 
 use super::{Axis, LabelGrid};
 
+pub use lattice::on_lattice;
 pub use specks::absorb_specks;
 
 /// The label image without specks and with straight edges; a `tolerance` of 0 changes nothing.

@@ -12,6 +12,7 @@ mod building;
 mod building_error;
 mod building_plan;
 mod cleaning;
+pub mod comparison;
 mod components;
 mod cuts;
 mod decompose;
@@ -35,7 +36,7 @@ pub use building::{
 };
 pub use building_error::BuildingError;
 pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
-pub use cleaning::{ToleranceError, absorb_specks, clean, straighten};
+pub use cleaning::{ToleranceError, absorb_specks, clean, on_lattice, straighten};
 pub use components::{Component, components};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};

@@ -167,11 +167,11 @@ fn any(rng: &mut Stream, fine: bool) -> InstanceGrammar {
             } else {
                 3.0
             };
-            rules.push(InstanceRule {
-                symbol: name.clone(),
-                weight,
-                successors,
-            });
+            let mut rule = InstanceRule::new(name.clone(), weight, successors);
+            if i + 1 < names.len() {
+                parametrize(rng, &mut rule, &templates);
+            }
+            rules.push(rule);
         }
     }
     let mut grammar = InstanceGrammar {
@@ -197,6 +197,25 @@ fn any(rng: &mut Stream, fine: bool) -> InstanceGrammar {
     grammar
 }
 
+/// Makes a rule over templates, now and then, one with parameters, or with factors.
+fn parametrize(rng: &mut Stream, rule: &mut InstanceRule, templates: &[Template]) {
+    let terminal = |p: &Placement| templates.iter().any(|t| t.symbol == p.symbol);
+    if !rule.successors.iter().all(terminal) || rng.random_bool(0.5) {
+        return;
+    }
+    rule.levels = rng.random_range(0..4);
+    if rng.random_bool(0.3) {
+        rule.scale = [1.0, 0.1, 1.5];
+    }
+    if rule.levels > 0 {
+        for s in &mut rule.successors {
+            let share = |rng: &mut Stream| f64::from(rng.random_range(1..2000)) / 1024.0;
+            s.at = [share(rng), -share(rng), rng.random_range(0..rule.levels) as f64];
+            s.size = [0; 3].map(|_| share(rng));
+        }
+    }
+}
+
 fn placed(
     rng: &mut Stream,
     templates: &[Template],
@@ -216,6 +235,8 @@ fn placed(
     let factor = if rng.random_bool(0.5) { 1.0 } else { 0.75 };
     let mut out = Placement::new(name.clone(), at, turn, [factor; 3]);
     let rule = rules.iter().find(|r| r.symbol == *name).unwrap();
+    let lengths = (0..rule.parameters()).map(|_| number(rng).abs().max(0.1));
+    out.numbers = lengths.collect();
     if rng.random_bool(0.5) && !rule.successors.is_empty() {
         let part = |s: &Placement, rng: &mut Stream| {
             let mut part = s.clone();

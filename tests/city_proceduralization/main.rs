@@ -1,11 +1,13 @@
 //! Cities: grammars, files and commands.
 
 mod box_textures;
+mod citygml;
 mod commands;
 mod compact;
 mod gltf;
 mod grammar;
 mod interrupted;
 mod invariance;
+mod parametric;
 mod photographs;
 mod textures;

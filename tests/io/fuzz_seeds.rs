@@ -28,6 +28,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
         "city_grammar" => city::grammar_json::parse(bytes, path).is_ok(),
         "city_grammar_compact" => city::compact::from_bytes(bytes).is_ok(),
         "city_gltf" => city::gltf::parse(bytes, path).is_ok(),
+        "city_gml" => city::citygml::parse(bytes, path).is_ok(),
         "city_json" => city::cityjson::parse(bytes, path).is_ok(),
         "city_npz" => city::npz::parse(bytes.to_vec(), path).is_ok(),
         "city_obj" => city::obj::parse(bytes, path).is_ok(),
@@ -86,5 +87,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 28);
+    assert_eq!(targets, 29);
 }

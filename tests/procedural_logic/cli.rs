@@ -182,7 +182,7 @@ fn noisy_labels_are_cleaned_when_asked() {
     assert!(said(&["logic", "fit", "noisy", "-o", "m.json"]).contains("--clean"));
     let told = said(&["logic", "fit", "noisy", "-o", "m.json", "--clean"]);
     assert!(
-        told.contains("cleaned 4 facades with tolerance 3"),
+        told.contains("cleaned 4 facades by rows and columns"),
         "{told}"
     );
     let wrong = ["logic", "fit", "noisy", "-o", "x", "--clean=-1"];

@@ -10,6 +10,7 @@ fn options(out: &Path, threads: usize) -> Options {
     Options {
         only: Vec::new(),
         data: None,
+        own: Vec::new(),
         seed: 1,
         budget: Budget::Smoke,
         out: out.to_path_buf(),

@@ -57,6 +57,12 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
             let again = io::grammar_json::to_string(&grammar);
             assert_eq!(io::grammar_json::parse(again.as_bytes(), path)?, grammar);
         }
+        "library" => {
+            let library = io::grammar_library_json::parse(bytes, path)?;
+            let again = io::grammar_library_json::to_string(&library)?;
+            let again = io::grammar_library_json::parse(again.as_bytes(), path)?;
+            assert_eq!(again.members(), library.members());
+        }
         "cga" => drop(io::grammar_cga::parse(bytes, path)?),
         "building" => drop(io::building_json::parse(bytes, path)?),
         "footprint" => drop(io::footprint::parse(bytes, path)?),

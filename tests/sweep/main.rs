@@ -1,5 +1,7 @@
 //! Sweeps: definition, runs, refusals, reports.
 
+mod commands;
+mod judges;
 mod papers;
 mod refusals;
 mod robust;

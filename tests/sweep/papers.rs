@@ -13,6 +13,7 @@ fn artefact(paper: &str, name: &str) -> BTreeMap<[String; 5], f64> {
     let options = Options {
         only: vec![name.into()],
         data: None,
+        own: Vec::new(),
         seed: 1,
         budget: Budget::Smoke,
         out: out.path().to_path_buf(),

@@ -157,6 +157,14 @@ fn every_mistake_of_a_file_is_named_with_its_place() {
     );
 }
 
+/// The first digest of sources in a plan or journal, with its key.
+fn made_by(text: &str) -> String {
+    let digest = text.split("\"program\":\"").nth(1).unwrap();
+    let digest = digest.split('"').next().unwrap();
+    assert_eq!(digest.len(), 32, "{digest}");
+    format!("\"program\":\"{digest}\"")
+}
+
 #[test]
 fn plans_that_do_not_fit_are_refused_and_results_stay() {
     let folder = prepared(SWEEP);
@@ -170,11 +178,11 @@ fn plans_that_do_not_fit_are_refused_and_results_stay() {
     let plan = folder.join("out/plan.jsonl");
     let results = || std::fs::read(folder.join("out/results.csv")).unwrap();
     let (whole, table) = (std::fs::read_to_string(&plan).unwrap(), results());
-    let version = format!("\"program\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    let version = made_by(&whole);
     let spoilt: &[(String, &str)] = &[
         (
             whole.replace(&version, "\"program\":\"0.0.0\""),
-            "made by version 0.0.0",
+            "made with other sources of its study (0.0.0",
         ),
         (whole.replace("\"key\"", "\"kee\""), "line 2"),
         (
@@ -212,17 +220,17 @@ fn plans_that_do_not_fit_are_refused_and_results_stay() {
 }
 
 #[test]
-fn results_of_other_versions_do_not_count() {
+fn results_of_other_sources_do_not_count() {
     let folder = prepared(SWEEP);
     let folder = folder.path();
     good(folder, "run");
     let journal = folder.join("out/journal/0-of-1.jsonl");
     let text = std::fs::read_to_string(&journal).unwrap();
-    let version = format!("\"program\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    let version = made_by(&text);
     std::fs::write(&journal, text.replace(&version, "\"program\":\"0.0.0\"")).unwrap();
     let status = edifice(folder, &["status", "s.toml", "--out", "out"]).success();
     let text = String::from_utf8_lossy(&status.get_output().stderr).into_owned();
-    assert!(text.contains("40 results of other versions"), "{text}");
+    assert!(text.contains("40 results of other sources"), "{text}");
     let text = refused(folder, "report");
     assert!(text.contains("40 of 40 tasks have no result"), "{text}");
 }

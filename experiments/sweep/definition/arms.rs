@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use toml::Spanned;
 
-use super::file::{Definition, Lists, Settings};
+use super::file::{ArmEntry, Definition, Lists, Settings};
 use super::place::suggestion;
+use crate::sweep::command::Command;
 use crate::sweep::study::Study;
 use edifice_base::{Error, Result};
 
@@ -19,6 +20,9 @@ pub struct Arm {
     pub name: String,
     /// All settings.
     pub settings: Map<String, Value>,
+    /// The program that answers instead of a built-in method.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<Command>,
 }
 
 /// The faults of the arms.
@@ -51,6 +55,7 @@ pub fn arms(path: &Path, definition: &Definition, study: &Study) -> Result<Vec<A
         arms.push(Arm {
             name: entry.name.get_ref().clone(),
             settings: with(check(&entry.set)?),
+            command: command(path, definition, study, entry)?,
         });
     }
     for grid in &definition.file.grid {
@@ -73,6 +78,7 @@ pub fn arms(path: &Path, definition: &Definition, study: &Study) -> Result<Vec<A
             arms.push(Arm {
                 name: words.join(", "),
                 settings: with(varied.into_iter().collect()),
+                command: None,
             });
         }
     }
@@ -104,7 +110,7 @@ pub fn arms(path: &Path, definition: &Definition, study: &Study) -> Result<Vec<A
         }
         if let Some(twin) = arms[..index]
             .iter()
-            .find(|other| other.settings == arm.settings)
+            .find(|other| other.settings == arm.settings && other.command == arm.command)
         {
             return Err(fail(ArmError::SameSettings(
                 twin.name.clone(),
@@ -119,6 +125,47 @@ pub fn arms(path: &Path, definition: &Definition, study: &Study) -> Result<Vec<A
         return Err(fail(ArmError::Reference(reference.clone(), hint)));
     }
     Ok(arms)
+}
+
+/// The command of an arm, if it is one.
+fn command(
+    path: &Path,
+    definition: &Definition,
+    study: &Study,
+    entry: &ArmEntry,
+) -> Result<Option<Command>> {
+    let Some(written) = &entry.command else {
+        let alone = [
+            entry.files.as_ref().map(|files| ("files", files.span())),
+            entry.timeout.as_ref().map(|t| ("timeout", t.span())),
+        ];
+        return match alone.into_iter().flatten().next() {
+            None => Ok(None),
+            Some((name, span)) => {
+                let message = format!("{name}: only an arm with a `command` has it");
+                Err(definition.wrong(path, &span, message))
+            }
+        };
+    };
+    if !study.takes_commands() {
+        let message = format!("command: `{}` takes none", study.name);
+        return Err(definition.wrong(path, &written.span(), message));
+    }
+    let none = Vec::new();
+    let files = entry.files.as_ref().map_or(&none, |files| files.get_ref());
+    let timeout = entry.timeout.as_ref().map(|timeout| *timeout.get_ref());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let command = Command::new(written.get_ref(), files, timeout, folder);
+    command.map(Some).map_err(|message| {
+        let files = entry.files.as_ref().map(toml::Spanned::span);
+        let timeout = entry.timeout.as_ref().map(toml::Spanned::span);
+        let span = match message.split(':').next() {
+            Some("files") => files,
+            Some("timeout") => timeout,
+            _ => None,
+        };
+        definition.wrong(path, &span.unwrap_or(written.span()), message)
+    })
 }
 
 /// `name=value`.

@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::place::{place, suggestion};
 use super::task::TaskOptions;
+use crate::sweep::command::Written;
 use crate::sweep::study::{Better, Study};
 use edifice_base::{Error, Result};
 
@@ -43,6 +44,12 @@ pub(super) struct ArmEntry {
     pub name: Spanned<String>,
     #[serde(default)]
     pub set: Settings,
+    /// A foreign program that answers instead of a built-in method.
+    pub command: Option<Spanned<Written>>,
+    /// Files that it needs, relative to the sweep file.
+    pub files: Option<Spanned<Vec<String>>>,
+    /// Seconds after which it has failed.
+    pub timeout: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]

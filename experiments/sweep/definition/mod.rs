@@ -7,5 +7,5 @@ mod task;
 
 pub use arms::{Arm, arms};
 pub use file::{Definition, ReportOptions, read};
-pub use place::nearest;
+pub use place::{nearest, suggestion};
 pub use task::TaskOptions;

@@ -33,7 +33,7 @@ const GUESS: f64 = 10.0;
 /// [`edifice_base::Error::Io`].
 pub fn packing(plan: &Plan, out: &Path) -> Result<Packing> {
     let wanted = plan.head.task.pack_seconds();
-    let known = read_all(out, Keep::Presence)?.entries;
+    let known = read_all(out, &plan.head.program, Keep::Presence)?.entries;
     let open = |(_, task): &(usize, &Task)| !known.contains_key(&task.key);
     let tasks = plan.tasks.iter().enumerate().filter(open);
     let tasks: Vec<usize> = tasks.map(|(index, _)| index).collect();

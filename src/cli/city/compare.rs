@@ -46,6 +46,13 @@ pub fn run(args: &Args) -> Result<()> {
     let meshes = |city: &[TriangleMesh]| -> Vec<TriangleMesh> { city.to_vec() };
     let (first, second) = (meshes(&a.meshes), meshes(&b.meshes));
     let [f, s]: [Vec<&TriangleMesh>; 2] = [first.iter().collect(), second.iter().collect()];
+    let asked = size;
+    let size = VolumeRaster { size }.fitted(&f, &s).size;
+    if size > asked {
+        print::message(&format!(
+            "warning: too large for cells of {asked} m: compared in cells of {size} m"
+        ));
+    }
     let overlap = VolumeRaster { size }.compare(&f, &s);
     let [there, back] = [distances(&f, &s, args.seed), distances(&s, &f, args.seed)];
     if args.json {

@@ -8,6 +8,8 @@ use edifice_io::city;
 pub use edifice_io::city::grammar_file::is_grammar;
 use edifice_shape::triangles::City;
 
+use crate::print;
+
 /// Reads a grammar.
 pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
     city::grammar_file::read(path)
@@ -16,11 +18,17 @@ pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
 /// Reads a city, or derives it from a grammar.
 pub fn city(path: &Path) -> Result<City> {
     if !is_grammar(path) {
-        return city::read(path);
+        let city = city::read(path)?;
+        city.notes.iter().for_each(|note| print::message(note));
+        return Ok(city);
     }
-    let grammar = grammar(path)?;
+    derived(&grammar(path)?, path)
+}
+
+/// Derives the city of a grammar that was read from `path`.
+pub fn derived(grammar: &InstanceGrammar, path: &Path) -> Result<City> {
     let derivation = grammar.derive().map_err(|e| Error::content(path, e))?;
-    let mut city = derivation.city(&grammar);
+    let mut city = derivation.city(grammar);
     city::paint_parts(&mut city).map_err(|e| Error::content(path, e))?;
     Ok(city)
 }

@@ -16,6 +16,9 @@ pub struct Args {
     /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
     #[arg(short, long)]
     output: PathBuf,
+    /// Only what the rules say: residuals, which tell where the parts of single instances stand, are left out.
+    #[arg(long)]
+    rules_only: bool,
     /// Write a glTF node for each instance, for viewers without `EXT_mesh_gpu_instancing`.
     #[arg(long)]
     no_instancing: bool,
@@ -23,11 +26,17 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    if data::is_grammar(&args.output) {
-        return grammar_file::write(&data::grammar(&args.grammar)?, &args.output);
+    let is_grammar = data::is_grammar(&args.output);
+    if !is_grammar {
+        check_output(&args.output)?;
     }
-    check_output(&args.output)?;
-    let grammar = data::grammar(&args.grammar)?;
+    let mut grammar = data::grammar(&args.grammar)?;
+    if args.rules_only {
+        grammar = grammar.rules_only();
+    }
+    if is_grammar {
+        return grammar_file::write(&grammar, &args.output);
+    }
     let derivation = grammar
         .derive()
         .map_err(|e| Error::content(&args.grammar, e))?;

@@ -2,10 +2,29 @@
 
 use std::path::PathBuf;
 
+use clap::ValueEnum;
+use edifice_io::city::picture::{self, Drawing, Drawn};
 use edifice_base::{Error, Result};
-use edifice_io::city::picture;
 
-use super::data;
+use super::colours::{Colouring, Read, colouring};
+
+/// Most pixels along a side.
+const MOST: usize = 8192;
+
+/// What the colour of a building tells.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// Nothing: buildings are light, textures are shown.
+    Plain,
+    /// The type of building, of a grammar: the most frequent ones have colours of their own.
+    Type,
+    /// The height above its own ground, in metres.
+    Height,
+    /// Levels of its rule, of a grammar.
+    Level,
+    /// By how much its volume differs from that in `--beside`, in per cent.
+    Error,
+}
 
 /// Options.
 #[derive(clap::Args)]
@@ -19,27 +38,86 @@ pub struct Args {
     #[arg(short, long)]
     output: PathBuf,
     /// Width of each city's picture, in pixels; it is three quarters as high.
-    #[arg(long, default_value_t = 1200)]
+    #[arg(long, default_value_t = 1200, conflicts_with = "size")]
     width: usize,
+    /// Width and height of each city's picture, in pixels.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// From above, north at the top.
+    #[arg(long)]
+    plan: bool,
+    /// Only buildings around a point, in the coordinates of the city's reference system.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    at: Option<String>,
+    /// How far around, in metres.
+    #[arg(long, value_name = "R", requires = "at", default_value_t = 300.0)]
+    radius: f64,
+    /// What colours tell; a legend says what they stand for.
+    #[arg(long, value_enum, default_value = "plain")]
+    colour: Colour,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    if !(16..=8192).contains(&args.width) {
-        return Err(Error::option(
-            "--width",
-            format!("{} is not between 16 and 8192", args.width),
-        ));
+    let [width, height] = size(args)?;
+    let around = match &args.at {
+        None => None,
+        Some(text) => {
+            let point = numbers::<f64>(text, ',').filter(|p| p.iter().all(|v| v.is_finite()));
+            let wrong = || Error::option("--at", format!("{text:?} is not X,Y"));
+            Some((point.ok_or_else(wrong)?, args.radius))
+        }
+    };
+    if !(args.radius.is_finite() && args.radius > 0.0) {
+        let text = format!("{} is no length above 0", args.radius);
+        return Err(Error::option("--radius", text));
     }
+    let shown = Read::new(&args.file)?;
+    let beside = args.beside.as_deref().map(Read::new).transpose()?;
+    let Colouring {
+        colours,
+        beside: others,
+        legend,
+    } = colouring(args.colour, &shown, beside.as_ref())?;
     let mut cities = Vec::new();
-    if let Some(path) = &args.beside {
-        cities.push(data::city(path)?);
+    if let Some(beside) = &beside {
+        cities.push(drawn(beside, others.as_deref()));
     }
-    cities.push(data::city(&args.file)?);
-    let cities: Vec<_> = cities.iter().collect();
-    let bytes = picture::side_by_side(&cities, args.width, args.width * 3 / 4);
+    cities.push(drawn(&shown, colours.as_deref()));
+    let drawing = Drawing {
+        width,
+        height,
+        plan: args.plan,
+        around,
+    };
+    let bytes = picture::draw(&cities, &drawing, &legend);
     edifice_io::write_atomic(
         &args.output,
         &bytes.map_err(|e| Error::content(&args.output, e))?,
     )
+}
+
+fn drawn<'a>(read: &'a Read, colours: Option<&'a [[u8; 3]]>) -> Drawn<'a> {
+    Drawn {
+        city: &read.city,
+        colours,
+    }
+}
+
+fn size(args: &Args) -> Result<[usize; 2]> {
+    let (option, found) = match &args.size {
+        None => ("--width", Some([args.width, args.width * 3 / 4])),
+        Some(text) => ("--size", numbers(text, 'x')),
+    };
+    let usable = |s: &[usize; 2]| s[0] >= 16 && s[1] >= 12 && s.iter().all(|v| *v <= MOST);
+    found.filter(usable).ok_or_else(|| {
+        let text = format!("expected from 16 to {MOST} pixels, such as 1600x900");
+        Error::option(option, text)
+    })
+}
+
+/// Two numbers.
+fn numbers<T: std::str::FromStr>(text: &str, between: char) -> Option<[T; 2]> {
+    let (a, b) = text.split_once(between)?;
+    Some([a.trim().parse().ok()?, b.trim().parse().ok()?])
 }

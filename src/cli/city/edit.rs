@@ -8,6 +8,7 @@ use edifice_editing::city_proceduralization::{CityEdit, edit};
 use edifice_io::city::grammar_file;
 
 use super::data;
+use super::residuals::Residuals;
 use crate::print;
 
 /// Options.
@@ -18,6 +19,9 @@ pub struct Args {
     /// Edits.
     #[arg(required = true, value_name = "EDIT", value_parser = parse)]
     edits: Vec<CityEdit>,
+    /// What becomes of residuals, which tell where the parts of single instances stand, of types that are edited.
+    #[arg(long, value_enum, default_value = "keep")]
+    residuals: Residuals,
     /// The grammar to write (`*.city-grammar.json`, also with `.gz`, or `*.city-grammar.bin`).
     #[arg(short, long)]
     output: PathBuf,
@@ -30,7 +34,8 @@ fn parse(text: &str) -> std::result::Result<CityEdit, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let grammar = data::grammar(&args.grammar)?;
-    let edited = edit(&grammar, &args.edits).map_err(|e| Error::content(&args.grammar, e))?;
+    let carry = args.residuals == Residuals::Keep;
+    let edited = edit(&grammar, &args.edits, carry).map_err(|e| Error::content(&args.grammar, e))?;
     grammar_file::write(&edited, &args.output)?;
     print::line(&format!(
         "{}: {} rules",

@@ -1,5 +1,6 @@
 //! `edifice city proceduralize`.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -14,6 +15,7 @@ use edifice_io::city::{self, glb, grammar_file};
 use edifice_shape::triangles::MeshFaults;
 use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
 
+use super::residuals::Residuals;
 use crate::print;
 
 /// Cells of the raster that judges the result, in metres.
@@ -100,6 +102,9 @@ pub struct Args {
     /// Part of the buildings that is kept.
     #[arg(long, value_enum, default_value = "all")]
     keep: Keep,
+    /// Where the rules do not put the parts of a building exactly: keep where they stand, or let the rules alone say.
+    #[arg(long, value_enum, default_value = "keep")]
+    residuals: Residuals,
     /// The grammar to write: text (`*.city-grammar.json`, also with `.gz`), or few bytes (`*.city-grammar.bin`).
     #[arg(short, long)]
     output: PathBuf,
@@ -133,13 +138,16 @@ pub fn run(args: &Args) -> Result<()> {
         }
         (_, Some(least)) => {
             let good = |g: &InstanceGrammar| {
-                let found = iou(&input, g)?;
+                let found = iou(&input, &args.said(g))?;
                 print::message(&format!("{} templates: IoU {found:.4}", g.templates.len()));
                 Ok(found >= least)
             };
             method::smallest(&input, &settings, good).map_err(|e| failure(e, args))?
         }
-        _ => Some(method::proceduralize(&input, &settings).map_err(|e| failure(e.into(), args))?),
+        _ => {
+            let made = method::proceduralize_watched(&input, &settings, &print::message);
+            Some(made.map_err(|e| failure(e.into(), args))?)
+        },
     };
     let option = if args.bytes.is_some() {
         "--bytes"
@@ -148,6 +156,9 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let mut made =
         made.ok_or_else(|| Error::option(option, "no number of templates reaches it"))?;
+    if args.residuals == Residuals::Drop {
+        made.grammar = made.grammar.rules_only();
+    }
     match args.texture_pixels {
         0 => made
             .grammar
@@ -173,6 +184,8 @@ pub fn run(args: &Args) -> Result<()> {
     print::message("measuring");
     let iou = iou(&input, &made.grammar).map_err(|e| failure(e, args))?;
     let rules = made.grammar.rules.len();
+    let escapes = made.grammar.escapes();
+    let residuals = made.grammar.residuals();
     let non_terminals = made.grammar.non_terminals();
     let (components, templates) = (
         made.decomposition.components.len(),
@@ -182,12 +195,12 @@ pub fn run(args: &Args) -> Result<()> {
         let summary = serde_json::json!({
             "buildings": input.buildings.len(), "components": components, "templates": templates,
             "rules": rules, "terminals": templates, "non_terminals": non_terminals,
-            "bytes": bytes, "iou": iou, "seconds": seconds, "seed": args.seed,
+            "escapes": escapes, "residuals": residuals, "bytes": bytes, "iou": iou, "seconds": seconds, "seed": args.seed,
         });
         return print::line(&summary.to_string());
     }
     print::line(&format!(
-        "{} buildings, {components} components -> {templates} templates, {rules} rules\n\
+        "{} buildings, {components} components -> {templates} templates, {rules} rules, {escapes} escapes, {residuals} residuals\n\
          {bytes} bytes, volumetric IoU {iou:.4}, {seconds:.1} s",
         input.buildings.len()
     ))
@@ -196,6 +209,7 @@ pub fn run(args: &Args) -> Result<()> {
 impl Args {
     /// The bytes of the file that a grammar is written to.
     fn bytes_of(&self, grammar: &InstanceGrammar) -> Result<Vec<u8>> {
+        let grammar = &*self.said(grammar);
         let kept = match self.keep {
             Keep::All => return grammar_file::to_bytes(grammar, &self.output),
             Keep::Ids => Kept::Identifiers,
@@ -203,6 +217,14 @@ impl Args {
             Keep::Shape => Kept::Shape,
         };
         grammar_file::to_bytes(&grammar.keeping(kept), &self.output)
+    }
+
+    /// A grammar with residuals, or without.
+    fn said<'g>(&self, grammar: &'g InstanceGrammar) -> Cow<'g, InstanceGrammar> {
+        match self.residuals {
+            Residuals::Keep => Cow::Borrowed(grammar),
+            Residuals::Drop => Cow::Owned(grammar.rules_only()),
+        }
     }
 
     fn precision(&self) -> Option<Precision> {
@@ -281,6 +303,7 @@ fn read(paths: &[PathBuf]) -> Result<City> {
     let mut all: Option<City> = None;
     for path in paths {
         let next = city::read(path)?;
+        next.notes.iter().for_each(|note| print::message(note));
         match &mut all {
             None => all = Some(next),
             Some(city) => city.merge(next),

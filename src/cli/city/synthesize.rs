@@ -45,12 +45,15 @@ pub fn run(args: &Args) -> Result<()> {
         derive::check_output(&args.output)?;
     }
     let grammar = data::grammar(&args.grammar)?;
-    let shape = Shape {
-        rings: match &args.shape {
-            Some(path) => geojson::read(path)?,
-            None => vec![corners(&args.polygon)?],
-        },
+    let mut rings = match &args.shape {
+        Some(path) => geojson::read(path)?,
+        None => vec![corners(&args.polygon)?],
     };
+    // The shape is in the coordinates of the reference system.
+    for p in rings.iter_mut().flatten() {
+        *p = [0, 1].map(|k| p[k] - grammar.origin[k]);
+    }
+    let shape = Shape { rings };
     let area = shape.area();
     let (made, derivation) =
         fill(&grammar, shape, args.seed).map_err(|e| Error::content(&args.grammar, e))?;

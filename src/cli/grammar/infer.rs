@@ -12,8 +12,10 @@ use edifice_io as io;
 use edifice_shape::Facade;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::cleaning::Cleaning;
 use crate::print;
 use crate::reading::{self, Reading};
+use crate::tolerance;
 
 /// Options of `edifice grammar infer`.
 #[derive(clap::Args)]
@@ -22,7 +24,12 @@ use crate::reading::{self, Reading};
   edifice grammar infer monge_42.png --ops split --seed 7 -o monge_42.cga --json
   edifice grammar infer a.facade.json b.facade.json c.facade.json -o joint.grammar.json
 
-Several facades give one joint grammar, with the rules that they share written once.
+  edifice grammar infer segmented.png --tolerance 1% -o short.grammar.json
+  edifice grammar infer street/*.png --sizes free -o street.library.json
+
+Several facades give one joint grammar, with the rules that they share written once. With --sizes free, sizes and the
+counts of repeats are parameters of the rules, so that different facades share them: a library, which draws new facades
+and tells how like them others are.
 Without -o the grammar is listed on standard output.")]
 pub struct Args {
     /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml); text also as .gz
@@ -31,6 +38,12 @@ pub struct Args {
     /// Method of search
     #[arg(long, value_enum, default_value = "adp")]
     method: MethodName,
+    /// Whether sizes are written into the rules, or are parameters of them
+    #[arg(long, value_enum, default_value = "fixed")]
+    sizes: Sizes,
+    /// Per cent of the area that may become wrong so that the grammar becomes shorter: lines a few pixels apart are merged
+    #[arg(long, value_name = "P%", value_parser = tolerance::per_cent)]
+    tolerance: Option<f64>,
     /// Iterations of the methods that repeat themselves
     #[arg(long, default_value_t = Settings::default().iterations, value_parser = clap::value_parser!(u64).range(1..))]
     iterations: u64,
@@ -51,12 +64,23 @@ pub struct Args {
     no_protection: bool,
     #[command(flatten)]
     reading: Reading,
-    /// Grammar to write: .grammar.json or .cga
+    #[command(flatten)]
+    cleaning: Cleaning,
+    /// Grammar to write: .grammar.json or .cga; with --sizes free also .library.json
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// End with one line of JSON
     #[arg(long)]
     json: bool,
+}
+
+/// Sizes in rules.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Sizes {
+    /// Written into the rules: regions share a rule when they are equal
+    Fixed,
+    /// Parameters, as are counts: regions share a rule when they are equal but for both
+    Free,
 }
 
 /// Names of the contract.
@@ -80,7 +104,6 @@ enum MethodName {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let facades = read(args)?;
     let costs = Costs {
         split: args.split_cost,
         sym_split: args.split_cost,
@@ -89,6 +112,10 @@ pub fn run(args: &Args) -> Result<()> {
         repeat_aba: args.repeat_cost,
         ..Costs::default()
     };
+    let facades = read(args, costs)?;
+    if args.sizes == Sizes::Free {
+        return super::library::infer(&facades, &costs, args.output.as_deref(), args.json);
+    }
     let started = Instant::now();
     let found = search(args, &facades, costs)?;
     let seconds = started.elapsed().as_secs_f64();
@@ -103,10 +130,23 @@ pub fn run(args: &Args) -> Result<()> {
     report(args, &evaluation, &found, seconds)
 }
 
-fn read(args: &Args) -> Result<Vec<Facade>> {
+fn read(args: &Args, costs: Costs) -> Result<Vec<Facade>> {
     let options = args.reading.options()?;
+    let prices = Settings {
+        iterations: args.iterations,
+        seed: args.seed,
+        costs,
+        operations: args.ops,
+        ..Settings::default()
+    };
     let checked = |path: &PathBuf| {
-        let facade = reading::source(path, &options)?.facade(path)?;
+        let source = args
+            .cleaning
+            .source(reading::source(path, &options)?, path)?;
+        let facade = match args.tolerance {
+            Some(share) => tolerance::retiled(source, path, share, &prices)?,
+            None => source.facade(path)?,
+        };
         facade
             .check_tiling()
             .map_err(|error| Error::content(path, error))?;

@@ -18,7 +18,7 @@ use crate::print;
 The cost of a rule is that of its operation plus the number of symbols written in it; the cost of a
 grammar is the sum over its rules.")]
 pub struct Args {
-    /// Grammar to read: .grammar.json or .cga, also as .gz
+    /// Grammar or library to read: .grammar.json, .cga or .library.json, also as .gz
     grammar: PathBuf,
     /// Write the sizes into the rules; ~ marks relative ones
     #[arg(long)]
@@ -37,6 +37,18 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let path = &args.grammar;
+    let costs = Costs {
+        split: args.split_cost,
+        sym_split: args.split_cost,
+        grid_split: args.split_cost,
+        repeat: args.repeat_cost,
+        repeat_aba: args.repeat_cost,
+        ..Costs::default()
+    };
+    let bytes = edifice_io::read_bytes(path)?;
+    if edifice_io::grammar_library_json::is_library(&bytes) {
+        return super::library::show(path, &bytes, &costs, args.json);
+    }
     let grammar = read_grammar(path)?;
     for warning in check(&grammar).map_err(|e| Error::content(path, e))? {
         print::message(&format!("warning: {}: {warning}", path.display()));
@@ -47,14 +59,6 @@ pub fn run(args: &Args) -> Result<()> {
     if !grammar.rules.is_empty() {
         print::line("")?;
     }
-    let costs = Costs {
-        split: args.split_cost,
-        sym_split: args.split_cost,
-        grid_split: args.split_cost,
-        repeat: args.repeat_cost,
-        repeat_aba: args.repeat_cost,
-        ..Costs::default()
-    };
     let summary = Summary::new(&grammar, &costs).map_err(|e| Error::content(path, e))?;
     for line in summary.lines(&grammar) {
         print::line(&line)?;

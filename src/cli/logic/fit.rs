@@ -112,7 +112,7 @@ fn hint(args: &Args, model: &Model) {
     let (rules, facades) = (model.inference.rules.len(), model.facades.len());
     if !args.facades.is_clean() && rules > MANY_RULES * facades {
         print::message(&format!(
-            "{rules} rules for {facades} facades: if the labels come from a segmentation, --clean straightens them"
+            "{rules} rules for {facades} facades: if the labels come from a segmentation, --clean makes them regular"
         ));
     }
 }

@@ -8,9 +8,10 @@ use edifice_io as io;
 use edifice_io::json;
 use edifice_procedural_logic as procedural_logic;
 use edifice_procedural_logic::{MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters};
-use edifice_shape::{LabelGrid, ToleranceError, clean};
+use edifice_shape::LabelGrid;
 use rayon::prelude::*;
 
+use crate::cleaning::Cleaning;
 use crate::print;
 use crate::reading::{self, Reading};
 
@@ -22,17 +23,8 @@ pub struct Facades {
     pub inputs: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// Clean label images as a segmentation gives them: absorb specks, straighten edges that waver by up to
-    /// PX (in the unit of the facade); without it, labels are taken exactly as they are.
-    #[arg(
-        long,
-        value_name = "PX",
-        num_args = 0..=1,
-        require_equals = true,
-        default_missing_value = "3",
-        allow_negative_numbers = true
-    )]
-    clean: Option<f64>,
+    #[command(flatten)]
+    cleaning: Cleaning,
 }
 
 impl Facades {
@@ -46,26 +38,24 @@ impl Facades {
                 grids.push(reading::source(&path, &options)?.label_grid(&path)?);
             }
         }
-        match self.clean {
-            Some(tolerance) => cleaned(&grids, tolerance),
-            None => Ok(grids),
+        match self.cleaning.is_asked() {
+            true => cleaned(&grids, &self.cleaning),
+            false => Ok(grids),
         }
     }
 
     /// True if the facades are cleaned.
     pub fn is_clean(&self) -> bool {
-        self.clean.is_some()
+        self.cleaning.is_asked()
     }
 }
 
-/// The facades without noise up to a tolerance, with a message of what that did.
-fn cleaned(grids: &[LabelGrid], tolerance: f64) -> Result<Vec<LabelGrid>> {
-    let wrong = |error: ToleranceError| Error::option("--clean", error.to_string());
+/// The facades cleaned, with a message of what that did.
+fn cleaned(grids: &[LabelGrid], cleaning: &Cleaning) -> Result<Vec<LabelGrid>> {
     let clean: Vec<LabelGrid> = grids
         .par_iter()
-        .map(|grid| clean(grid, tolerance))
-        .collect::<std::result::Result<_, _>>()
-        .map_err(wrong)?;
+        .map(|grid| cleaning.picture(grid.clone()))
+        .collect::<Result<_>>()?;
     let lines = |grid: &LabelGrid| {
         let merged = grid.merged();
         merged.columns() + merged.rows() - 2
@@ -73,8 +63,9 @@ fn cleaned(grids: &[LabelGrid], tolerance: f64) -> Result<Vec<LabelGrid>> {
     let before: usize = grids.iter().map(lines).sum();
     let after: usize = clean.iter().map(lines).sum();
     print::message(&format!(
-        "cleaned {} facades with tolerance {tolerance}: {before} cut lines became {after}",
-        grids.len()
+        "cleaned {} facades {}: {before} cut lines became {after}",
+        grids.len(),
+        cleaning.name()
     ));
     Ok(clean)
 }

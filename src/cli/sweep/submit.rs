@@ -39,7 +39,6 @@ pub struct Options {
 /// Writes the scripts, and starts them.
 pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
     let common = &options.common;
-    super::make(&common.out)?;
     let plan = Plan::of(&common.sweep, &common.out, studies)?;
     let absolute = |path: &Path| std::path::absolute(path).map_err(|e| Error::io(path, "find", e));
     let (sweep, out) = (absolute(&common.sweep)?, absolute(&common.out)?);

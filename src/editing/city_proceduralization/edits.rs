@@ -1,12 +1,13 @@
 //! Edits of an instance grammar, as text and as values.
 
 use super::super::{CommandError, numbers};
-use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Placement};
+use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, InstanceRule, Placement};
 
 /// One edit.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CityEdit {
-    /// `scale TEMPLATE=FX,FY,FZ`: factors of width, depth and height wherever the template stands.
+    /// `scale NAME=FX,FY,FZ`: factors of width, depth and height of a template, or of a type of building, wherever it stands; a name that
+    /// ends in `*` is all names that begin so.
     Scale(String, [f64; 3]),
     /// `weight RULE=W`: weight of a rule, counted from 0 in the order of the file.
     Weight(usize, f64),
@@ -16,7 +17,7 @@ pub enum CityEdit {
 #[derive(Debug, thiserror::Error)]
 pub enum CityEditError {
     /// There is no such template.
-    #[error("there is no template {0:?}")]
+    #[error("there is no template or type of building {0:?}: names are T1, B1, E1 or B*")]
     NoTemplate(String),
     /// There is no such rule.
     #[error("there is no rules[{rule}]: the grammar has {count}")]
@@ -65,27 +66,43 @@ fn read(text: &str) -> Result<CityEdit, String> {
     })
 }
 
-/// The grammar after edits, made in turn.
+/// The grammar after edits, made in turn. Residuals of a type that is edited are carried along, or, without `carry`, left out.
 ///
 /// # Errors
 /// [`CityEditError`]; the edited grammar is checked whole.
 pub fn edit(
     grammar: &InstanceGrammar,
     edits: &[CityEdit],
+    carry: bool,
 ) -> Result<InstanceGrammar, CityEditError> {
     let mut out = grammar.clone();
     for edit in edits {
         match edit {
             CityEdit::Scale(template, factors) => {
-                if !out.templates.iter().any(|t| t.symbol == *template) {
+                let named = |symbol: &str| match template.strip_suffix('*') {
+                    Some(start) => symbol.starts_with(start),
+                    None => symbol == template,
+                };
+                let own = |r: &InstanceRule| r.levels > 0 && named(&r.symbol);
+                let types = out.rules.iter().any(own);
+                let templates = out.templates.iter().any(|t| named(&t.symbol));
+                if !(types || templates) {
                     return Err(CityEditError::NoTemplate(template.clone()));
                 }
                 let bad = factors.iter().find(|f| !(f.is_finite() && **f > 0.0));
                 if let Some(factor) = bad {
                     return Err(CityEditError::Factor(*factor));
                 }
+                for rule in out.rules.iter_mut().filter(|r| own(r)) {
+                    rule.scale = [0, 1, 2].map(|k| rule.scale[k] * factors[k]);
+                }
                 for placed in out.rules.iter_mut().flat_map(|r| &mut r.successors) {
-                    scale(placed, template, factors);
+                    if !carry && types && named(&placed.symbol) {
+                        placed.parts.clear();
+                    }
+                    if templates {
+                        scale(placed, &named, factors);
+                    }
                 }
             }
             CityEdit::Weight(rule, weight) => {
@@ -99,13 +116,13 @@ pub fn edit(
     Ok(out)
 }
 
-fn scale(placed: &mut Placement, template: &str, factors: &[f64; 3]) {
-    if placed.symbol == template {
+fn scale(placed: &mut Placement, named: &impl Fn(&str) -> bool, factors: &[f64; 3]) {
+    if named(&placed.symbol) && placed.numbers.is_empty() {
         for (size, factor) in placed.size.iter_mut().zip(factors) {
             *size *= factor;
         }
     }
     for part in placed.parts.iter_mut().flatten() {
-        scale(part, template, factors);
+        scale(part, named, factors);
     }
 }

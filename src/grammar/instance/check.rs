@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{InstanceGrammar, InstanceGrammarError, Placement};
+use super::{InstanceGrammar, InstanceGrammarError, InstanceRule, Placement};
 
 /// Deepest nesting of rules.
 pub(super) const DEEPEST: usize = 64;
@@ -80,6 +80,7 @@ impl InstanceGrammar {
             }
         }
         for (rule, r) in self.rules.iter().enumerate() {
+            self.check_parameters(rule, &symbols)?;
             for (successor, s) in r.successors.iter().enumerate() {
                 let place = || format!("rules[{rule}].successors[{successor}]");
                 self.check_placement(s, &symbols, &place)?;
@@ -153,6 +154,33 @@ fn number(
 }
 
 impl InstanceGrammar {
+    /// Factors, and what the successors of a rule with parameters are.
+    fn check_parameters(
+        &self,
+        rule: usize,
+        symbols: &FxHashMap<&str, Symbol>,
+    ) -> Result<(), InstanceGrammarError> {
+        let r = &self.rules[rule];
+        for v in r.scale {
+            let usable = v.is_finite() && v > 0.0;
+            number(v, "factor", usable, || format!("rules[{rule}].scale"))?;
+        }
+        if r.levels == 0 && r.is_unscaled() {
+            return Ok(());
+        }
+        for (i, s) in r.successors.iter().enumerate() {
+            if !matches!(symbols.get(s.symbol.as_str()), Some(Symbol::Template(_))) {
+                let symbol = s.symbol.clone();
+                return Err(InstanceGrammarError::NoTemplate { rule, symbol });
+            }
+            let place = || format!("rules[{rule}].successors[{i}]");
+            let level = s.at[2];
+            let within = level >= 0.0 && level < r.levels as f64;
+            number(level, "level", r.levels == 0 || within, place)?;
+        }
+        Ok(())
+    }
+
     fn check_placement(
         &self,
         placement: &Placement,
@@ -179,6 +207,18 @@ impl InstanceGrammar {
         if rule.is_some() {
             let what = "size of a non-terminal, which takes one factor for all axes";
             number(d, what, w == d && d == h, || format!("{}.size", place()))?;
+        }
+        let expected = rule.map_or(0, InstanceRule::parameters);
+        if placement.numbers.len() != expected {
+            return Err(InstanceGrammarError::Numbers {
+                symbol: placement.symbol.clone(),
+                found: placement.numbers.len(),
+                expected,
+            });
+        }
+        for (k, &v) in placement.numbers.iter().enumerate() {
+            let usable = v.is_finite() && v > 0.0;
+            number(v, "length", usable, || format!("{}.numbers[{k}]", place()))?;
         }
         let expected = rule.map_or(0, |r| r.successors.len());
         if !placement.parts.is_empty() && placement.parts.len() != expected {

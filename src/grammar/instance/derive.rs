@@ -1,5 +1,7 @@
 //! From the axiom to placed templates, and to triangles.
 
+use std::borrow::Cow;
+
 use rustc_hash::FxHashMap;
 
 use super::check::Symbol;
@@ -66,7 +68,8 @@ impl InstanceGrammar {
             grammar: self,
             symbols: &symbols,
         };
-        derivation.rule(start, &[], &frame, None, 1, &mut out)?;
+        let axiom = Placement::new(self.axiom.as_str(), [0.0; 3], 0.0, [1.0; 3]);
+        derivation.rule(start, &axiom, &frame, None, 1, &mut out)?;
         Ok(out)
     }
 }
@@ -87,7 +90,7 @@ impl Deriver<'_> {
     fn rule(
         &self,
         rule: usize,
-        parts: &[Option<Placement>],
+        own: &Placement,
         frame: &Frame,
         building: Option<usize>,
         depth: usize,
@@ -96,12 +99,17 @@ impl Deriver<'_> {
         let rule = &self.grammar.rules[rule];
         out.depth = out.depth.max(depth);
         for (i, successor) in rule.successors.iter().enumerate() {
-            let placed = match parts.get(i) {
-                None => successor,
+            let placed = match own.parts.get(i) {
+                None if rule.levels == 0 => Cow::Borrowed(successor),
+                None => Cow::Owned(rule.part(i, &own.numbers)),
                 Some(None) => continue,
-                Some(Some(part)) => part,
+                Some(Some(part)) => Cow::Borrowed(part),
             };
-            self.place(placed, frame, building, depth, out)?;
+            let placed = match rule.is_unscaled() {
+                true => placed,
+                false => Cow::Owned(rule.scaled(&placed)),
+            };
+            self.place(&placed, frame, building, depth, out)?;
         }
         Ok(())
     }
@@ -146,7 +154,7 @@ impl Deriver<'_> {
                     turn,
                     scale: frame.scale * placed.size[0],
                 };
-                self.rule(rule, &placed.parts, &frame, building, depth + 1, out)
+                self.rule(rule, placed, &frame, building, depth + 1, out)
             }
             None => Err(InstanceGrammarError::UnknownPart(placed.symbol.clone())),
         }
@@ -221,6 +229,7 @@ impl InstanceDerivation {
             reference_system: grammar.reference_system.clone(),
             origin: grammar.origin,
             buildings,
+            notes: Vec::new(),
         }
     }
 }

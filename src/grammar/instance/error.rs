@@ -66,6 +66,24 @@ pub enum InstanceGrammarError {
         /// The rule's.
         expected: String,
     },
+    /// An instance states more or fewer numbers than its rule has parameters.
+    #[error("an instance of {symbol:?} states {found} numbers where its rule has {expected} parameters")]
+    Numbers {
+        /// The symbol.
+        symbol: String,
+        /// Numbers given.
+        found: usize,
+        /// Parameters of its rule.
+        expected: usize,
+    },
+    /// A rule with parameters, or with factors, whose successors are not all templates.
+    #[error("rules[{rule}]: a rule with parameters or factors puts down templates only, not {symbol:?}")]
+    NoTemplate {
+        /// Index of the rule.
+        rule: usize,
+        /// The successor's symbol.
+        symbol: String,
+    },
     /// A part is of no known symbol.
     #[error("a part of unknown symbol {0:?}")]
     UnknownPart(String),

@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{InstanceGrammar, Placement};
+use super::{InstanceGrammar, InstanceRule, Placement};
 
 /// The part of a grammar that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,6 +33,45 @@ impl InstanceGrammar {
             successors.for_each(|p| strip(p, kept));
         }
         out
+    }
+
+    /// What the rules alone say: no instance says where its parts stand, and templates that no rule names are left out. With
+    /// mean transforms (Eq. 7), or the numbers that instances state, parts stand where the rules put them.
+    pub fn rules_only(&self) -> Self {
+        let mut out = self.clone();
+        let successors = out.rules.iter_mut().flat_map(|r| &mut r.successors);
+        successors.for_each(|p| p.parts.clear());
+        out.without_unused_templates()
+    }
+
+    /// The grammar without templates that neither a rule nor a part names.
+    pub fn without_unused_templates(mut self) -> Self {
+        let mut used: FxHashSet<String> = FxHashSet::default();
+        let mut open: Vec<&Placement> = self.rules.iter().flat_map(|r| &r.successors).collect();
+        while let Some(p) = open.pop() {
+            if !used.contains(&p.symbol) {
+                used.insert(p.symbol.clone());
+            }
+            open.extend(p.parts.iter().flatten());
+        }
+        self.templates.retain(|t| used.contains(&t.symbol));
+        self
+    }
+
+    /// How many instances say where their parts stand.
+    pub fn residuals(&self) -> usize {
+        let successors = self.rules.iter().flat_map(|r| &r.successors);
+        successors.filter(|p| !p.parts.is_empty()).count()
+    }
+
+    /// How many rules with parameters have a single instance: buildings whose shape no type explains.
+    pub fn escapes(&self) -> usize {
+        let mut uses: FxHashMap<&str, usize> = FxHashMap::default();
+        for placed in self.rules.iter().flat_map(|r| &r.successors) {
+            *uses.entry(placed.symbol.as_str()).or_default() += 1;
+        }
+        let single = |r: &&InstanceRule| r.levels > 0 && uses.get(r.symbol.as_str()) == Some(&1);
+        self.rules.iter().filter(single).count()
     }
 
     /// The symbols that the axiom leads to.

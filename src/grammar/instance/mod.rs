@@ -6,12 +6,14 @@
 //!
 //! A placed non-terminal may carry `parts`: where each successor of its rule stands in this instance, or
 //! that it is absent; a part may be of another template than the rule's. Without them the successors stand where the rule, with its mean transforms, puts
-//! them.
+//! them. A rule may have parameters ([`InstanceRule::part`]): an instance gives the numbers, and the parts follow; what the
+//! rule does not reach is a residual, again in `parts`, that can be dropped ([`InstanceGrammar::rules_only`]).
 
 mod check;
 mod derive;
 mod error;
 mod kept;
+mod parametric;
 mod repeated;
 
 pub use derive::{INSTANCE_LIMIT, InstanceDerivation, TemplateInstance};
@@ -41,6 +43,8 @@ pub struct Placement {
     /// The places of this instance's successors, in the order of the rule; `None` is absent. If the list is empty, the
     /// rule's own places hold.
     pub parts: Vec<Option<Placement>>,
+    /// Of a non-terminal whose rule has parameters, their values in metres: width, depth and the height of each level.
+    pub numbers: Vec<f64>,
 }
 
 impl Placement {
@@ -54,6 +58,7 @@ impl Placement {
             id: None,
             attributes: serde_json::Map::new(),
             parts: Vec::new(),
+            numbers: Vec::new(),
         }
     }
 }
@@ -76,7 +81,12 @@ pub struct InstanceRule {
     pub symbol: String,
     /// Weight against the other rules of the symbol, above 0.
     pub weight: f64,
-    /// The instances that replace it.
+    /// Number of levels of a rule with parameters (w, d, h1, ..., hn), whose successors are in shares of them
+    /// ([`InstanceRule::part`]); 0 where lengths are metres.
+    pub levels: usize,
+    /// Factors of all lengths along the axes of the symbol: what an edit of a type changes, wherever the type stands.
+    pub scale: [f64; 3],
+    /// What replaces it.
     pub successors: Vec<Placement>,
 }
 

@@ -1,7 +1,8 @@
 //! Instance grammars as binary glTF 2.0: each template's mesh is stored once, and a node draws all its
 //! instances by `EXT_mesh_gpu_instancing`, or, for viewers without it, a node stands for each instance.
 //!
-//! glTF is y up: (x, y, z) is written as (x, z, -y). The 64-bit origin stands in the `extras` of the scene;
+//! glTF is y up: (x, y, z) is written as (x, z, -y). The 64-bit origin is the translation of a root node, whose numbers are JSON and lose
+//! nothing, and stands in the `extras` of the scene, where `origin_node` is the index of that node;
 //! identifiers of buildings in the `extras` of the asset's scene too, and `_BUILDING`, an attribute of the instances, is
 //! an index into them. A template's texture becomes a material of the name [`BOX_MAPPED`].
 
@@ -67,12 +68,20 @@ pub fn to_bytes(
     if meshes.is_empty() {
         return Err(GlbError::Empty);
     }
+    let mut extras = json!({ "origin": grammar.origin,
+        "reference_system": grammar.reference_system });
+    if grammar.origin != [0.0; 3] {
+        let [x, y, z] = grammar.origin;
+        extras["origin_node"] = json!(nodes.len());
+        nodes.push(json!({ "name": "origin", "translation": [x, z, -y], "children": roots }));
+        roots = vec![nodes.len() - 1];
+    }
     let ids: Vec<&str> = derivation.buildings.iter().map(|b| b.0.as_str()).collect();
+    extras["buildings"] = json!(ids);
     let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("edifice ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
-        "scenes": [ { "name": grammar.name, "nodes": roots, "extras": {
-            "origin": grammar.origin, "reference_system": grammar.reference_system, "buildings": ids } } ],
+        "scenes": [ { "name": grammar.name, "nodes": roots, "extras": extras } ],
         "nodes": nodes,
         "meshes": meshes,
         "materials": file.materials(),

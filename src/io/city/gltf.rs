@@ -182,6 +182,14 @@ impl Reader<'_> {
         if let Some(Ok(origin)) = origin.map(serde_json::from_value::<[f64; 3]>) {
             self.city.origin = origin;
         }
+        // The origin is taken off again where a node adds it.
+        let above = match scene.extras.get("origin_node") {
+            Some(_) => {
+                let [x, y, z] = self.city.origin;
+                composed(Some([-x, -z, y]), None, None)
+            }
+            None => IDENTITY,
+        };
         let system = scene.extras.get("reference_system").and_then(Value::as_str);
         self.city.reference_system = system.map(str::to_owned);
         let ids = scene.extras.get("buildings").cloned();
@@ -203,7 +211,7 @@ impl Reader<'_> {
             }
         }
         for &root in &scene.nodes {
-            self.node(root, &IDENTITY, 0)?;
+            self.node(root, &above, 0)?;
         }
         // One that is listed and has no instance is no building.
         let listed = &self.listed;

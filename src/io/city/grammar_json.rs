@@ -1,4 +1,4 @@
-//! Instance grammars as JSON: `*.city-grammar.json`, format `edifice/city-grammar`, version 1.
+//! Instance grammars as JSON: `*.city-grammar.json`, format `edifice/city-grammar`, versions 1 and 2.
 //!
 //! ```json
 //! { "format": "edifice/city-grammar", "version": 1, "name": "midtown", "unit": "m", "up": "z",
@@ -15,24 +15,31 @@
 //! non-terminal; `turn` is in degrees, counterclockwise from above. Left out are `at` and `turn` where they are 0 and
 //! `size` where it is 1. `texture`, of a template, is a picture as a data URI: its sides that look along +x, +y, -x and -y, and its
 //! top, one beside the other, each a fifth of the width. `parts`, on an instance of a non-terminal, lists where its successors really stand
-//! (`null`: absent). With several rules for a symbol a derivation takes the first one; synthesis draws
+//! (`null`: absent).
+//!
+//! Version 2, written where a rule has parameters or factors: a rule's `"parameters": ["w", "d", "h1", "h2"]` say that its
+//! successors' lengths are in shares of a width and a depth, and heights in levels ([`InstanceRule::part`]); `numbers`, on an
+//! instance, are their values in metres; `scale`, on a rule, three factors of what it puts down. With several rules for a symbol a derivation takes the first one; synthesis draws
 //! by weight.
+
+mod file;
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
+use self::file::{File, FileTemplate, Number, levels_of, parameters, placement_file, rule_of};
 use super::pictures;
-use crate::json::{check_header, parse_json};
+use edifice_grammar::instance::{InstanceGrammar, Template};
+use crate::json::{check_versions, parse_json};
 use crate::{read_bytes, write_atomic};
-use edifice_base::{Error, Result};
-use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
 use edifice_shape::triangles::TriangleMesh;
+use edifice_base::{Error, Result};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-grammar";
-/// The version written, and the only one read.
-pub const VERSION: u64 = 1;
+/// The newest version; it is written where a rule has parameters or factors, version 1 otherwise.
+pub const VERSION: u64 = 2;
+/// The oldest version that is read.
+const FIRST: u64 = 1;
 /// Steps of the unit box: the first of these on which all positions lie, or else the last.
 const STEPS: [f64; 2] = [4095.0, 65_535.0];
 
@@ -49,7 +56,7 @@ pub fn read(path: &Path) -> Result<InstanceGrammar> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], path: &Path) -> Result<InstanceGrammar> {
-    check_header(bytes, path, FORMAT, VERSION)?;
+    check_versions(bytes, path, FORMAT, FIRST..=VERSION)?;
     let file: File = parse_json(bytes, path)?;
     for (key, found, expected) in [("unit", &file.unit, "m"), ("up", &file.up, "z")] {
         if found != expected {
@@ -98,13 +105,21 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<InstanceGrammar> {
             texture,
         });
     }
+    let mut rules = Vec::new();
+    for (i, rule) in file.rules.into_iter().enumerate() {
+        let levels = levels_of(&rule.parameters).ok_or_else(|| {
+            let text = "expected \"w\", \"d\", \"h1\" and so on, one h for each level";
+            Error::input(path, format!("rules[{i}].parameters"), text)
+        })?;
+        rules.push(rule_of(rule, levels));
+    }
     let grammar = InstanceGrammar {
         name: file.name,
         reference_system: file.reference_system,
         origin: file.origin,
         axiom: file.axiom,
         templates,
-        rules: file.rules.into_iter().map(rule_of).collect(),
+        rules,
     };
     grammar.check().map_err(|e| Error::content(path, e))?;
     Ok(grammar)
@@ -154,8 +169,10 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 /// As [`packed_bytes`].
 pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
     let steps = steps_of(grammar);
+    let newer = grammar.rules.iter().any(|r| r.levels > 0 || !r.is_unscaled());
+    let version = if newer { VERSION } else { FIRST };
     let mut out = format!(
-        "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {}, \"unit\": \"m\", \"up\": \"z\",\n  \
+        "{{ \"format\": \"{FORMAT}\", \"version\": {version}, \"name\": {}, \"unit\": \"m\", \"up\": \"z\",\n  \
          \"reference_system\": {}, \"origin\": {}, \"axiom\": {}, \"steps\": {},\n  \"templates\": [",
         serde_json::to_string(&grammar.name)?,
         serde_json::to_string(&grammar.reference_system)?,
@@ -183,9 +200,16 @@ pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
             serde_json::to_string(&rule.symbol)?,
             serde_json::to_string(&Number(rule.weight))?,
         );
-        out.push_str(&format!(
-            "{{\"symbol\":{symbol},\"weight\":{weight},\"successors\":["
-        ));
+        out.push_str(&format!("{{\"symbol\":{symbol},\"weight\":{weight},"));
+        if rule.levels > 0 {
+            let names = serde_json::to_string(&parameters(rule.levels))?;
+            out.push_str(&format!("\"parameters\":{names},"));
+        }
+        if !rule.is_unscaled() {
+            let factors = serde_json::to_string(&rule.scale.map(Number))?;
+            out.push_str(&format!("\"scale\":{factors},"));
+        }
+        out.push_str("\"successors\":[");
         for (k, s) in rule.successors.iter().enumerate() {
             out.push_str(if k == 0 { "\n      " } else { ",\n      " });
             out.push_str(&serde_json::to_string(&placement_file(s))?);
@@ -206,158 +230,4 @@ fn steps_of(grammar: &InstanceGrammar) -> f64 {
     };
     let [coarse, fine] = STEPS;
     if on_grid(coarse) { coarse } else { fine }
-}
-
-/// A number that is written as an integer where it is one.
-#[derive(Clone, Copy, PartialEq)]
-struct Number(f64);
-
-impl Number {
-    /// Rounded where it is a whole number of steps but for rounding.
-    fn near(self) -> f64 {
-        let whole = self.0.round();
-        if (self.0 - whole).abs() < 1e-6 {
-            whole
-        } else {
-            self.0
-        }
-    }
-}
-
-impl Serialize for Number {
-    fn serialize<S: serde::Serializer>(
-        &self,
-        serializer: S,
-    ) -> std::result::Result<S::Ok, S::Error> {
-        match self.0.fract() == 0.0 && self.0.abs() < 1e15 {
-            true => serializer.serialize_i64(self.0 as i64),
-            false => serializer.serialize_f64(self.0),
-        }
-    }
-}
-
-fn numbers<S: serde::Serializer>(
-    values: &[f64],
-    serializer: S,
-) -> std::result::Result<S::Ok, S::Error> {
-    serializer.collect_seq(values.iter().map(|&v| Number(v)))
-}
-
-fn triple<S: serde::Serializer>(
-    v: &[f64; 3],
-    serializer: S,
-) -> std::result::Result<S::Ok, S::Error> {
-    numbers(v, serializer)
-}
-
-fn number<S: serde::Serializer>(v: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-    Number(*v).serialize(serializer)
-}
-
-#[derive(Deserialize)]
-struct File {
-    name: String,
-    unit: String,
-    up: String,
-    reference_system: Option<String>,
-    origin: [f64; 3],
-    axiom: String,
-    steps: f64,
-    templates: Vec<FileTemplate>,
-    rules: Vec<FileRule>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct FileTemplate {
-    symbol: String,
-    #[serde(serialize_with = "numbers")]
-    positions: Vec<f64>,
-    triangles: Vec<u32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    texture: Option<String>,
-}
-
-#[derive(Deserialize)]
-struct FileRule {
-    symbol: String,
-    #[serde(default = "one")]
-    weight: f64,
-    successors: Vec<FilePlacement>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct FilePlacement {
-    symbol: String,
-    #[serde(default, skip_serializing_if = "is_zero", serialize_with = "triple")]
-    at: [f64; 3],
-    #[serde(default, skip_serializing_if = "is_still", serialize_with = "number")]
-    turn: f64,
-    #[serde(
-        default = "ones",
-        skip_serializing_if = "is_one",
-        serialize_with = "triple"
-    )]
-    size: [f64; 3],
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    id: Option<String>,
-    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
-    attributes: serde_json::Map<String, serde_json::Value>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    parts: Vec<Option<FilePlacement>>,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-fn ones() -> [f64; 3] {
-    [1.0; 3]
-}
-
-fn is_zero(at: &[f64; 3]) -> bool {
-    *at == [0.0; 3]
-}
-
-fn is_still(turn: &f64) -> bool {
-    *turn == 0.0
-}
-
-fn is_one(size: &[f64; 3]) -> bool {
-    *size == [1.0; 3]
-}
-
-fn rule_of(rule: FileRule) -> InstanceRule {
-    InstanceRule {
-        symbol: rule.symbol,
-        weight: rule.weight,
-        successors: rule.successors.into_iter().map(placement_of).collect(),
-    }
-}
-
-fn placement_of(p: FilePlacement) -> Placement {
-    let parts = p.parts.into_iter();
-    Placement {
-        symbol: p.symbol,
-        at: p.at,
-        turn: p.turn,
-        size: p.size,
-        id: p.id,
-        attributes: p.attributes,
-        parts: parts.map(|part| part.map(placement_of)).collect(),
-    }
-}
-
-fn placement_file(p: &Placement) -> FilePlacement {
-    let parts = p.parts.iter();
-    FilePlacement {
-        symbol: p.symbol.clone(),
-        at: p.at,
-        turn: p.turn,
-        size: p.size,
-        id: p.id.clone(),
-        attributes: p.attributes.clone(),
-        parts: parts
-            .map(|part| part.as_ref().map(placement_file))
-            .collect(),
-    }
 }

@@ -5,6 +5,7 @@
 //! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
 //! | `.obj` | [`obj`]: an object or group is a building; materials and textures of its `.mtl` | yes |
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
+//! | `.gml`, `.citygml`, `.xml` (also `.xz`) | [`citygml`]: CityGML 2 and 3, as a stream | no |
 //! | `.glb`, `.gltf` | [`gltf`]: a node is a building | `.glb`, [`glb`]: a node with instances for each template |
 //! | `.tar`, `.tar.xz` | the `.obj` files in it, with their materials and textures, as one city | no |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
@@ -14,6 +15,7 @@
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
 mod archive;
+pub mod citygml;
 pub mod cityjson;
 pub mod compact;
 pub mod geojson;
@@ -45,6 +47,9 @@ use edifice_shape::triangles::City;
 /// Coordinates beyond this are no metres.
 const FARTHEST: f64 = 1e8;
 
+/// Coordinates beyond this are moved by whole metres, which become the city's origin: single precision has millimetres up to here.
+const NEAR: f64 = 20_000.0;
+
 /// Why a file holds no city.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CityError {
@@ -53,7 +58,7 @@ pub enum CityError {
     NoBuildings,
     /// An extension that is no city format.
     #[error(
-        "unknown city format; expected .npz, .obj, .glb, .gltf, .city.json, .city.jsonl or .tar.xz"
+        "unknown city format; expected .npz, .obj, .glb, .gltf, .gml, .city.json, .city.jsonl or .tar.xz"
     )]
     UnknownFormat,
     /// Coordinates look like degrees.
@@ -87,13 +92,21 @@ pub fn read(path: &Path) -> Result<City> {
         "obj" => obj::read(path)?,
         "glb" | "gltf" => gltf::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,
+        "gml" | "citygml" | "xml" => citygml::read(path)?,
+        "xz" if is_gml(path) => citygml::read(path)?,
         "tar" | "xz" => archive::read(path)?,
         _ => return Err(Error::content(path, CityError::UnknownFormat)),
     };
     check(city, path)
 }
 
-/// The check of every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
+/// Whether a packed file is CityGML by its name.
+fn is_gml(path: &Path) -> bool {
+    let inner = packed::extension(&path.with_extension(""));
+    matches!(inner.as_str(), "gml" | "citygml" | "xml")
+}
+
+/// What holds for every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
 fn check(mut city: City, path: &Path) -> Result<City> {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for building in &city.buildings {
@@ -115,6 +128,9 @@ fn check(mut city: City, path: &Path) -> Result<City> {
     let extent = (high[0] - low[0]).max(high[1] - low[1]);
     if extent < 1.0 {
         return Err(Error::content(path, CityError::Degrees(extent)));
+    }
+    if !low.iter().chain(&high).all(|v| v.abs() <= NEAR) {
+        city.take_off_origin();
     }
     city.number_duplicates();
     Ok(city)

@@ -89,6 +89,7 @@ pub fn parse(bytes: Vec<u8>, path: &Path) -> Result<City> {
         reference_system: text("crs"),
         origin: [0.0; 3],
         buildings,
+        notes: Vec::new(),
     })
 }
 

@@ -125,6 +125,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         name: crate::file_stem(path),
         reference_system: None,
         origin: [0.0; 3],
+        notes: Vec::new(),
         buildings: buildings
             .map(|((id, triangles), paint)| CityBuilding {
                 id,

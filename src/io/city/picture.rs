@@ -1,28 +1,48 @@
-//! Pictures of cities, one beside the other, from one place.
+//! Pictures of cities, one beside the other, from one place: from the south-west, or from above. What is drawn is moved to the middle
+//! of the first city in double precision, wherever in its reference system it lies.
 
-use std::collections::BTreeMap;
+mod glyphs;
+mod legend;
+mod scene;
+mod terrain;
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use edifice_scene::render::{Picture, render};
+use edifice_scene::trace::framing_at;
+use edifice_shape::triangles::City;
 
-use edifice_scene::render::render;
-use edifice_scene::trace::framing;
-use edifice_scene::{Group, Instance, Material, Mesh, Scene};
-use edifice_shape::triangles::{City, Painted, corner_bits};
+use self::scene::scene;
 
 /// Space between pictures, in pixels.
 const GAP: usize = 8;
+/// From the south-west, downward; y is up.
+const OBLIQUE: ([f32; 3], f32) = ([0.35, -0.55, -0.75], 30.0);
+/// From above, north at the top, from so far that walls are hardly seen.
+const PLAN: ([f32; 3], f32) = ([0.0, -1.0, -1e-4], 4.0);
 
-/// Approximate number of pieces in which textures are drawn.
-const MOST_PIECES: f64 = 600_000.0;
-/// No piece is halved below this length, in metres.
-const FINEST: f64 = 0.25;
-/// The upper bits of a colour, which tell its material.
-const COARSE: u8 = 0xf8;
-/// Index of the material of what is not painted.
-const BUILDING: usize = 0;
+/// How cities are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawing {
+    /// Width of each city's picture, in pixels.
+    pub width: usize,
+    /// Height, in pixels.
+    pub height: usize,
+    /// From above instead of from the south-west.
+    pub plan: bool,
+    /// Only buildings whose middle lies within so many metres of a point, in the coordinates of the reference system.
+    pub around: Option<([f64; 2], f64)>,
+}
 
-/// Direction of the view: from the south-west, downward; y is up.
-const VIEW: [f32; 3] = [0.35, -0.55, -0.75];
+/// A city to draw.
+#[derive(Debug, Clone, Copy)]
+pub struct Drawn<'a> {
+    /// The city.
+    pub city: &'a City,
+    /// A colour (sRGB) for each building; without them buildings are light, and textures are shown.
+    pub colours: Option<&'a [[u8; 3]]>,
+}
+
+/// What colours stand for.
+pub type Legend = Vec<([u8; 3], String)>;
 
 /// Draws cities from one place, from which the first is seen whole, as a PNG of one row; each picture is `width` x `height` pixels.
 ///
@@ -33,118 +53,96 @@ pub fn side_by_side(
     width: usize,
     height: usize,
 ) -> Result<Vec<u8>, png::EncodingError> {
+    let drawn: Vec<Drawn> = cities
+        .iter()
+        .map(|city| Drawn {
+            city,
+            colours: None,
+        })
+        .collect();
+    let drawing = Drawing {
+        width,
+        height,
+        plan: false,
+        around: None,
+    };
+    draw(&drawn, &drawing, &Vec::new())
+}
+
+/// Draws cities as [`side_by_side`] does, with a legend in the corner of the first, if it has entries.
+///
+/// # Errors
+/// Those of the PNG encoder, which writes to memory.
+pub fn draw(
+    cities: &[Drawn],
+    drawing: &Drawing,
+    legend: &Legend,
+) -> Result<Vec<u8>, png::EncodingError> {
+    let Drawing { width, height, .. } = *drawing;
     let Some(first) = cities.first() else {
         return Ok(Vec::new());
     };
-    let camera = framing(&scene(first), VIEW, width as f32 / height as f32);
+    let middle = middle_of(first.city, drawing);
+    let (direction, angle) = if drawing.plan { PLAN } else { OBLIQUE };
+    let aspect = width as f32 / height as f32;
+    let first = scene(first, drawing, middle);
+    let camera = framing_at(&first, direction, aspect, angle);
     let whole = cities.len() * (width + GAP) - GAP.min(cities.len() * (width + GAP));
     let mut rgb = vec![255; whole * height * 3];
     for (i, city) in cities.iter().enumerate() {
-        let picture = render(&scene(city), &camera, width, height);
+        let mut picture = match i {
+            0 => render(&first, &camera, width, height),
+            _ => render(&scene(city, drawing, middle), &camera, width, height),
+        };
+        if i == 0 {
+            legend::write(&mut picture, legend);
+        }
         for (y, row) in picture.rgb.chunks_exact(width * 3).enumerate() {
             let from = (y * whole + i * (width + GAP)) * 3;
             rgb[from..from + row.len()].copy_from_slice(row);
         }
     }
+    encoded(&Picture {
+        width: whole,
+        height,
+        rgb,
+    })
+}
+
+fn encoded(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, whole as u32, height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, picture.width as u32, picture.height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_filter(png::Filter::Adaptive);
     encoder.set_compression(png::Compression::Balanced);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&rgb)?;
+    writer.write_image_data(&picture.rgb)?;
     writer.finish()?;
     Ok(bytes)
 }
 
-/// z up to y up.
-fn turned(p: [f64; 3]) -> [f32; 3] {
-    [p[0] as f32, p[2] as f32, -p[1] as f32]
-}
-
-fn material(name: &str, color: [u8; 3]) -> Material {
-    Material {
-        name: name.to_owned(),
-        color,
-        roughness: 0.9,
-    }
-}
-
-/// A mesh a building, on a ground; painted surfaces in pieces of one colour each.
-fn scene(city: &City) -> Scene {
-    let paint = || city.buildings.iter().flat_map(|b| &b.paint);
-    let area: f64 = paint().map(Painted::area).sum();
-    // Slivers are cut by their length, whatever their area.
-    let length: f64 = paint().map(Painted::longest).sum();
-    let fine = (2.0 * area / MOST_PIECES).sqrt();
-    let fine = fine.max(length / MOST_PIECES).max(FINEST);
-    let mut colours: FxHashMap<[u8; 3], usize> = FxHashMap::default();
-    let mut scene = Scene {
-        materials: vec![
-            material("building", [214, 208, 198]),
-            material("ground", [150, 152, 150]),
-        ],
-        ..Scene::default()
-    };
+/// The middle of what is drawn of a city, in the coordinates of its reference system.
+fn middle_of(city: &City, drawing: &Drawing) -> [f64; 3] {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for b in city
-        .buildings
-        .iter()
-        .filter(|b| !b.mesh.triangles.is_empty())
-    {
-        if let Some((l, h)) = b.mesh.bounds() {
+    for b in &city.buildings {
+        if let Some((l, h)) = b.mesh.bounds().filter(|b| seen(b, city, drawing)) {
             for k in 0..3 {
                 low[k] = low[k].min(l[k]);
                 high[k] = high[k].max(h[k]);
             }
         }
-        let mut parts: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-        let mut mesh = Mesh {
-            name: b.id.clone(),
-            positions: b.mesh.positions.iter().map(|&p| turned(p)).collect(),
-            parts: Vec::new(),
-        };
-        let painted: FxHashSet<_> = b.paint.iter().map(|p| corner_bits(p.corners)).collect();
-        for t in &b.mesh.triangles {
-            let corners = t.map(|i| b.mesh.positions[i as usize]);
-            if !painted.contains(&corner_bits(corners)) {
-                parts.entry(BUILDING).or_default().extend(t);
-            }
-        }
-        for piece in b.paint.iter().flat_map(|p| p.pieces(fine)) {
-            let colour = piece.colour([1.0 / 3.0; 3]).map(|v| v & COARSE);
-            let next = scene.materials.len();
-            let material = *colours.entry(colour).or_insert(next);
-            if material == next {
-                scene.materials.push(self::material("texture", colour));
-            }
-            let first = mesh.positions.len() as u32;
-            mesh.positions.extend(piece.corners.map(turned));
-            let own = parts.entry(material).or_default();
-            own.extend([first, first + 1, first + 2]);
-        }
-        mesh.parts.extend(parts);
-        scene.meshes.push(mesh);
     }
-    let margin = 50.0;
-    let corner = |x: f64, y: f64| turned([x, y, low[2]]);
-    scene.meshes.push(Mesh {
-        name: "ground".to_owned(),
-        positions: vec![
-            corner(low[0] - margin, low[1] - margin),
-            corner(high[0] + margin, low[1] - margin),
-            corner(high[0] + margin, high[1] + margin),
-            corner(low[0] - margin, high[1] + margin),
-        ],
-        parts: vec![(1, vec![0, 1, 2, 0, 2, 3])],
-    });
-    scene.groups.push(Group {
-        name: city.name.clone(),
-        yaw: 0.0,
-        translation: [0.0; 3],
-        instances: (0..scene.meshes.len())
-            .map(|m| Instance::at(m, [0.0; 3]))
-            .collect(),
-    });
-    scene
+    match low[0] <= high[0] {
+        true => [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0 + city.origin[k]),
+        false => city.origin,
+    }
+}
+
+/// Whether a building of these bounds is drawn.
+fn seen((low, high): &([f64; 3], [f64; 3]), city: &City, drawing: &Drawing) -> bool {
+    let Some((at, radius)) = drawing.around else {
+        return true;
+    };
+    let away = |k: usize| (low[k] + high[k]) / 2.0 + city.origin[k] - at[k];
+    away(0).hypot(away(1)) <= radius
 }

@@ -134,7 +134,7 @@ fn labels_of(rows: Vec<Vec<f64>>) -> Result<Vec<usize>, ProceduralizeError> {
 }
 
 /// Rows on their principal axes, where there are more than [`MOST_FEATURES`] features; and the dimension.
-fn projected(rows: &[Vec<f64>]) -> (Vec<f64>, usize) {
+pub(super) fn projected(rows: &[Vec<f64>]) -> (Vec<f64>, usize) {
     let (n, d) = (rows.len(), rows[0].len());
     if d <= MOST_FEATURES {
         return (rows.concat(), d);

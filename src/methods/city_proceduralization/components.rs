@@ -33,7 +33,7 @@ pub const LOOKS: usize = 4;
 /// Pixels along a cell of the looks.
 const DETAIL: usize = 8;
 /// Columns per cell along a side.
-const SAMPLES: usize = 2;
+pub(super) const SAMPLES: usize = 2;
 
 /// The volume of a building between two cut planes.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,10 +1,9 @@
 //! From types to a grammar (Eq. 5 to 7).
 
-use std::collections::BTreeMap;
-
 use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::parse_tree::ParseTree;
+use super::rulebook::{RuleUse, Rulebook};
 use super::types::Types;
 use edifice_grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
@@ -25,6 +24,16 @@ pub(super) struct Detail {
 }
 
 impl Detail {
+    /// At least centimetres, and hundredths of degrees: what rules compute is rounded so, and is found again in a city that was
+    /// derived from them.
+    pub(super) fn at_least_centimetre(self) -> Self {
+        Self {
+            length: self.length.max(Self::CENTIMETRE.length),
+            angle: self.angle.max(Self::CENTIMETRE.angle),
+            ..self
+        }
+    }
+
     /// Centimetres, hundredths of degrees, 12 bits: where templates stand for others, nothing finer is seen.
     pub(super) const CENTIMETRE: Self = Self {
         length: 100.0,
@@ -59,11 +68,9 @@ pub(super) fn emit_tree(
     tree: &ParseTree,
 ) -> InstanceGrammar {
     let mut grammar = terminals(city, components, types, &Detail::CENTIMETRE, false);
-    grammar.rules.push(InstanceRule {
-        symbol: AXIOM.to_owned(),
-        weight: 1.0,
-        successors: tree.top.clone(),
-    });
+    grammar
+        .rules
+        .push(InstanceRule::new(AXIOM, 1.0, tree.top.clone()));
     grammar.rules.extend(tree.rules.iter().cloned());
     grammar
 }
@@ -109,129 +116,171 @@ fn terminals(
     }
 }
 
-/// The grammar of `best`: a terminal for each type of component, a non-terminal for each type of building, the buildings
-/// in their places under the axiom, and the repeated arrangements of buildings as patterns: the axiom does not lead to them,
-/// synthesis draws from them.
+/// What the grammar of `best` is made from.
+pub(super) struct Found<'a> {
+    pub(super) city: &'a City,
+    pub(super) components: &'a [Component],
+    pub(super) types: &'a Types,
+    pub(super) buildings: &'a BuildingTypes,
+    pub(super) rulebook: &'a Rulebook,
+    pub(super) patterns: &'a [Repeated],
+}
+
+/// The grammar of `best`: a terminal for each type of component, a non-terminal with parameters for each type of building
+/// ([`Rulebook`]; `B1`, ..., and `E1`, ... for escapes, which have one instance), the buildings in their places under the axiom, and the
+/// repeated arrangements of buildings as patterns: the axiom does not lead to them, synthesis draws from them.
 ///
-/// A building's rule has the mean transforms of its type; a building that differs from it by a centimetre
-/// keeps its parts. A single component whose building has no like is a terminal at once.
-pub(super) fn emit(
-    city: &City,
-    components: &[Component],
-    types: &Types,
-    buildings: &BuildingTypes,
-    patterns: &[Repeated],
-    detail: &Detail,
-) -> InstanceGrammar {
+/// A building's parts stand where its rule puts them; one that differs from it by more than a step, or by anything
+/// where the grammar is to be `exact`, keeps its parts as a residual.
+pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGrammar {
+    let Found {
+        city,
+        components,
+        types,
+        buildings,
+        rulebook,
+        patterns,
+    } = *found;
     let mut grammar = terminals(city, components, types, detail, true);
-    let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
-    for &b in &buildings.order {
-        if let Some(l) = buildings.labels[b] {
-            members[l].push(b);
-        }
+    let mut counts = vec![0usize; rulebook.rules.len()];
+    for used in rulebook.uses.iter().flatten() {
+        counts[used.rule] += 1;
     }
-    let mut start: Vec<(usize, Placement)> = Vec::new();
-    for (label, list) in members.iter().enumerate() {
-        let alone = list.len() == 1;
-        if let ([b], [i]) = (&list[..], &buildings.parts[list[0]][..])
-            && alone
-        {
-            start.push((
-                *b,
-                part(*i, &components[*i], types, &Frame::world(), detail),
-            ));
+    let mut rules: Vec<InstanceRule> = Vec::with_capacity(counts.len());
+    let mut numbers = [0usize; 2];
+    for (&building, &count) in rulebook.rules.iter().zip(&counts) {
+        let escape = usize::from(count == 1);
+        numbers[escape] += 1;
+        let symbol = format!("{}{}", ["B", "E"][escape], numbers[escape]);
+        let mut rule = rule_of(components, &buildings.parts[building], types);
+        (rule.symbol, rule.weight) = (symbol, count as f64);
+        rules.push(rule);
+    }
+    let mut successors = Vec::new();
+    let step = if exact { 0.0 } else { 1.0 / detail.length };
+    for building in 0..city.buildings.len() {
+        let Some(used) = rulebook.uses[building] else {
             continue;
-        }
-        let symbol = building_symbol(label);
-        let placed = |&b: &usize| {
-            let frame = Frame::of(&components[buildings.parts[b][0]], &symbol, detail);
-            let parts = buildings.parts[b].iter();
-            let parts = parts.map(|&i| part(i, &components[i], types, &frame, detail));
-            let parts: Vec<Placement> = parts.collect();
-            (b, frame.placed, parts)
         };
-        let placed: Vec<(usize, Placement, Vec<Placement>)> = list.iter().map(placed).collect();
-        let mean: Vec<Placement> = (0..placed[0].2.len())
-            .map(|k| mean_part(placed.iter().map(|p| &p.2[k]), detail))
-            .collect();
-        for (b, mut instance, parts) in placed {
-            if parts != mean {
-                instance.parts = parts.into_iter().map(Some).collect();
-            }
-            start.push((b, instance));
+        let rule = &rules[used.rule];
+        let list = &buildings.parts[building];
+        let (frame, mut placed) = instance(components, list, used, rule, detail);
+        let part = |&i: &usize| part(i, &components[i], types, &frame, detail);
+        let own: Vec<Placement> = list.iter().map(part).collect();
+        let computed = |k: usize| rule.part(k, &placed.numbers);
+        if !(0..own.len()).all(|k| like(&own[k], &computed(k), step)) {
+            placed.parts = own.into_iter().map(Some).collect();
         }
-        grammar.rules.push(InstanceRule {
-            symbol,
-            weight: list.len() as f64,
-            successors: mean,
-        });
+        placed.id = Some(city.buildings[building].id.clone());
+        placed.attributes = city.buildings[building].attributes.clone();
+        successors.push(placed);
     }
-    start.sort_by_key(|s| s.0);
-    let named = start.into_iter().map(|(b, mut placed)| {
-        let building = &city.buildings[b];
-        placed.id = Some(building.id.clone());
-        placed.attributes = building.attributes.clone();
+    // The type of a pattern's member is told by the first building of its kind.
+    let member = |m: &Posed| match m.kind.checked_sub(buildings.count) {
+        Some(other) => Some(Placement::new(pattern_symbol(other), m.at, m.turn, [1.0; 3])),
+        None => {
+            let of_kind = |b: &&usize| buildings.labels[**b] == Some(m.kind);
+            let building = *buildings.order.iter().find(of_kind)?;
+            let used = rulebook.uses[building]?;
+            let list = &buildings.parts[building];
+            let (_, mut placed) = instance(components, list, used, &rules[used.rule], detail);
+            placed.at = m.at;
+            placed.turn = m.turn + 90.0 * f64::from(used.quarter);
+            Some(placed)
+        }
+    };
+    let pattern = |(i, p): (usize, &Repeated)| {
+        let members = p.members.iter().filter_map(member);
+        let members = members.map(|m| rounded(m, &Detail::CENTIMETRE));
+        InstanceRule::new(pattern_symbol(i), p.count as f64, members.collect())
+    };
+    let patterns: Vec<InstanceRule> = patterns.iter().enumerate().map(pattern).collect();
+    grammar.rules.push(InstanceRule::new(AXIOM, 1.0, successors));
+    grammar.rules.extend(rules);
+    grammar.rules.extend(patterns);
+    grammar
+}
+
+/// Steps of a share: what the compact file writes.
+const SHARES: f64 = 1024.0;
+
+/// The rule that is made from a building: its components' templates, in shares of the box of the lowest and in levels.
+fn rule_of(components: &[Component], parts: &[usize], types: &Types) -> InstanceRule {
+    let base = &components[parts[0]];
+    let [w, d, _] = base.frame.size;
+    let frame = Frame::of(base, 0);
+    let share = |v: f64| (v * SHARES).round() / SHARES + 0.0;
+    let least = |v: f64| share(v).max(1.0 / SHARES);
+    let one = |(level, &i): (usize, &usize)| {
+        let mut placed = part(i, &components[i], types, &frame, &Detail::MILLIMETRE);
+        let (sin, cos) = placed.turn.to_radians().sin_cos();
+        let along = (w * cos).hypot(d * sin);
+        let across = (w * sin).hypot(d * cos);
+        placed.at = [
+            share(placed.at[0] / w),
+            share(placed.at[1] / d),
+            level as f64,
+        ];
+        placed.size = [
+            least(placed.size[0] / along),
+            least(placed.size[1] / across),
+            1.0,
+        ];
+        placed.turn = (placed.turn * TURNS).round() / TURNS % 360.0;
         placed
-    });
-    let axiom = InstanceRule {
-        symbol: AXIOM.to_owned(),
-        weight: 1.0,
-        successors: named.collect(),
     };
-    grammar.rules.insert(0, axiom);
-    let patterns = patterns.iter().enumerate();
-    grammar
-        .rules
-        .extend(patterns.map(|(i, p)| pattern(i, p, buildings.count)));
-    grammar
-}
-
-/// The rule of a pattern, over `types` types of buildings.
-fn pattern(index: usize, pattern: &Repeated, types: usize) -> InstanceRule {
-    let member = |m: &Posed| {
-        let symbol = match m.kind.checked_sub(types) {
-            Some(other) => pattern_symbol(other),
-            None => building_symbol(m.kind),
-        };
-        rounded(
-            Placement::new(symbol, m.at, m.turn, [1.0; 3]),
-            &Detail::CENTIMETRE,
-        )
-    };
+    let successors = parts.iter().enumerate().map(one).collect();
     InstanceRule {
-        symbol: pattern_symbol(index),
-        weight: pattern.count as f64,
-        successors: pattern.members.iter().map(member).collect(),
+        levels: parts.len(),
+        ..InstanceRule::new("", 1.0, successors)
     }
 }
 
-/// The template that most members have, at their mean transform.
-fn mean_part<'a>(parts: impl Iterator<Item = &'a Placement>, detail: &Detail) -> Placement {
-    let parts: Vec<&Placement> = parts.collect();
-    let key = |p: &Placement| (p.symbol.clone(), (p.turn / 90.0).round() as i64 % 4);
-    let mut counts: BTreeMap<(String, i64), usize> = BTreeMap::new();
-    for p in &parts {
-        *counts.entry(key(p)).or_default() += 1;
+/// Steps of a degree of turns in rules.
+const TURNS: f64 = 2.0;
+
+/// A building as an instance of a rule: its frame, and where it is, with its numbers.
+fn instance(
+    components: &[Component],
+    parts: &[usize],
+    used: RuleUse,
+    rule: &InstanceRule,
+    detail: &Detail,
+) -> (Frame, Placement) {
+    let frame = Frame::of(&components[parts[0]], used.quarter);
+    let placed = Placement::new(rule.symbol.as_str(), frame.base, frame.turn, [1.0; 3]);
+    let mut placed = rounded(placed, detail);
+    let [w, d, _] = components[parts[0]].frame.size;
+    let mut size = [w, d];
+    if !used.quarter.is_multiple_of(2) {
+        size.swap(0, 1);
     }
-    let most = counts.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0)));
-    let most = most.map(|m| m.0.clone()).unwrap_or_default();
-    let own: Vec<&Placement> = parts.into_iter().filter(|p| key(p) == most).collect();
-    let n = own.len() as f64;
-    let mean = |f: &dyn Fn(&Placement) -> f64| own.iter().map(|p| f(p)).sum::<f64>() / n;
-    let sin = mean(&|p| p.turn.to_radians().sin());
-    let cos = mean(&|p| p.turn.to_radians().cos());
-    let mean = Placement::new(
-        most.0,
-        [0, 1, 2].map(|k| mean(&|p| p.at[k])),
-        sin.atan2(cos).to_degrees(),
-        [0, 1, 2].map(|k| mean(&|p| p.size[k])),
-    );
-    rounded(mean, detail)
+    let round = |v: f64| (v * detail.length).round() / detail.length;
+    let least = |v: f64| round(v).max(1.0 / detail.length);
+    placed.numbers = size.map(least).to_vec();
+    let (mut below, last) = (0.0, parts.len() - 1);
+    for (k, &i) in parts.iter().enumerate() {
+        let top = match k == last {
+            true => components[i].frame.base[2] + components[i].frame.size[2],
+            false => components[parts[k + 1]].frame.base[2],
+        };
+        let top = round(top - frame.base[2]);
+        let height = least(top - below);
+        placed.numbers.push(height);
+        below = round(below + height);
+    }
+    (frame, placed)
 }
 
-/// Symbol of a type of buildings.
-pub fn building_symbol(label: usize) -> String {
-    format!("B{}", label + 1)
+/// Whether a part is where the rule puts it, within `step` metres and a step of its turn.
+fn like(own: &Placement, computed: &Placement, step: f64) -> bool {
+    let apart = (own.turn - computed.turn + 180.0).rem_euclid(360.0) - 180.0;
+    let turn = if step > 0.0 { 1.0 / TURNS } else { 0.0 };
+    let near = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() <= step * 1.001 + 1e-9);
+    own.symbol == computed.symbol
+        && apart.abs() <= turn + 1e-9
+        && near(&own.at, &computed.at)
+        && near(&own.size, &computed.size)
 }
 
 /// Symbol of a pattern.
@@ -244,12 +293,12 @@ pub fn terminal(kind: usize) -> String {
     format!("T{}", kind + 1)
 }
 
-/// The frame of a building: its lowest component's. Parts stand where they do relative to `base` and `turn`, the frame before
-/// it is rounded, so that like buildings have like parts wherever they are; `placed` is the frame as it is written.
+/// The frame of a building: that of its lowest component. Parts stand where they do relative to it before it is rounded, so that like
+/// buildings have like parts wherever they are.
 struct Frame {
     base: [f64; 3],
+    /// Degrees.
     turn: f64,
-    placed: Placement,
 }
 
 impl Frame {
@@ -257,16 +306,14 @@ impl Frame {
         Self {
             base: [0.0; 3],
             turn: 0.0,
-            placed: Placement::new("", [0.0; 3], 0.0, [1.0; 3]),
         }
     }
 
-    fn of(component: &Component, symbol: &str, detail: &Detail) -> Self {
-        let (base, turn) = (component.frame.base, component.frame.angle.to_degrees());
+    /// Turned by quarters.
+    fn of(component: &Component, quarter: u8) -> Self {
         Self {
-            base,
-            turn,
-            placed: rounded(Placement::new(symbol, base, turn, [1.0; 3]), detail),
+            base: component.frame.base,
+            turn: component.frame.angle.to_degrees() + 90.0 * f64::from(quarter),
         }
     }
 }

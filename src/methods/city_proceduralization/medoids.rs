@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::components::{CELLS, Component};
+use super::nearest::Nearest;
 use super::types::Use;
-use edifice_cluster::KdTree;
 
 /// Number of rounds of finding medoids.
 const ROUNDS: usize = 3;
@@ -96,10 +96,10 @@ impl Table<'_> {
 
     /// The best of the present type and the types whose medoids are nearest in features.
     fn assign(&self, medoids: &[usize], uses: &[Use]) -> Vec<Use> {
-        let nearest = Nearest::new(self, medoids);
+        let nearest = Nearest::new(&self.rows, self.d, medoids);
         let best = |i: usize| {
             let mut best = (f64::INFINITY, uses[i]);
-            let near = nearest.of(self.row(i)).into_iter();
+            let near = nearest.of(self.row(i), CANDIDATES).into_iter();
             for kind in near.chain([uses[i].kind]) {
                 for quarter in 0..4 {
                     let (medoid, own) = (self.forms[medoids[kind]], self.forms[i]);
@@ -115,50 +115,7 @@ impl Table<'_> {
     }
 }
 
-/// Medoids in a kd-tree of their features.
-struct Nearest<'a> {
-    table: &'a Table<'a>,
-    medoids: &'a [usize],
-    tree: KdTree,
-}
-
-impl<'a> Nearest<'a> {
-    fn new(table: &'a Table<'a>, medoids: &'a [usize]) -> Self {
-        let rows: Vec<f64> = medoids
-            .iter()
-            .flat_map(|&m| table.row(m).iter().copied())
-            .collect();
-        let kinds = (0..medoids.len() as u32).collect();
-        let tree = KdTree::new(&rows, table.d, &vec![1.0; medoids.len()], kinds);
-        Self {
-            table,
-            medoids,
-            tree,
-        }
-    }
-
-    /// The types nearest to a point, [`CANDIDATES`] at most, the nearest first, of equals the lower.
-    fn of(&self, point: &[f64]) -> Vec<usize> {
-        let mut found: Vec<(f64, usize)> = Vec::with_capacity(CANDIDATES + 1);
-        let visit = |kind: u32| {
-            let kind = kind as usize;
-            let entry = (square(point, self.table.row(self.medoids[kind])), kind);
-            let before = |f: &(f64, usize)| f.0.total_cmp(&entry.0).then(f.1.cmp(&entry.1)).is_lt();
-            let at = found.partition_point(before);
-            if at < CANDIDATES {
-                found.insert(at, entry);
-                found.truncate(CANDIDATES);
-            }
-            found.get(CANDIDATES - 1).map_or(f64::INFINITY, |f| f.0)
-        };
-        // A box as far as the last one may hold an equal of a lower number.
-        let bound = |gap: f64, _: f64| gap * (1.0 - 1e-12);
-        self.tree.search(point, f64::INFINITY, bound, visit);
-        found.into_iter().map(|f| f.1).collect()
-    }
-}
-
-/// Weight of the difference of looks, from 0 to 1, against the mismatched share of the volume.
+/// What differences of looks, from 0 to 1, count against shares of the volume.
 const LOOKS_WEIGHT: f64 = 0.25;
 
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched

@@ -17,6 +17,7 @@
 //! | features | vertex count of the simplified outline, width, height, depth, rotation, standardized and weighted | 16 x 16 height map in the box, turned to a canonical half turn; 12 principal components, weighted by volume |
 //! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, over the four quarter turns |
 //! | template | nearest to the mean, or of fewest triangles | medoid, coplanar triangles merged, 12 bits |
+//! | buildings | no types of their own | rules with parameters (`rulebook`): a type's building, put into the width, depth and heights of another |
 //! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for, and [`patterns`] of them that repeat |
 //!
 //! # Deviations and readings
@@ -39,6 +40,9 @@
 //! - Slabs are closed at the top, because another roof may stand on them than the one that they were cut from.
 //! - D (Eq. 11) is a distance; the graph's edge weight for communities is its inverse.
 //! - "Edges for distant node type pairs are omitted": an edge stays when it is among the four of least D of one of its nodes.
+//! - Feature 1 is the vertex count of the simplified convex hull of the plan; the paper simplifies the outlines of four side views.
+//! - In `paper` an instance keeps where its parts really stand, beside the mean transforms of Eq. 7; without these residuals
+//!   (`InstanceGrammar::rules_only`) parts stand where Eq. 7 puts them, as the paper prints.
 //! - The mean of Eq. 9 is taken over the pairs of neighbours of the two types.
 
 pub mod building_types;
@@ -48,11 +52,14 @@ pub mod facades;
 pub mod features;
 pub mod localization;
 mod medoids;
+mod nearest;
 mod order;
 mod orientation;
 pub mod parse_tree;
 pub mod patterns;
 pub mod proceduralize;
+mod rulebook;
+mod stacks;
 pub mod synthesis;
 pub mod type_graph;
 pub mod types;
@@ -63,5 +70,6 @@ pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{
     Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize, smallest,
+    Structure, from_components, largest, proceduralize,
+    proceduralize_watched, smallest,
 };

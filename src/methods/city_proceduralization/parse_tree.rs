@@ -67,6 +67,17 @@ pub fn grow(
     detection: Detection,
     weights: DistanceWeights,
 ) -> ParseTree {
+    grow_watched(leaves, instances, detection, weights, &|_| {})
+}
+
+/// As [`grow`], telling each level before its communities are sought.
+pub fn grow_watched(
+    leaves: usize,
+    instances: Vec<(usize, [f64; 3], Placement)>,
+    detection: Detection,
+    weights: DistanceWeights,
+    tell: &dyn Fn(&str),
+) -> ParseTree {
     let mut tree = ParseTree {
         rules: Vec::new(),
         children: Vec::new(),
@@ -104,6 +115,12 @@ pub fn grow(
             .map(|e| (e.nodes.0, e.nodes.1, 1.0 / e.distance))
             .collect();
         let graph = weighted_graph(active.len(), &near);
+        tell(&format!(
+            "parse tree, level {}: communities of {} nodes and {} edges",
+            tree.levels.len() + 1,
+            active.len(),
+            edges.len()
+        ));
         let communities = match detection {
             Detection::GirvanNewman => girvan_newman(&graph),
             Detection::Louvain => louvain(&graph),
@@ -188,11 +205,7 @@ fn join(
         });
     }
     let successors = means.into_iter().map(|m| rounded(m.placement)).collect();
-    tree.rules.push(InstanceRule {
-        symbol,
-        weight,
-        successors,
-    });
+    tree.rules.push(InstanceRule::new(symbol, weight, successors));
     tree.children.push(children);
 }
 

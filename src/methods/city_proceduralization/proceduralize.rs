@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
-use super::emission::{Detail, emit, emit_tree, placed_components};
+use super::emission::{Detail, Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
-use super::parse_tree::{Detection, ParseTree, grow};
+use super::parse_tree::{Detection, ParseTree, grow_watched};
 use super::patterns::patterns;
+use super::rulebook::Stacks;
 use super::type_graph::DistanceWeights;
 use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
 use edifice_cluster::WardError;
@@ -154,8 +155,24 @@ pub fn proceduralize(
     city: &City,
     settings: &Settings,
 ) -> Result<Proceduralized, ProceduralizeError> {
+    proceduralize_watched(city, settings, &|_| {})
+}
+
+/// As [`proceduralize`], telling each stage before it begins.
+///
+/// # Errors
+/// [`ProceduralizeError`].
+pub fn proceduralize_watched(
+    city: &City,
+    settings: &Settings,
+    tell: &dyn Fn(&str),
+) -> Result<Proceduralized, ProceduralizeError> {
+    tell("cutting buildings into components");
     let decomposition = decompose(city, settings.budget != Budget::All);
-    from_components(city, decomposition, settings)
+    tell(&format!("types of {} components", decomposition.components.len()));
+    let prepared = Prepared::new(city, &decomposition.components, settings)?;
+    let made = prepared.grammar(settings.budget, tell);
+    Ok(made.of(decomposition))
 }
 
 /// Makes a grammar of a city that is already cut.
@@ -167,7 +184,8 @@ pub fn from_components(
     decomposition: Decomposition,
     settings: &Settings,
 ) -> Result<Proceduralized, ProceduralizeError> {
-    let made = Prepared::new(city, &decomposition.components, settings)?.grammar(settings.budget);
+    let prepared = Prepared::new(city, &decomposition.components, settings)?;
+    let made = prepared.grammar(settings.budget, &|_| {});
     Ok(made.of(decomposition))
 }
 
@@ -186,6 +204,7 @@ struct Best<'a> {
     stated: Option<Types>,
     types: TypeTree<'a>,
     buildings: BuildingTypes,
+    stacks: Stacks<'a>,
     patterns: Vec<Repeated>,
 }
 
@@ -225,6 +244,7 @@ impl<'a> Prepared<'a> {
                     stated: stated_types(components),
                     types: TypeTree::new(components, &shape)?,
                     patterns: patterns(components, &buildings),
+                    stacks: Stacks::new(components, &buildings)?,
                     buildings,
                 })
             }
@@ -237,7 +257,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    fn grammar(&self, budget: Budget) -> Made {
+    fn grammar(&self, budget: Budget, tell: &dyn Fn(&str)) -> Made {
         let (city, components, settings) = (self.city, self.components, self.settings);
         let n = components.len();
         let k = match budget {
@@ -250,7 +270,9 @@ impl<'a> Prepared<'a> {
             let types = paper_types(components, k, weights, representative, settings.seed);
             let placed = placed_components(city, components, &types);
             let leaves = types.representatives.len();
-            let tree = grow(leaves, placed, settings.detection, settings.distance);
+            let (detection, distance) = (settings.detection, settings.distance);
+            let tree = grow_watched(leaves, placed, detection, distance, tell);
+            tell("rules");
             return Made {
                 grammar: emit_tree(city, components, &types, &tree),
                 types,
@@ -258,7 +280,8 @@ impl<'a> Prepared<'a> {
             };
         };
         let stated = best.stated.as_ref();
-        let (types, detail) = match (stated.filter(|s| s.representatives.len() <= k), budget) {
+        let stated = stated.filter(|s| s.representatives.len() <= k);
+        let (types, detail) = match (stated, budget) {
             (Some(stated), Budget::All) => (stated.clone(), Detail::MILLIMETRE),
             (Some(stated), _) => (stated.clone(), Detail::CENTIMETRE),
             (None, Budget::All) => (distinct_types(components), Detail::MILLIMETRE),
@@ -270,9 +293,25 @@ impl<'a> Prepared<'a> {
             Some(Precision::Centimetre) => Detail::CENTIMETRE,
             Some(Precision::Decimetre) => Detail::DECIMETRE,
         };
+        tell(&format!("rules of buildings over {} templates", types.representatives.len()));
+        // What is stated is kept as it is.
+        let detail = match stated {
+            Some(_) => detail.at_least_centimetre(),
+            None => detail,
+        };
+        let exact = stated.is_some() || budget == Budget::All;
         let (buildings, patterns) = (&best.buildings, &best.patterns);
+        let rulebook = best.stacks.rulebook(&types, k);
+        let found = Found {
+            city,
+            components,
+            types: &types,
+            buildings,
+            rulebook: &rulebook,
+            patterns,
+        };
         Made {
-            grammar: emit(city, components, &types, buildings, patterns, &detail),
+            grammar: emit(&found, &detail, exact),
             types,
             structure: Structure::Patterns {
                 buildings: buildings.clone(),
@@ -332,14 +371,14 @@ fn bisected<E: From<ProceduralizeError>>(
 ) -> Result<Option<Made>, E> {
     let prepared = Prepared::new(city, components, settings)?;
     let (mut low, mut high) = (1, components.len());
-    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }));
+    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }), &|_| {});
     let mut best = fits(&sure.grammar)?.then_some(sure);
     for _ in 0..SEARCH_STEPS {
         let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
         if best.is_none() || middle == low || middle == high {
             break;
         }
-        let made = prepared.grammar(Budget::Templates(middle));
+        let made = prepared.grammar(Budget::Templates(middle), &|_| {});
         let fit = fits(&made.grammar)?;
         if fit {
             best = Some(made);

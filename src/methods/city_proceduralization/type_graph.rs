@@ -97,7 +97,7 @@ pub fn type_graph(
     for (i, j) in neighbours(instances, tolerance) {
         let (a, b) = (instances[i], instances[j]);
         if a.node != b.node {
-            let mht = (0..3)
+            let mht = (0..2)
                 .map(|k| (a.middle[k] - b.middle[k]).abs())
                 .sum::<f64>();
             let key = (a.node.min(b.node), a.node.max(b.node));

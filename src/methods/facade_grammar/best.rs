@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::adp::search::Search;
 use super::adp::walk::ShortestPathRules;
 use super::annealing::NonterminalSet;
-use super::bound::{labels_once, saved_by_grids};
+use super::bound::{few_rules, saved_by_grids};
 use super::infer::{InferError, Settings};
 use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
 use super::rules::RulePricer;
@@ -68,7 +68,7 @@ impl Search<'_> {
         let (walked, learnt) = self.paper(iterations, observer.clone())?;
         let start = [walked].into_iter().chain(union);
         let observer = later(iterations, observer);
-        self.second_stage(start, self.labels_once(), learnt, iterations, observer)
+        self.second_stage(start, self.few_rules(facades), learnt, iterations, observer)
     }
 
     /// Walks by shortest paths, then annealing. `learnt` estimates `V(R)` by type.
@@ -159,26 +159,15 @@ impl Search<'_> {
                 true => {
                     let extents = self.fresh.extents().into_iter();
                     let most = extents.map(|(x, y)| x.max(y)).max().unwrap_or(0);
-                    (lower * saved_by_grids(costs, most)).max(self.labels_once())
+                    (lower * saved_by_grids(costs, most)).max(self.few_rules(facades))
                 }
             },
         })
     }
 
-    /// One rule at least, unless every facade is a terminal, and every label of a facade that is none written once.
-    fn labels_once(&self) -> f64 {
-        let types = &self.fresh;
-        let compound = types.roots.iter().zip(types.layouts.iter());
-        let compound = compound.filter(|(root, _)| !types.is_terminal(**root));
-        let mut labels: Vec<u32> = compound
-            .flat_map(|(_, layout)| layout.terminals.iter().map(|(_, label)| *label))
-            .collect();
-        labels.sort_unstable();
-        labels.dedup();
-        match labels.len() {
-            0 => 0.0,
-            count => labels_once(&self.settings.costs, self.settings.operations, count),
-        }
+    /// The bound of labels and of regions in a row.
+    fn few_rules(&self, facades: &[Facade]) -> f64 {
+        few_rules(facades, &self.settings.costs, self.settings.operations)
     }
 
     /// Cost of the grammar of some rules (Eq. 1).

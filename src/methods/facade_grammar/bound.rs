@@ -9,7 +9,7 @@ use super::lagrangian::{BoundLimits, Incumbent, Program, solve};
 use super::operations::Operations;
 use super::regions::Types;
 use edifice_grammar::Costs;
-use edifice_shape::Facade;
+use edifice_shape::{Axis, Facade};
 
 /// Bounds from below and above on the least cost of a facade's grammars (Eq. 1).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,8 @@ pub enum Weakness {
     /// Grid splits are allowed: their rules are no shortest paths. The bound is that of grammars without grids, times what
     /// a grid can save at most (see [`lower_bound`]).
     Grids,
-    /// The rules of the facade have more items than [`BoundLimits::items`]: every label is written once.
+    /// The rules of the facade have more items than [`BoundLimits::items`]: every label is written once, and rules make
+    /// the regions that lie in a row.
     Items,
 }
 
@@ -44,7 +45,7 @@ impl fmt::Display for Weakness {
             Weakness::Grids => {
                 "grid splits are no shortest paths; bounded by what they can save at most"
             }
-            Weakness::Items => "too many rules; bounded by the number of labels",
+            Weakness::Items => "too many rules; bounded by the labels and the regions in a row",
         })
     }
 }
@@ -54,7 +55,7 @@ impl fmt::Display for Weakness {
 /// The same limits give the same bound.
 ///
 /// Where the rules of a facade have more items than [`BoundLimits::items`], the bound is the weak one that every label is
-/// written once. Where grid splits are allowed, it comes from that without them: a grid of `m` by `n` cells can be
+/// written once and that rules make the regions that lie in a row. Where grid splits are allowed, it comes from that without them: a grid of `m` by `n` cells can be
 /// written as one split into `m` strips and `m` splits into `n` cells, a grid of one row as one split, so that
 ///
 /// ```text
@@ -91,8 +92,7 @@ pub fn lower_bound(
     if facade.regions.len() == 1 {
         return Ok(known(&incumbent, upper, None));
     }
-    let labels: FxHashSet<&str> = facade.regions.iter().map(|r| r.label.as_str()).collect();
-    let labels = labels_once(costs, operations, labels.len());
+    let labels = few_rules(facades, costs, operations);
     let without_grids = operations.without_grids();
     let types = Types::new(facades).map_err(|(_, source)| InferError::NotATiling {
         name: facade.name.clone(),
@@ -140,6 +140,90 @@ pub(super) fn saved_by_grids(costs: &Costs, most: usize) -> f64 {
     squares.fold(row.min(1.0), f64::min)
 }
 
+/// Least cost of any grammar of some facades, from their labels and from how many regions lie in a row; 0 where every facade
+/// is one region.
+///
+/// Every label of a facade of several regions is written once at least. Where `n > 1` regions lie side by side on some
+/// line along an axis, rules of that axis make them: one that repeats, or splits alone, whose written successors number at
+/// least `s(n)`, the least `s` that is a sum of numbers with a product of at least `n` (a mirrored split counts twice). On a line along x
+/// a rule of y passes on one part; a rule of x, each of its parts, and symbols do not lead back to themselves, so that splits
+/// alone give at most the product of their numbers of parts. Successors of x and of y are written in different rules:
+///
+/// ```text
+/// cost >= min over the kinds of rules of x and y of c_op(x) + c_op(y) + c_1 max(labels, s_x + s_y)
+/// ```
+///
+/// Grids split both axes at once: where they are allowed, only the labels count.
+pub(super) fn few_rules(facades: &[Facade], costs: &Costs, operations: Operations) -> f64 {
+    let compound = || facades.iter().filter(|f| f.regions.len() > 1);
+    let labels: FxHashSet<&str> = compound()
+        .flat_map(|f| f.regions.iter().map(|r| r.label.as_str()))
+        .collect();
+    if labels.is_empty() {
+        return 0.0;
+    }
+    let once = labels_once(costs, operations, labels.len());
+    if operations.grid_split {
+        return once;
+    }
+    let kinds = Axis::BOTH.map(|axis| {
+        let most = compound().map(|f| side_by_side(f, axis)).max().unwrap_or(1);
+        kinds_of_rules(most, costs, operations)
+    });
+    let mut least = f64::INFINITY;
+    for &(first, along) in &kinds[0] {
+        for &(second, across) in &kinds[1] {
+            let successors = (along + across).max(labels.len()) as f64;
+            least = least.min(first + second + costs.successor * successors);
+        }
+    }
+    once.max(least)
+}
+
+/// The ways to make `n` regions in a row: least cost of operations, and least number of successors written.
+fn kinds_of_rules(n: usize, costs: &Costs, operations: Operations) -> Vec<(f64, usize)> {
+    if n < 2 {
+        return vec![(0.0, 0)];
+    }
+    let mirrored = if operations.sym_split { 2 } else { 1 };
+    // product[s]: most parts that splits with s successors written make.
+    let mut product = vec![1];
+    while product[product.len() - 1] < n {
+        let s = product.len();
+        let parts = (1..=s).map(|k| (mirrored * k).saturating_mul(product[s - k]));
+        product.push(parts.max().unwrap_or(1));
+    }
+    let split = if operations.sym_split {
+        costs.split.min(costs.sym_split)
+    } else {
+        costs.split
+    };
+    let mut kinds = vec![(split, product.len() - 1)];
+    if operations.repeat {
+        kinds.push((costs.repeat, 1));
+    }
+    if operations.repeat_aba {
+        kinds.push((costs.repeat_aba, 2));
+    }
+    kinds
+}
+
+/// Most regions that one line along an axis crosses.
+fn side_by_side(facade: &Facade, axis: Axis) -> usize {
+    let Ok(layout) = facade.indexed() else {
+        return 1;
+    };
+    let spans = layout.spans.iter().map(|span| span.along(axis.other()));
+    let mut ends: Vec<(usize, i32)> = spans.flat_map(|(from, to)| [(from, 1), (to, -1)]).collect();
+    ends.sort_unstable();
+    let mut open = 0;
+    let counts = ends.into_iter().map(|(_, change)| {
+        open += change;
+        open
+    });
+    counts.max().unwrap_or(1).max(1) as usize
+}
+
 /// One rule at least, and every label written once.
 pub(super) fn labels_once(costs: &Costs, operations: Operations, labels: usize) -> f64 {
     let mut operation = costs.split;
@@ -154,4 +238,64 @@ pub(super) fn labels_once(costs: &Costs, operations: Operations, labels: usize) 
         }
     }
     operation + costs.successor * labels as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_shape::{Rect, Region};
+
+    /// `columns` by `rows` cells, whose labels follow one another in turn.
+    fn cells(columns: usize, rows: usize, labels: &[&str]) -> Facade {
+        let region = |k: usize| {
+            let (i, j) = (k % columns, k / columns);
+            Region {
+                label: labels[k % labels.len()].to_owned(),
+                rect: Rect::new(i as f64, j as f64, 1.0, 1.0),
+            }
+        };
+        let regions = (0..columns * rows).map(region).collect();
+        Facade::new("cells", "m", columns as f64, rows as f64, regions).unwrap()
+    }
+
+    #[test]
+    fn what_a_person_sees_is_proven() {
+        let settings = Settings {
+            iterations: 8,
+            ..Settings::default()
+        };
+        for (facade, cost) in [
+            (cells(200, 1, &["a", "b"]), 2.5),
+            (cells(60, 60, &["a"]), 3.0),
+            (cells(40, 50, &["a"]), 3.0),
+        ] {
+            let found = infer(std::slice::from_ref(&facade), &settings).unwrap();
+            assert!((settings.costs.grammar(&found.grammar) - cost).abs() < 1e-9);
+            assert!(found.proves(cost), "{:?}", found.lower_bound);
+        }
+    }
+
+    #[test]
+    fn the_bound_is_below_what_small_facades_cost() {
+        let settings = Settings {
+            iterations: 8,
+            ..Settings::default()
+        };
+        for operations in ["split", "split,repeat", "split,repeat,repeat_aba,sym_split"] {
+            let operations: Operations = operations.parse().unwrap();
+            let settings = Settings {
+                operations,
+                ..settings.clone()
+            };
+            for columns in 1..7 {
+                for (rows, labels) in [(1, &["a", "b", "c"][..]), (2, &["a", "b"]), (3, &["a"])] {
+                    let facade = cells(columns, rows, labels);
+                    let found = infer(std::slice::from_ref(&facade), &settings).unwrap();
+                    let bound =
+                        few_rules(std::slice::from_ref(&facade), &settings.costs, operations);
+                    assert!(bound <= settings.costs.grammar(&found.grammar) + 1e-9);
+                }
+            }
+        }
+    }
 }

@@ -63,7 +63,7 @@
 //!
 //! Bounded are all grammars whose symbols each derive regions of one type by splits, repeats, alternations and mirrored
 //! splits: those that [`infer`] searches. Grid splits are no paths; their bound is weaker ([`lower_bound`]). Layouts
-//! with millions of possible rules have only the bound that every label is written once.
+//! with millions of possible rules have only the bound that every label is written once and that rules make the regions in a row.
 //!
 //! # When two lengths are equal
 //! Coordinates come in any unit, so that equal sizes differ in their last digits. Terminals whose extents agree to 1e-7 of

@@ -72,7 +72,7 @@ use split_grammar::{baseline, joining};
 
 pub use affinity::{Affinity, Coefficients};
 pub use alphabet::Alphabet;
-pub use baseline::{BaselineError, baseline_grammar, baseline_grammar_joining};
+pub use baseline::{BaselineError, baseline_grammar, baseline_grammar_joining, picture_grammar};
 pub use canvas::Canvas;
 pub use features::{AssetSet, Measure, Profile};
 pub use inference::{Inference, learn_affinity};

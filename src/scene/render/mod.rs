@@ -26,8 +26,12 @@ const OFFSET: f32 = 1.0;
 const BIAS: f32 = 1.2;
 /// Meshes of at most this many triangles cast their own shadow, larger ones that of their box.
 const EXACT: usize = 80;
-/// Distance in metres at which haze hides two thirds.
+/// Distance in metres at which haze hides two thirds, at least,
 const HAZE: f32 = 5000.0;
+/// and in distances from the eye to the middle of the scene: a large scene is seen from afar.
+const HAZE_DISTANCES: f32 = 8.0;
+/// How much nearer to the sun a caster must be, in pixels of the shadow map.
+const BIAS_PIXELS: f32 = 1.5;
 
 /// An RGB picture of 8 bits a channel, row by row from the top.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +50,9 @@ pub fn render(scene: &Scene, camera: &Camera, width: usize, height: usize) -> Pi
     let view = View::new(camera, wide, high);
     let bounds: Vec<Bounds> = scene.meshes.iter().map(Bounds::new).collect();
     let shadows = Shadows::new(scene, &bounds);
+    let middle = middle_of(scene, &bounds);
+    let away = sub(middle, camera.eye);
+    let haze = HAZE.max(HAZE_DISTANCES * dot(away, away).sqrt());
     let colors: Vec<V> = scene
         .materials
         .iter()
@@ -76,7 +83,7 @@ pub fn render(scene: &Scene, camera: &Camera, width: usize, height: usize) -> Pi
         let color = colors[material as usize];
         let light =
             |i: usize| [2.1, 1.95, 1.65][i] * sun + [0.46, 0.54, 0.68][i] * (0.45 + 0.55 * open);
-        let clear = (-1.0 / depth / HAZE).exp();
+        let clear = (-1.0 / depth / haze).exp();
         let lit = |i: usize| color[i] * light(i) * clear + sky[i] * (1.0 - clear);
         [lit(0), lit(1), lit(2)]
     };
@@ -101,6 +108,22 @@ pub fn render(scene: &Scene, camera: &Camera, width: usize, height: usize) -> Pi
 fn instances(scene: &Scene) -> impl Iterator<Item = (&Group, &Instance)> {
     let groups = scene.groups.iter();
     groups.flat_map(|group| group.instances.iter().map(move |i| (group, i)))
+}
+
+/// The middle of the box around all instances.
+fn middle_of(scene: &Scene, bounds: &[Bounds]) -> V {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for (group, instance) in instances(scene) {
+        let (centre, radius) = bounds[instance.mesh].ball(group, instance);
+        if radius.is_finite() {
+            low = [0, 1, 2].map(|k| low[k].min(centre[k]));
+            high = [0, 1, 2].map(|k| high[k].max(centre[k]));
+        }
+    }
+    match low[0] <= high[0] {
+        true => times(add(low, high), 0.5),
+        false => [0.0; 3],
+    }
 }
 
 /// Puts the triangles that face the eye into the buffer.
@@ -188,6 +211,12 @@ impl Shadows {
             .iter()
             .map(|g| g.translation[0].hypot(g.translation[2]));
         let reach = far.fold(50.0, f32::max) + 60.0;
+        // A group may be larger than a building.
+        let balls = instances(scene).map(|(group, instance)| {
+            let (centre, radius) = bounds[instance.mesh].ball(group, instance);
+            centre[0].hypot(centre[2]) + radius
+        });
+        let reach = balls.filter(|r| r.is_finite()).fold(reach, f32::max);
         let mut shadows = Self {
             across,
             along,
@@ -240,11 +269,12 @@ impl Shadows {
     /// Share of the sun that reaches a point, from four places around it.
     fn light(&self, p: V) -> f32 {
         let [x, y, height] = self.place(p);
+        let bias = BIAS.max(BIAS_PIXELS / self.scale);
         let taps = [(-0.7, -0.3), (0.3, -0.7), (0.7, 0.3), (-0.3, 0.7)];
         let open = taps.iter().filter(|(dx, dy)| {
             let (x, y) = ((x + dx) as usize, (y + dy) as usize);
             let inside = x < SHADOWS && y < SHADOWS;
-            !inside || self.buffer.depths[y * SHADOWS + x] <= height + BIAS
+            !inside || self.buffer.depths[y * SHADOWS + x] <= height + bias
         });
         open.count() as f32 / 4.0
     }

@@ -12,6 +12,11 @@ const FILL: f32 = 0.92;
 /// A camera that looks along a direction and stands so far back that all of a scene is seen in a picture of given
 /// width over height.
 pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
+    framing_at(scene, direction, aspect, ANGLE)
+}
+
+/// As [`framing`], with a vertical angle of view in degrees.
+pub fn framing_at(scene: &Scene, direction: [f32; 3], aspect: f32, angle: f32) -> Camera {
     let mut corners: Vec<V> = Vec::new();
     for group in &scene.groups {
         for instance in &group.instances {
@@ -33,7 +38,7 @@ pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
         });
         if low <= high { (low, high) } else { (0.0, 1.0) }
     };
-    let slope = (ANGLE.to_radians() / 2.0).tan();
+    let slope = (angle.to_radians() / 2.0).tan();
     let middle = |(low, high): (f32, f32)| (low + high) / 2.0;
     let (mut x, mut y) = (middle(extent(right)), middle(extent(up)));
     let mut back = 0.0;
@@ -46,7 +51,10 @@ pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
             let height = dot(p, up).abs() / (slope * FILL);
             across.max(height) - dot(p, forward)
         };
-        back = corners.iter().map(least).fold(1.0, f32::max);
+        back = corners.iter().map(least).fold(f32::NEG_INFINITY, f32::max);
+        if !back.is_finite() {
+            back = 1.0;
+        }
         let seen = |axis: V, centre: f32| {
             let each = corners
                 .iter()
@@ -63,6 +71,6 @@ pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
     Camera {
         eye: sub(target, times(forward, back)),
         target,
-        angle: ANGLE,
+        angle,
     }
 }

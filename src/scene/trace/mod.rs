@@ -12,7 +12,7 @@ mod framing;
 mod light;
 mod tree;
 
-pub use framing::framing;
+pub use framing::{framing, framing_at};
 
 use rayon::prelude::*;
 

@@ -111,6 +111,8 @@ pub struct City {
     pub origin: [f64; 3],
     /// The buildings.
     pub buildings: Vec<CityBuilding>,
+    /// What a reader left out or changed, in words.
+    pub notes: Vec<String>,
 }
 
 impl City {
@@ -122,6 +124,7 @@ impl City {
     /// Appends the buildings of another city, moved into this one's frame.
     pub fn merge(&mut self, other: Self) {
         let shift = [0, 1, 2].map(|k| other.origin[k] - self.origin[k]);
+        self.notes.extend(other.notes);
         let templates = self.buildings.iter().flat_map(|b| &b.parts);
         let known = templates.map(|p| p.template + 1).max().unwrap_or(0);
         for mut building in other.buildings {
@@ -136,6 +139,26 @@ impl City {
             }
             self.buildings.push(building);
         }
+    }
+
+    /// Moves whole metres, those of the lower corner, from the coordinates to the origin.
+    pub fn take_off_origin(&mut self) {
+        let positions = self.buildings.iter().flat_map(|b| &b.mesh.positions);
+        let low = positions.fold([f64::INFINITY; 3], |low, p| {
+            [0, 1, 2].map(|k| p[k].min(low[k]))
+        });
+        if !low.iter().all(|v| v.is_finite()) {
+            return;
+        }
+        let shift = [low[0].floor(), low[1].floor(), 0.0];
+        for building in &mut self.buildings {
+            let bases = building.parts.iter_mut().map(|p| &mut p.frame.base);
+            let paint = building.paint.iter_mut().flat_map(|p| &mut p.corners);
+            for p in bases.chain(&mut building.mesh.positions).chain(paint) {
+                *p = [0, 1, 2].map(|k| p[k] - shift[k]);
+            }
+        }
+        self.origin = [0, 1, 2].map(|k| self.origin[k] + shift[k]);
     }
 
     /// Makes identifiers unique: one that occurs again gets a number.

@@ -55,6 +55,9 @@ pub struct Painted {
     pub surface: Arc<Surface>,
 }
 
+/// Most pieces of a triangle.
+const MOST_PIECES: usize = 262_144;
+
 impl Painted {
     /// Share of the triangle's area between two heights.
     pub fn share_between(&self, low: f64, high: f64) -> f64 {
@@ -73,7 +76,7 @@ impl Painted {
         area * texture.colours.len() as f64
     }
 
-    /// It in pieces, whose longest edges are at most `most` metres, by halving longest edges.
+    /// It in pieces, whose longest edges are at most `most` metres, by halving longest edges; in at most 262,144 pieces.
     pub fn pieces(&self, most: f64) -> Vec<Self> {
         let mut open = vec![self.clone()];
         let mut out = Vec::new();
@@ -86,7 +89,7 @@ impl Painted {
             let k = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
             // Not so for what is not a number.
             let long = length(k) > most * most;
-            if !long {
+            if !long || open.len() + out.len() >= MOST_PIECES {
                 out.push(piece);
                 continue;
             }

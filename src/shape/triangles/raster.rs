@@ -6,8 +6,14 @@
 
 use rayon::prelude::*;
 
+use std::ops::Range;
+
 use super::TriangleMesh;
 
+/// Most columns that triangles cross in all, and most cells along a side: cells are coarsened until that holds, so that
+/// coordinates far away, which a damaged file gives, take neither memory nor time.
+const MOST_CROSSINGS: f64 = 6e8;
+const MOST_CELLS: f64 = 131_072.0;
 /// Rows of cells that are measured at once: bounds the memory.
 const STRIP: i64 = 128;
 
@@ -48,8 +54,33 @@ pub struct VolumeRaster {
 type Crossing = (u64, f32, i8);
 
 impl VolumeRaster {
-    /// Compares two sets of solids; the solids of one set may overlap, and count once where they do.
+    /// A raster for solids: this one, or, where they are too large for it, the finest of twice, four times ... its cells that is not.
+    pub fn fitted(&self, first: &[&TriangleMesh], second: &[&TriangleMesh]) -> Self {
+        let (mut area, mut low, mut high) = (0.0, [f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for mesh in first.iter().chain(second) {
+            area += mesh.corners().map(|t| super::mesh::plan_area(&t).abs()).sum::<f64>();
+            if let Some((l, h)) = mesh.bounds() {
+                low = [0, 1].map(|k| low[k].min(l[k]));
+                high = [0, 1].map(|k| high[k].max(h[k]));
+            }
+        }
+        let extent = (high[0] - low[0]).max(high[1] - low[1]);
+        let mut size = self.size;
+        while size.is_finite()
+            && (area / (size * size) > MOST_CROSSINGS || extent / size > MOST_CELLS)
+        {
+            size *= 2.0;
+        }
+        Self { size }
+    }
+
+    /// Compares two sets of solids, on [`VolumeRaster::fitted`] cells; the solids of one set may overlap, and count once where
+    /// they do.
     pub fn compare(&self, first: &[&TriangleMesh], second: &[&TriangleMesh]) -> Overlap {
+        self.fitted(first, second).compared(first, second)
+    }
+
+    fn compared(&self, first: &[&TriangleMesh], second: &[&TriangleMesh]) -> Overlap {
         let strips = self.strips(first, second);
         let area = self.size * self.size;
         let parts: Vec<Overlap> = strips
@@ -58,7 +89,7 @@ impl VolumeRaster {
                 let columns = [(first, a), (second, b)].map(|(set, members)| {
                     let mut intervals = Vec::new();
                     for &m in members {
-                        self.columns(set[m], *strip, &mut intervals);
+                        self.columns(set[m], *strip, &ALL, &mut intervals);
                     }
                     united(intervals)
                 });
@@ -91,14 +122,20 @@ impl VolumeRaster {
         strips.into_iter().collect()
     }
 
-    /// The solid intervals of a mesh in a strip: cell, lower and upper end.
-    fn columns(&self, mesh: &TriangleMesh, strip: i64, out: &mut Vec<(u64, f32, f32)>) {
+    /// The solid intervals of a mesh in a strip, in cells of a range: cell, lower and upper end.
+    fn columns(
+        &self,
+        mesh: &TriangleMesh,
+        strip: i64,
+        within: &Range<i64>,
+        out: &mut Vec<(u64, f32, f32)>,
+    ) {
         let Some((low, _)) = mesh.bounds() else {
             return;
         };
         let mut crossings: Vec<Crossing> = Vec::new();
         for t in mesh.corners() {
-            self.cross(&t, strip, &mut crossings);
+            self.cross(&t, strip, within, &mut crossings);
         }
         crossings.sort_unstable_by(|a, b| {
             (a.0.cmp(&b.0))
@@ -115,7 +152,13 @@ impl VolumeRaster {
 
     /// Crossings of a triangle with the columns of a strip. Each column crosses a closed surface's plan
     /// consistently: edges are half open, and computed from the same end in both of their triangles.
-    fn cross(&self, t: &super::Corners, strip: i64, out: &mut Vec<Crossing>) {
+    fn cross(
+        &self,
+        t: &super::Corners,
+        strip: i64,
+        within: &Range<i64>,
+        out: &mut Vec<Crossing>,
+    ) {
         let area = super::mesh::plan_area(t);
         if area == 0.0 {
             return;
@@ -143,7 +186,8 @@ impl VolumeRaster {
             if count != 2 {
                 continue;
             }
-            for i in row(ends[0].min(ends[1]))..row(ends[0].max(ends[1])) {
+            let first = row(ends[0].min(ends[1])).max(within.start);
+            for i in first..row(ends[0].max(ends[1])).min(within.end) {
                 let x = (i as f64 + 0.5) * self.size;
                 let z = t[0][2] - (n[0] * (x - t[0][0]) + n[1] * (y - t[0][1])) / n[2];
                 let cell = (((j - strip * STRIP) as u64) << 48) | ((i + (1 << 46)) as u64);
@@ -153,8 +197,11 @@ impl VolumeRaster {
     }
 }
 
-/// The solid share of each column of the unit box (x and y from -1/2 to 1/2, z from 0 to 1): `cells` x `cells` means of
-/// `samples` x `samples` columns, row after row from low y to high.
+/// All columns that a cell's number can tell.
+const ALL: Range<i64> = -(1 << 46)..1 << 46;
+
+/// How much of each column of the unit box (x and y from -1/2 to 1/2, z from 0 to 1) is solid:
+/// `cells` x `cells` means of `samples` x `samples` columns, row after row from low y to high.
 pub fn height_map(unit: &TriangleMesh, cells: usize, samples: usize) -> Vec<f32> {
     let side = cells * samples;
     let scale = side as f64;
@@ -171,7 +218,7 @@ pub fn height_map(unit: &TriangleMesh, cells: usize, samples: usize) -> Vec<f32>
     let weight = 1.0 / (samples * samples) as f32;
     for strip in 0..(side as i64 + STRIP - 1) / STRIP {
         let mut intervals = Vec::new();
-        raster.columns(&mesh, strip, &mut intervals);
+        raster.columns(&mesh, strip, &(0..side as i64), &mut intervals);
         for (cell, bottom, top) in intervals {
             let row = (cell >> 48) as i64 + strip * STRIP;
             let column = (cell & ((1 << 48) - 1)) as i64 - (1 << 46);

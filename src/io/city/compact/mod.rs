@@ -1,4 +1,4 @@
-//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, version 1.
+//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 and 2.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -7,7 +7,12 @@
 //! | 4 | CRC-32 of all that follows |
 //! | 4 | bytes of the next part |
 //! | | names, identifiers, attributes, steps and textures: JSON, deflated (RFC 1951) |
-//! | to the end | templates, then rules, by a range coder with learnt probabilities |
+//! | 4 | bytes of the next part (version 2) |
+//! | | templates, then rules and the numbers of instances, by a range coder with learnt probabilities |
+//! | to the end | residuals: where parts of instances stand, by a coder of their own; empty where there are none |
+//!
+//! Whoever needs no residuals leaves the last part unread. In version 1, rules have no parameters, and residuals follow the
+//! rules in one part.
 //!
 //! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
 //! any of the steps that are tried; otherwise it is rounded to the finest. A file holds what the text
@@ -40,8 +45,10 @@ use edifice_shape::triangles::TriangleMesh;
 
 /// The first bytes of a file.
 const MAGIC: [u8; 4] = *b"EdCG";
-/// The version written, and the only one read.
-pub const VERSION: u16 = 1;
+/// The version written.
+pub const VERSION: u16 = 2;
+/// The oldest version that is read.
+const FIRST: u16 = 1;
 /// Bytes before the checked part.
 const START: usize = 10;
 /// Most bytes of names, identifiers and attributes, unpacked.
@@ -54,7 +61,7 @@ pub enum CompactError {
     #[error("not a compact grammar: it does not begin with \"EdCG\"")]
     Magic,
     /// A version that is not known.
-    #[error("version {0}, expected {VERSION}")]
+    #[error("version {0}, expected {FIRST} to {VERSION}")]
     Version(u16),
     /// The bytes are not those that were written.
     #[error("damaged: the checksum does not fit")]
@@ -146,9 +153,22 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     for rule in sorted.iter_mut().filter(|r| r.symbol == grammar.axiom) {
         order::along_curve(&mut rule.successors, &steps);
     }
-    let mut rules = Rules::new(coder, steps, &symbols, templates, Identities::default());
-    rules.code(&sorted, axiom)?;
-    let (coder, identities) = rules.finish();
+    let mut rules = Rules::new(coder, steps, &symbols, templates, Identities::default(), true);
+    let mut made = rules.rules(&sorted, axiom)?;
+    let mut residuals = Vec::new();
+    let mut coder = None;
+    if sorted.iter().flat_map(|r| &r.successors).any(|p| !p.parts.is_empty()) {
+        coder = Some(rules.switch(Encoder::new()));
+        rules.residuals(&sorted, &mut made)?;
+    }
+    let (last, identities) = rules.finish();
+    let coder = match coder {
+        Some(first) => {
+            residuals = last.finish();
+            first
+        }
+        None => last,
+    };
     let textures = grammar.templates.iter().enumerate();
     let textures =
         textures.filter_map(|(i, t)| Some((i, pictures::data_uri(t.texture.as_deref()?))));
@@ -169,7 +189,11 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     let size = u32::try_from(texts.len()).map_err(|_| CompactError::TooLarge("bytes of text"))?;
     let mut body = size.to_le_bytes().to_vec();
     body.extend(texts);
-    body.extend(coder.finish());
+    let coded = coder.finish();
+    let size = u32::try_from(coded.len()).map_err(|_| CompactError::TooLarge("bytes of rules"))?;
+    body.extend(size.to_le_bytes());
+    body.extend(coded);
+    body.extend(residuals);
     let mut bytes = MAGIC.to_vec();
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend(checksum(&body).to_le_bytes());
@@ -189,17 +213,17 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
         return Err(CompactError::Truncated);
     };
     let version = u16::from_le_bytes([start[4], start[5]]);
-    if version != VERSION {
+    if !(FIRST..=VERSION).contains(&version) {
         return Err(CompactError::Version(version));
     }
     if u32::from_le_bytes([start[6], start[7], start[8], start[9]]) != checksum(body) {
         return Err(CompactError::Checksum);
     }
-    let (size, rest) = body
-        .split_first_chunk::<4>()
-        .ok_or(CompactError::Truncated)?;
-    let size = u32::from_le_bytes(*size) as usize;
-    let (texts, coded) = rest.split_at_checked(size).ok_or(CompactError::Truncated)?;
+    let (texts, rest) = sized(body)?;
+    let (coded, residuals) = match version {
+        FIRST => (rest, &[][..]),
+        _ => sized(rest)?,
+    };
     let texts: Texts =
         serde_json::from_slice(&inflated(texts)?).map_err(|e| CompactError::Text(e.to_string()))?;
     let steps = texts.steps.checked()?;
@@ -229,14 +253,23 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
     }
     let axiom = symbols.get(texts.axiom).cloned();
     let identities = Identities::new(texts.ids, texts.attributes);
-    let mut rules = Rules::new(coder, steps, &symbols, count, identities);
+    let mut rules = Rules::new(coder, steps, &symbols, count, identities, version > FIRST);
+    let mut made = rules.rules(&[], texts.axiom)?;
+    if version > FIRST && !residuals.is_empty() {
+        if rules.switch(Decoder::new(residuals)).exhausted() {
+            return Err(CompactError::Truncated);
+        }
+        rules.residuals(&[], &mut made)?;
+    } else if version == FIRST {
+        rules.residuals(&[], &mut made)?;
+    }
     let grammar = InstanceGrammar {
         name: texts.name,
         reference_system: texts.reference_system,
         origin: texts.origin,
         axiom: axiom.ok_or(CompactError::Index("symbol"))?,
         templates,
-        rules: rules.code(&[], texts.axiom)?,
+        rules: made,
     };
     match rules.finish().0.exhausted() {
         true => Err(CompactError::Truncated),
@@ -246,6 +279,15 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
             Ok(grammar)
         }
     }
+}
+
+/// A part after its number of bytes, and the rest.
+fn sized(bytes: &[u8]) -> Result<(&[u8], &[u8]), CompactError> {
+    let (size, rest) = bytes
+        .split_first_chunk::<4>()
+        .ok_or(CompactError::Truncated)?;
+    let size = u32::from_le_bytes(*size) as usize;
+    rest.split_at_checked(size).ok_or(CompactError::Truncated)
 }
 
 fn in_steps(mesh: &TriangleMesh, shape: i64) -> Result<StepMesh, CompactError> {

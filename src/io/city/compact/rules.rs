@@ -1,19 +1,25 @@
 //! Rules and placements.
 //!
 //! A placement is told by its difference from what is likely: a building stands near the one before it and is turned like it, a
-//! part stands on the part below it, a part of an instance is like that of its rule.
+//! part stands on the part below it, a part of an instance is where its rule puts it, and the numbers of an instance are near those of
+//! the instance of the same symbol before it.
+
+mod parts;
 
 use rustc_hash::FxHashMap;
 
 use super::identity::Identities;
 use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
-use super::steps::in_steps;
+use super::steps::{SHARES, in_steps};
 use super::{CompactError, Steps};
 use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Most placements of a file.
 const MOST_PLACEMENTS: u64 = 8_000_000;
+
+/// Most levels of a rule with parameters.
+const MOST_LEVELS: u64 = 4096;
 
 /// A placement in steps.
 #[derive(Debug, Clone, Copy, Default)]
@@ -66,15 +72,26 @@ pub(super) struct Rules<'a, C> {
     as_usual: Bit,
     counts: Natural,
     weight: Natural,
-    flags: [Bit; 3],
+    flags: [Bit; 4],
+    /// Whether rules may have parameters and factors: not in version 1.
+    parametric: bool,
+    levels: Natural,
+    again: Bit,
+    /// The numbers of the instance of each symbol before, and what codes them: the first of a symbol, then others, by parameter.
+    numbers_before: FxHashMap<usize, Vec<i64>>,
+    numbers_models: [[Whole; PARAMETERS]; 2],
 }
 
-/// The meanings of [`Rules::flags`].
+/// Parameters with probabilities of their own.
+const PARAMETERS: usize = 6;
+
+/// What [`Rules::flags`] tell.
 #[derive(Clone, Copy)]
 enum Flag {
     WholeWeight,
     HasParts,
     Present,
+    Scaled,
 }
 
 impl<'a, C: Coder> Rules<'a, C> {
@@ -85,6 +102,7 @@ impl<'a, C: Coder> Rules<'a, C> {
         symbols: &'a [String],
         templates: usize,
         identities: Identities,
+        parametric: bool,
     ) -> Self {
         let numbers = symbols.iter().enumerate().map(|(i, s)| (s.as_str(), i));
         let rules = symbols.len() - templates;
@@ -103,7 +121,12 @@ impl<'a, C: Coder> Rules<'a, C> {
             as_usual: Bit::default(),
             counts: Natural::default(),
             weight: Natural::default(),
-            flags: [Bit::default(); 3],
+            flags: [Bit::default(); 4],
+            parametric,
+            levels: Natural::default(),
+            again: Bit::default(),
+            numbers_before: FxHashMap::default(),
+            numbers_models: Default::default(),
         }
     }
 
@@ -112,8 +135,13 @@ impl<'a, C: Coder> Rules<'a, C> {
         (self.coder, self.identities)
     }
 
-    /// All rules: first what they make, then the parts of instances.
-    pub(super) fn code(
+    /// Goes on with another coder; the one so far.
+    pub(super) fn switch(&mut self, coder: C) -> C {
+        std::mem::replace(&mut self.coder, coder)
+    }
+
+    /// All rules: what they make, then the numbers of instances.
+    pub(super) fn rules(
         &mut self,
         given: &[InstanceRule],
         axiom: usize,
@@ -123,15 +151,12 @@ impl<'a, C: Coder> Rules<'a, C> {
         for i in 0..count {
             rules.push(self.rule(given.get(i), axiom)?);
         }
-        let mut first: FxHashMap<String, usize> = FxHashMap::default();
-        for (i, rule) in rules.iter().enumerate() {
-            first.entry(rule.symbol.clone()).or_insert(i);
-        }
+        let first = parts::first_rules(&rules);
         for i in 0..rules.len() {
             let mut successors = std::mem::take(&mut rules[i].successors);
             for (k, placed) in successors.iter_mut().enumerate() {
                 let given = given.get(i).map(|r| &r.successors[k]);
-                placed.parts = self.parts(&placed.symbol, given, &rules, &first, 0)?;
+                placed.numbers = self.numbers(&placed.symbol, given, &rules, &first)?;
             }
             rules[i].successors = successors;
         }
@@ -146,6 +171,20 @@ impl<'a, C: Coder> Rules<'a, C> {
         let number = given.map_or(0, |r| self.numbers[r.symbol.as_str()]);
         let symbol = self.name(true, number)?;
         let weight = self.weight(given.map_or(0.0, |r| r.weight));
+        let mut levels = 0;
+        let mut scale = [1.0; 3];
+        if self.parametric {
+            let own = given.map_or(0, |r| r.levels as u64);
+            levels = self.levels.code(&mut self.coder, own);
+            if levels > MOST_LEVELS {
+                return Err(CompactError::TooLarge("levels"));
+            }
+            if self.flag(Flag::Scaled, given.is_some_and(|r| !r.is_unscaled())) {
+                let own = given.map_or(scale, |r| r.scale);
+                scale = own.map(|v| plain(&mut self.coder, v));
+            }
+        }
+        let levels = levels as usize;
         let count = self.count(given.map_or(0, |r| r.successors.len()))?;
         let top = self.numbers.get(symbol.as_str()) == Some(&axiom);
         let mut successors = Vec::new();
@@ -157,57 +196,26 @@ impl<'a, C: Coder> Rules<'a, C> {
                 _ => Near::Below,
             };
             let given = given.map(|r| &r.successors[k]);
-            let (placed, pose) = self.placement(near, &before, given)?;
+            let (placed, pose) = self.placement(near, &before, given, levels > 0)?;
             before = pose;
             successors.push(placed);
         }
         Ok(InstanceRule {
             symbol,
             weight,
+            levels,
+            scale,
             successors,
         })
     }
 
-    /// The places of an instance's successors.
-    fn parts(
-        &mut self,
-        symbol: &str,
-        given: Option<&Placement>,
-        rules: &[InstanceRule],
-        first: &FxHashMap<String, usize>,
-        depth: usize,
-    ) -> Result<Vec<Option<Placement>>, CompactError> {
-        let Some(rule) = first.get(symbol).map(|&r| &rules[r].successors) else {
-            return Ok(Vec::new());
-        };
-        if depth > 64 {
-            return Err(CompactError::TooLarge("depth"));
-        }
-        let given = given.map(|g| &g.parts).filter(|p| !p.is_empty());
-        if !self.flag(Flag::HasParts, given.is_some()) {
-            return Ok(Vec::new());
-        }
-        let mut parts = Vec::new();
-        for (k, successor) in rule.iter().enumerate() {
-            let own = given.and_then(|g| g[k].as_ref());
-            if !self.flag(Flag::Present, own.is_some()) {
-                parts.push(None);
-                continue;
-            }
-            let usual = self.pose(successor)?;
-            let (mut placed, _) = self.placement(Near::Like, &usual, own)?;
-            placed.parts = self.parts(&placed.symbol, own, rules, first, depth + 1)?;
-            parts.push(Some(placed));
-        }
-        Ok(parts)
-    }
-
-    /// A placement without its parts.
+    /// A placement without its parts and numbers; with `shares`, its lengths are shares and levels.
     fn placement(
         &mut self,
         near: Near,
         other: &Pose,
         given: Option<&Placement>,
+        shares: bool,
     ) -> Result<(Placement, Pose), CompactError> {
         self.placements += 1;
         if self.placements > MOST_PLACEMENTS {
@@ -216,15 +224,25 @@ impl<'a, C: Coder> Rules<'a, C> {
         if self.coder.exhausted() {
             return Err(CompactError::Truncated);
         }
+        let unit = if shares { SHARES } else { self.steps.length };
         let own = match given {
-            Some(given) => self.pose(given)?,
+            Some(given) => self.pose(given, unit)?,
             None => Pose::default(),
         };
-        let usual = near == Near::Like
-            && self
+        let usual = match near {
+            Near::Like => self
                 .coder
-                .bit(&mut self.as_usual, own.symbol == other.symbol);
+                .bit(&mut self.as_usual, own.symbol == other.symbol),
+            // The next building often is of the same type.
+            Near::Before if self.parametric => self
+                .coder
+                .bit(&mut self.again, own.symbol == other.symbol),
+            _ => false,
+        };
         let symbol = match usual {
+            true if other.symbol >= self.symbols.len() => {
+                return Err(CompactError::Index("symbol"));
+            }
             true => other.symbol,
             false => {
                 let is_rule = own.symbol >= self.templates;
@@ -249,7 +267,7 @@ impl<'a, C: Coder> Rules<'a, C> {
             .wrapping_add(quarters * quarter)
             .wrapping_add(rest))
         .rem_euclid(full);
-        let mut like = other.size;
+        let mut like = if shares { [SHARES; 3] } else { other.size };
         if quarters % 2 == 1 {
             like.swap(0, 1);
         }
@@ -263,7 +281,8 @@ impl<'a, C: Coder> Rules<'a, C> {
         }
         let mut size = [0; 3];
         let mut factor = 1.0;
-        let stands = matches!(near, Near::Below | Near::Like) && other.symbol < self.templates;
+        let below = matches!(near, Near::Below | Near::Like) && other.symbol < self.templates;
+        let stands = below || shares;
         if is_rule {
             let given = given.map_or(1.0, |g| g.size[0]);
             if !coder.bit(&mut models.factor, given == 1.0) {
@@ -272,7 +291,7 @@ impl<'a, C: Coder> Rules<'a, C> {
         } else if stands {
             for axis in 0..3 {
                 // The height of what stands on a part says nothing of its own.
-                let like = if near == Near::Below && axis == 2 {
+                let like = if near == Near::Below && axis == 2 && !shares {
                     0
                 } else {
                     like[axis]
@@ -296,7 +315,7 @@ impl<'a, C: Coder> Rules<'a, C> {
         let id = self.identities.id(coder, id)?;
         let attributes = given.map(|g| &g.attributes);
         let attributes = self.identities.attributes(coder, attributes)?;
-        let length = |v: i64| v as f64 / self.steps.length as f64;
+        let length = |v: i64| v as f64 / unit as f64;
         let placed = Placement {
             symbol: self.symbols[symbol].clone(),
             at: at.map(length),
@@ -309,15 +328,16 @@ impl<'a, C: Coder> Rules<'a, C> {
             id,
             attributes,
             parts: Vec::new(),
+            numbers: Vec::new(),
         };
         Ok((placed, pose))
     }
 
-    /// A placement in steps.
-    fn pose(&self, placed: &Placement) -> Result<Pose, CompactError> {
+    /// A placement in steps, `unit` of them in a length of 1.
+    fn pose(&self, placed: &Placement, unit: i64) -> Result<Pose, CompactError> {
         let symbol = self.numbers.get(placed.symbol.as_str()).copied();
         let symbol = symbol.ok_or(CompactError::Index("symbol"))?;
-        let length = |v: f64| in_steps(v, self.steps.length);
+        let length = |v: f64| in_steps(v, unit);
         let [x, y, z] = placed.at;
         let [w, d, h] = match symbol < self.templates {
             true => placed.size,

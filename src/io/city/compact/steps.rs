@@ -16,6 +16,8 @@ pub struct Steps {
     pub shape: i64,
 }
 
+/// Steps of a share, or of a level, in a rule with parameters.
+pub(super) const SHARES: i64 = 1024;
 /// Steps that are tried, the coarsest first.
 const LENGTHS: [i64; 10] = [1, 2, 4, 5, 8, 10, 20, 50, 100, 1000];
 const TURNS: [i64; 8] = [1, 2, 4, 5, 10, 100, 1000, 10_000];
@@ -28,13 +30,14 @@ impl Steps {
         let templates = || grammar.templates.iter();
         let terminals: rustc_hash::FxHashSet<&str> =
             templates().map(|t| t.symbol.as_str()).collect();
-        let lengths = |p: &Placement| {
+        let lengths = |p: &Placement| -> Vec<f64> {
             let size = if terminals.contains(p.symbol.as_str()) {
                 p.size
             } else {
                 [0.0; 3]
             };
-            [p.at, size]
+            let numbers = p.numbers.iter().copied();
+            p.at.into_iter().chain(size).chain(numbers).collect()
         };
         // Corners that no triangle has are not written.
         let corners = || {
@@ -46,9 +49,13 @@ impl Steps {
         Self {
             length: first(&LENGTHS, |s| {
                 let mut all = placements.iter().flat_map(|p| lengths(p));
-                all.all(|v| v.iter().all(|v| whole(*v, s)))
+                all.all(|v| whole(v, s))
             }),
-            turn: first(&TURNS, |s| placements.iter().all(|p| whole(p.turn, s))),
+            turn: first(&TURNS, |s| {
+                let shares = shares(grammar);
+                let mut all = placements.iter().copied().chain(shares);
+                all.all(|p| whole(p.turn, s))
+            }),
             shape: first(&SHAPES, |s| {
                 let on =
                     |p: &[f64; 3]| whole(p[0] + 0.5, s) && whole(p[1] + 0.5, s) && whole(p[2], s);
@@ -80,9 +87,12 @@ pub(super) fn in_steps(v: f64, steps: i64) -> Result<i64, CompactError> {
 pub(super) fn writable(grammar: &InstanceGrammar) -> Result<(), CompactError> {
     let finest = |tried: &[i64]| tried.last().copied().unwrap_or(1);
     let (length, turn, shape) = (finest(&LENGTHS), finest(&TURNS), finest(&SHAPES));
-    for p in placements(grammar) {
-        for v in p.at.into_iter().chain(p.size) {
-            in_steps(v, length)?;
+    let shares = shares(grammar).into_iter().map(|p| (p, SHARES));
+    let placed = placements(grammar).into_iter().map(|p| (p, length));
+    for (p, steps) in placed.chain(shares) {
+        let numbers = p.numbers.iter().copied();
+        for v in p.at.into_iter().chain(p.size).chain(numbers) {
+            in_steps(v, steps)?;
         }
         in_steps(p.turn, turn)?;
     }
@@ -94,10 +104,17 @@ pub(super) fn writable(grammar: &InstanceGrammar) -> Result<(), CompactError> {
     Ok(())
 }
 
-/// All placements of all rules, parts of parts too.
+/// The successors of rules with parameters, whose lengths are shares.
+fn shares(grammar: &InstanceGrammar) -> Vec<&Placement> {
+    let own = grammar.rules.iter().filter(|r| r.levels > 0);
+    own.flat_map(|r| &r.successors).collect()
+}
+
+/// All other placements of all rules, parts of parts too.
 fn placements(grammar: &InstanceGrammar) -> Vec<&Placement> {
     let mut all = Vec::new();
-    let mut open: Vec<&Placement> = grammar.rules.iter().flat_map(|r| &r.successors).collect();
+    let own = grammar.rules.iter().filter(|r| r.levels == 0);
+    let mut open: Vec<&Placement> = own.flat_map(|r| &r.successors).collect();
     while let Some(p) = open.pop() {
         all.push(p);
         open.extend(p.parts.iter().flatten());

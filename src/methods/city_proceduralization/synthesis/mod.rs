@@ -89,11 +89,8 @@ pub fn synthesize(
     }
     let mut out = grammar.clone();
     for rule in out.rules.iter_mut().filter(|r| r.symbol == out.axiom) {
-        *rule = InstanceRule {
-            symbol: rule.symbol.clone(),
-            weight: 1.0,
-            successors: std::mem::take(&mut successors),
-        };
+        let symbol = rule.symbol.clone();
+        *rule = InstanceRule::new(symbol, 1.0, std::mem::take(&mut successors));
     }
     Ok(out)
 }

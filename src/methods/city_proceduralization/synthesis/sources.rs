@@ -16,6 +16,9 @@ pub(super) const AREAS: usize = 16;
 /// and in each by height.
 pub(super) const HEIGHTS: usize = 2;
 
+/// No building reaches farther in the plan, in metres.
+const LARGEST: f64 = 5000.0;
+
 /// A building of the grammar's city, to be copied.
 pub(super) struct Source {
     /// The placements under the axiom: one symbol, or the templates of a building.
@@ -67,6 +70,16 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
                 positions: template.positions.iter().map(|&p| part.place(p)).collect(),
                 triangles: template.triangles.clone(),
             });
+        }
+        if let Some((low, high)) = mesh.bounds() {
+            let extent = (high[0] - low[0]).max(high[1] - low[1]);
+            if extent > LARGEST {
+                return Err(InstanceGrammarError::Number {
+                    place: format!("building {id:?}"),
+                    what: "extent of a building that is to be copied, in metres",
+                    value: extent,
+                });
+            }
         }
         let Some(looks) = landmark(&mesh) else {
             continue;

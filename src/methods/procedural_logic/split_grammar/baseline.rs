@@ -8,7 +8,7 @@ use crate::parameters::{ParameterError, Parameters};
 use crate::parse::{NoSplit, parse};
 use crate::split_grammar::split_grammar;
 use edifice_grammar::Grammar;
-use edifice_shape::{Facade, LayoutError};
+use edifice_shape::{Facade, LabelGrid, LayoutError};
 
 /// Why a facade has no baseline grammar.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -37,6 +37,26 @@ pub fn baseline_grammar(
     parameters: &Parameters,
 ) -> Result<Grammar, BaselineError> {
     baseline_grammar_joining(facade, parameters, Joining::All)
+}
+
+/// The split grammar of a label picture, whose areas lines may cut as they do in the paper's own pipeline: an area of one
+/// label is an asset only once it is alone in its scope. The grammar derives the picture, not the tiling it came from.
+///
+/// # Errors
+/// [`BaselineError`] for a parameter out of range, or a picture that no sequence of straight cuts makes.
+pub fn picture_grammar(
+    grid: &LabelGrid,
+    parameters: &Parameters,
+) -> Result<Grammar, BaselineError> {
+    let parameters = parameters.checked()?;
+    let mut alphabet = Alphabet::default();
+    let labels = alphabet.intern_all(&grid.labels);
+    let canvas = Canvas::from_grid(grid, labels);
+    let mut affinity = Affinity::new(parameters.facing);
+    affinity.add(&canvas, alphabet.len());
+    let binary = parse(&canvas, &affinity.normalized(), &parameters)?;
+    let tree = Joining::All.apply(&binary);
+    Ok(split_grammar(&tree, &alphabet, &grid.name, &grid.unit))
 }
 
 /// As [`baseline_grammar`], with another reading of which binary splits are made n-ary.

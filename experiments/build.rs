@@ -1,0 +1,140 @@
+//! Digests of the sources of each crate of this workspace, for the keys of results: `OUT_DIR/sources.rs`.
+//!
+//! A crate's digest is SHA-256 over the names and bytes of the files of its folder (without its tests and without the folders of other
+//! crates), and its row names the crates of this workspace that it is built on. Of a package from a registry, whose neighbours are
+//! not here, the table is empty: its sources are those of its version.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+type Anyway<T> = Result<T, Box<dyn std::error::Error>>;
+
+fn main() -> Anyway<()> {
+    let here = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR")?);
+    let root = here.join("..");
+    let mut rows = String::new();
+    let manifest = root.join("Cargo.toml");
+    println!("cargo::rerun-if-changed=build.rs");
+    if let Ok(text) = std::fs::read_to_string(&manifest) {
+        println!("cargo::rerun-if-changed={}", manifest.display());
+        let lock = root.join("Cargo.lock");
+        let locked = std::fs::read_to_string(&lock).unwrap_or_default();
+        println!("cargo::rerun-if-changed={}", lock.display());
+        let crates = crates(&root, &text)?;
+        for (name, folder) in &crates {
+            println!("cargo::rerun-if-changed={}", folder.display());
+            let others: Vec<&PathBuf> = crates.values().filter(|f| *f != folder).collect();
+            let needs = needs(&std::fs::read_to_string(folder.join("Cargo.toml"))?);
+            if name == "edifice-experiments" {
+                for (part, digest) in parts(folder)? {
+                    rows += &format!("(\"experiments/{part}\", \"{digest}\", &[]),\n");
+                }
+            }
+            let digest = digest(&files(folder, &others)?, folder)?;
+            rows += &format!("({name:?}, {digest:?}, &{needs:?}),\n");
+        }
+        rows += &format!(
+            "(\"Cargo.lock\", \"{}\", &[]),\n",
+            hex(&Sha256::digest(foreign(&locked)))
+        );
+    }
+    let out = PathBuf::from(std::env::var("OUT_DIR")?).join("sources.rs");
+    std::fs::write(out, format!("&[\n{rows}]"))?;
+    Ok(())
+}
+
+/// Name and folder of each member of the workspace.
+fn crates(root: &Path, manifest: &str) -> Anyway<BTreeMap<String, PathBuf>> {
+    let mut crates = BTreeMap::new();
+    let members = manifest.split("members = [").nth(1).unwrap_or_default();
+    let members = members.split(']').next().unwrap_or_default();
+    for member in members.split('"').skip(1).step_by(2) {
+        let folder = root.join(member);
+        let text = std::fs::read_to_string(folder.join("Cargo.toml"))?;
+        let name = text.lines().find_map(|line| line.strip_prefix("name = "));
+        let name = name.unwrap_or_default().trim().trim_matches('"').to_owned();
+        crates.insert(name, folder);
+    }
+    Ok(crates)
+}
+
+/// Names of the crates of this workspace that a manifest depends on, those of its tests left out.
+fn needs(manifest: &str) -> Vec<String> {
+    let mut section = "";
+    let mut needs = Vec::new();
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            section = line.trim();
+        }
+        let end = line.find(['.', ' ', '=']).unwrap_or(line.len());
+        if section == "[dependencies]" && line.starts_with("edifice-") {
+            needs.push(line[..end].to_owned());
+        }
+    }
+    needs
+}
+
+/// The lockfile without the entries of this workspace, whose sources have digests of their own.
+fn foreign(locked: &str) -> String {
+    let entries = locked.split("\n\n");
+    let from_elsewhere: Vec<&str> = entries.filter(|e| e.contains("\nsource = ")).collect();
+    from_elsewhere.join("\n\n")
+}
+
+/// The parts of the experiments that results depend on beside the methods: each slug's own, and `frame`.
+fn parts(folder: &Path) -> Anyway<BTreeMap<String, String>> {
+    let mut parts: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for file in files(folder, &[])? {
+        let below = file.strip_prefix(folder)?;
+        let first = below.components().next().ok_or("a file has a name")?;
+        let first = first.as_os_str().to_string_lossy().into_owned();
+        let part = first.trim_end_matches(".rs").to_owned();
+        parts.entry(part).or_default().push(file);
+    }
+    parts
+        .into_iter()
+        .map(|(part, files)| Ok((part, digest(&files, folder)?)))
+        .collect()
+}
+
+/// Files below a folder, in order of name, without hidden ones, tests, and the folders of other crates.
+fn files(folder: &Path, others: &[&PathBuf]) -> Anyway<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(&next)? {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let skipped = ["tests", "tests.rs", "target", "README.md", "sweeps"];
+            if name.starts_with('.') || skipped.contains(&&*name) {
+                continue;
+            }
+            if path.is_dir() {
+                if !others.contains(&&path) {
+                    open.push(path);
+                }
+            } else {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn digest(files: &[PathBuf], folder: &Path) -> Anyway<String> {
+    let mut hash = Sha256::new();
+    for file in files {
+        hash.update(file.strip_prefix(folder)?.to_string_lossy().as_bytes());
+        hash.update([0]);
+        hash.update(std::fs::read(file)?);
+        hash.update([0]);
+    }
+    Ok(hex(&hash.finalize()))
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}

@@ -1,0 +1,12 @@
+//! The option `--residuals`.
+
+use clap::ValueEnum;
+
+/// What becomes of residuals.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Residuals {
+    /// They are kept, and carried along by edits.
+    Keep,
+    /// They are left out: parts stand where the rules put them.
+    Drop,
+}

@@ -1,0 +1,69 @@
+//! `edifice completions` and `edifice man`.
+
+use std::path::PathBuf;
+
+use clap_complete::Shell;
+use edifice_base::{Error, Result, file};
+
+use super::print;
+
+/// Options of `completions`.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  edifice completions bash > ~/.local/share/bash-completion/completions/edifice
+  edifice completions zsh > ~/.zfunc/_edifice
+  edifice completions fish > ~/.config/fish/completions/edifice.fish")]
+pub struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Options of `man`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  edifice man -o ~/.local/share/man/man1 && man edifice-grammar-infer"
+)]
+pub struct Man {
+    /// Folder for the pages, one a command; without it that of `edifice` is printed
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// Prints the completions of a shell.
+pub fn completions(args: &Completions, mut command: clap::Command) -> Result<()> {
+    let mut text = Vec::new();
+    clap_complete::generate(args.shell, &mut command, "edifice", &mut text);
+    print::line(String::from_utf8_lossy(&text).trim_end())
+}
+
+/// Writes the manual pages.
+pub fn man(args: &Man, command: clap::Command) -> Result<()> {
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    let Some(folder) = &args.output else {
+        return print::line(&String::from_utf8_lossy(&page(&command)?));
+    };
+    std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+    let mut open = vec![("edifice".to_owned(), command)];
+    let mut count = 0;
+    while let Some((name, command)) = open.pop() {
+        for inner in command.get_subcommands() {
+            open.push((format!("{name}-{}", inner.get_name()), inner.clone()));
+        }
+        let named = command.name(name.clone().leak() as &str);
+        file::write_atomic(&folder.join(format!("{name}.1")), &page(&named)?)?;
+        count += 1;
+    }
+    print::message(&format!("{count} pages in {}", folder.display()));
+    Ok(())
+}
+
+/// The page of a command.
+fn page(command: &clap::Command) -> Result<Vec<u8>> {
+    let mut text = Vec::new();
+    let page = clap_mangen::Man::new(command.clone());
+    page.render(&mut text)
+        .map_err(|e| Error::io("manual".as_ref(), "write", e))?;
+    Ok(text)
+}

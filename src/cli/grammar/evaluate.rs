@@ -1,0 +1,195 @@
+//! `edifice grammar evaluate`.
+
+use std::path::PathBuf;
+
+use edifice_base::{Error, Result};
+use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
+use edifice_grammar::{Costs, Grammar, derive, evaluate};
+use edifice_io::read_grammar;
+use edifice_shape::{Facade, Rect, Region};
+
+use crate::print;
+use crate::reading::{self, Reading};
+
+/// Options of `edifice grammar evaluate`.
+#[derive(clap::Args)]
+#[command(after_help = "Example:
+  edifice grammar infer house.facade.json -o house.grammar.json
+  edifice grammar evaluate house.grammar.json house.facade.json --bound --json
+
+Exit code 1 when the grammar does not derive exactly the facades; the cost and the pixel error are told first.")]
+pub struct Args {
+    /// Grammar to judge: .grammar.json or .cga, also as .gz
+    grammar: PathBuf,
+    /// Facades that it should derive, in the order of its starts
+    #[arg(required = true)]
+    facades: Vec<PathBuf>,
+    /// Also prove a bound on the cost of any grammar of the facade, with the operations that this one uses
+    #[arg(long)]
+    bound: bool,
+    /// Cost of split, and of symsplit and gridsplit
+    #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().split)]
+    split_cost: f64,
+    /// Cost of a repeat, and of a repeat of the form ABABA
+    #[arg(long, value_name = "COST", value_parser = super::cost, default_value_t = Costs::default().repeat)]
+    repeat_cost: f64,
+    #[command(flatten)]
+    reading: Reading,
+    /// End with one line of JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let grammar = read_grammar(&args.grammar)?;
+    let options = args.reading.options()?;
+    let facades: Result<Vec<Facade>> = (args.facades.iter())
+        .map(|path| reading::source(path, &options)?.facade(path))
+        .collect();
+    let facades = facades?;
+    let costs = Costs {
+        split: args.split_cost,
+        sym_split: args.split_cost,
+        grid_split: args.split_cost,
+        repeat: args.repeat_cost,
+        repeat_aba: args.repeat_cost,
+        ..Costs::default()
+    };
+    let judged = evaluate(&grammar, &facades, &costs);
+    let errors: Vec<Option<f64>> = (facades.iter().enumerate())
+        .map(|(index, facade)| Some(wrong_share(&derive(&grammar, index).ok()?, facade)))
+        .collect();
+    let bound = match (args.bound, facades.as_slice()) {
+        (false, _) => None,
+        (true, [facade]) => Some(bound(&grammar, facade, costs)?),
+        (true, _) => {
+            let message = "bounds are of one facade";
+            return Err(Error::option("--bound", message));
+        }
+    };
+    let cost = costs.grammar(&grammar);
+    print::line(&format!("cost {cost}, {} rules", grammar.rules.len()))?;
+    for (facade, error) in facades.iter().zip(&errors) {
+        let told = error.map_or("is not derived".to_owned(), |error| {
+            format!("{:.4} % of its area is derived otherwise", 100.0 * error)
+        });
+        print::line(&format!("{}: {told}", facade.name))?;
+    }
+    if let Some((lower, proven)) = bound {
+        let gap = 100.0 * (cost / lower - 1.0);
+        let word = if proven {
+            "is the least cost"
+        } else {
+            "is a bound"
+        };
+        print::line(&format!("{lower} {word}; this grammar is {gap:.2} % above"))?;
+    }
+    let reason = judged.as_ref().err().map(ToString::to_string);
+    if let Some(reason) = &reason {
+        print::line(&format!("does not derive the facades exactly: {reason}"))?;
+    }
+    if args.json {
+        let about = serde_json::json!({
+            "derives_back": judged.is_ok(), "reason": reason, "cost": cost,
+            "rules": grammar.rules.len(), "terminals": judged.as_ref().ok().map(|e| e.terminals),
+            "pixel_error": errors, "bound": bound.map(|b| b.0), "proven_optimal_cost": bound.map(|b| b.1),
+        });
+        print::line(&about.to_string())?;
+    }
+    judged.map(|_| ()).map_err(Error::method)
+}
+
+/// A bound on the cost of every grammar of a facade that uses no other operations, and whether a grammar of that cost is known.
+fn bound(grammar: &Grammar, facade: &Facade, costs: Costs) -> Result<(f64, bool)> {
+    let uses = |name: &str| grammar.rules.iter().any(|r| r.operation.name() == name);
+    let settings = Settings {
+        costs,
+        operations: Operations {
+            repeat: uses("repeat") || Operations::default().repeat,
+            repeat_aba: uses("repeat_aba"),
+            sym_split: uses("sym_split"),
+            grid_split: uses("grid_split"),
+        },
+        ..Settings::default()
+    };
+    let found = lower_bound(facade, &settings, &BoundLimits::default()).map_err(Error::method)?;
+    Ok((found.lower, found.proven))
+}
+
+/// Share of the area of `truth` where the label differs, 0 to 1. Both cover their outlines; a part that one lacks differs.
+fn wrong_share(derived: &Facade, truth: &Facade) -> f64 {
+    let edges = |low: fn(&Rect) -> f64, high: fn(&Rect) -> f64, end: f64| {
+        let all = derived.regions.iter().chain(&truth.regions);
+        let mut edges: Vec<f64> = all.flat_map(|r| [low(&r.rect), high(&r.rect)]).collect();
+        edges.extend([0.0, end]);
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
+        edges
+    };
+    let xs = edges(|r| r.x, Rect::right, truth.width);
+    let ys = edges(|r| r.y, Rect::top, truth.height);
+    let columns = xs.len() - 1;
+    let (a, b) = (
+        painted(&derived.regions, &xs, &ys),
+        painted(&truth.regions, &xs, &ys),
+    );
+    let name = |side: &(Vec<&str>, Vec<usize>), cell: usize| {
+        side.0.get(side.1[cell]).map(|label| (*label).to_owned())
+    };
+    let mut wrong = 0.0;
+    for row in 0..ys.len() - 1 {
+        for column in 0..columns {
+            let cell = row * columns + column;
+            if name(&a, cell) != name(&b, cell) {
+                wrong += (xs[column + 1] - xs[column]) * (ys[row + 1] - ys[row]);
+            }
+        }
+    }
+    wrong / (truth.width * truth.height)
+}
+
+/// The label of each cell between sorted coordinates, row by row: distinct labels, and an index into them, which is beyond their end where no region
+/// lies.
+fn painted<'a>(regions: &'a [Region], xs: &[f64], ys: &[f64]) -> (Vec<&'a str>, Vec<usize>) {
+    let columns = xs.len() - 1;
+    let mut labels: Vec<&str> = Vec::new();
+    let mut cells = vec![usize::MAX; columns * (ys.len() - 1)];
+    let span = |edges: &[f64], from: f64, to: f64| {
+        edges.partition_point(|e| *e < from)..edges.partition_point(|e| *e < to)
+    };
+    for region in regions {
+        let r = &region.rect;
+        let known = labels.iter().position(|label| *label == region.label);
+        let label = known.unwrap_or_else(|| {
+            labels.push(&region.label);
+            labels.len() - 1
+        });
+        for row in span(ys, r.y, r.top()) {
+            for column in span(xs, r.x, r.right()) {
+                cells[row * columns + column] = label;
+            }
+        }
+    }
+    (labels, cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn facade(split: f64) -> Facade {
+        let region = |label: &str, x, width| Region {
+            label: label.into(),
+            rect: Rect::new(x, 0.0, width, 2.0),
+        };
+        let regions = vec![region("a", 0.0, split), region("b", split, 10.0 - split)];
+        Facade::new("f", "px", 10.0, 2.0, regions).unwrap()
+    }
+
+    #[test]
+    fn the_share_that_differs_by_hand() {
+        assert_eq!(wrong_share(&facade(4.0), &facade(4.0)), 0.0);
+        assert!((wrong_share(&facade(4.0), &facade(5.0)) - 0.1).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,364 @@
+//! A library: the rules of many facades, with the distributions of their parameters.
+
+use rand::Rng;
+
+use super::bodies::Bodies;
+use super::codec::{Tables, walk};
+use super::coder::{Coder, Counter, Decoder, Drawer, Encoder};
+use super::error::LibraryError;
+use super::phrases::{self, Sharing};
+use super::rules::Rules;
+use super::tree::{self, Parse};
+use crate::Costs;
+use edifice_shape::Facade;
+
+/// A facade that the library was made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Member {
+    /// Its name.
+    pub name: String,
+    /// Its root, extents, counts and sizes.
+    pub parse: Parse,
+}
+
+/// Rules without sizes and counts that many facades share, and what they chose for both.
+#[derive(Debug, Clone)]
+pub struct Library {
+    unit: String,
+    step: f64,
+    rules: Rules,
+    members: Vec<Member>,
+    tables: Tables,
+    told_by_others: Vec<f64>,
+}
+
+/// A facade written with a library: a program that has the library reads it back, region for region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Code {
+    /// The code in whole bytes.
+    pub bytes: Vec<u8>,
+    /// Bits of the choices.
+    pub bits: f64,
+}
+
+/// Steps that are tried when facades do not give one: all their lengths must be multiples of it.
+const STEPS: [f64; 7] = [1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001];
+
+impl Library {
+    /// The library of some facades: tilings of one unit that full lines split. Lengths are multiples of the
+    /// largest of 1, 0.5, 0.1, ... 0.001 units that fits all of them.
+    ///
+    /// # Errors
+    /// [`LibraryError`] for no facades, different units, or a facade that has no code.
+    pub fn learn(facades: &[Facade]) -> Result<Self, LibraryError> {
+        let step = step(facades)?;
+        Self::learn_with_step(facades, step)
+    }
+
+    /// As [`Library::learn`], with a given step.
+    ///
+    /// # Errors
+    /// As [`Library::learn`].
+    pub fn learn_with_step(facades: &[Facade], step: f64) -> Result<Self, LibraryError> {
+        let first = facades.first().ok_or(LibraryError::NoFacades)?;
+        let mut rules = Rules::default();
+        let mut members = Vec::with_capacity(facades.len());
+        for facade in facades {
+            same_unit(facade, &first.unit)?;
+            let parse = tree::parse(facade, step, &mut rules)?;
+            members.push(Member {
+                name: facade.name.clone(),
+                parse,
+            });
+        }
+        Self::from_members(first.unit.clone(), step, rules, members)
+    }
+
+    /// The library of facades that are parsed already.
+    ///
+    /// # Errors
+    /// [`LibraryError::NoFacades`], and [`LibraryError::Invalid`] for parameters that do not fit the rules.
+    pub fn from_members(
+        unit: String,
+        step: f64,
+        rules: Rules,
+        members: Vec<Member>,
+    ) -> Result<Self, LibraryError> {
+        if members.is_empty() {
+            return Err(LibraryError::NoFacades);
+        }
+        for member in &members {
+            tree::unfold(&member.parse, rules.rules(), |_, _, _| {})?;
+        }
+        let mut library = Self {
+            unit,
+            step,
+            rules,
+            members,
+            tables: Tables::default(),
+            told_by_others: Vec::new(),
+        };
+        library.fit()?;
+        Ok(library)
+    }
+
+    /// Fills the tables, and learns which predictors to trust: each facade is told by all others.
+    fn fit(&mut self) -> Result<(), LibraryError> {
+        for rule in self.rules.rules() {
+            self.tables.structure.add_rule(rule);
+        }
+        for member in &self.members {
+            self.tables.change(&member.parse, &self.rules, true);
+        }
+        let (mut trust, mut count_trust) = Default::default();
+        for member in &self.members {
+            self.tables.change(&member.parse, &self.rules, false);
+            let known = Some((&member.parse, &self.rules));
+            let mut rules = self.rules.clone();
+            let mut counter = Counter::default();
+            let walked = walk(
+                &mut counter,
+                &self.tables,
+                (&mut trust, &mut count_trust),
+                &mut rules,
+                known,
+            );
+            self.tables.change(&member.parse, &self.rules, true);
+            walked.ok_or_else(|| no_code(&member.name))?;
+            self.told_by_others.push(counter.bits);
+        }
+        self.tables.trust = trust;
+        self.tables.count_trust = count_trust;
+        Ok(())
+    }
+
+    /// The unit of all lengths.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// The length of which all lengths are multiples.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Labels and rules.
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    /// The facades that it was made from.
+    pub fn members(&self) -> &[Member] {
+        &self.members
+    }
+
+    /// What it knows about counts and sizes.
+    pub fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
+    /// Bits of each facade given the counts, sizes and roots of all others, while it is learnt whom to trust. The rules
+    /// are known already: for facades that are not in the library, [`Library::bits`] is the honest number.
+    pub fn told_by_others(&self) -> &[f64] {
+        &self.told_by_others
+    }
+
+    /// The rules as Wu's cost counts them, with shared phrases and the bound on their choice.
+    pub fn sharing(&self, costs: &Costs) -> Sharing {
+        phrases::share(&Bodies::new(&self.rules), costs)
+    }
+
+    /// A facade that the library was made from, or one read or drawn.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] for parameters that do not fit the library's rules.
+    pub fn facade(&self, parse: &Parse, name: &str) -> Result<Facade, LibraryError> {
+        tree::facade(
+            parse,
+            self.rules.rules(),
+            self.rules.labels(),
+            self.step,
+            (name, &self.unit),
+        )
+    }
+
+    /// The code of a facade: structure, counts, sizes and extents, given the library.
+    ///
+    /// # Errors
+    /// [`LibraryError`] for a facade of another unit, off the library's step, or that full lines do not split.
+    pub fn encode(&self, facade: &Facade) -> Result<Code, LibraryError> {
+        let mut encoder = Encoder::default();
+        let bits = self.told(facade, &mut encoder)?;
+        Ok(Code {
+            bytes: encoder.finish(),
+            bits,
+        })
+    }
+
+    /// The bits that a facade costs given the library: the shorter, the more alike.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn bits(&self, facade: &Facade) -> Result<f64, LibraryError> {
+        self.told(facade, &mut Counter::default())
+    }
+
+    fn told<C: Coder>(&self, facade: &Facade, coder: &mut C) -> Result<f64, LibraryError> {
+        same_unit(facade, &self.unit)?;
+        let mut own = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut own)?;
+        let mut both = Both {
+            counter: Counter::default(),
+            coder,
+        };
+        self.walked(&mut both, Some((&parse, &own)))
+            .ok_or_else(|| no_code(&facade.name))?;
+        Ok(both.counter.bits)
+    }
+
+    fn walked<C: Coder>(
+        &self,
+        coder: &mut C,
+        known: Option<(&Parse, &Rules)>,
+    ) -> Option<(Parse, Rules)> {
+        let mut rules = self.rules.clone();
+        let (mut trust, mut count_trust) =
+            (self.tables.trust.clone(), self.tables.count_trust.clone());
+        let parse = walk(
+            coder,
+            &self.tables,
+            (&mut trust, &mut count_trust),
+            &mut rules,
+            known,
+        )?;
+        Some((parse, rules))
+    }
+
+    /// Reads a code back.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] for bytes that are no code of this library.
+    pub fn decode(&self, code: &[u8], name: &str) -> Result<Facade, LibraryError> {
+        let (parse, rules) = self
+            .walked(&mut Decoder::new(code), None)
+            .ok_or_else(|| no_code(name))?;
+        tree::facade(
+            &parse,
+            rules.rules(),
+            rules.labels(),
+            self.step,
+            (name, &self.unit),
+        )
+    }
+
+    /// Draws from the distribution of codes: a facade comes as often as its bits say.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] where what was drawn is larger than a code may be.
+    pub fn draw_code<R: Rng>(&self, rng: &mut R, name: &str) -> Result<Facade, LibraryError> {
+        let (parse, rules) = self
+            .walked(&mut Drawer { rng }, None)
+            .ok_or_else(|| no_code(name))?;
+        tree::facade(
+            &parse,
+            rules.rules(),
+            rules.labels(),
+            self.step,
+            (name, &self.unit),
+        )
+    }
+
+    /// True if the library has a facade with the structure of another: the same root.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn knows(&self, facade: &Facade) -> Result<bool, LibraryError> {
+        let mut own = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut own)?;
+        Ok(self.tables.structure.roots().contains_key(&parse.root))
+    }
+
+    /// True if no facade of the library has the root and the counts of another one.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn is_new(&self, facade: &Facade) -> Result<bool, LibraryError> {
+        let mut own = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut own)?;
+        let same = |member: &Member| {
+            (member.parse.root, &member.parse.counts) == (parse.root, &parse.counts)
+        };
+        Ok(!self.members.iter().any(same))
+    }
+
+    /// The bits of a facade without any library: everything it has is spelled out, in the library's steps.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn bits_alone(&self, facade: &Facade) -> Result<f64, LibraryError> {
+        let empty = Self {
+            unit: self.unit.clone(),
+            step: self.step,
+            rules: Rules::default(),
+            members: Vec::new(),
+            tables: Tables::default(),
+            told_by_others: Vec::new(),
+        };
+        empty.bits(facade)
+    }
+}
+
+/// Counts the bits of what another coder does.
+struct Both<'c, C> {
+    counter: Counter,
+    coder: &'c mut C,
+}
+
+impl<C: Coder> Coder for Both<'_, C> {
+    fn choose(&mut self, weights: &[f64], value: Option<usize>) -> Option<usize> {
+        self.counter.choose(weights, value)?;
+        self.coder.choose(weights, value)
+    }
+}
+
+fn no_code(name: &str) -> LibraryError {
+    LibraryError::Invalid {
+        place: name.to_owned(),
+        message: "there is no such code of this library".to_owned(),
+    }
+}
+
+fn same_unit(facade: &Facade, expected: &str) -> Result<(), LibraryError> {
+    if facade.unit == expected {
+        return Ok(());
+    }
+    Err(LibraryError::Unit {
+        name: facade.name.clone(),
+        unit: facade.unit.clone(),
+        expected: expected.to_owned(),
+    })
+}
+
+/// The largest step that all edges are multiples of; the smallest one where none fits, so that the error of
+/// parsing names the coordinate.
+fn step(facades: &[Facade]) -> Result<f64, LibraryError> {
+    let fits = |step: f64| {
+        facades.iter().all(|facade| {
+            let tolerance = facade.tolerance().min(step / 4.0);
+            let on = |value: f64| (value - (value / step).round() * step).abs() <= tolerance;
+            let edges = facade.regions.iter().map(|region| region.rect);
+            on(facade.width)
+                && on(facade.height)
+                && edges
+                    .into_iter()
+                    .all(|r| on(r.x) && on(r.y) && on(r.right()) && on(r.top()))
+        })
+    };
+    if facades.is_empty() {
+        return Err(LibraryError::NoFacades);
+    }
+    Ok(STEPS
+        .into_iter()
+        .find(|&step| fits(step))
+        .unwrap_or(STEPS[STEPS.len() - 1]))
+}

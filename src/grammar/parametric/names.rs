@@ -1,0 +1,52 @@
+//! Names of rules for people: `Facade`, `Row` (split along x), `Stack` (along y), `Rows` and `Stacks` for repeats.
+
+use std::collections::BTreeSet;
+
+use edifice_shape::Axis;
+
+/// Gives names that no label has, numbered by kind in the order in which they are asked for.
+pub struct Namer<'l> {
+    labels: BTreeSet<&'l str>,
+    given: [usize; 6],
+}
+
+/// What a name is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A whole facade.
+    Facade,
+    /// A split of a direction.
+    Split(Axis),
+    /// A repeat of a direction.
+    Repeat(Axis),
+    /// A string that several rules share.
+    Phrase,
+}
+
+impl<'l> Namer<'l> {
+    /// Names that differ from the labels.
+    pub fn new(labels: &'l [String]) -> Self {
+        Self {
+            labels: labels.iter().map(String::as_str).collect(),
+            given: [0; 6],
+        }
+    }
+
+    /// The next name of a kind.
+    pub fn next(&mut self, kind: Kind) -> String {
+        let (at, stem) = match kind {
+            Kind::Facade => (0, "Facade"),
+            Kind::Split(Axis::X) => (1, "Row"),
+            Kind::Split(Axis::Y) => (2, "Stack"),
+            Kind::Repeat(Axis::X) => (3, "Columns"),
+            Kind::Repeat(Axis::Y) => (4, "Floors"),
+            Kind::Phrase => (5, "Part"),
+        };
+        self.given[at] += 1;
+        let mut name = format!("{stem}{}", self.given[at]);
+        while self.labels.contains(name.as_str()) {
+            name.push('_');
+        }
+        name
+    }
+}

@@ -1,0 +1,103 @@
+//! What instances say beside their rules: numbers of parameters, and residuals.
+
+use rustc_hash::FxHashMap;
+
+use super::{CompactError, Flag, Near, PARAMETERS, Rules};
+use edifice_grammar::instance::{InstanceRule, Placement};
+use crate::city::compact::range_coder::Coder;
+use crate::city::compact::steps::in_steps;
+
+impl<C: Coder> Rules<'_, C> {
+    /// The parts of the instances of `rules`.
+    pub(in crate::city::compact) fn residuals(
+        &mut self,
+        given: &[InstanceRule],
+        rules: &mut [InstanceRule],
+    ) -> Result<(), CompactError> {
+        let first = first_rules(rules);
+        for i in 0..rules.len() {
+            let mut successors = std::mem::take(&mut rules[i].successors);
+            for (k, placed) in successors.iter_mut().enumerate() {
+                let given = given.get(i).map(|r| &r.successors[k]);
+                placed.parts = self.parts(placed, given, rules, &first, 0)?;
+            }
+            rules[i].successors = successors;
+        }
+        Ok(())
+    }
+
+    /// The numbers of an instance.
+    pub(super) fn numbers(
+        &mut self,
+        symbol: &str,
+        given: Option<&Placement>,
+        rules: &[InstanceRule],
+        first: &FxHashMap<String, usize>,
+    ) -> Result<Vec<f64>, CompactError> {
+        let count = first.get(symbol).map_or(0, |&r| rules[r].parameters());
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        if self.coder.exhausted() {
+            return Err(CompactError::Truncated);
+        }
+        let steps = self.steps.length;
+        let symbol = self.numbers.get(symbol).copied().unwrap_or(0);
+        let before = self.numbers_before.remove(&symbol);
+        let models = &mut self.numbers_models[usize::from(before.is_some())];
+        let mut last = before.unwrap_or_else(|| vec![0; count]);
+        for (k, v) in last.iter_mut().enumerate() {
+            let own = given.and_then(|g| g.numbers.get(k)).copied();
+            let own = in_steps(own.unwrap_or(0.0), steps)?;
+            let change = models[k.min(PARAMETERS - 1)].code(&mut self.coder, own.max(1).wrapping_sub(*v));
+            *v = v.wrapping_add(change);
+        }
+        let numbers = last.iter().map(|&v| v as f64 / steps as f64).collect();
+        self.numbers_before.insert(symbol, last);
+        Ok(numbers)
+    }
+
+    /// Where the successors of an instance stand.
+    fn parts(
+        &mut self,
+        instance: &Placement,
+        given: Option<&Placement>,
+        rules: &[InstanceRule],
+        first: &FxHashMap<String, usize>,
+        depth: usize,
+    ) -> Result<Vec<Option<Placement>>, CompactError> {
+        let Some(rule) = first.get(&instance.symbol).map(|&r| &rules[r]) else {
+            return Ok(Vec::new());
+        };
+        if depth > 64 {
+            return Err(CompactError::TooLarge("depth"));
+        }
+        let given = given.map(|g| &g.parts).filter(|p| !p.is_empty());
+        if !self.flag(Flag::HasParts, given.is_some()) {
+            return Ok(Vec::new());
+        }
+        let mut parts = Vec::new();
+        for k in 0..rule.successors.len() {
+            let own = given.and_then(|g| g[k].as_ref());
+            if !self.flag(Flag::Present, own.is_some()) {
+                parts.push(None);
+                continue;
+            }
+            let usual = self.pose(&rule.part(k, &instance.numbers), self.steps.length)?;
+            let (mut placed, _) = self.placement(Near::Like, &usual, own, false)?;
+            placed.numbers = self.numbers(&placed.symbol, own, rules, first)?;
+            placed.parts = self.parts(&placed, own, rules, first, depth + 1)?;
+            parts.push(Some(placed));
+        }
+        Ok(parts)
+    }
+}
+
+/// The first rule of each symbol.
+pub(super) fn first_rules(rules: &[InstanceRule]) -> FxHashMap<String, usize> {
+    let mut first: FxHashMap<String, usize> = FxHashMap::default();
+    for (i, rule) in rules.iter().enumerate() {
+        first.entry(rule.symbol.clone()).or_insert(i);
+    }
+    first
+}

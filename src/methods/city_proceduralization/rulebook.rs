@@ -1,0 +1,370 @@
+//! Rules of buildings with parameters: from which buildings they are made, and for which others they stand.
+//!
+//! Buildings of equally many levels are compared as stacks ([`Stack`]). Candidates are the buildings nearest to the means of many
+//! clusters (Ward, weighted by volume). Of them, one after the other becomes a rule: always the one that removes most
+//! mismatched volume for its bytes (the lazy greedy choice of submodular facility location, Minoux 1978). A
+//! building that no rule reaches within its neighbourhood takes the nearest rule of its number of levels.
+//! Rules of one instance are escapes: buildings whose shape no type explains.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use rayon::prelude::*;
+
+use super::building_types::{BuildingTypes, projected};
+use super::components::Component;
+use super::medoids::square;
+use super::nearest::Nearest;
+use super::proceduralize::ProceduralizeError;
+use super::stacks::Stack;
+use super::types::Types;
+use edifice_cluster::{WardTree, ward};
+
+/// Cells along a side of a level's features, in stacks of few levels and of more than [`FEW`].
+const FINE: usize = 8;
+const COARSE: usize = 4;
+const FEW: usize = 3;
+/// Candidates for each rule that is asked for, and for each number of levels at least.
+const SURPLUS: f64 = 2.0;
+const LEAST: usize = 8;
+/// Candidates that a building is compared with.
+const NEAR: usize = 20;
+/// Bases at least as square as this may be turned by a quarter.
+const SQUARE: f64 = 0.75;
+/// What a rule costs beside what each of its levels costs, in levels.
+const RULE: f64 = 1.0;
+
+/// Which rule stands for a building.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct RuleUse {
+    /// Index of the rule.
+    pub(super) rule: usize,
+    /// Quarter turns of the rule, counterclockwise.
+    pub(super) quarter: u8,
+}
+
+/// The rules of a city's buildings.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rulebook {
+    /// The building that each rule is made from.
+    pub(super) rules: Vec<usize>,
+    /// The rule of each building; `None` where it has no component.
+    pub(super) uses: Vec<Option<RuleUse>>,
+}
+
+/// What is the same however many rules are asked for.
+pub(super) struct Stacks<'a> {
+    components: &'a [Component],
+    /// Buildings of the city.
+    count: usize,
+    classes: Vec<Class>,
+}
+
+/// The buildings of one number of levels.
+struct Class {
+    levels: usize,
+    members: Vec<usize>,
+    /// Components of each member, from the ground up.
+    parts: Vec<Vec<usize>>,
+    stacks: Vec<Stack>,
+    rows: Vec<f64>,
+    dimension: usize,
+    tree: WardTree,
+    volume: f64,
+}
+
+/// A building that a rule may be made from, and the class and the row that it is.
+struct Candidate {
+    class: usize,
+    row: usize,
+    maps: Vec<f32>,
+}
+
+/// A candidate near a building: its number, the best quarter turn, the mismatched volume.
+#[derive(Clone, Copy)]
+struct Near {
+    candidate: usize,
+    quarter: u8,
+    cost: f64,
+}
+
+impl<'a> Stacks<'a> {
+    /// # Errors
+    /// [`ProceduralizeError::Ward`].
+    pub(super) fn new(
+        components: &'a [Component],
+        buildings: &BuildingTypes,
+    ) -> Result<Self, ProceduralizeError> {
+        let mut by_levels: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
+        for &b in &buildings.order {
+            by_levels.entry(buildings.parts[b].len()).or_default().push(b);
+        }
+        let class = |(levels, members): (usize, Vec<usize>)| {
+            let parts: Vec<Vec<usize>> =
+                members.iter().map(|&b| buildings.parts[b].clone()).collect();
+            let one = |parts: &Vec<usize>| Stack::of(components, parts);
+            let stacks: Vec<Stack> = parts.par_iter().map(one).collect();
+            let side = if levels <= FEW { FINE } else { COARSE };
+            let raw: Vec<Vec<f64>> = stacks.iter().map(|s| s.features(side)).collect();
+            let (rows, dimension) = match raw.len() {
+                1 => (vec![0.0], 1),
+                _ => projected(&raw),
+            };
+            let weights: Vec<f64> = stacks.iter().map(|s| s.volume.max(1e-3)).collect();
+            Ok(Class {
+                tree: ward(&rows, dimension, &weights)?,
+                volume: weights.iter().sum(),
+                levels,
+                members,
+                parts,
+                stacks,
+                rows,
+                dimension,
+            })
+        };
+        let classes = by_levels.into_iter().map(class);
+        let classes: Result<Vec<Class>, ProceduralizeError> = classes.collect();
+        Ok(Self {
+            components,
+            count: buildings.parts.len(),
+            classes: classes?,
+        })
+    }
+
+    /// At most `count` rules, but one for each number of levels, over templates of these `types`.
+    pub(super) fn rulebook(&self, types: &Types, count: usize) -> Rulebook {
+        let candidates = self.candidates(types, count);
+        let near = self.near(&candidates);
+        let chosen = self.choose(&candidates, &near, count);
+        self.assigned(&candidates, &near, &chosen)
+    }
+
+    fn candidates(&self, types: &Types, count: usize) -> Vec<Candidate> {
+        let all: usize = self.classes.iter().map(|c| c.members.len()).sum();
+        let volume: f64 = self.classes.iter().map(|c| c.volume).sum();
+        let mut out = Vec::new();
+        for (class, c) in self.classes.iter().enumerate() {
+            let n = c.members.len();
+            let share = (n as f64 / all as f64 + c.volume / volume) / 2.0;
+            let wanted = (SURPLUS * count as f64 * share).ceil() as usize + LEAST;
+            let medoids = c.medoids(wanted.min(n));
+            out.extend(medoids.into_iter().map(|row| (class, row)));
+        }
+        let drawn = out.into_par_iter().map(|(class, row)| {
+            let parts = &self.classes[class].parts[row];
+            Candidate {
+                class,
+                row,
+                maps: Stack::ruled(self.components, parts, types),
+            }
+        });
+        drawn.collect()
+    }
+
+    /// For each member of each class, candidates near to it.
+    fn near(&self, candidates: &[Candidate]) -> Vec<Vec<Vec<Near>>> {
+        let of_class = |(class, c): (usize, &Class)| {
+            let own: Vec<usize> = (0..candidates.len())
+                .filter(|&k| candidates[k].class == class)
+                .collect();
+            let rows: Vec<usize> = own.iter().map(|&k| candidates[k].row).collect();
+            let nearest = Nearest::new(&c.rows, c.dimension, &rows);
+            let one = |i: usize| -> Vec<Near> {
+                let found = nearest.of(c.row(i), NEAR).into_iter();
+                found
+                    .map(|position| best(&c.stacks[i], own[position], &candidates[own[position]]))
+                    .collect()
+            };
+            (0..c.members.len()).into_par_iter().map(one).collect()
+        };
+        self.classes.iter().enumerate().map(of_class).collect()
+    }
+
+    /// The candidates that become rules, in the order of their choice.
+    fn choose(&self, candidates: &[Candidate], near: &[Vec<Vec<Near>>], count: usize) -> Vec<usize> {
+        // Who is near to each candidate.
+        let mut served: Vec<Vec<(usize, f64)>> = vec![Vec::new(); candidates.len()];
+        let mut left: Vec<f64> = Vec::new();
+        for (c, near) in self.classes.iter().zip(near) {
+            for (stack, near) in c.stacks.iter().zip(near) {
+                for n in near {
+                    served[n.candidate].push((left.len(), n.cost));
+                }
+                left.push(stack.volume);
+            }
+        }
+        let gain = |k: usize, left: &[f64]| {
+            let won = served[k].iter().map(|&(i, cost)| (left[i] - cost).max(0.0));
+            let levels = self.classes[candidates[k].class].levels;
+            won.sum::<f64>() / (RULE + levels as f64)
+        };
+        let mut heap: BinaryHeap<Gain> = (0..candidates.len())
+            .map(|candidate| Gain {
+                value: gain(candidate, &left),
+                candidate,
+            })
+            .collect();
+        let mut chosen = Vec::new();
+        let take = |k: usize, left: &mut [f64]| {
+            for &(i, cost) in &served[k] {
+                left[i] = left[i].min(cost);
+            }
+        };
+        // One of each number of levels, so that each building has a rule.
+        for class in 0..self.classes.len() {
+            let own = (0..candidates.len()).filter(|&k| candidates[k].class == class);
+            let value = |candidate| Gain {
+                value: gain(candidate, &left),
+                candidate,
+            };
+            if let Some(first) = own.map(value).max() {
+                take(first.candidate, &mut left);
+                chosen.push(first.candidate);
+            }
+        }
+        let mut is_chosen = vec![false; candidates.len()];
+        chosen.iter().for_each(|&k| is_chosen[k] = true);
+        while chosen.len() < count
+            && let Some(top) = heap.pop()
+        {
+            if is_chosen[top.candidate] {
+                continue;
+            }
+            let value = gain(top.candidate, &left);
+            // Gains only fall: one that is still the largest is.
+            if heap.peek().is_some_and(|next| value < next.value) {
+                heap.push(Gain { value, ..top });
+                continue;
+            }
+            if value <= 0.0 {
+                break;
+            }
+            take(top.candidate, &mut left);
+            is_chosen[top.candidate] = true;
+            chosen.push(top.candidate);
+        }
+        chosen
+    }
+
+    fn building(&self, candidate: &Candidate) -> usize {
+        self.classes[candidate.class].members[candidate.row]
+    }
+
+    /// The best rule for each building; rules of most instances first, those of none left out.
+    fn assigned(
+        &self,
+        candidates: &[Candidate],
+        near: &[Vec<Vec<Near>>],
+        chosen: &[usize],
+    ) -> Rulebook {
+        let mut is_chosen = vec![false; candidates.len()];
+        chosen.iter().for_each(|&k| is_chosen[k] = true);
+        let mut found: Vec<(usize, Near)> = Vec::new();
+        for (class, c) in self.classes.iter().enumerate() {
+            let own: Vec<usize> = (0..candidates.len())
+                .filter(|&k| is_chosen[k] && candidates[k].class == class)
+                .collect();
+            let rows: Vec<usize> = own.iter().map(|&k| candidates[k].row).collect();
+            let nearest = Nearest::new(&c.rows, c.dimension, &rows);
+            let one = |i: usize| {
+                let kept = near[class][i].iter().filter(|n| is_chosen[n.candidate]);
+                let others = nearest.of(c.row(i), NEAR).into_iter();
+                let others =
+                    others.map(|p| best(&c.stacks[i], own[p], &candidates[own[p]]));
+                let all = kept.copied().chain(others);
+                let least = all.min_by(|a, b| {
+                    (a.cost.total_cmp(&b.cost)).then(a.candidate.cmp(&b.candidate))
+                });
+                Some((c.members[i], least?))
+            };
+            let own: Vec<_> = (0..c.members.len()).into_par_iter().filter_map(one).collect();
+            found.extend(own);
+        }
+        let mut counts = vec![0usize; candidates.len()];
+        found.iter().for_each(|f| counts[f.1.candidate] += 1);
+        let mut order: Vec<usize> = (0..candidates.len()).filter(|&k| counts[k] > 0).collect();
+        order.sort_by_key(|&k| std::cmp::Reverse(counts[k]));
+        let mut number = vec![0; candidates.len()];
+        for (new, &old) in order.iter().enumerate() {
+            number[old] = new;
+        }
+        let mut uses = vec![None; self.count];
+        for (building, near) in found {
+            uses[building] = Some(RuleUse {
+                rule: number[near.candidate],
+                quarter: near.quarter,
+            });
+        }
+        Rulebook {
+            rules: order.iter().map(|&k| self.building(&candidates[k])).collect(),
+            uses,
+        }
+    }
+}
+
+/// The best quarter turn of a candidate for a stack.
+fn best(stack: &Stack, candidate: usize, of: &Candidate) -> Near {
+    let quarters: &[u8] = match stack.aspect >= SQUARE {
+        true => &[0, 1, 2, 3],
+        false => &[0, 2],
+    };
+    let mut best = Near {
+        candidate,
+        quarter: 0,
+        cost: f64::INFINITY,
+    };
+    for &quarter in quarters {
+        let cost = stack.mismatch(&of.maps, quarter);
+        if cost < best.cost {
+            best = Near { quarter, cost, ..best };
+        }
+    }
+    best
+}
+
+impl Class {
+    fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.dimension..(i + 1) * self.dimension]
+    }
+
+    /// Of each of `k` clusters, the member nearest to the mean, of equals the first.
+    fn medoids(&self, k: usize) -> Vec<usize> {
+        let labels = self.tree.cut(k);
+        let count = labels.iter().max().map_or(0, |m| m + 1);
+        let mut members = vec![Vec::new(); count];
+        labels.iter().enumerate().for_each(|(i, &l)| members[l].push(i));
+        let medoid = |list: &Vec<usize>| {
+            let weight = |i: usize| self.stacks[i].volume.max(1e-3);
+            let total: f64 = list.iter().map(|&i| weight(i)).sum();
+            let mean: Vec<f64> = (0..self.dimension)
+                .map(|d| list.iter().map(|&i| weight(i) * self.row(i)[d]).sum::<f64>() / total)
+                .collect();
+            let far = |i: usize| square(self.row(i), &mean);
+            let nearer = |a: &usize, b: &usize| far(*a).total_cmp(&far(*b)).then(a.cmp(b));
+            list.iter().copied().min_by(nearer)
+        };
+        members.iter().filter_map(medoid).collect()
+    }
+}
+
+/// What a candidate would remove for what it costs; of equals, the first candidate is greatest.
+#[derive(Clone, Copy, PartialEq)]
+struct Gain {
+    value: f64,
+    candidate: usize,
+}
+
+impl Eq for Gain {}
+
+impl Ord for Gain {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_value = self.value.total_cmp(&other.value);
+        by_value.then(other.candidate.cmp(&self.candidate))
+    }
+}
+
+impl PartialOrd for Gain {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
