@@ -87,7 +87,7 @@ fn beyond(seen: &[f64], count: usize, length: f64) -> Vec<Vec<f64>> {
     }
     if let [.., before, own] = gaps[..] {
         let in_turn = |at: &mut f64, k: usize| {
-            *at += if k % 2 == 0 { before } else { own };
+            *at += if k.is_multiple_of(2) { before } else { own };
             Some(*at)
         };
         rules.push((0..count).scan(last, in_turn).collect());

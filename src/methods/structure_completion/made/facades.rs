@@ -60,9 +60,9 @@ fn bays(rng: &mut Stream) -> Bays {
     }
     let margin = window * rng.random_range(0.25..1.6);
     let (mut x, mut at) = (margin, Vec::with_capacity(count));
-    for k in 0..count {
-        at.push(x + wide[k] / 2.0);
-        x += wide[k] + gaps.get(k).copied().unwrap_or(0.0);
+    for (k, own) in wide.iter().enumerate() {
+        at.push(x + own / 2.0);
+        x += own + gaps.get(k).copied().unwrap_or(0.0);
     }
     let right = match rng.random_bool(0.8) {
         true => margin,
