@@ -39,14 +39,29 @@ pub fn hidden(scene: &Scene) -> Option<Vec<Element>> {
             if seen.iter().any(|s| s.overlap(&rect) > 0.5 * rect.area()) {
                 continue;
             }
-            let free = scene.elements.iter().all(|e| !clash(e, &window));
-            if !free || !scene.partial.has_room(&window) {
+            if scene.elements.iter().any(|e| clash(e, &window)) {
                 return None;
             }
-            hidden.push(window);
+            hidden.push(with_room(scene, window)?);
         }
     }
     (!hidden.is_empty()).then_some(hidden)
+}
+
+/// A centre this near to the edge of an unknown rectangle, in units of the facade, is on it: rounding only.
+const EDGE: f64 = 1e-9;
+
+/// The window where there is room for it, on the unknown side of an edge that its centre is on.
+fn with_room(scene: &Scene, window: Element) -> Option<Element> {
+    let (dx, dy) = (EDGE * scene.partial.width, EDGE * scene.partial.height);
+    let ways = [(0.0, 0.0), (dx, 0.0), (-dx, 0.0), (0.0, dy), (0.0, -dy)];
+    let mut moved = ways.into_iter().map(|(x, y)| {
+        let mut window = window;
+        window.rect.x += x;
+        window.rect.y += y;
+        window
+    });
+    moved.find(|w| scene.partial.has_room(w))
 }
 
 /// Centres of the lines of the exact lattice along an axis, and the extent of its windows.
@@ -94,6 +109,8 @@ fn lattice_of(scene: &Scene, seen: &[Rect], axis: Axis) -> Option<(Vec<f64>, f64
         };
         crossing.iter().all(|line| unknown(line.at))
     };
+    let edge = EDGE * length;
+    let open = |x: f64| [0.0, edge, -edge].into_iter().any(|by| open(x + by));
     let room = |from: f64, space: f64, step: f64| {
         let most = (((space - size / 2.0) / gap + 1e-9).floor()).max(0.0) as usize;
         (1..=most)

@@ -259,11 +259,9 @@ impl Sites {
     }
 }
 
-/// Weights from their differences to 1. None is below 0: a function says how probable a layout is, and must not pay for
-/// what is improbable. The differences themselves are not bounded (lazy projection: the negatives are drawn, and the result is
-/// read, at the nearest weights that are allowed).
+/// Weights from their differences to 1.
 fn from_prior(differences: &[f64]) -> [f64; TERMS] {
-    std::array::from_fn(|k| (1.0 + differences[k]).max(0.0))
+    std::array::from_fn(|k| 1.0 + differences[k])
 }
 
 /// Learns the weights of `model` from layouts; `sampler` changes a layout into its negative, given the weights. One that

@@ -17,8 +17,7 @@
 //! - Equations 1 to 11 define ten functions; two are called `f_gc`. Coverage is `gv` here and has its own weight.
 //! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is taken relative to
 //!   that of a typical value of the database (the median, [`Training::typical`]), and is at most 0 and at
-//!   least [`LEAST`]. Completeness, regularity and symmetry are relative to the most probable value of the database: half of the
-//!   facades lack windows or are inexact, so that relative to their median holes and disorder would cost nothing.
+//!   least [`LEAST`]: no function pays for grids that are more regular than real ones.
 //! - Eq. 16 sums a function over all grids. The partition function then depends on the number of grids, and layouts
 //!   with other grids cannot be compared: a facade would gain by losing a grid. Here a feature is the mean over
 //!   grids (pairs), each counted by its elements; the densities are learnt with the same weights.
@@ -27,8 +26,7 @@
 //!   With one line `ed` and `gr` are left out, with one spacing `gr`.
 //! - Eq. 8 is ln 0 for facades of one coherence set of one type; one set scores 0 here.
 //! - Patterns count along both axes, for grids that share a line across; half a count for unseen ones.
-//! - Alignment is a smoothed histogram for each of four ranges of the gap; symmetry likewise given the doors. Facades without a door have a density of symmetry of their own (the
-//!   paper writes 0 for their position, which is that of a door at the left edge).
+//! - Alignment is a smoothed histogram for each of four ranges of the gap; symmetry likewise given the doors.
 //! - Symmetry is about the facade's vertical axis; mirror images are sought in the same grid.
 //! - Borders: the distances of both ends of each row and column of a grid from the facade's boundary, over the
 //!   grid's mean size; a mean over rows and columns. (With the border of the whole facade, one element at each
@@ -146,9 +144,6 @@ pub struct ScoreModel {
     coverage: Ratio,
     border: [Ratio; 2],
     symmetry: Share,
-    /// Density of the symmetric area where there is no door; in files of before, that of doors at the left edge serves.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    doorless: Option<Typical<SmoothHistogram>>,
     /// w, in the order of [`Term::ALL`].
     pub weights: [f64; TERMS],
 }
@@ -299,10 +294,7 @@ impl ScoreModel {
         [
             (1.0 - (sets as f64 - 1.0) / types as f64).ln(),
             relative(&self.coverage, global::coverage(grids, facade)),
-            match (door, &self.doorless) {
-                (None, Some(density)) => relative(density, area),
-                _ => relative(self.symmetry.given(door.unwrap_or(0.0)), area),
-            },
+            relative(self.symmetry.given(door), area),
         ]
     }
 }

@@ -29,7 +29,6 @@ struct Seen {
     coverage: Vec<(f64, f64)>,
     border: [Vec<(f64, f64)>; 2],
     symmetry: Vec<(f64, f64)>,
-    doorless: Vec<(f64, f64)>,
 }
 
 impl Seen {
@@ -61,10 +60,7 @@ impl Seen {
         }
         self.coverage.push((global::coverage(grids, facade), 1.0));
         let (area, door) = global::symmetry(grids, facade);
-        match door {
-            Some(at) => self.symmetry.push((at, area)),
-            None => self.doorless.push((0.0, area)),
-        }
+        self.symmetry.push((door, area));
     }
 
     /// Log probabilities relative to the most frequent pattern, half a count added to each and to what was never seen.
@@ -143,30 +139,22 @@ impl ScoreModel {
         if facades.is_empty() {
             return Err(ModelError::Empty { what: "layouts" });
         }
-        // Relative to the most probable value.
-        let modal = Training {
-            typical: 1.0,
-            ..*settings
-        };
-        let doorless = match seen.doorless.len() {
-            0 => None,
-            _ => Some(shares(&seen.doorless, 20, &modal)?),
-        };
         let pooled: Vec<(f64, f64)> = seen.aspect.iter().flatten().copied().collect();
         let aspect = |class: usize| {
             let own = &seen.aspect[class];
             mixture(if own.is_empty() { &pooled } else { own }, FLOOR, settings)
         };
-        let of_axes = |values: &[Vec<(f64, f64)>; 2], floor, how: &Training| {
-            let [x, y] = values.each_ref().map(|v| mixture(v, floor, how));
-            Ok::<[Ratio; 2], ModelError>([x?, y?])
+        let both = |values: &[Vec<(f64, f64)>; 2], floor| -> Result<[Ratio; 2], ModelError> {
+            Ok([
+                mixture(&values[0], floor, settings)?,
+                mixture(&values[1], floor, settings)?,
+            ])
         };
-        let both = |values, floor| of_axes(values, floor, settings);
         Ok(Self {
             aspect: [aspect(0)?, aspect(1)?, aspect(2)?, aspect(3)?],
             spacing: both(&seen.spacing, FLOOR)?,
-            regularity: of_axes(&seen.regularity, REGULARITY_FLOOR, &modal)?,
-            completeness: mixture(&seen.completeness, FLOOR, &modal)?,
+            regularity: both(&seen.regularity, REGULARITY_FLOOR)?,
+            completeness: mixture(&seen.completeness, FLOOR, settings)?,
             patterns: seen.patterns(),
             alignment: [
                 shares(&seen.alignment[0], 8, settings)?,
@@ -175,8 +163,7 @@ impl ScoreModel {
             compatibility: Compatibility::train(facades.iter().map(|(g, a)| (g.as_slice(), *a)))?,
             coverage: mixture(&seen.coverage, FLOOR, settings)?,
             border: both(&seen.border, FLOOR)?,
-            symmetry: shares(&seen.symmetry, 20, &modal)?,
-            doorless: doorless.map(|d| d.given(0.0).clone()),
+            symmetry: shares(&seen.symmetry, 20, settings)?,
             weights: [1.0; TERMS],
         })
     }
