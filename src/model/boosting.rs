@@ -170,7 +170,12 @@ impl Boosting {
         Ok(())
     }
 
-    /// The probability of a row of as many features as were learnt from.
+    /// Number of features that were learnt from.
+    pub fn features(&self) -> usize {
+        self.features
+    }
+
+    /// The probability of a row of as many features as were learnt from; further ones are not looked at.
     pub fn probability(&self, row: &[f64]) -> f64 {
         let value = |tree: &Tree| {
             let questions = tree.features.iter().zip(&tree.thresholds);

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod chain;
+mod coherence;
 mod commands;
 mod policy;
 mod score;

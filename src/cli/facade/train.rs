@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use edifice_base::{Error, Result};
 use edifice_io::write_atomic;
 use edifice_structure_completion::layout::scope::in_scope;
+use edifice_structure_completion::made::facades;
 use edifice_structure_completion::model::Model;
 
 use super::input;
@@ -14,12 +15,15 @@ use crate::reading::Reading;
 /// Options of `facade train`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice facade train layouts/ -o paris.completion.json\n  edifice facade train a.facade.json b.facade.json cmp_b0001.xml -o mine.completion.json"
+    after_help = "Examples:\n  edifice facade train layouts/ -o paris.completion.json\n  edifice facade train layouts/ --made 100 -o few.completion.json\n  edifice facade train a.facade.json b.facade.json cmp_b0001.xml -o mine.completion.json"
 )]
 pub struct Args {
     /// Whole facades, and folders of them (.facade.json, .xml, .png)
-    #[arg(required = true, value_name = "LAYOUT")]
+    #[arg(required_unless_present = "made", value_name = "LAYOUT")]
     inputs: Vec<PathBuf>,
+    /// Learn also from so many facades made by a generator, which help where there are few real ones
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=2000))]
+    made: u16,
     /// Model to write
     #[arg(short, long, value_name = "MODEL.completion.json")]
     output: PathBuf,
@@ -36,7 +40,8 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let start = std::time::Instant::now();
-    let layouts = input::layouts(&args.inputs, &args.reading)?;
+    let mut layouts = input::layouts(&args.inputs, &args.reading)?;
+    layouts.extend(facades::several(args.made.into(), args.seed));
     let read = layouts.len();
     let regular = layouts.iter().filter(|l| in_scope(l)).count();
     let model = Model::train(layouts, args.seed).map_err(Error::method)?;

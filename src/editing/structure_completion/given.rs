@@ -109,6 +109,8 @@ impl Given {
             forbidden: wanted.forbidden.to_vec(),
         };
         partial.check().map_err(|e| Error::content(path, e))?;
+        warnings.extend(of_overlaps(&partial));
+        partial = partial.without_duplicates();
         for pin in &pinned {
             if !partial.allows(pin) {
                 let (name, r) = (pin.class.name(), pin.rect);
@@ -171,6 +173,20 @@ impl Given {
             elements: self.partial.observed.iter().copied().chain(added).collect(),
         }
     }
+}
+
+/// What the user should know of observed elements that overlap.
+fn of_overlaps(partial: &PartialLayout) -> Option<String> {
+    let overlaps = partial.overlaps();
+    let first = overlaps.first()?;
+    let name = |k: usize| format!("{k} ({})", partial.observed[k].class.name());
+    let twice = overlaps.iter().filter(|o| o.twice).count();
+    Some(format!(
+        "{} pairs of observed elements overlap, the first {} and {}; all are kept, {twice} of them count as one element",
+        overlaps.len(),
+        name(first.first),
+        name(first.second),
+    ))
 }
 
 fn extent(option: &str, wanted: Option<f64>, own: f64) -> Result<f64> {

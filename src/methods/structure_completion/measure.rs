@@ -1,7 +1,7 @@
 //! Agreement of a completion with the truth, computed without knowledge of any method.
 
-use super::layout::Element;
-use edifice_shape::Rect;
+use super::layout::{Class, Element};
+use edifice_shape::{Axis, Rect};
 
 /// Precision, recall and their harmonic mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +61,7 @@ pub fn agreement(predicted: &[Element], truth: &[Element], least: f64) -> Agreem
 /// neither covers any.
 pub fn area_iou(predicted: &[Element], truth: &[Element]) -> f64 {
     let (mut shared, mut union) = (0.0, 0.0);
-    for class in super::layout::Class::ALL {
+    for class in Class::ALL {
         let of = |elements: &[Element]| -> Vec<Rect> {
             let same = elements.iter().filter(|e| e.class == class);
             same.map(|e| e.rect).collect()
@@ -97,10 +97,52 @@ fn covered(rects: &[Rect]) -> f64 {
     area
 }
 
+/// Share of the smaller of two elements above which they overlap.
+const OVERLAP: f64 = 0.02;
+
+/// Number of pairs of elements, at least one of them added, that overlap by more than 2 % of the smaller one, but for
+/// balconies before something else.
+pub fn overlaps(observed: &[Element], added: &[Element]) -> usize {
+    let overlap = |a: &Element, b: &Element| {
+        let least = a.rect.area().min(b.rect.area());
+        !a.class.may_overlap(b.class) && a.rect.overlap(&b.rect) > OVERLAP * least
+    };
+    let of = |(k, a): (usize, &Element)| {
+        let others = observed.iter().chain(&added[..k]);
+        others.filter(|b| overlap(a, b)).count()
+    };
+    added.iter().enumerate().map(of).sum()
+}
+
+/// Windows share a line when their centres differ by at most this share of the extent of the smaller one.
+const IN_LINE: f64 = 0.05;
+
+/// Number of added windows whose centre is in line with that of no other window, observed or added, along x or along y:
+/// windows that lack a column or a row.
+pub fn off_lines(observed: &[Element], added: &[Element]) -> usize {
+    let windows: Vec<Rect> = (added.iter().chain(observed))
+        .filter(|e| e.class == Class::Window)
+        .map(|e| e.rect)
+        .collect();
+    let new = added.iter().filter(|e| e.class == Class::Window).count();
+    let in_line = |a: &Rect, b: &Rect, axis: Axis| {
+        let centre = |r: &Rect| r.start(axis) + r.extent(axis) / 2.0;
+        let least = a.extent(axis).min(b.extent(axis));
+        (centre(a) - centre(b)).abs() <= IN_LINE * least
+    };
+    let off = |k: &usize| {
+        let lacks = |axis: Axis| {
+            let mut others = windows.iter().enumerate().filter(|(o, _)| o != k);
+            !others.any(|(_, other)| in_line(&windows[*k], other, axis))
+        };
+        lacks(Axis::X) || lacks(Axis::Y)
+    };
+    (0..new).filter(off).count()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layout::Class;
 
     fn window(x: f64) -> Element {
         Element::new(Class::Window, Rect::new(x, 0.0, 2.0, 2.0))
@@ -122,6 +164,22 @@ mod tests {
         let door = Element::new(Class::Door, truth[0].rect);
         assert_eq!(agreement(&[door], &truth, 0.25).matched, 0);
         assert_eq!(agreement(&[], &[], 0.5).f1, 1.0);
+    }
+
+    #[test]
+    fn coherence_by_hand() {
+        let at = |x: f64, y: f64| Element::new(Class::Window, Rect::new(x, y, 2.0, 2.0));
+        let observed = [at(0.0, 0.0), at(10.0, 0.0), at(0.0, 10.0)];
+        assert_eq!(off_lines(&observed, &[at(10.0, 10.0)]), 0);
+        // On a column, on no row.
+        assert_eq!(off_lines(&observed, &[at(10.0, 11.0)]), 1);
+        // Two that make a row of their own.
+        assert_eq!(off_lines(&observed, &[at(10.0, 20.0), at(0.0, 20.05)]), 0);
+        assert_eq!(overlaps(&observed, &[at(11.0, 0.0), at(20.0, 0.0)]), 1);
+        assert_eq!(overlaps(&observed, &[at(1.99, 0.0)]), 0);
+        let balcony = Element::new(Class::Balcony, Rect::new(0.0, 0.0, 2.0, 1.0));
+        assert_eq!(overlaps(&observed, &[balcony]), 0);
+        assert_eq!(overlaps(&observed, &[balcony, balcony]), 1);
     }
 
     #[test]

@@ -7,18 +7,22 @@
 //! hidden elements, from the observed ones and from a database of whole layouts. A [`completion::Completion`] only adds.
 //!
 //! # The default method, [`best`]
-//! Let `p_i` be the probability that a hidden element matches candidate `i` with an intersection over union of at least
-//! 0.5. The chosen set maximizes the expected score `2 sum p_i / (|S| + E[n])` ([`best::select`]). Candidates and `p_i` come from:
+//! It answers with whole layouts on shared lines. Let `p_i` be the probability that a hidden element matches candidate
+//! `i`, half at an intersection over union of 0.5 and half at 0.75. Among coherent layouts the one with the highest expected
+//! score `2 sum p_i / (|S| + E[n])` is chosen ([`best::judge`]). Candidates and `p_i` come from:
 //!
 //! 1. exact draws of the columns and rows of the lattice, by a chain over (position, previous gap) whose every
 //!    factor is normalized over the positions ([`best::chain`]);
 //! 2. the same with the observed elements mirrored about sampled axes ([`best::symmetry`]);
 //! 3. what lies below a like row of the database, and whole facades of the database warped to the seen lines ([`best::transfer`]);
-//! 4. boosted trees over the support by each of these and the place of the candidate, learnt on the database with parts
-//!    hidden ([`best::learn`]).
+//! 4. each draw put on shared lines: new lines continue the seen ones by rule, windows take their place and size from
+//!    their column and row, balconies from their row; what would overlap is left out;
+//! 5. boosted trees over the support by each of these and the place of the candidate, learnt on the database with parts
+//!    hidden ([`best::learn`]), and such trees over the places of a door ([`best::doors`]).
 //!
-//! Several answers are the modes of the draws, told apart by the size of the lattice and by symmetry, each with its share of
-//! the probability ([`best::modes`]).
+//! Several answers are the best layouts of the modes of the draws, told apart by the numbers of columns and rows, each with
+//! its share of the probability ([`best::modes`]). Where the seen windows are cells of one exact lattice, that lattice comes
+//! first.
 //!
 //! [`baselines`] are what it is compared with; [`task`] hides parts of whole layouts and [`measure`] compares, independently of
 //! any method. [`method`] is the table of all.
@@ -31,8 +35,9 @@
 //! - Elements are on one line when their centres differ by less than 0.35 of their median extent; the paper does not
 //!   say how grids are found.
 //! - Balconies wider than 0.4 of the facade, and shops, take no part in the chain; they come from symmetry and the database.
-//! - A door is added where there is none and the best place has a probability above 0.08, though that lowers the
-//!   expected score: a facade without a door is not plausible.
+//! - One door is added where none is seen and the best place has a probability above 0.08, though that lowers the
+//!   expected score: a facade without a door is not plausible. An exact lattice gets none.
+//! - New windows that would be alone on a column or on a row are left out.
 //! - Facades in scope ([`layout::scope`]): at least 8 windows, half of the cells of their lattice occupied, 70 % of the windows with
 //!   another one in their row and column.
 
@@ -41,6 +46,7 @@ pub mod baselines;
 pub mod best;
 pub mod completion;
 pub mod layout;
+pub mod made;
 pub mod measure;
 pub mod method;
 pub mod model;

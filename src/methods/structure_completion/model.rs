@@ -51,8 +51,13 @@ pub struct Model {
     pub columns: Spacing,
     /// Rows from the top down.
     pub rows: Spacing,
-    /// Probability that a candidate element is true, given its features; `None` before it is learnt.
+    /// Probability that a candidate element is true at an intersection over union of 0.5, given its features; `None` before it
+    /// is learnt.
     pub elements: Option<Boosting>,
+    /// The same at an intersection over union of 0.75; `None` before it is learnt, and in files of before.
+    pub tight: Option<Boosting>,
+    /// Probability that a place holds the door, given its features; `None` before it is learnt, and in files of before.
+    pub doors: Option<Boosting>,
     /// The model of the paper's own method; `None` before it is learnt.
     pub paper: Option<PaperModel>,
 }
@@ -80,6 +85,10 @@ pub(super) struct Stored {
     pub columns: Spacing,
     pub rows: Spacing,
     pub elements: Option<Boosting>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tight: Option<Boosting>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doors: Option<Boosting>,
     #[serde(default)]
     pub paper: Option<PaperModel>,
 }
@@ -95,7 +104,12 @@ impl Model {
             0 => return Err(TrainError::Empty),
             // Nothing to learn from what the rest of the database says of one facade.
             1 => {}
-            _ => model.elements = Some(learn(&model, seed)?),
+            _ => {
+                let learnt = learn(&model, seed)?;
+                model.elements = Some(learnt.loose);
+                model.tight = Some(learnt.tight);
+                model.doors = learnt.doors;
+            }
         }
         model.paper = Some(PaperModel::train(&model.layouts(), seed)?);
         Ok(model)
@@ -119,6 +133,8 @@ impl Model {
             columns: Spacing::learn(&columns),
             rows: Spacing::learn(&rows),
             elements: None,
+            tight: None,
+            doors: None,
             paper: None,
             examples,
         }

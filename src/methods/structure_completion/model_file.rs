@@ -1,6 +1,7 @@
 //! A learnt model as JSON text: `*.completion.json`.
 
-use super::best::candidates::FEATURES;
+use super::best::candidates::{FEATURES, FEATURES_BEFORE};
+use super::best::doors;
 use super::model::{Example, Model, Stored};
 
 /// The value of the key `format`.
@@ -62,6 +63,8 @@ impl Model {
             columns: self.columns.clone(),
             rows: self.rows.clone(),
             elements: self.elements.clone(),
+            tight: self.tight.clone(),
+            doors: self.doors.clone(),
             paper: self.paper.clone(),
         };
         // All numbers are finite and all keys are text.
@@ -107,8 +110,12 @@ impl Model {
                 return Err(ModelFileError::Spacing(name));
             }
         }
-        if let Some(elements) = &stored.elements {
-            elements.check(FEATURES)?;
+        for elements in [&stored.elements, &stored.tight].into_iter().flatten() {
+            let before = elements.features() == FEATURES_BEFORE;
+            elements.check(if before { FEATURES_BEFORE } else { FEATURES })?;
+        }
+        if let Some(trees) = &stored.doors {
+            trees.check(doors::FEATURES)?;
         }
         if let Some(paper) = &stored.paper {
             paper.check()?;
@@ -126,6 +133,8 @@ impl Model {
             columns: stored.columns,
             rows: stored.rows,
             elements: stored.elements,
+            tight: stored.tight,
+            doors: stored.doors,
             paper: stored.paper,
         })
     }

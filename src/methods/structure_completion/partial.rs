@@ -49,22 +49,24 @@ pub enum PartialError {
         /// Index of the unknown rectangle.
         unknown: usize,
     },
-    /// Two observed elements exclude each other.
-    #[error("elements {first} ({}) and {second} ({}) overlap", first_class.name(), second_class.name())]
-    Overlap {
-        /// Index of one element.
-        first: usize,
-        /// Class of the first element.
-        first_class: Class,
-        /// Index of the other.
-        second: usize,
-        /// Class of the other element.
-        second_class: Class,
-    },
+}
+
+/// Elements of one class that share more than this of the smaller one show one thing.
+const TWICE: f64 = 0.5;
+
+/// Two observed elements that exclude each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Overlap {
+    /// Index of one element.
+    pub first: usize,
+    /// Index of the other, which comes later.
+    pub second: usize,
+    /// Whether they are of one class and share more than half of the smaller one: one thing, drawn twice.
+    pub twice: bool,
 }
 
 impl PartialLayout {
-    /// Checks the observed elements against the outline, the unknown part and each other.
+    /// Checks the observed elements against the outline and the unknown part.
     ///
     /// # Errors
     /// The first that is wrong.
@@ -96,30 +98,53 @@ impl PartialLayout {
                 });
             }
         }
+        Ok(())
+    }
+
+    /// Pairs of observed elements of which the second excludes the first, as annotations of real facades have them: for
+    /// each element the first one before it that it excludes, in the order of the elements.
+    pub fn overlaps(&self) -> Vec<Overlap> {
         let count = self.observed.len();
         let mean = |size: fn(&Rect) -> f64| {
             let sizes = self.observed.iter().map(|e| size(&e.rect));
             sizes.sum::<f64>() / count.max(1) as f64
         };
         let size = [mean(|r| r.width), mean(|r| r.height)];
-        let mut places = Places::new([width, height], size, count);
+        let mut places = Places::new([self.width, self.height], size, count);
+        let mut found = Vec::new();
         for (second, b) in self.observed.iter().enumerate() {
             let excluded = |first: u32| self.observed[first as usize].excludes(b);
-            if !places.any_near(&b.rect, excluded) {
-                places.insert(second as u32, &b.rect);
-                continue;
+            if places.any_near(&b.rect, excluded) {
+                let mut earlier = self.observed[..second].iter();
+                found.extend(earlier.position(|a| a.excludes(b)).map(|first| {
+                    let a = &self.observed[first];
+                    let least = a.rect.area().min(b.rect.area());
+                    let twice = a.class == b.class && a.rect.overlap(&b.rect) > TWICE * least;
+                    Overlap {
+                        first,
+                        second,
+                        twice,
+                    }
+                }));
             }
-            let mut earlier = self.observed[..second].iter();
-            if let Some(first) = earlier.position(|a| a.excludes(b)) {
-                return Err(PartialError::Overlap {
-                    first,
-                    first_class: self.observed[first].class,
-                    second,
-                    second_class: b.class,
-                });
-            }
+            places.insert(second as u32, &b.rect);
         }
-        Ok(())
+        found
+    }
+
+    /// The layout without the second of each pair of elements that show one thing twice.
+    pub fn without_duplicates(&self) -> Self {
+        let twice = self.overlaps().into_iter().filter(|o| o.twice);
+        let dropped: Vec<usize> = twice.map(|o| o.second).collect();
+        let kept = self
+            .observed
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !dropped.contains(k));
+        Self {
+            observed: kept.map(|(_, e)| *e).collect(),
+            ..self.clone()
+        }
     }
 
     /// True if a point may hold something that is not known.

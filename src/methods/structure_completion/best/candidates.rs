@@ -3,14 +3,18 @@
 use super::fill::typical_gap;
 use super::pool::{Draw, Origin};
 use super::scene::{Scene, of};
+use super::votes::Votes;
 use crate::completion::Reason;
 use crate::layout::lines::Line;
 use crate::layout::{Class, Element};
+use edifice_model::boosting::Boosting;
 
 /// Elements of the pool this alike are one candidate.
 const SAME: f64 = 0.8;
 /// Number of features of a candidate.
-pub const FEATURES: usize = 44;
+pub const FEATURES: usize = 46;
+/// The same in model files of before votes were counted: the first ones of a candidate.
+pub const FEATURES_BEFORE: usize = 44;
 
 /// A candidate element.
 #[derive(Debug, Clone)]
@@ -99,6 +103,23 @@ impl Candidates {
         };
         candidates.add_features(scene, &index);
         candidates
+    }
+
+    /// Probability of each candidate by boosted trees over all features, or over those of before.
+    pub fn probabilities(&self, learnt: &Boosting) -> Vec<f64> {
+        let all = self.all.iter();
+        all.map(|c| learnt.probability(&c.features)).collect()
+    }
+
+    /// Adds a candidate that no draw has.
+    pub fn add(&mut self, element: Element, reason: Reason) {
+        self.alike.push(vec![(self.all.len(), 1.0)]);
+        self.all.push(Candidate {
+            element,
+            support: [0.0; Origin::ALL.len()],
+            reason,
+            features: Vec::new(),
+        });
     }
 
     fn add_features(&mut self, scene: &Scene, index: &Index) {
@@ -228,6 +249,7 @@ struct Context<'a> {
     masked: f64,
     /// Typical distance of rows.
     gap: f64,
+    votes: Votes,
 }
 
 impl<'a> Context<'a> {
@@ -247,6 +269,7 @@ impl<'a> Context<'a> {
             hidden: hidden.unwrap_or(1.0),
             masked: f64::from(u8::from(hidden.is_some())),
             gap: typical_gap(&scene.rows).unwrap_or(1.8 * scene.size.1),
+            votes: Votes::new(scene),
         }
     }
 
@@ -324,6 +347,7 @@ impl<'a> Context<'a> {
             scene.size.1 / height,
             candidate.support.iter().copied().fold(0.0, f64::max),
         ]);
+        features.extend(self.votes.at(x, y));
         debug_assert_eq!(features.len(), FEATURES);
         features
     }

@@ -3,9 +3,10 @@
 use rayon::prelude::*;
 
 use super::candidates::{Candidate, Candidates};
+use super::doors;
 use super::pool::pool;
 use super::scene::Scene;
-use crate::layout::{Element, Layout};
+use crate::layout::{Class, Element, Layout};
 use crate::measure::agreement;
 use crate::model::Model;
 use crate::task::Task;
@@ -14,6 +15,8 @@ use edifice_model::boosting::{Boosting, BoostingError, Settings};
 
 /// Most candidates that are learnt from; of more, every second, third, ... is.
 const MOST_ROWS: usize = 120_000;
+/// The same of places of a door.
+const MOST_PLACES: usize = 60_000;
 /// Layouts that agree this well, scaled to one outline, show one building.
 const TWINS: f64 = 0.7;
 
@@ -60,14 +63,13 @@ pub fn twins(layouts: &[Layout]) -> Vec<usize> {
     group
 }
 
+/// Candidates of one layout with a part hidden: the features of each, and whether it is true at both overlaps.
+type Rows = (Vec<Vec<f64>>, Vec<[f64; 2]>);
+/// Places of a door: the features of each, and whether a hidden door is there.
+type DoorRows = (Vec<Vec<f64>>, Vec<f64>);
+
 /// Features and truth of all candidates of one layout with a part hidden.
-fn rows(
-    model: &Model,
-    index: usize,
-    without: &[usize],
-    task: Task,
-    seed: u64,
-) -> (Vec<Vec<f64>>, Vec<f64>) {
+fn rows(model: &Model, index: usize, without: &[usize], task: Task, seed: u64) -> (Rows, DoorRows) {
     let layout = &model.examples[index].layout;
     let stream_index = (index * Task::ALL.len() + task as usize) as u64;
     let mut rng = stream(seed, "structure completion: learning", stream_index);
@@ -78,28 +80,58 @@ fn rows(
     let candidates = Candidates::new(&scene, &draws);
     let truth = |c: &Candidate| {
         let own = hidden.iter().filter(|h| h.class == c.element.class);
-        let found = own.map(|h| h.rect.iou(&c.element.rect)).fold(0.0, f64::max) >= 0.5;
-        f64::from(u8::from(found))
+        let best = own.map(|h| h.rect.iou(&c.element.rect)).fold(0.0, f64::max);
+        OVERLAPS.map(|least| f64::from(u8::from(best >= least)))
     };
     let targets = candidates.all.iter().map(truth).collect();
-    (
-        candidates.all.into_iter().map(|c| c.features).collect(),
-        targets,
-    )
+    let places = doors::places(&scene, &draws, &candidates);
+    let is_door = |p: &doors::Place| {
+        let mut own = hidden.iter().filter(|h| h.class == Class::Door);
+        f64::from(u8::from(
+            own.any(|h| h.rect.iou(&p.element.rect) >= OVERLAPS[0]),
+        ))
+    };
+    let of_doors = places.iter().map(is_door).collect();
+    let rows = candidates.all.into_iter().map(|c| c.features).collect();
+    let of_places = places.into_iter().map(|p| p.features).collect();
+    ((rows, targets), (of_places, of_doors))
 }
 
-/// Learns element probabilities: every layout of the database is completed with each part hidden, from the rest of
+/// What is learnt of elements.
+pub struct Learnt {
+    /// Probability of a candidate at an intersection over union of 0.5.
+    pub loose: Boosting,
+    /// The same at 0.75.
+    pub tight: Boosting,
+    /// Probability of a place of a door; `None` where every layout shows one whatever is hidden.
+    pub doors: Option<Boosting>,
+}
+
+/// At most `most` of all rows: every second, third, ... of them.
+fn thinned<T>(parts: Vec<(Vec<Vec<f64>>, Vec<T>)>, most: usize) -> (Vec<Vec<f64>>, Vec<T>) {
+    let total: usize = parts.iter().map(|p| p.1.len()).sum();
+    let every = total.div_ceil(most).max(1);
+    let rows = parts
+        .into_iter()
+        .flat_map(|(rows, truth)| rows.into_iter().zip(truth));
+    rows.step_by(every).unzip()
+}
+
+/// Intersections over union at which a candidate is true.
+const OVERLAPS: [f64; 2] = [0.5, 0.75];
+
+/// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed with each part hidden, from the rest of
 /// the database without its near-twins.
 ///
 /// # Errors
 /// [`BoostingError`] when no layout has a candidate.
-pub fn learn(model: &Model, seed: u64) -> Result<Boosting, BoostingError> {
+pub fn learn(model: &Model, seed: u64) -> Result<Learnt, BoostingError> {
     let layouts: Vec<Layout> = model.examples.iter().map(|e| e.layout.clone()).collect();
     let group = twins(&layouts);
     let units: Vec<(usize, Task)> = (0..layouts.len())
         .flat_map(|index| Task::ALL.map(|task| (index, task)))
         .collect();
-    let parts: Vec<(Vec<Vec<f64>>, Vec<f64>)> = units
+    let parts: Vec<(Rows, DoorRows)> = units
         .par_iter()
         .map(|&(index, task)| {
             let twin = |other: &usize| group[*other] == group[index];
@@ -107,17 +139,32 @@ pub fn learn(model: &Model, seed: u64) -> Result<Boosting, BoostingError> {
             rows(model, index, &without, task, seed)
         })
         .collect();
-    let total: usize = parts.iter().map(|p| p.1.len()).sum();
-    let every = total.div_ceil(MOST_ROWS).max(1);
-    let rows = parts
-        .into_iter()
-        .flat_map(|(rows, truth)| rows.into_iter().zip(truth));
-    let (features, targets): (Vec<Vec<f64>>, Vec<f64>) = rows.step_by(every).unzip();
+    let (parts, places): (Vec<Rows>, Vec<DoorRows>) = parts.into_iter().unzip();
+    let (features, targets): Rows = thinned(parts, MOST_ROWS);
+    let (places, are_doors): DoorRows = thinned(places, MOST_PLACES);
     let settings = Settings {
         trees: 100,
         levels: 6,
         rate: 0.12,
         ..Settings::default()
     };
-    Boosting::learn(&features, &targets, settings)
+    let at = |k: usize| {
+        let targets: Vec<f64> = targets.iter().map(|t| t[k]).collect();
+        Boosting::learn(&features, &targets, settings)
+    };
+    let of_doors = Settings {
+        trees: 80,
+        levels: 5,
+        rate: 0.1,
+        ..Settings::default()
+    };
+    let doors = match places.is_empty() {
+        true => None,
+        false => Some(Boosting::learn(&places, &are_doors, of_doors)?),
+    };
+    Ok(Learnt {
+        loose: at(0)?,
+        tight: at(1)?,
+        doors,
+    })
 }

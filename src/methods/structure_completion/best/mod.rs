@@ -6,18 +6,25 @@
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
 //! 4. [`select`]: the set of elements with the largest expected F1.
 
+mod belong;
 mod by_place;
 pub mod candidates;
 pub mod chain;
 pub mod density;
+pub mod doors;
+mod exact;
 pub mod fill;
+pub mod judge;
 pub mod learn;
 pub mod modes;
 pub mod pool;
+mod regular;
 pub mod scene;
-pub mod select;
+mod shared;
+mod spacing;
 pub mod symmetry;
 pub mod transfer;
+mod votes;
 
 use rand::{Rng, RngExt};
 

@@ -1,26 +1,34 @@
-//! Completions from a pool: the best one, and the best one of each mode.
+//! Completions from a pool: the best coherent layout, and the best one of each mode.
+//!
+//! A mode is a number of columns and rows. Its mass is the share of the draws that have it; it depends on the pool
+//! alone, so that an answer has the same mass however many answers are asked for.
 
 use std::collections::BTreeMap;
 
-use super::candidates::{Candidates, supported};
-use super::pool::{Draw, Origin, pool};
-use super::scene::Scene;
-use super::select::select;
-use crate::completion::{Completed, Completion};
+use super::candidates::{Candidate, Candidates};
+use super::doors;
+use super::exact;
+use super::judge::{Judge, Layout};
+use super::pool::{Draw, pool};
+use super::scene::{Scene, of};
+use crate::completion::{Completed, Completion, Reason};
 use crate::layout::Class;
 use crate::model::Model;
 use crate::partial::PartialLayout;
 use edifice_base::rng::Stream;
 
-/// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`].
+/// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`](super::pool::Origin::ALL).
 const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];
 /// Shares of the origins in the distribution of the number of windows, where the unknown part is known; set so that true
 /// numbers lie within its 10 to 90 % interval about as often as they should.
 const COUNTED: [f64; 7] = [0.0, 0.35, 0.15, 0.45, 0.05, 0.0, 0.0];
+/// Probability of the exact lattice where the seen windows are cells of one: it is also the mass of that answer.
+const EXACT: f64 = 0.9;
 /// Least probability of a door that is added because there is none.
 const LEAST_DOOR: f64 = 0.08;
-/// Share of a mode's own support in the probabilities that choose its elements.
-const OWN: f64 = 0.6;
+/// Of an element that is as probable within a half as of one, this share is so within three quarters, where no model of
+/// the latter was learnt.
+const TIGHT: f64 = 0.5;
 
 /// Completions of a partial layout, and what the pool says of the number of windows.
 #[derive(Debug, Clone)]
@@ -36,187 +44,175 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     let draws = pool(partial, model, &[], rng);
     let fallback = model.window_size(partial.width, partial.height);
     let scene = Scene::new(partial, partial.observed.clone(), fallback);
-    let candidates = Candidates::new(&scene, &draws);
+    let mut candidates = Candidates::new(&scene, &draws);
     let weights = weights(&draws);
-    let probability: Vec<f64> = candidates
-        .all
-        .iter()
-        .map(|c| match &model.elements {
-            Some(learnt) => learnt.probability(&c.features),
-            // The shares sum to 1, up to rounding.
-            None => (c.support.iter().zip(SHARES))
-                .map(|(s, share)| s * share)
-                .sum::<f64>()
-                .min(1.0),
-        })
-        .collect();
-    let windows = |draw: &Draw| {
-        draw.added
-            .iter()
-            .filter(|(e, _)| e.class == Class::Window)
-            .count()
+    let mut loose = probabilities(model, &candidates);
+    let mut tight: Vec<f64> = match &model.tight {
+        Some(learnt) => candidates.probabilities(learnt),
+        None => loose.iter().map(|p| TIGHT * p).collect(),
     };
-    let of_count = match partial.unknown {
-        Some(_) => COUNTED,
-        None => SHARES,
-    };
-    let answer_windows = (draws.iter())
-        .map(|d| (windows(d), d.weight * of_count[d.origin as usize]))
-        .collect();
-    let all: Vec<usize> = (0..draws.len()).collect();
-    let expected = expected(&draws, &weights, &all);
-    let (mut chosen, score) = select(&candidates, &probability, expected);
-    chosen.extend(door(&scene, &candidates, &probability, &chosen));
-    let modes = modes(&draws, &weights);
-    let mut completions = vec![completion(&candidates, &probability, &chosen, score)];
-    let mut seen = vec![(chosen, modes.first().map_or(1.0, |m| m.1))];
-    for (members, mass) in &modes {
-        if seen.len() >= count.max(1) {
-            break;
-        }
-        let own = support_of(&candidates, &draws, &weights, members, *mass);
-        let mixed: Vec<f64> = own
-            .iter()
-            .zip(&probability)
-            .map(|(own, p)| OWN * own + (1.0 - OWN) * p)
-            .collect();
-        let (chosen, score) = select(
-            &candidates,
-            &mixed,
-            self::expected(&draws, &weights, members),
-        );
-        if seen
-            .iter()
-            .any(|(other, _)| alike(&candidates, other, &chosen))
-        {
-            continue;
-        }
-        let mut next = completion(&candidates, &probability, &chosen, score);
-        next.mass = *mass;
-        completions.push(next);
-        seen.push((chosen, *mass));
+    let door = door(model, &scene, &draws, &mut candidates, &mut loose);
+    tight.resize(loose.len(), 0.0);
+    if let Some(door) = door {
+        tight[door] = TIGHT * loose[door];
     }
-    let named: f64 = completions[1..].iter().map(|c| c.mass).sum();
-    completions[0].mass = (1.0 - named).max(0.0);
+    // What lies within three quarters lies within a half.
+    let value = loose.iter().zip(&tight);
+    let value: Vec<f64> = value.map(|(l, t)| (l + t.min(*l)) / 2.0).collect();
+    let judge = Judge::new(&scene, &candidates, value, door, expected(&draws, &weights));
+    let windows = windows(partial, &draws);
+    let mut modes = Modes::default();
+    for (draw, weight) in draws
+        .iter()
+        .zip(&weights)
+        .filter(|(d, _)| d.origin.is_whole())
+    {
+        modes.add(judge.on_lattice(&draw.lines), *weight, draw.lattice);
+    }
+    let freely = judge.freely();
+    let lattice = freely.lattice;
+    modes.add(freely, 0.0, lattice);
+    let probability = |c: usize| loose[c].clamp(0.0, 1.0);
+    let mut completions = modes.completions(probability);
+    if let Some(hidden) = exact::hidden(&scene) {
+        completions.iter_mut().for_each(|c| c.mass *= 1.0 - EXACT);
+        let added = hidden.into_iter().map(|element| Completed {
+            element,
+            probability: EXACT,
+            reason: Reason::Lattice,
+        });
+        let best = completions.iter().map(|c| c.score).fold(EXACT, f64::max);
+        let first = Completion {
+            added: added.collect(),
+            score: best,
+            mass: EXACT,
+        };
+        completions.insert(0, first);
+    }
+    completions.truncate(count.max(1));
     Answer {
         completions,
-        windows: answer_windows,
+        windows,
     }
 }
 
-/// The most probable door, where there is none yet: a facade without a door is not plausible, though no single place of
-/// it may be probable enough to be chosen for the expected score.
+/// Probability of each candidate within an intersection over union of a half.
+fn probabilities(model: &Model, candidates: &Candidates) -> Vec<f64> {
+    if let Some(learnt) = &model.elements {
+        return candidates.probabilities(learnt);
+    }
+    // The shares sum to 1, up to rounding.
+    let probability = |c: &Candidate| {
+        let terms = c.support.iter().zip(SHARES).map(|(s, share)| s * share);
+        terms.sum::<f64>().min(1.0)
+    };
+    candidates.all.iter().map(probability).collect()
+}
+
+/// The door that a facade without one gets, as a candidate; `None` where a door is seen, or none is likely enough.
 fn door(
+    model: &Model,
     scene: &Scene,
-    candidates: &Candidates,
-    probability: &[f64],
-    chosen: &[usize],
+    draws: &[Draw],
+    candidates: &mut Candidates,
+    loose: &mut Vec<f64>,
 ) -> Option<usize> {
-    let is_door = |c: &usize| candidates.all[*c].element.class == Class::Door;
-    if chosen.iter().any(is_door) || scene.elements.iter().any(|e| e.class == Class::Door) {
+    if of(&scene.elements, Class::Door).next().is_some() {
         return None;
     }
-    let free = |c: &usize| {
-        let element = &candidates.all[*c].element;
-        !chosen
-            .iter()
-            .any(|o| candidates.all[*o].element.excludes(element))
+    if let Some(learnt) = &model.doors {
+        let places = doors::places(scene, draws, candidates);
+        let each = places
+            .into_iter()
+            .map(|p| (learnt.probability(&p.features), p.element));
+        let (probability, element) = each.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        candidates.add(element, Reason::Database);
+        loose.push(probability);
+    }
+    let is_door = |c: &usize| candidates.all[*c].element.class == Class::Door;
+    let doors = (0..loose.len()).rev().filter(is_door);
+    let best = match &model.doors {
+        Some(_) => loose.len().checked_sub(1),
+        None => doors.max_by(|&a, &b| loose[a].total_cmp(&loose[b])),
     };
-    let doors = (0..probability.len()).filter(is_door).filter(free);
-    let best = doors.max_by(|&a, &b| probability[a].total_cmp(&probability[b]).then(b.cmp(&a)))?;
-    (probability[best] > LEAST_DOOR).then_some(best)
+    best.filter(|&d| loose[d] > LEAST_DOOR)
+}
+
+/// Number of added windows of each layout of the pool, with its weight.
+fn windows(partial: &PartialLayout, draws: &[Draw]) -> Vec<(usize, f64)> {
+    let shares = match partial.unknown {
+        Some(_) => COUNTED,
+        None => SHARES,
+    };
+    let count = |draw: &Draw| {
+        let windows = draw.added.iter().filter(|(e, _)| e.class == Class::Window);
+        windows.count()
+    };
+    let each = draws
+        .iter()
+        .map(|d| (count(d), d.weight * shares[d.origin as usize]));
+    each.collect()
 }
 
 /// Weight of each layout in the whole pool.
 fn weights(draws: &[Draw]) -> Vec<f64> {
-    let present = |o: &Origin| draws.iter().any(|d| d.origin == *o);
-    let shares = Origin::ALL.iter().zip(SHARES);
-    let total: f64 = shares
-        .filter(|(o, _)| present(o))
-        .map(|(_, share)| share)
-        .sum();
-    draws
-        .iter()
-        .map(|d| d.weight * SHARES[d.origin as usize] / total)
-        .collect()
+    let own = draws.iter().map(|d| d.weight * SHARES[d.origin as usize]);
+    let total: f64 = own.clone().sum();
+    own.map(|w| w / total.max(1e-12)).collect()
 }
 
 /// Mean number of added elements.
-fn expected(draws: &[Draw], weights: &[f64], members: &[usize]) -> f64 {
-    let total: f64 = members.iter().map(|&m| weights[m]).sum();
-    let sum: f64 = members
-        .iter()
-        .map(|&m| weights[m] * draws[m].added.len() as f64)
-        .sum();
-    if total > 0.0 { sum / total } else { 0.0 }
+fn expected(draws: &[Draw], weights: &[f64]) -> f64 {
+    let terms = draws.iter().zip(weights);
+    terms.map(|(d, w)| w * d.added.len() as f64).sum()
 }
 
-/// Layouts of the pool by the size of their lattice and whether they are mirrored, with their mass, largest first.
-fn modes(draws: &[Draw], weights: &[f64]) -> Vec<(Vec<usize>, f64)> {
-    let mut groups: BTreeMap<(usize, usize, bool), (Vec<usize>, f64)> = BTreeMap::new();
-    for (index, draw) in draws
-        .iter()
-        .enumerate()
-        .filter(|(_, d)| d.origin.is_whole())
-    {
-        let mirrored = matches!(draw.origin, Origin::Mirrored | Origin::MirroredBelow);
-        let group = groups
-            .entry((draw.lattice.0, draw.lattice.1, mirrored))
-            .or_default();
-        group.0.push(index);
-        group.1 += weights[index];
-    }
-    let mut modes: Vec<(Vec<usize>, f64)> = groups.into_values().collect();
-    modes.sort_by(|a, b| b.1.total_cmp(&a.1));
-    modes
-}
+/// The best layout of each mode, and its mass.
+#[derive(Default)]
+struct Modes(BTreeMap<(usize, usize), (Option<Layout>, f64)>);
 
-/// Share of a mode's layouts that have each candidate.
-fn support_of(
-    candidates: &Candidates,
-    draws: &[Draw],
-    weights: &[f64],
-    members: &[usize],
-    mass: f64,
-) -> Vec<f64> {
-    let mut support = vec![0.0; candidates.all.len()];
-    let mut best = vec![0.0; candidates.all.len()];
-    debug_assert_eq!(draws.len(), candidates.of_draw.len());
-    for &member in members {
-        for (c, share) in supported(&candidates.of_draw[member], &candidates.alike, &mut best) {
-            support[c] += weights[member] * share / mass.max(1e-12);
+impl Modes {
+    /// Adds the weight of a draw to the mode of its lattice, and the layout that was chosen on it to that of its own.
+    fn add(&mut self, layout: Layout, weight: f64, lattice: (usize, usize)) {
+        self.0.entry(lattice).or_default().1 += weight;
+        let own = &mut self.0.entry(layout.lattice).or_default().0;
+        if own.as_ref().is_none_or(|best| layout.score > best.score) {
+            *own = Some(layout);
         }
     }
-    support
-}
 
-/// True if two choices show much the same: nine tenths of each have a like one in the other.
-fn alike(candidates: &Candidates, a: &[usize], b: &[usize]) -> bool {
-    let covered = |a: &[usize], b: &[usize]| {
-        let like = |&&c: &&usize| {
-            candidates.alike[c]
-                .iter()
-                .any(|(o, s)| *s > 0.5 && b.contains(o))
+    /// The best layout first, then those of the other modes by falling mass. The mass of modes without a layout of
+    /// their own belongs to the nearest mode with one.
+    fn completions(self, probability: impl Fn(usize) -> f64) -> Vec<Completion> {
+        let (mut kept, mut lost) = (Vec::new(), Vec::new());
+        for (lattice, (layout, mass)) in self.0 {
+            match layout {
+                Some(layout) => kept.push((lattice, layout, mass)),
+                None => lost.push((lattice, mass)),
+            }
+        }
+        for (lattice, mass) in lost {
+            let distance =
+                |other: &(usize, usize)| lattice.0.abs_diff(other.0) + lattice.1.abs_diff(other.1);
+            if let Some(nearest) = kept.iter_mut().min_by_key(|k| distance(&k.0)) {
+                nearest.2 += mass;
+            }
+        }
+        kept.sort_by(|a, b| b.1.score.total_cmp(&a.1.score).then(a.0.cmp(&b.0)));
+        if let Some(others) = kept.get_mut(1..) {
+            others.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        }
+        let completion = |(_, layout, mass): ((usize, usize), Layout, f64)| Completion {
+            added: (layout.added.iter())
+                .map(|&(element, reason, c)| Completed {
+                    element,
+                    reason,
+                    probability: probability(c),
+                })
+                .collect(),
+            score: layout.score,
+            mass: mass.min(1.0),
         };
-        a.iter().filter(like).count() as f64 >= 0.9 * a.len() as f64
-    };
-    covered(a, b) && covered(b, a)
-}
-
-fn completion(
-    candidates: &Candidates,
-    probability: &[f64],
-    chosen: &[usize],
-    score: f64,
-) -> Completion {
-    let added = chosen.iter().map(|&c| Completed {
-        element: candidates.all[c].element,
-        probability: probability[c],
-        reason: candidates.all[c].reason,
-    });
-    Completion {
-        added: added.collect(),
-        score,
-        mass: 0.0,
+        kept.into_iter().map(completion).collect()
     }
 }

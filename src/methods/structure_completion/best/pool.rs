@@ -1,4 +1,5 @@
-//! A pool of weighted layouts: exact draws of lines, mirrored layouts, transfers from the database.
+//! A pool of weighted layouts: exact draws of lines, mirrored layouts, transfers from the database; each on shared lines
+//! ([`super::regular`]).
 
 use rand::Rng;
 
@@ -6,6 +7,7 @@ use super::categorical;
 use super::chain::{Chain, LineProblem};
 use super::density::Spacing;
 use super::fill::{fill, lines_at};
+use super::regular::regular;
 use super::scene::Scene;
 use super::symmetry;
 use super::transfer;
@@ -72,6 +74,8 @@ pub struct Draw {
     pub added: Vec<(Element, Reason)>,
     /// Columns and rows of its lattice.
     pub lattice: (usize, usize),
+    /// Centres of the columns and of the rows on which its windows and the seen ones stand.
+    pub lines: [Vec<f64>; 2],
 }
 
 /// The database, and how its rows compare with the lowest seen one.
@@ -136,6 +140,7 @@ pub fn pool(
                 weight: count as f64,
                 added: images.clone(),
                 lattice: (mirrored.columns.len(), mirrored.rows.len()),
+                lines: Default::default(),
             });
             for (k, invented) in column_draws(&mirrored, &model.columns, 2 * count, rng)
                 .iter()
@@ -160,7 +165,15 @@ pub fn pool(
         weight: 1.0,
         added: open.added.iter().map(|a| (a.element, a.reason)).collect(),
         lattice: (scene.columns.len(), scene.rows.len()),
+        lines: Default::default(),
     });
+    for draw in &mut draws {
+        let made = regular(&scene, &draw.added);
+        let added = made.added.into_iter();
+        draw.added = added.map(|(e, reason, _)| (e, reason)).collect();
+        draw.lines = made.lines.map(|l| l.all.iter().map(|l| l.at).collect());
+        draw.lattice = (draw.lines[0].len(), draw.lines[1].len());
+    }
     for origin in Origin::ALL {
         let total: f64 = draws
             .iter()
@@ -233,6 +246,7 @@ fn whole<R: Rng>(
         origin,
         weight: 1.0,
         lattice: (columns.len(), rows.len() + count.unwrap_or(0)),
+        lines: Default::default(),
         added,
     }
 }
@@ -255,6 +269,7 @@ fn warped(scene: &Scene, examples: &[(usize, &Example)]) -> Vec<Draw> {
             .map(|e| (*e, Reason::Database))
             .collect(),
         lattice,
+        lines: Default::default(),
     };
     found.into_iter().map(draw).collect()
 }

@@ -33,15 +33,7 @@ impl<'a> Scene<'a> {
         let wide = median(windows.iter().map(|r| r.width)).unwrap_or(fallback.0);
         let high = median(windows.iter().map(|r| r.height)).unwrap_or(fallback.1);
         let (rows, _) = lines(&windows, Axis::Y);
-        // A balcony of one window stands for a window that may be hidden itself.
-        let narrow = of(&elements, Class::Balcony).filter(|b| b.rect.width < 2.0 * wide);
-        let across: Vec<Rect> = narrow
-            .map(|b| {
-                let x = b.rect.centre().0;
-                Rect::new(x - wide / 2.0, b.rect.y, wide, high)
-            })
-            .chain(windows.iter().copied())
-            .collect();
+        let across = standing(&elements, (wide, high));
         let (columns, _) = lines(&across, Axis::X);
         let cells = (columns.len() * rows.len()) as f64;
         let seen = if cells > 0.0 {
@@ -60,6 +52,11 @@ impl<'a> Scene<'a> {
             size: (wide, high),
             seen,
         }
+    }
+
+    /// Rectangles that stand on the columns, as [`standing`] gives them.
+    pub fn standing(&self) -> Vec<Rect> {
+        standing(&self.elements, self.size)
     }
 
     /// The lines along an axis.
@@ -103,6 +100,18 @@ impl<'a> Scene<'a> {
         };
         crossing.iter().map(factor).product::<f64>().max(1e-12)
     }
+}
+
+/// Rectangles that stand on the columns: for each balcony of one window a rectangle of the typical `size` of a window
+/// before which it hangs, as the window may be hidden itself; then the windows in their order.
+fn standing(elements: &[Element], (wide, high): (f64, f64)) -> Vec<Rect> {
+    let narrow = of(elements, Class::Balcony).filter(|b| b.rect.width < 2.0 * wide);
+    let behind = narrow.map(|b| {
+        let x = b.rect.centre().0;
+        Rect::new(x - wide / 2.0, b.rect.y, wide, high)
+    });
+    let windows = of(elements, Class::Window).map(|e| e.rect);
+    behind.chain(windows).collect()
 }
 
 /// The elements of a class.

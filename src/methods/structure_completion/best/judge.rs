@@ -1,0 +1,158 @@
+//! The choice among coherent layouts.
+//!
+//! With `p_i(t)` the probability that candidate `i` meets a hidden element with an intersection over union of at least `t`,
+//! and `E[n]` the expected number of hidden elements, a set `S` has the expected score `2 sum_i p_i / (|S| + E[n])` (the ratio
+//! of expectations), where `p_i` is the mean of `p_i(1/2)` and `p_i(3/4)`: an element counts half for being there and half
+//! for being exact.
+//!
+//! Sets are not free: the windows of a layout lie on the lines of one lattice. For each lattice of the pool, candidates on its
+//! lines are taken by falling `p_i` as long as the score rises and nothing overlaps; what is chosen is put on shared
+//! lines ([`super::regular`]), and windows that then stand alone on a line are left out. The layout of the highest score is
+//! the one of least expected risk among those that were tried.
+
+use super::by_place::ByPlace;
+use super::candidates::Candidates;
+use super::regular::{Regular, clash, regular, without_loners};
+use super::scene::Scene;
+use crate::completion::Reason;
+use crate::layout::{Class, Element};
+use edifice_shape::Axis;
+
+/// A window is on a line of a lattice when its centre is nearer than this share of the typical extent.
+const ON_LINE: f64 = 0.15;
+/// Two elements of one class this alike are one.
+const SAME: f64 = 0.3;
+
+/// A coherent layout: added elements, each with the candidate that it was, and its score.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    /// Added elements, by falling probability.
+    pub added: Vec<(Element, Reason, usize)>,
+    /// Expected score, 0 to 1.
+    pub score: f64,
+    /// Columns and rows of its windows and the seen ones.
+    pub lattice: (usize, usize),
+}
+
+/// What layouts are judged by.
+pub struct Judge<'a> {
+    scene: &'a Scene<'a>,
+    candidates: &'a Candidates,
+    value: Vec<f64>,
+    /// Candidates by falling value.
+    order: Vec<usize>,
+    /// The door that a facade without one gets.
+    door: Option<usize>,
+    expected: f64,
+}
+
+impl<'a> Judge<'a> {
+    /// Judges by the value of each candidate (the mean of its probabilities) and the expected number of hidden elements;
+    /// `door` is the one that the facade gets.
+    pub fn new(
+        scene: &'a Scene<'a>,
+        candidates: &'a Candidates,
+        value: Vec<f64>,
+        door: Option<usize>,
+        expected: f64,
+    ) -> Self {
+        let mut order: Vec<usize> = (0..value.len()).collect();
+        order.sort_by(|&a, &b| value[b].total_cmp(&value[a]).then(a.cmp(&b)));
+        Self {
+            scene,
+            candidates,
+            value,
+            order,
+            door,
+            expected,
+        }
+    }
+
+    /// Expected score of candidates.
+    fn score(&self, chosen: impl Iterator<Item = usize>) -> f64 {
+        let (mut count, mut sum) = (0.0, 0.0);
+        for c in chosen {
+            count += 1.0;
+            sum += self.value[c];
+        }
+        2.0 * sum / (count + self.expected.max(sum)).max(1e-12)
+    }
+
+    /// The candidates that `allowed` allows, taken greedily.
+    fn greedy(&self, allowed: impl Fn(&Element) -> bool) -> Vec<usize> {
+        let partial = self.scene.partial;
+        let facade = [partial.width, partial.height];
+        let mut taken = ByPlace::new(facade, self.scene.size, self.expected as usize);
+        let mut chosen: Vec<usize> = Vec::new();
+        let (mut sum, mut score) = (0.0, 0.0);
+        for c in self.door.into_iter().chain(self.order.iter().copied()) {
+            let own = &self.candidates.all[c].element;
+            let met = |o: &Element| {
+                clash(o, own) || (o.class == own.class && o.rect.iou(&own.rect) > SAME)
+            };
+            // A facade that is seen without a door gets one.
+            let second = own.class == Class::Door && self.door.is_some_and(|d| d != c);
+            if second || !allowed(own) || taken.any_near(&own.rect, met) {
+                continue;
+            }
+            let with = sum + self.value[c];
+            let next = 2.0 * with / ((chosen.len() + 1) as f64 + self.expected.max(with));
+            if next < score {
+                break;
+            }
+            (sum, score) = (with, next);
+            chosen.push(c);
+            taken.push(*own);
+        }
+        chosen
+    }
+
+    /// The coherent layout of some candidates.
+    fn coherent(&self, chosen: &[usize]) -> Layout {
+        let all = &self.candidates.all;
+        let given: Vec<(Element, Reason)> = chosen
+            .iter()
+            .map(|&c| (all[c].element, all[c].reason))
+            .collect();
+        let made: Regular = regular(self.scene, &given);
+        let added = without_loners(self.scene, made);
+        let added: Vec<(Element, Reason, usize)> = added
+            .into_iter()
+            .map(|(e, r, k)| (e, r, chosen[k]))
+            .collect();
+        let whole: Vec<(Element, Reason)> = added.iter().map(|(e, r, _)| (*e, *r)).collect();
+        let lines = regular(self.scene, &whole).lines;
+        Layout {
+            score: self.score(added.iter().map(|a| a.2)),
+            lattice: (lines[0].all.len(), lines[1].all.len()),
+            added,
+        }
+    }
+
+    /// The best coherent layout on a lattice with columns and rows at these places.
+    pub fn on_lattice(&self, lines: &[Vec<f64>; 2]) -> Layout {
+        let near = |axis: Axis, lines: &[f64], at: f64| {
+            let reach = ON_LINE * self.scene.extent(axis);
+            let k = lines.partition_point(|&x| x < at - reach);
+            lines.get(k).is_some_and(|&x| x <= at + reach)
+        };
+        let seen = Axis::BOTH
+            .map(|axis| -> Vec<f64> { self.scene.lines(axis).iter().map(|l| l.at).collect() });
+        let on = |axis: Axis, at: f64| {
+            let k = axis as usize;
+            // Windows of a seen line may differ among themselves.
+            let reach = 0.35 * self.scene.extent(axis);
+            near(axis, &lines[k], at) || seen[k].iter().any(|x| (x - at).abs() < reach)
+        };
+        let chosen = self.greedy(|e| {
+            let (x, y) = e.rect.centre();
+            e.class != Class::Window || (on(Axis::X, x) && on(Axis::Y, y))
+        });
+        self.coherent(&chosen)
+    }
+
+    /// The coherent layout of the best candidates of all lattices.
+    pub fn freely(&self) -> Layout {
+        self.coherent(&self.greedy(|_| true))
+    }
+}

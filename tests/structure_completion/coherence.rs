@@ -1,0 +1,109 @@
+//! Coherent completions: made grids come back exactly, nothing overlaps, new windows stand on lines, masses do not depend on
+//! how many answers are asked for.
+
+use edifice::methods::structure_completion::layout::{Class, Element, Layout};
+use edifice::methods::structure_completion::made::{facades, grids};
+use edifice::methods::structure_completion::measure::{agreement, off_lines, overlaps};
+use edifice::methods::structure_completion::method::{Method, complete};
+use edifice::methods::structure_completion::model::shipped_model;
+use edifice::methods::structure_completion::partial::PartialLayout;
+use edifice::methods::structure_completion::task::Task;
+use edifice::rng::stream;
+use edifice::shape::Rect;
+
+fn added(
+    completion: &edifice::methods::structure_completion::completion::Completion,
+) -> Vec<Element> {
+    completion.added.iter().map(|a| a.element).collect()
+}
+
+#[test]
+fn made_grids_are_completed_perfectly() {
+    let model = shipped_model().expect("the shipped model");
+    for (sight, least) in grids::Sight::ALL.into_iter().zip([23, 23, 23, 20]) {
+        let mut perfect = 0;
+        for (k, (layout, size)) in grids::all(5).iter().enumerate() {
+            let mut rng = stream(5, sight.name(), k as u64);
+            let (partial, hidden) = sight.of(layout, *size, &mut rng);
+            let done = complete(Method::Best, &partial, &model, 1, &mut rng);
+            perfect += usize::from(agreement(&added(&done[0]), &hidden, 0.9).f1 == 1.0);
+        }
+        assert!(
+            perfect >= least,
+            "{}: {perfect} of {}",
+            sight.name(),
+            grids::COUNT
+        );
+    }
+}
+
+/// Made facades, some of which have annotation errors, with each part hidden.
+fn cases() -> Vec<(PartialLayout, Layout)> {
+    let made = |k: u64| {
+        let layout = facades::facade(k as usize, &mut stream(6, "facade", k));
+        let task = Task::ALL[k as usize % Task::ALL.len()];
+        (task.hide(&layout, &mut stream(6, "mask", k)).0, layout)
+    };
+    (0..60).map(made).collect()
+}
+
+#[test]
+fn every_answer_is_coherent() {
+    let model = shipped_model().expect("the shipped model");
+    let (mut windows, mut off) = (0, 0);
+    for (k, (partial, _)) in cases().iter().enumerate() {
+        let mut rng = stream(6, "complete", k as u64);
+        for answer in complete(Method::Best, partial, &model, 5, &mut rng) {
+            let added = added(&answer);
+            assert_eq!(overlaps(&partial.observed, &added), 0, "{k}");
+            windows += added.iter().filter(|e| e.class == Class::Window).count();
+            off += off_lines(&partial.observed, &added);
+        }
+    }
+    assert!(off as f64 <= 0.01 * windows as f64, "{off} of {windows}");
+}
+
+#[test]
+fn the_mass_of_an_answer_does_not_depend_on_their_number() {
+    let model = shipped_model().expect("the shipped model");
+    for (k, (partial, _)) in cases().iter().enumerate().step_by(4) {
+        let answers = |count: usize| {
+            let mut rng = stream(7, "complete", k as u64);
+            complete(Method::Best, partial, &model, count, &mut rng)
+        };
+        let all = answers(100);
+        let mass: f64 = all.iter().map(|a| a.mass).sum();
+        assert!(mass <= 1.0 + 1e-9, "{mass}");
+        let best = all.iter().map(|a| a.score).fold(0.0, f64::max);
+        assert_eq!(all[0].score, best);
+        for count in [1, 2, 5] {
+            let some = answers(count);
+            assert_eq!(some[..], all[..count.min(all.len())]);
+        }
+    }
+}
+
+#[test]
+fn a_thing_that_is_drawn_twice_counts_once() {
+    let window = |x: f64| Element::new(Class::Window, Rect::new(x, 10.0, 10.0, 10.0));
+    let partial = PartialLayout {
+        width: 100.0,
+        height: 50.0,
+        observed: vec![window(0.0), window(1.0), window(30.0), window(38.0)],
+        unknown: None,
+        forbidden: Vec::new(),
+    };
+    let overlaps = partial.overlaps();
+    let found: Vec<_> = overlaps
+        .iter()
+        .map(|o| (o.first, o.second, o.twice))
+        .collect();
+    assert_eq!(found, [(0, 1, true), (2, 3, false)]);
+    let merged = partial.without_duplicates();
+    assert_eq!(merged.observed, [window(0.0), window(30.0), window(38.0)]);
+    let model = shipped_model().expect("the shipped model");
+    for method in Method::ALL.into_iter().filter(|m| !m.is_slow()) {
+        let mut rng = stream(8, "twice", 0);
+        assert!(!complete(method, &partial, &model, 1, &mut rng).is_empty());
+    }
+}
