@@ -115,9 +115,13 @@ fn samples_are_truncated_to_possible_rows() {
         .filter(|&r| least_z(&rows[r], &database.deviations) > 0.3)
         .collect();
     assert!(!far.is_empty());
-    let none = possible_rows(3, &free, &database.deviations, || {
-        Ok::<_, Infallible>(table.select(&far[..1]))
-    });
+    let none = possible_rows(
+        3,
+        &free,
+        &database.deviations,
+        |_| 0.0,
+        || Ok::<_, Infallible>(table.select(&far[..1])),
+    );
     let none = none.unwrap();
     assert_eq!((none.rows.len(), none.impossible), (3, 3));
 }
