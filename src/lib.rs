@@ -6,6 +6,25 @@
 //! each other; the methods of published papers ([`methods`]) join them, over the shared nouns of
 //! [`shape`] and [`grammar`]. Experiments reproduce each paper's tables and figures.
 //!
+//! # By task
+//! | you want to | start at |
+//! | --- | --- |
+//! | turn a facade into a short split grammar | [`methods::facade_grammar::infer`] |
+//! | share rules among many real facades, score and draw new ones | [`grammar::parametric`] |
+//! | derive, resize, evaluate a grammar | [`grammar::derive`], [`grammar::evaluate`], [`layout`] |
+//! | learn rules from labelled images and retrieve facades | [`methods::procedural_logic`] |
+//! | complete a facade of which a part is seen | [`methods::structure_completion`] |
+//! | learn attributes of houses and generate houses | [`methods::building_exteriors`] |
+//! | turn a city into a grammar, edit it, derive it | [`methods::city_proceduralization`] |
+//! | write a probabilistic program and draw from its posterior | [`model::program`] |
+//! | ask a Bayesian network, learn one from rows | [`model::network`], [`model::hierarchy`] |
+//! | model any table, with missing cells | [`model::tables`] |
+//! | train and ask a factor graph | [`model::factor_graph`] |
+//! | fit a Gaussian mixture | [`model::gmm`] |
+//! | minimize something | [`optim`] |
+//! | cluster, find communities, measure retrieval | [`cluster`] |
+//!
+//! # By paper
 //! | paper | module | experiment |
 //! | --- | --- | --- |
 //! | Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts* | [`methods::facade_grammar`] | `experiments/facade_grammar.rs` |
@@ -14,22 +33,24 @@
 //! | Demir et al. 2014, *Proceduralization of Buildings at City Scale* | [`methods::city_proceduralization`] | `experiments/city_proceduralization.rs` |
 //! | Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings* | [`methods::building_exteriors`] | `experiments/building_exteriors.rs` |
 //!
-//! ## Conventions
+//! # Conventions
 //! - Origin at the lower left, x to the right, y up; lengths in the facade's own unit.
 //! - Randomness is an argument: see [`rng`]. Same seed, same bytes, whatever the number of threads.
-//! - Library code neither prints nor touches paths, except in [`io`], [`report`] and [`experiments`].
+//! - Library code neither prints nor touches paths, except in `io` and `report`.
 //!
-//! ## Features
-//! The default is everything. With `default-features = false` the crate is its models, optimizers,
-//! clustering, shapes, grammars and methods, without a crate for files, figures or commands.
+//! # Features
+//! Each part is a crate of its own (`edifice-model`, `edifice-optim`, ...); this crate gives them one name. The default
+//! is everything. With `default-features = false` it is its models, optimizers, clustering, shapes, grammars and methods,
+//! without a crate for file formats, figures or commands.
 //!
 //! | feature | adds |
 //! | --- | --- |
-//! | `io` | [`io`]: file formats of facades, grammars, buildings and scenes |
-//! | `report` | [`report`]: tables and figures |
-//! | `linfa` (default) | [linfa]'s traits for Gaussian mixtures: [`model::gmm::linfa`] |
-//! | `cli` (default) | [`experiments`], [`editing`] and the programs; includes `io` and `report` |
-//! | `studio` (default) | [`studio`]: documents in the browser, `edifice studio`; includes `cli` |
+//! | `io` | `io`: file formats of facades, grammars, buildings, cities and scenes |
+//! | `report` | `report`: tables and figures |
+//! | `linfa` | [linfa]'s traits for Gaussian mixtures: `model::gmm::linfa` |
+//! | `nuts` | the No-U-Turn Sampler for probabilistic programs |
+//! | `cli` (default) | the program `edifice`; includes `io` and `report` |
+//! | `studio` (default) | `edifice studio`: documents in the browser; includes `cli` |
 //!
 //! [linfa]: https://docs.rs/linfa
 
