@@ -12,7 +12,7 @@ pub struct Own {
     pub name: &'static str,
     /// Its files, in order of name.
     pub files: Vec<PathBuf>,
-    /// How the files are read.
+    /// Options of reading the files.
     pub options: ReadOptions,
 }
 

@@ -55,7 +55,7 @@ pub enum DensityError {
     },
 }
 
-/// What a candidate sees.
+/// The question to a candidate: all that it sees.
 pub struct Question {
     /// Names of the columns.
     pub header: Vec<String>,
@@ -65,7 +65,7 @@ pub struct Question {
     pub asked: Vec<Vec<f64>>,
 }
 
-/// What only the judge sees.
+/// The truth about a question: only the judge sees it.
 pub struct Truth {
     /// Rows of the question that are unseen ones of the table, in the order of the split.
     unseen: Vec<usize>,

@@ -151,9 +151,9 @@ pub fn entry(
             };
             let seconds = std::cell::Cell::new(0.0);
             let found = study.run_foreign(&arm.settings, &given, &|posed, output| {
-                let start = std::time::Instant::now();
-                let answer = command::ask(command, posed, output, &about);
-                seconds.set(start.elapsed().as_secs_f64());
+                let (answer, took) =
+                    command::timed(|| command::ask(command, posed, output, &about));
+                seconds.set(took);
                 answer
             });
             (found, seconds.get())

@@ -43,9 +43,9 @@ impl<A> Answered<A> {
 /// The files of a question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posed {
-    /// What is asked about: `{input}`.
+    /// The file or folder that the question is about: `{input}`.
     pub input: PathBuf,
-    /// What may be learnt from, a file or a folder: `{learn}`.
+    /// The file or folder to learn from, if there is one: `{learn}`.
     pub learn: Option<PathBuf>,
 }
 
@@ -53,11 +53,11 @@ pub struct Posed {
 pub trait Trial: 'static {
     /// Settings of the question, the built-in methods and the judge.
     type Settings: Serialize + DeserializeOwned + JsonSchema + Default + 'static;
-    /// What a candidate sees.
+    /// The question to a candidate: all that it sees.
     type Question;
-    /// What only the judge sees.
+    /// The truth about a question: only the judge sees it.
     type Truth;
-    /// What a candidate answers.
+    /// The answer of a candidate.
     type Answer;
 
     /// Name of the file of an answer, whose ending says its format.

@@ -117,7 +117,7 @@ impl Grammar {
         Ok(about)
     }
 
-    /// What the grammar derives at its own size, drawn as SVG for notebooks; `None` where it derives nothing.
+    /// The derivation of the grammar at its own size, drawn as SVG for notebooks; `None` where it derives nothing.
     fn _repr_svg_(&self) -> Option<String> {
         let derived = edifice_grammar::derive(&self.inner, 0).ok()?;
         Some(draw::svg(&derived))

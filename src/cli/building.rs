@@ -19,7 +19,7 @@ use clap::Subcommand;
 /// Commands.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Measure the houses of city models (LoD2): detached buildings as boxes with roofs.
+    /// Measure the houses of city models (`LoD2`): detached buildings as boxes with roofs.
     #[command(after_help = "Examples:
   edifice building import datasets/building_exteriors/village.city.json -o village.buildings.jsonl --report village.csv
   edifice building learn village.buildings.jsonl -o village.houses.json

@@ -31,7 +31,7 @@ pub enum Command {
 /// Options of `list`.
 #[derive(clap::Args)]
 pub struct List {
-    /// Folder with the real data sets; without it, the environment variable EDIFICE_DATA
+    /// Folder with the real data sets; without it, the environment variable `EDIFICE_DATA`
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
     /// Print one JSON object as the last line
@@ -44,7 +44,7 @@ pub struct List {
 pub struct Check {
     /// Names of sets, or files dataset.toml of your own; all that are described when none is named
     sets: Vec<String>,
-    /// Folder with the real data sets; without it, the environment variable EDIFICE_DATA
+    /// Folder with the real data sets; without it, the environment variable `EDIFICE_DATA`
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
     /// Print one JSON object as the last line

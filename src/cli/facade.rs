@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use edifice_base::{Error, Result};
-use edifice_facade_grammar::Settings;
 use edifice_io as io;
 use edifice_io::Source;
 use edifice_layout::regularize::{RegularizeError, Report, regularize_facade, regularize_grid};
@@ -107,7 +106,7 @@ fn convert(options: &Convert) -> Result<()> {
     let source = reading::source(path, &options.reading.options()?)?;
     let source = options.cleaning.source(source, path)?;
     if let Some(share) = options.tolerance {
-        let facade = tolerance::retiled(source, path, share, &Settings::default())?;
+        let facade = tolerance::retiled(source, path, share, &Default::default())?;
         return written(&facade, &options.output);
     }
     let source = match (source, options.regularize) {

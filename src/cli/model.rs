@@ -19,7 +19,7 @@ use edifice_base::file::read_bytes;
 use edifice_base::{Error, Result};
 use edifice_io::json::parse_json;
 use edifice_model::ModelError;
-use edifice_model::network::{Evidence, FORMAT, Network};
+use edifice_model::network::{Evidence, FORMAT, Network, OLD_FORMAT};
 
 use super::{MODELS, print};
 
@@ -184,7 +184,7 @@ fn read(path: &Path) -> Result<Any> {
     let bytes = read_bytes(path)?;
     let text = || std::str::from_utf8(&bytes).map_err(|e| Error::content(path, e));
     let header: Header = parse_json(&bytes, path)?;
-    if header.format == FORMAT {
+    if [FORMAT, OLD_FORMAT].contains(&header.format.as_str()) {
         return Ok(Any::Network(Network::from_json(text()?).map_err(at(path))?));
     }
     match MODELS.iter().find(|kind| kind.format == header.format) {

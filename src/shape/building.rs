@@ -234,6 +234,7 @@ impl Building {
         };
         let bounds = Bounds {
             most: LARGEST * in_metre,
+            farthest: FARTHEST * in_metre,
         };
         bounds.positive(|| "floor_height".into(), floor_height)?;
         if boxes.is_empty() {
@@ -260,7 +261,7 @@ impl Building {
         })
     }
 
-    /// Whether a part has not been looked at.
+    /// True if a part has not been looked at.
     pub fn is_unobserved(&self, part: Hidden) -> bool {
         self.unobserved.contains(&part)
     }
@@ -292,29 +293,41 @@ const UNITS: [(&str, f64); 5] = [
     ("ft", 3.280_84),
     ("in", 39.370_1),
 ];
-/// Largest size and coordinate of a building (m), and most floors of a box.
+/// Largest size of a building and farthest coordinate from the origin (m), and most floors of a box.
 const LARGEST: f64 = 500.0;
+const FARTHEST: f64 = 1e4;
 const MOST_FLOORS: f64 = 100.0;
 
-/// What numbers may be.
+/// Bounds of the numbers of a building, in its unit of length.
 struct Bounds {
-    /// Largest size or coordinate.
+    /// Largest size.
     most: f64,
+    /// Farthest coordinate.
+    farthest: f64,
 }
 
 impl Bounds {
+    /// A coordinate of a box.
+    fn coordinate(&self, place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
+        Self::within(self.farthest, place, value)
+    }
+
     fn finite(&self, place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
+        Self::within(self.most, place, value)
+    }
+
+    fn within(most: f64, place: impl Fn() -> String, value: f64) -> Result<(), BuildingError> {
         if !value.is_finite() {
             return Err(BuildingError::NotFinite {
                 place: place(),
                 value,
             });
         }
-        if value.abs() > self.most {
+        if value.abs() > most {
             return Err(BuildingError::TooLarge {
                 place: place(),
                 value,
-                most: self.most,
+                most,
             });
         }
         Ok(())
@@ -333,8 +346,8 @@ impl Bounds {
 
 fn check_box(i: usize, b: &MassBox, bounds: &Bounds) -> Result<(), BuildingError> {
     let at = |field: &str| format!("boxes[{i}].{field}");
-    bounds.finite(|| at("x"), b.x)?;
-    bounds.finite(|| at("y"), b.y)?;
+    bounds.coordinate(|| at("x"), b.x)?;
+    bounds.coordinate(|| at("y"), b.y)?;
     bounds.positive(|| at("width"), b.width)?;
     bounds.positive(|| at("depth"), b.depth)?;
     bounds.positive(|| at("height"), b.height)?;
@@ -349,7 +362,7 @@ fn check_box(i: usize, b: &MassBox, bounds: &Bounds) -> Result<(), BuildingError
 
 fn check_piece(i: usize, piece: &FacadePiece, bounds: &Bounds) -> Result<(), BuildingError> {
     let at = |field: &str| format!("facades[{i}].{field}");
-    bounds.finite(|| at("start"), piece.start)?;
+    bounds.coordinate(|| at("start"), piece.start)?;
     bounds.finite(|| at("base"), piece.base)?;
     bounds.positive(|| at("width"), piece.width)?;
     bounds.positive(|| at("height"), piece.height)?;

@@ -14,7 +14,7 @@ fn sound() -> Value {
     serde_json::from_str(text.lines().nth(57).unwrap()).unwrap()
 }
 
-/// What is wrong, from the reader or the check.
+/// Faults of a house, from the reader or the check.
 fn wrong(house: &Value) -> Vec<String> {
     let bytes = serde_json::to_vec(house).unwrap();
     match building_json::parse(&bytes, Path::new("house.building.json")) {

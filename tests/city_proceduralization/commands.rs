@@ -201,7 +201,7 @@ fn bad_input_names_file_and_element_and_writes_nothing() {
         ("half", whole[..whole.len() / 2].to_owned(), "line"),
         (
             "version",
-            whole.replacen("\"version\": 1", "\"version\": 7", 1),
+            whole.replacen("\"version\": 2", "\"version\": 7", 1),
             "version",
         ),
         (
@@ -216,6 +216,7 @@ fn bad_input_names_file_and_element_and_writes_nothing() {
         ),
     ];
     for (name, text, place) in grammars {
+        assert_ne!(text, whole, "{name}: nothing was changed");
         let name = format!("{name}.city-grammar.json");
         std::fs::write(path(&name), text).unwrap();
         for args in [

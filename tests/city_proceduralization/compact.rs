@@ -242,15 +242,16 @@ fn placed(
     let lengths = (0..rule.parameters()).map(|_| number(rng).abs().max(0.1));
     out.numbers = lengths.collect();
     if rng.random_bool(0.5) && !rule.successors.is_empty() {
-        let part = |s: &Placement, rng: &mut Stream| {
-            let mut part = s.clone();
+        // Parts are in metres, also where the rule's own successors are in shares.
+        let part = |k: usize, rng: &mut Stream| {
+            let mut part = rule.part(k, &out.numbers);
             part.at[0] = -part.at[0];
             if templates.iter().any(|t| t.symbol == part.symbol) {
                 part.symbol.clone_from(&templates[0].symbol);
             }
             rng.random_bool(0.8).then_some(part)
         };
-        out.parts = rule.successors.iter().map(|s| part(s, rng)).collect();
+        out.parts = (0..rule.successors.len()).map(|k| part(k, rng)).collect();
     }
     out
 }

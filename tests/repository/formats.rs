@@ -252,7 +252,7 @@ fn every_id_of_the_sources_stands_on_the_page() {
             } else if path.extension().is_some_and(|e| e == "rs") {
                 let text = std::fs::read_to_string(&path).expect("text");
                 for rest in text.split("\"edifice/").skip(1) {
-                    let id: &str = rest.split('"').next().unwrap_or_default();
+                    let id: &str = rest.split(['"', '\\']).next().unwrap_or_default();
                     ids.insert(format!("edifice/{id}"));
                 }
             }

@@ -70,7 +70,7 @@ fn of_readme() -> Vec<String> {
     lines
 }
 
-/// Whether the files that a line reads are there: words with a dot that do not follow an option of output.
+/// True if the files that a line reads are there: words with a dot that do not follow an option of output.
 fn has_files(line: &str, folder: &Path) -> bool {
     let outputs = ["-o", "--out", "--svg", "--report", "--glb", "--output", ">"];
     let command = line.split(" #").next().unwrap_or_default();
@@ -99,6 +99,7 @@ fn has_files(line: &str, folder: &Path) -> bool {
 }
 
 #[test]
+#[ignore = "minutes: cargo test --test repository help_examples -- --ignored"]
 fn every_example_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

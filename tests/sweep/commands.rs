@@ -334,7 +334,7 @@ fn bundles_whose_names_lead_out_are_refused() {
     for (name, expected) in [
         ("../evil", "leads out of the folder"),
         ("a/../../evil", "leads out of the folder"),
-        ("/evil", "leads out of the folder"),
+        ("/evil", "is not in the manifest"),
         ("more", "is not in the manifest"),
     ] {
         std::fs::copy(path.join("b.zip"), path.join("c.zip")).unwrap();

@@ -3,7 +3,7 @@
 mod limits;
 mod process;
 
-pub use process::{Circumstances, ask};
+pub use process::{Circumstances, ask, timed};
 
 use std::path::{Path, PathBuf};
 
@@ -223,10 +223,7 @@ mod tests {
         let command = new("run 'a b' {input} -o {output} x={seed}{{}}").unwrap();
         let filled = command.filled(|place| place.to_uppercase()).unwrap();
         assert_eq!(filled, ["run", "a b", "INPUT", "-o", "OUTPUT", "x=SEED{}"]);
-        assert_eq!(
-            new("./run {input} {output}").unwrap().words[0],
-            "/tmp/./run"
-        );
+        assert_eq!(new("./run {input} {output}").unwrap().words[0], "/tmp/run");
     }
 
     #[test]

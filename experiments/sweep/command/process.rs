@@ -134,6 +134,13 @@ fn start(words: &[String], work: &Path, said: &[PathBuf; 2]) -> Result<Child> {
     program.spawn().map_err(failed)
 }
 
+/// The result of a call, and the seconds that it took: told beside results, never part of them.
+pub fn timed<T>(call: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let found = call();
+    (found, start.elapsed().as_secs_f64())
+}
+
 /// Waits for the end of a command, or for a reason to end it.
 fn wait(
     child: &mut Child,

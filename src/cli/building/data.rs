@@ -39,8 +39,12 @@ impl Input {
         }
     }
 
-    /// The same without columns of which nothing is known.
+    /// The same without columns of which nothing is known. A schema names the columns that are wanted: of one that has
+    /// no value the learner complains by its name.
     pub fn known(&self) -> Result<Dataset> {
+        if self.schema.is_some() {
+            return self.read();
+        }
         known(self.read()?).map_err(|e| Error::content(&self.input, e))
     }
 
@@ -65,7 +69,7 @@ impl Input {
         read.map_err(|e| Error::content(&self.input, e))
     }
 
-    /// What is known of each house.
+    /// The observation of each house: its known attributes.
     fn observed(&self) -> Result<Vec<Observation>> {
         let name = self.input.to_string_lossy();
         let at = |e: String| Error::content(&self.input, e);

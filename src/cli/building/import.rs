@@ -16,10 +16,10 @@ pub struct Args {
     /// City models, in every format that `edifice city` reads; several are tiles of one city.
     #[arg(required = true)]
     cities: Vec<PathBuf>,
-    /// Where the houses go (`*.buildings.jsonl`).
+    /// The file of houses to write (`*.buildings.jsonl`).
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Where a line for each building goes: what became of it, and how near the house is to it (CSV).
+    /// The report to write (CSV): a line for each building with its outcome, and how near the house is to it.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
     /// Smallest and largest plan in square metres.
@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// What became of all buildings.
+/// Numbers of buildings by outcome.
 struct Counts {
     refused: std::collections::BTreeMap<&'static str, usize>,
     houses: usize,

@@ -1,4 +1,4 @@
-//! What the colours of buildings tell in a picture.
+//! Colours of buildings in a picture, by what they tell.
 
 use std::path::Path;
 
@@ -65,7 +65,7 @@ pub struct Colouring {
     pub colours: Option<Vec<[u8; 3]>>,
     /// Of the city beside it.
     pub beside: Option<Vec<[u8; 3]>>,
-    /// What they stand for.
+    /// The meaning of each colour.
     pub legend: Legend,
 }
 

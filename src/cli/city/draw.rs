@@ -11,7 +11,7 @@ use super::colours::{Colouring, Read, colouring};
 /// Most pixels along a side.
 const MOST: usize = 8192;
 
-/// What the colour of a building tells.
+/// A property of buildings that their colours tell.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Colour {
     /// Nothing: buildings are light, textures are shown.
@@ -49,10 +49,10 @@ pub struct Args {
     /// Only buildings around a point, in the coordinates of the city's reference system.
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     at: Option<String>,
-    /// How far around, in metres.
+    /// Radius around the place, in metres.
     #[arg(long, value_name = "R", requires = "at", default_value_t = 300.0)]
     radius: f64,
-    /// What colours tell; a legend says what they stand for.
+    /// The property that colours tell; a legend says what they stand for.
     #[arg(long, value_enum, default_value = "plain")]
     colour: Colour,
 }

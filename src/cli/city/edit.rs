@@ -19,7 +19,7 @@ pub struct Args {
     /// Edits.
     #[arg(required = true, value_name = "EDIT", value_parser = parse)]
     edits: Vec<CityEdit>,
-    /// What becomes of residuals, which tell where the parts of single instances stand, of types that are edited.
+    /// Treatment of residuals, which tell where the parts of single instances stand, of types that are edited.
     #[arg(long, value_enum, default_value = "keep")]
     residuals: Residuals,
     /// The grammar to write (`*.city-grammar.json`, also with `.gz`, or `*.city-grammar.bin`).

@@ -102,7 +102,7 @@ pub struct Args {
     /// Part of the buildings that is kept.
     #[arg(long, value_enum, default_value = "all")]
     keep: Keep,
-    /// Where the rules do not put the parts of a building exactly: keep where they stand, or let the rules alone say.
+    /// Treatment of parts that the rules do not put exactly: keep where they stand, or let the rules alone say.
     #[arg(long, value_enum, default_value = "keep")]
     residuals: Residuals,
     /// The grammar to write: text (`*.city-grammar.json`, also with `.gz`), or few bytes (`*.city-grammar.bin`).

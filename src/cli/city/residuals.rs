@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-/// What becomes of residuals.
+/// The treatment of residuals.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Residuals {
     /// They are kept, and carried along by edits.

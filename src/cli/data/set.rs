@@ -18,9 +18,9 @@ pub struct Set {
     pub title: String,
     /// `facades`, `houses`, `cities` or `networks`.
     pub kind: String,
-    /// What it holds, in a line.
+    /// Its contents, in a line.
     pub about: String,
-    /// Where it is to be had.
+    /// The address that it is to be had from.
     pub url: String,
     /// Its licence.
     pub licence: String,

@@ -175,7 +175,7 @@ impl Given {
     }
 }
 
-/// What the user should know of observed elements that overlap.
+/// A note for the user on observed elements that overlap; `None` if none do.
 fn of_overlaps(partial: &PartialLayout) -> Option<String> {
     let overlaps = partial.overlaps();
     let first = overlaps.first()?;

@@ -35,8 +35,8 @@ impl InstanceGrammar {
         out
     }
 
-    /// What the rules alone say: no instance says where its parts stand, and templates that no rule names are left out. With
-    /// mean transforms (Eq. 7), or the numbers that instances state, parts stand where the rules put them.
+    /// The grammar by its rules alone: no instance says where its parts stand, and templates that no rule names are left
+    /// out. With mean transforms (Eq. 7), or the numbers that instances state, parts stand where the rules put them.
     pub fn rules_only(&self) -> Self {
         let mut out = self.clone();
         let successors = out.rules.iter_mut().flat_map(|r| &mut r.successors);
@@ -58,13 +58,13 @@ impl InstanceGrammar {
         self
     }
 
-    /// How many instances say where their parts stand.
+    /// Number of instances that say where their parts stand.
     pub fn residuals(&self) -> usize {
         let successors = self.rules.iter().flat_map(|r| &r.successors);
         successors.filter(|p| !p.parts.is_empty()).count()
     }
 
-    /// How many rules with parameters have a single instance: buildings whose shape no type explains.
+    /// Number of rules with parameters that have a single instance: buildings whose shape no type explains.
     pub fn escapes(&self) -> usize {
         let mut uses: FxHashMap<&str, usize> = FxHashMap::default();
         for placed in self.rules.iter().flat_map(|r| &r.successors) {

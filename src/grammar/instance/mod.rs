@@ -86,7 +86,7 @@ pub struct InstanceRule {
     pub levels: usize,
     /// Factors of all lengths along the axes of the symbol: what an edit of a type changes, wherever the type stands.
     pub scale: [f64; 3],
-    /// What replaces it.
+    /// The placements that replace it.
     pub successors: Vec<Placement>,
 }
 

@@ -26,7 +26,7 @@ impl InstanceRule {
         }
     }
 
-    /// How many numbers an instance states: none without parameters.
+    /// Number of numbers that an instance states: 0 without parameters.
     pub fn parameters(&self) -> usize {
         match self.levels {
             0 => 0,
@@ -34,8 +34,8 @@ impl InstanceRule {
         }
     }
 
-    /// Where a successor stands in an instance with these numbers, in metres, before [`InstanceRule::scale`]; for a rule without
-    /// parameters, the successor itself. Numbers that are missing are 0.
+    /// The place of a successor in an instance with these numbers, in metres, before [`InstanceRule::scale`]; for a rule
+    /// without parameters, the successor itself. Numbers that are missing are 0.
     pub fn part(&self, index: usize, numbers: &[f64]) -> Placement {
         let successor = &self.successors[index];
         if self.levels == 0 {
@@ -65,7 +65,7 @@ impl InstanceRule {
         out
     }
 
-    /// Whether all factors are 1.
+    /// True if all factors are 1.
     pub fn is_unscaled(&self) -> bool {
         self.scale == [1.0; 3]
     }
@@ -85,7 +85,7 @@ impl InstanceRule {
     }
 }
 
-/// What lengths w along x and d along y are along the width and the depth of what is turned by degrees.
+/// Lengths w along x and d along y, measured along the width and the depth of what is turned by degrees.
 fn along_and_across(turn: f64, w: f64, d: f64) -> [f64; 2] {
     let (sin, cos) = turn.to_radians().sin_cos();
     [(w * cos).hypot(d * sin), (w * sin).hypot(d * cos)]

@@ -57,7 +57,7 @@ pub enum CityGmlError {
     /// Coordinates that do not come in twos or threes.
     #[error("{count} numbers are no corners of {dimension} coordinates")]
     Dimension {
-        /// How many there are.
+        /// Number of the coordinates.
         count: usize,
         /// Of each corner.
         dimension: usize,
@@ -132,7 +132,7 @@ struct Model {
     seen: bool,
 }
 
-/// What was left out.
+/// Numbers of elements that were left out, by cause.
 #[derive(Default)]
 pub(super) struct Dropped {
     others: usize,

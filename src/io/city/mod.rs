@@ -100,13 +100,13 @@ pub fn read(path: &Path) -> Result<City> {
     check(city, path)
 }
 
-/// Whether a packed file is CityGML by its name.
+/// True if a packed file is CityGML by its name.
 fn is_gml(path: &Path) -> bool {
     let inner = packed::extension(&path.with_extension(""));
     matches!(inner.as_str(), "gml" | "citygml" | "xml")
 }
 
-/// What holds for every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
+/// Checks of every format: a building with triangles, finite metres; an identifier that occurs again gets a number.
 fn check(mut city: City, path: &Path) -> Result<City> {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for building in &city.buildings {

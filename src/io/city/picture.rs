@@ -19,7 +19,7 @@ const OBLIQUE: ([f32; 3], f32) = ([0.35, -0.55, -0.75], 30.0);
 /// From above, north at the top, from so far that walls are hardly seen.
 const PLAN: ([f32; 3], f32) = ([0.0, -1.0, -1e-4], 4.0);
 
-/// How cities are drawn.
+/// Settings of drawing cities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drawing {
     /// Width of each city's picture, in pixels.
@@ -41,7 +41,7 @@ pub struct Drawn<'a> {
     pub colours: Option<&'a [[u8; 3]]>,
 }
 
-/// What colours stand for.
+/// Colours, red, green and blue from 0 to 255, each with what it stands for.
 pub type Legend = Vec<([u8; 3], String)>;
 
 /// Draws cities from one place, from which the first is seen whole, as a PNG of one row; each picture is `width` x `height` pixels.
@@ -138,7 +138,7 @@ fn middle_of(city: &City, drawing: &Drawing) -> [f64; 3] {
     }
 }
 
-/// Whether a building of these bounds is drawn.
+/// True if a building of these bounds is drawn.
 fn seen((low, high): &([f64; 3], [f64; 3]), city: &City, drawing: &Drawing) -> bool {
     let Some((at, radius)) = drawing.around else {
         return true;

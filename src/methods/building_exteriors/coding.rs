@@ -1,4 +1,4 @@
-//! How attributes enter the model so that its draws are houses.
+//! Codings of attributes as variables of the model, so that its draws are houses.
 //!
 //! The paper ([`Coding::Published`]) gives every attribute a Gaussian: a house without a garage has a garage of six zeros,
 //! `far` and the share of the ground floor are drawn although they follow from others, and shares of floors may be
@@ -43,7 +43,7 @@ const LARGEST: f64 = 60.0;
 /// Least share of an upper floor that is there.
 const LEAST_SHARE: f64 = 0.03;
 
-/// How attributes enter the model.
+/// A coding of attributes as variables of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Coding {
@@ -54,12 +54,12 @@ pub enum Coding {
     Presence,
 }
 
-/// What is known of a house.
+/// The known attributes and parts of a house.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     /// Its 49 attributes.
     pub row: AttributeRow,
-    /// Whether there is a garage, a front and a back porch.
+    /// Presence of a garage, a front and a back porch; `None` where it is unknown.
     pub there: [Option<bool>; 3],
     /// Number of floors, 1 to 3.
     pub floors: Option<usize>,

@@ -20,7 +20,7 @@ pub const CODED_VERSION: u64 = 2;
 pub struct ModelFile {
     /// The variables, in the order of the data.
     pub groups: Vec<Group>,
-    /// How attributes become variables.
+    /// The coding of attributes as variables.
     pub coding: Coding,
     /// The model.
     pub model: Hierarchy,

@@ -16,9 +16,9 @@ pub enum ObservationError {
         row: usize,
         /// The column.
         column: String,
-        /// What stands there.
+        /// The text that stands there.
         text: String,
-        /// What should.
+        /// The kind of value that should stand there.
         expected: &'static str,
     },
     /// A group of attributes that there is not.
@@ -29,7 +29,7 @@ pub enum ObservationError {
 /// Largest number that a cell may hold: no attribute of a house comes near it.
 const LARGEST: f64 = 1e4;
 
-/// Whether a table with this header tells of houses: it has a column of attributes.
+/// True if a table with this header tells of houses: it has a column of attributes.
 pub fn tells_of_houses(header: &[String]) -> bool {
     header.iter().any(|h| COLUMNS.contains(&h.as_str()))
 }

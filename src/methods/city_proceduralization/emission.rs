@@ -116,7 +116,7 @@ fn terminals(
     }
 }
 
-/// What the grammar of `best` is made from.
+/// The findings that the grammar of `best` is made from.
 pub(super) struct Found<'a> {
     pub(super) city: &'a City,
     pub(super) components: &'a [Component],
@@ -279,7 +279,7 @@ fn instance(
     (frame, placed)
 }
 
-/// Whether a part is where the rule puts it, within `step` metres and a step of its turn.
+/// True if a part is where the rule puts it, within `step` metres and a step of its turn.
 fn like(own: &Placement, computed: &Placement, step: f64) -> bool {
     let apart = (own.turn - computed.turn + 180.0).rem_euclid(360.0) - 180.0;
     let turn = if step > 0.0 { 1.0 / TURNS } else { 0.0 };

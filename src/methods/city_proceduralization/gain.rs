@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// What a candidate would remove for what it costs; of equals, the first candidate is greatest.
+/// The cost that a candidate would remove, per cost of its own; of equals, the first candidate is greatest.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Gain {
     pub(super) value: f64,

@@ -115,7 +115,7 @@ impl Table<'_> {
     }
 }
 
-/// What differences of looks, from 0 to 1, count against shares of the volume.
+/// Weight of differences of looks, from 0 to 1, against shares of the volume.
 const LOOKS_WEIGHT: f64 = 0.25;
 
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched

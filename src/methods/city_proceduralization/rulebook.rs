@@ -34,7 +34,7 @@ const NEAR: usize = 20;
 const SQUARE: f64 = 0.75;
 /// Steps of features within which they are equal.
 const STEPS: f64 = 255.0;
-/// What a rule costs beside what each of its levels costs, in levels.
+/// Cost of a rule beside that of each of its levels, in levels.
 const RULE: f64 = 1.0;
 
 /// Which rule stands for a building.
@@ -55,7 +55,7 @@ pub(super) struct Rulebook {
     pub(super) uses: Vec<Option<RuleUse>>,
 }
 
-/// What is the same however many rules are asked for.
+/// The stacks of a city, which are the same however many rules are asked for.
 pub(super) struct Stacks<'a> {
     components: &'a [Component],
     /// Buildings of the city.

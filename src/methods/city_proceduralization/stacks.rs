@@ -76,7 +76,7 @@ impl Stack {
         sum
     }
 
-    /// What stacks are clustered by: means of `side` x `side` cells of each level, weighted by its share of the volume.
+    /// Features to cluster stacks by: means of `side` x `side` cells of each level, weighted by its share of the volume.
     pub(super) fn features(&self, side: usize) -> Vec<f64> {
         let total: f64 = self.boxes.iter().sum();
         let block = CELLS / side;

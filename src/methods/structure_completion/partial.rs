@@ -61,7 +61,7 @@ pub struct Overlap {
     pub first: usize,
     /// Index of the other, which comes later.
     pub second: usize,
-    /// Whether they are of one class and share more than half of the smaller one: one thing, drawn twice.
+    /// True if they are of one class and share more than half of the smaller one: one thing, drawn twice.
     pub twice: bool,
 }
 

@@ -60,7 +60,7 @@ use check::check;
 pub use evidence::Evidence;
 pub use learn::{FitSettings, Fitted};
 pub use query::{Answer, Explanation};
-pub use store::{FORMAT, VERSION};
+pub use store::{FORMAT, OLD_FORMAT, VERSION};
 
 /// A conditional distribution as stated.
 #[derive(Clone, Debug, PartialEq)]

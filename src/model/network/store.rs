@@ -8,7 +8,7 @@ pub const FORMAT: &str = "edifice/network";
 /// The version written, and the only one read.
 pub const VERSION: u64 = 1;
 /// The id of files without a version, which mean the same as version 1.
-const OLD_FORMAT: &str = "edifice-network-1";
+pub const OLD_FORMAT: &str = "edifice-network-1";
 
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]

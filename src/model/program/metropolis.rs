@@ -86,7 +86,7 @@ impl Chains {
 ///     type Out = u64;
 ///     fn run<H: Handler>(&self, h: &mut H) -> u64 {
 ///         let count = h.sample("count", binomial(4, 0.5));
-///         let sum = (0..count as usize).map(|i| h.sample(("die", i), binomial(2, 0.5))).sum();
+///         let sum: u64 = (0..count as usize).map(|i| h.sample(("die", i), binomial(2, 0.5))).sum();
 ///         h.observe(normal(sum as f64, 0.5), &4.0.into());
 ///         count
 ///     }

@@ -32,7 +32,7 @@
 //! impl Program for Schools {
 //!     type Out = f64;
 //!     fn run<H: Handler>(&self, h: &mut H) -> f64 {
-//!         let mean = h.sample("mean", normal(0.0, 10.0));
+//!         let mean = h.sample("mean", normal(0.0, 5.0));
 //!         let spread = h.sample("spread", half_cauchy(5.0));
 //!         for (i, (effect, error)) in EFFECTS.into_iter().enumerate() {
 //!             let own = h.sample(("own", i), normal(0.0, 1.0));

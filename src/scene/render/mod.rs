@@ -30,7 +30,7 @@ const EXACT: usize = 80;
 const HAZE: f32 = 5000.0;
 /// and in distances from the eye to the middle of the scene: a large scene is seen from afar.
 const HAZE_DISTANCES: f32 = 8.0;
-/// How much nearer to the sun a caster must be, in pixels of the shadow map.
+/// Least distance by which a caster must be nearer to the sun, in pixels of the shadow map.
 const BIAS_PIXELS: f32 = 1.5;
 
 /// An RGB picture of 8 bits a channel, row by row from the top.

@@ -111,7 +111,7 @@ pub struct City {
     pub origin: [f64; 3],
     /// The buildings.
     pub buildings: Vec<CityBuilding>,
-    /// What a reader left out or changed, in words.
+    /// Notes on what a reader left out or changed, in words.
     pub notes: Vec<String>,
 }
 

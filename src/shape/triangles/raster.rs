@@ -197,7 +197,7 @@ impl VolumeRaster {
 /// All columns that a cell's number can tell.
 const ALL: Range<i64> = -(1 << 46)..1 << 46;
 
-/// How much of each column of the unit box (x and y from -1/2 to 1/2, z from 0 to 1) is solid:
+/// The solid share, from 0 to 1, of each column of the unit box (x and y from -1/2 to 1/2, z from 0 to 1):
 /// `cells` x `cells` means of `samples` x `samples` columns, row after row from low y to high.
 pub fn height_map(unit: &TriangleMesh, cells: usize, samples: usize) -> Vec<f32> {
     let side = cells * samples;

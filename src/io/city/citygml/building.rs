@@ -250,7 +250,7 @@ impl Draft {
     }
 }
 
-/// Whether an element is a building or a part of one.
+/// True if an element is a building or a part of one.
 fn is_object(element: Option<&Element>) -> bool {
     element.is_some_and(|e| matches!(e.name.as_str(), "Building" | "BuildingPart"))
 }

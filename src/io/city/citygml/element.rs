@@ -17,7 +17,7 @@ pub(super) struct Element {
     pub(super) dimension: Option<usize>,
     /// `name`, of a generic attribute.
     pub(super) label: Option<String>,
-    /// Whether `orientation` is "-".
+    /// True if `orientation` is "-".
     pub(super) reversed: bool,
     /// Its text so far.
     pub(super) text: String,

@@ -24,8 +24,8 @@ pub fn epsg(name: &str) -> Option<u32> {
     let upper = name.to_uppercase();
     if let Some(at) = upper.find("EPSG") {
         let rest = upper[at + 4..].split([',', '+']).next().unwrap_or_default();
-        let parts = rest.split([':', '/']).filter(|p| !p.is_empty());
-        return parts.last().and_then(|code| code.trim().parse().ok());
+        let mut parts = rest.split([':', '/']).filter(|p| !p.is_empty());
+        return parts.next_back().and_then(|code| code.trim().parse().ok());
     }
     let known = SURVEY.iter().find(|(system, _)| upper.contains(system));
     known.map(|(_, code)| *code)
@@ -36,7 +36,7 @@ pub fn epsg(name: &str) -> Option<u32> {
 pub struct System {
     name: Option<String>,
     code: Option<u32>,
-    /// What is taken off: whole metres, or degrees of latitude and longitude.
+    /// The origin that is taken off: whole metres, or degrees of latitude and longitude.
     origin: Option<Origin>,
 }
 
@@ -70,7 +70,7 @@ impl System {
         code.or_else(|| self.name.clone())
     }
 
-    /// What to add to a city's coordinates.
+    /// The offset to add to a city's coordinates, in metres.
     pub(super) fn origin(&self) -> [f64; 3] {
         match self.origin {
             Some(Origin::Metres(origin)) => origin,
@@ -79,7 +79,7 @@ impl System {
         }
     }
 
-    /// Whether degrees were projected.
+    /// True if degrees were projected.
     pub(super) fn is_projected_here(&self) -> bool {
         matches!(self.origin, Some(Origin::Degrees { .. }))
     }

@@ -73,7 +73,7 @@ pub(super) struct Rules<'a, C> {
     counts: Natural,
     weight: Natural,
     flags: [Bit; 4],
-    /// Whether rules may have parameters and factors: not in version 1.
+    /// True if rules may have parameters and factors: not in version 1.
     parametric: bool,
     levels: Natural,
     again: Bit,
@@ -85,7 +85,7 @@ pub(super) struct Rules<'a, C> {
 /// Parameters with probabilities of their own.
 const PARAMETERS: usize = 6;
 
-/// What [`Rules::flags`] tell.
+/// Names of the bits of [`Rules::flags`].
 #[derive(Clone, Copy)]
 enum Flag {
     WholeWeight,

@@ -1,4 +1,4 @@
-//! What colours stand for, in the corner of a picture.
+//! The legend in the corner of a picture: colours, and what they stand for.
 
 use super::Legend;
 use super::glyphs::glyph;

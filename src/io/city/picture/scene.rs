@@ -30,7 +30,7 @@ fn material(name: &str, color: [u8; 3]) -> Material {
     }
 }
 
-/// What is drawn of a city, its origin moved to `middle` (in the reference system); painted surfaces in pieces of one colour each.
+/// The scene of a city, its origin moved to `middle` (in the reference system); painted surfaces in pieces of one colour each.
 pub(super) fn scene(drawn: &Drawn, drawing: &Drawing, middle: [f64; 3]) -> Scene {
     let city = drawn.city;
     let shift = [0, 1, 2].map(|k| middle[k] - city.origin[k]);
@@ -154,7 +154,7 @@ fn fineness(city: &City) -> f64 {
     fine.max(length / MOST_PIECES).max(FINEST)
 }
 
-/// Whether the surface of a building faces inwards.
+/// True if the surface of a building faces inwards.
 fn is_inverted(building: &CityBuilding, base: f64) -> bool {
     building.mesh.volume_above(base) < 0.0
 }

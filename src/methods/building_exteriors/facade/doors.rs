@@ -1,4 +1,4 @@
-//! Where the doors of a house go: one in front, on the main room, and one to each porch.
+//! The doors of a house: one in front, on the main room, and one to each porch.
 
 use super::glaze::{DOOR, millimetres};
 use super::room::{CLEAR, Room, Strip, Walls};
@@ -12,7 +12,7 @@ const ROOMY: f64 = 2.4;
 /// Clear wall between a door that is put in later and windows beside it (m), and steps in which its place is sought.
 const BESIDE: f64 = 0.2;
 const STEP: f64 = 0.1;
-/// How far above the floor a door may begin (m): on a porch's floor.
+/// Largest height above the floor at which a door may begin (m): on a porch's floor.
 const SILL: f64 = 0.45;
 
 /// The porch on a side: the front one lies in the front half of the plan.
@@ -77,7 +77,7 @@ fn place(side: Side) -> usize {
     Side::ALL.iter().position(|s| *s == side).unwrap_or(0)
 }
 
-/// Whether a door has room in the middle of the strip.
+/// True if a door has room in the middle of the strip.
 fn fits(walls: &Walls, strip: &Strip) -> bool {
     let middle = (strip.start + strip.end) / 2.0;
     let ground = strip.rooms.iter().find(|r| r.piece.floor == 0);
@@ -91,7 +91,7 @@ fn is_free(walls: &Walls, room: &Room, at: f64) -> bool {
     free.is_some_and(|f| f[1] + CLEAR >= DOOR[1] + 0.02 && f[0] <= SILL)
 }
 
-/// Whether a wall is one of the garage.
+/// True if a wall is one of the garage.
 fn on_garage(building: &Building, room: &Room) -> bool {
     let wall = &room.piece;
     let middle = (wall.start + wall.end) / 2.0;

@@ -1,4 +1,4 @@
-//! What is wrong with a house: faults that no sound house has, and what one would not believe.
+//! Findings on a house: faults that no sound house has, and what one would not believe.
 //!
 //! Each finding names its place in the file. Faults: the unit, magnitudes, boxes that are degenerate, doubled, apart or
 //! overlapping, facades that are missing or stand on no wall, elements that are out of place, surfaces that are not
@@ -109,7 +109,7 @@ fn box_faults(i: usize, b: &MassBox, found: &mut Vec<String>) {
     }
 }
 
-/// Whether boxes make one plan on every floor.
+/// Checks that the boxes make one plan on every floor.
 fn mass(building: &Building, found: &mut Vec<String>) {
     let ground = PlanUnion::new(&building.floor_plan(0)).soundness();
     if ground.parts > 1 {
@@ -266,7 +266,7 @@ const WINDOWS: [f64; 2] = [0.3, 3.6];
 const COUNT: [usize; 2] = [2, 60];
 const BOXES: usize = 14;
 
-/// What one would not believe of a house, each with its place; none for a plausible one.
+/// Properties of a house that one would not believe, each with its place; none for a plausible one.
 pub fn implausible(building: &Building) -> Vec<String> {
     let mut found = Vec::new();
     let [low, high] = STOREYS;

@@ -83,7 +83,7 @@ pub fn reconcile(row: &mut [f64; 49], given: &[bool; 49], plan: &[Rect]) -> Resu
     Ok(())
 }
 
-/// How far the house that [`stand`] puts on a plan is from a row, in standard deviations by the largest mass attribute;
+/// Distance of the house that [`stand`] puts on a plan from a row, in standard deviations by the largest mass attribute;
 /// infinite where there is none.
 pub fn distance(row: &[f64; 49], given: &[bool; 49], plan: &[Rect], deviations: &[f64; 49]) -> f64 {
     let (mut row, mut known) = (*row, *given);

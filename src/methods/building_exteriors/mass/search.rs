@@ -87,7 +87,9 @@ pub fn search(
             fit(&scheme, target, deviations, options.enough),
             Some(index),
         );
-        if found.max_z() <= options.enough && found.complexity <= SIMPLE {
+        // Around observed boxes the nearest house decides, not the plainest: what is observed is not to be made plainer.
+        let simple = !frozen.is_empty() || found.complexity <= SIMPLE;
+        if found.max_z() <= options.enough && simple {
             break;
         }
     }
@@ -112,7 +114,7 @@ pub fn search(
     })
 }
 
-/// How unlike a plain house a mass model is: its boxes, thin ones threefold or more.
+/// Complexity of a mass model, 1 for a plain house: its number of general boxes, thin ones counted 3 or 9 times.
 fn complexity(building: &Building) -> f64 {
     let general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
     general

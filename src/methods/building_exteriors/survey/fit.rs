@@ -1,4 +1,4 @@
-//! How near fitted boxes are to the triangles they stand for, measured by code that the fit does not use.
+//! Fit of boxes to the triangles they stand for, measured by code that the fitting does not use.
 
 use serde::Serialize;
 

@@ -4,7 +4,7 @@ use super::planes::Planes;
 use super::walls::{ground, is_wall, norm, normal};
 use edifice_shape::triangles::{Corners, TriangleMesh};
 
-/// Side of a sample (m).
+/// Largest side of a sample (m).
 const STEP: f64 = 0.2;
 /// Most samples of a raster.
 const MOST: f64 = 4e5;
@@ -17,6 +17,9 @@ const APART: f64 = 0.03;
 pub(super) struct HeightMap {
     /// Left front corner.
     corner: [f64; 2],
+    /// Sides of a sample along x and y: they divide the extent, so that no sample lies on the outline of a rectangular
+    /// plan, where it would count twice as much as it should and rounding would decide what it sees.
+    step: [f64; 2],
     /// Samples along x and y.
     size: [usize; 2],
     /// Height of each, 0 outside of the plan.
@@ -44,10 +47,11 @@ impl HeightMap {
         if (extent[0] * extent[1]).is_nan() || extent[0] * extent[1] > MOST {
             return None;
         }
-        let size = extent.map(|n| n.ceil() as usize + 1);
+        let size = extent.map(|n| (n - 1e-6).ceil().max(1.0) as usize);
         let count = size[0] * size[1];
         let mut map = Self {
-            corner: [low[0] - STEP / 2.0, low[1] - STEP / 2.0],
+            corner: [low[0], low[1]],
+            step: [0, 1].map(|k| (high[k] - low[k]) / size[k] as f64),
             size,
             height: vec![0.0; count],
             plane: vec![NONE; count],
@@ -86,8 +90,12 @@ impl HeightMap {
         let range = |k: usize| {
             let low = a[k].min(b[k]).min(c[k]);
             let high = a[k].max(b[k]).max(c[k]);
-            let first = ((low - self.corner[k]) / STEP - 0.5).ceil().max(0.0) as usize;
-            let last = ((high - self.corner[k]) / STEP - 0.5).floor().max(-1.0);
+            let first = ((low - self.corner[k]) / self.step[k] - 0.5)
+                .ceil()
+                .max(0.0) as usize;
+            let last = ((high - self.corner[k]) / self.step[k] - 0.5)
+                .floor()
+                .max(-1.0);
             first..((last + 1.0) as usize).min(self.size[k])
         };
         let (xs, ys) = (range(0), range(1));
@@ -106,8 +114,8 @@ impl HeightMap {
 
     fn place(&self, i: usize, j: usize) -> [f64; 2] {
         [
-            self.corner[0] + (i as f64 + 0.5) * STEP,
-            self.corner[1] + (j as f64 + 0.5) * STEP,
+            self.corner[0] + (i as f64 + 0.5) * self.step[0],
+            self.corner[1] + (j as f64 + 0.5) * self.step[1],
         ]
     }
 
@@ -126,7 +134,7 @@ impl HeightMap {
 
     /// Area of one sample.
     pub fn cell(&self) -> f64 {
-        STEP * STEP
+        self.step[0] * self.step[1]
     }
 
     /// Area of the plan.
@@ -139,8 +147,8 @@ impl HeightMap {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for s in self.samples() {
             for (axis, v) in [s.x, s.y].into_iter().enumerate() {
-                bounds[axis][0] = bounds[axis][0].min(v - STEP / 2.0);
-                bounds[axis][1] = bounds[axis][1].max(v + STEP / 2.0);
+                bounds[axis][0] = bounds[axis][0].min(v - self.step[axis] / 2.0);
+                bounds[axis][1] = bounds[axis][1].max(v + self.step[axis] / 2.0);
             }
         }
         bounds
@@ -157,7 +165,7 @@ impl HeightMap {
     pub fn flat_share(&self) -> f64 {
         let (mut flat, mut all) = (0.0, 0.0_f64);
         let [n, m] = self.size;
-        let most = 10.0_f64.to_radians().tan() * STEP;
+        let most = 10.0_f64.to_radians().tan() * self.step[0].min(self.step[1]);
         for i in 1..n.saturating_sub(1) {
             for j in 1..m.saturating_sub(1) {
                 let k = i * m + j;
@@ -178,7 +186,7 @@ impl HeightMap {
         flat / all.max(1.0)
     }
 
-    /// Whether the plan is in one piece without courtyards, but for crumbs, which are dropped.
+    /// True if the plan is in one piece without courtyards, but for crumbs, which are dropped.
     pub fn is_whole(&mut self) -> bool {
         let parts = self.components(true);
         let total: usize = parts.iter().map(Vec::len).sum();

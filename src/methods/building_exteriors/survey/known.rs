@@ -1,4 +1,4 @@
-//! What the attributes of a city model say of a building.
+//! Facts on a building from the attributes of a city model.
 
 use serde_json::{Map, Value};
 
@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 pub struct Known {
     /// Storeys above the ground, at least 1.
     pub storeys: Option<usize>,
-    /// Whether the file says that people live there.
+    /// True if the file says that people live there.
     pub is_dwelling: bool,
     /// A use that is none for dwellings.
     pub other_use: Option<String>,
@@ -31,7 +31,7 @@ const YEARS: [&str; 5] = [
     "year",
 ];
 const USES: [&str; 4] = ["function", "usage", "gebruiksdoel", "use"];
-/// Words and codes of dwellings: code lists of the German surveys (31001_1000 to 1999, 9997 and 9998 unknown), PLATEAU
+/// Words and codes of dwellings: code lists of the German surveys (`31001_1000` to 1999, 9997 and 9998 unknown), PLATEAU
 /// (411 house, 412 flats), INSPIRE.
 const DWELLINGS: [&str; 7] = [
     "wohn", "woon", "resid", "dwelling", "house", "home", "31001_1",

@@ -65,7 +65,7 @@ pub struct Limits {
     pub iou: f64,
     /// Most boxes.
     pub boxes: usize,
-    /// Whether flat halls and sheds without a known use are refused by their shape.
+    /// True if flat halls and sheds without a known use are refused by their shape.
     pub by_shape: bool,
 }
 
@@ -86,7 +86,7 @@ impl Default for Limits {
 pub struct Surveyed {
     /// The house.
     pub building: Building,
-    /// How near it is to the triangles.
+    /// Fit of the house to the triangles.
     pub fit: Fit,
     /// Year of construction, where the file has it.
     pub year: Option<i64>,
@@ -176,7 +176,7 @@ pub fn size(mesh: &TriangleMesh) -> Option<[f64; 2]> {
     (area > 0.0 && all.iter().all(|v| v.is_finite())).then_some(all)
 }
 
-/// Whether the size is within the limits.
+/// Checks that the size is within the limits.
 ///
 /// # Errors
 /// [`Refused::Size`], [`Refused::NoSurface`].

@@ -31,7 +31,7 @@ pub(super) fn norm(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Whether the triangle is upright.
+/// True if the triangle is upright.
 pub(super) fn is_wall(n: [f64; 3], length: f64) -> bool {
     n[2].abs() <= LEVEL * length
 }
@@ -45,7 +45,7 @@ pub(super) fn plan_area(mesh: &TriangleMesh) -> f64 {
     roof(mesh).map(|t| signed_plan_area(&t).abs()).sum()
 }
 
-/// How far above the lowest corner a level triangle is still ground (m).
+/// Largest height above the lowest corner at which a level triangle is still ground (m).
 const GROUND: f64 = 0.5;
 
 /// Level triangles near the lowest corner.

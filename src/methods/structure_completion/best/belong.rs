@@ -21,7 +21,7 @@ const SAME_WIDTH: f64 = 1.25;
 /// Largest way of a shop or door to its place by rule, in units of its width.
 const REACH: f64 = 0.25;
 
-/// Whether a balcony hangs before or below a window.
+/// True if a balcony hangs before or below a window.
 pub fn is_host(window: &Rect, balcony: &Rect) -> bool {
     let (x, y) = window.centre();
     let beside = (balcony.centre().0 - x).abs() < 0.5 * window.width.max(balcony.width);
@@ -35,7 +35,7 @@ fn host<'a>(hosts: &'a [Host], balcony: &Rect) -> Option<&'a Host> {
     own.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// How a balcony hangs before its window: offsets of its centre and its lower edge, width beyond that of the window, height.
+/// A balcony before its window: offsets of its centre and its lower edge, width beyond that of the window, height.
 #[derive(Debug, Clone, Copy)]
 struct Hanging {
     row: usize,

@@ -90,7 +90,7 @@ pub fn places(scene: &Scene, draws: &[Draw], candidates: &Candidates) -> Vec<Pla
     places
 }
 
-/// What the features of all places share.
+/// Features that all places share.
 struct Around<'a> {
     scene: &'a Scene<'a>,
     columns: &'a [f64],

@@ -34,7 +34,7 @@ pub struct Layout {
     pub lattice: (usize, usize),
 }
 
-/// What layouts are judged by.
+/// A judge of layouts by the values of their candidates.
 pub struct Judge<'a> {
     scene: &'a Scene<'a>,
     candidates: &'a Candidates,

@@ -97,7 +97,7 @@ fn rows(model: &Model, index: usize, without: &[usize], task: Task, seed: u64) -
     ((rows, targets), (of_places, of_doors))
 }
 
-/// What is learnt of elements.
+/// The learnt probabilities of elements.
 pub struct Learnt {
     /// Probability of a candidate at an intersection over union of 0.5.
     pub loose: Boosting,

@@ -21,7 +21,7 @@ use edifice_shape::{Axis, Rect};
 /// Share of the smaller of two elements up to which they do not overlap: rounding only.
 const TOUCH: f64 = 1e-6;
 
-/// Whether two elements may not stand together in a completion: they overlap, and neither is a balcony before something else.
+/// True if two elements may not stand together in a completion: they overlap, and neither is a balcony before something else.
 pub fn clash(a: &Element, b: &Element) -> bool {
     let least = a.rect.area().min(b.rect.area());
     !a.class.may_overlap(b.class) && a.rect.overlap(&b.rect) > TOUCH * least

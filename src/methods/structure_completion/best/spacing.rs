@@ -10,7 +10,7 @@ use crate::layout::lines::median;
 
 /// Largest way of a line to its place by rule, in units of the extent of an element.
 const REACH: f64 = 0.35;
-/// What the rules further down the list must be nearer by, in the same unit.
+/// Cost of each place down the list of rules, in the same unit: a later rule must be nearer by it.
 const LATER: f64 = 0.02;
 
 /// The new lines of one axis, each at its place by rule; `seen` and `new` increase, and lie in `[0, length]`. `size` is

@@ -1,4 +1,4 @@
-//! What like rows and like columns say of a cell.
+//! Votes of like rows and like columns for a cell.
 //!
 //! With `M(r, c)` 1 where a window is seen, the weight of a row `q` for a row `r` is their containment times their Jaccard
 //! index, `|r & q| / |r| * |r & q| / |r | q|`; the vote of the rows for a cell is the weighted mean of `M(q, c)` over the

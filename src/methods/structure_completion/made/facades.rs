@@ -75,7 +75,7 @@ fn bays(rng: &mut Stream) -> Bays {
     }
 }
 
-/// How the balconies of a floor are.
+/// The balconies of a floor.
 #[derive(Clone, Copy, PartialEq)]
 enum Balconies {
     None,

@@ -41,7 +41,7 @@ pub fn grid(
     }
 }
 
-/// What is seen of a grid.
+/// The part of a grid that is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sight {
     /// A random 30 % of the cells, at least one of each row and of each column; nothing is known of the others.

@@ -35,7 +35,7 @@ pub struct Scalar<C>(pub C);
 /// # Examples
 /// ```
 /// use edifice_model::program::{Real, dist::{Bounds, Continuous, Dist, Scalar}};
-/// use rand::Rng;
+/// use rand::{Rng, RngExt};
 /// /// Density 2x on (0, 1).
 /// struct Rising;
 /// impl<R: Real> Continuous<R> for Rising {

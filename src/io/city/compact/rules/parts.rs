@@ -1,4 +1,4 @@
-//! What instances say beside their rules: numbers of parameters, and residuals.
+//! Data that instances have beside their rules: numbers of parameters, and residuals.
 
 use rustc_hash::FxHashMap;
 
@@ -58,7 +58,7 @@ impl<C: Coder> Rules<'_, C> {
         Ok(numbers)
     }
 
-    /// Where the successors of an instance stand.
+    /// Codes the places of an instance's successors; `None` for those that stand where the rule puts them.
     fn parts(
         &mut self,
         instance: &Placement,
