@@ -18,7 +18,7 @@
 //! (`null`: absent).
 //!
 //! Version 2, written where a rule has parameters or factors: a rule's `"parameters": ["w", "d", "h1", "h2"]` say that its
-//! successors' lengths are in shares of a width and a depth, and heights in levels ([`InstanceRule::part`]); `numbers`, on an
+//! successors' lengths are in shares of a width and a depth, and heights in levels (`InstanceRule::part`); `numbers`, on an
 //! instance, are their values in metres; `scale`, on a rule, three factors of what it puts down. With several rules for a symbol a derivation takes the first one; synthesis draws
 //! by weight.
 

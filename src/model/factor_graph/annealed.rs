@@ -48,7 +48,7 @@ pub struct LogPartition {
 impl Question<'_> {
     /// `log Z` by annealed importance sampling, with its error; chains in parallel, the same for any number of threads.
     ///
-    /// `chains * steps` sweeps, each O(Σ_v sizes[v] (factors around v)), whatever the width of the graph.
+    /// `chains * steps` sweeps, each O(Σ_v `sizes[v]` (factors around v)), whatever the width of the graph.
     ///
     /// # Errors
     /// [`ModelError::Parameter`] for fewer than 2 chains or no step.

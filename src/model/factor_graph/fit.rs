@@ -114,7 +114,7 @@ pub fn gradient<C: Chain>(
 /// the number of threads.
 ///
 /// A round of N examples and K weights is O(N moves) moves of chains and O(N K), with `newton`
-/// O(N K² + K³); memory is N states and N K features. Formulas and sources are in the [module](self).
+/// O(N K² + K³); memory is N states and N K features. Formulas and sources are in the first page of the module.
 ///
 /// # Errors
 /// [`ModelError::Empty`] without examples; [`ModelError::Parameter`] for a feature that is not

@@ -68,7 +68,7 @@ impl Compiled {
 
 /// The program as a network, to be asked by variable elimination: exact as long as each choice depends on few others, however many there are.
 ///
-/// Runs of the program: some [`PROBES`] for each function and parent, and two for each entry of a table.
+/// Runs of the program: some 64 for each function and parent, and two for each entry of a table.
 ///
 /// # Errors
 /// [`ProgramError::NotFinite`]; [`ProgramError::Changing`] where runs make other choices, or a dependence was overlooked;

@@ -29,7 +29,7 @@ pub const ISLANDS: usize = 32;
 /// Share of the particles below which they are resampled.
 const LEAST_SHARE: f64 = 0.5;
 
-/// `count` particles, rounded up to a multiple of [`ISLANDS`]; the same for any number of threads.
+/// `count` particles, rounded up to a multiple of `ISLANDS`; the same for any number of threads.
 ///
 /// Runs of the program: one a particle, and one for each copy after a resampling. Good where observations come one after the other,
 /// and each says something of the choices just before it.

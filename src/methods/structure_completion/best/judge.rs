@@ -7,7 +7,7 @@
 //!
 //! Sets are not free: the windows of a layout lie on the lines of one lattice. For each lattice of the pool, candidates on its
 //! lines are taken by falling `p_i` as long as the score rises and nothing overlaps; what is chosen is put on shared
-//! lines ([`super::regular`]), and windows that then stand alone on a line are left out. The layout of the highest score is
+//! lines (`regular`), and windows that then stand alone on a line are left out. The layout of the highest score is
 //! the one of least expected risk among those that were tried.
 
 use super::by_place::ByPlace;

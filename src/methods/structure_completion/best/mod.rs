@@ -4,7 +4,7 @@
 //!    database below the lowest seen row, and database facades warped to the seen lines.
 //! 2. [`candidates`]: every distinct element, with the share of the pool that supports it and features of its place.
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
-//! 4. [`select`]: the set of elements with the largest expected F1.
+//! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75.
 
 mod belong;
 mod by_place;

@@ -1,5 +1,5 @@
 //! A pool of weighted layouts: exact draws of lines, mirrored layouts, transfers from the database; each on shared lines
-//! ([`super::regular`]).
+//! (`regular`).
 
 use rand::Rng;
 

@@ -54,7 +54,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Rectangles that stand on the columns, as [`standing`] gives them.
+    /// Rectangles that stand on the columns, as `standing` gives them.
     pub fn standing(&self) -> Vec<Rect> {
         standing(&self.elements, self.size)
     }
