@@ -9,12 +9,10 @@ use edifice_shape::Facade;
 type Infer = fn(&Facade) -> Result<Grammar>;
 
 /// By name.
+#[rustfmt::skip]
 const GRAMMARS: &[(&str, Infer)] = &[
     ("procedural_logic", super::procedural_logic::grammar), // one line each
-    (
-        "procedural_logic_picture",
-        super::procedural_logic::picture_grammar,
-    ),
+    ("procedural_logic_picture", super::procedural_logic::picture_grammar),
 ];
 
 /// The grammar that a method finds of a facade.
