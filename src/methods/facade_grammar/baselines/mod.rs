@@ -15,7 +15,7 @@
 //!   directions, and there its parse takes all lines of one direction before the other. On the tiling of facade (i) all settings
 //!   of the parameters give 43.4; the report's `baseline_ranges` shows them, and two other readings of how binary splits are
 //!   joined (41.5 and 75.6). On its label picture, which lines may cut anywhere, with Eq. 3 divided by the size of the facade as
-//!   it is written, procedural logic gives 50.9 with 9 rules (printed 51): the report's Table 2 has both.
+//!   it is written, procedural logic is run too (printed 51), beside the tiling, in Table 2.
 //! - *Symmetry* is the greedy form of the splitting heuristic of Zhang et al. 2013: the binary split
 //!   that maximizes the sum of the integral symmetries of the two parts. Their measure accounts for
 //!   all partial mirror symmetries of a discrete structure; here it is
