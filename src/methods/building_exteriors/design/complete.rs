@@ -82,6 +82,8 @@ pub enum CompleteError {
 
 /// Mass models within this distance (standard deviations) are near enough not to try another place.
 const NEAR: f64 = 0.05;
+/// Rounds of random arrangements around observed boxes, as a multiple of those without any.
+const MORE: usize = 2;
 /// Samples among which the most probable answers are sought, answers tried for each house wanted, and their
 /// least root mean square distance in standard deviations.
 const POOL: usize = 2000;
@@ -254,7 +256,12 @@ fn placed(
             }
         })
         .collect();
-    let mut mass = search(&target, &blocks, database, &options.search, rng)
+    // Observed boxes bind arrangements: it takes more of them to reach the attributes.
+    let options_of_search = Search {
+        rounds: MORE * options.search.rounds,
+        ..options.search.clone()
+    };
+    let mut mass = search(&target, &blocks, database, &options_of_search, rng)
         .map_err(|e: MassError| GenerateError::from(e))?;
     exactly(&mut mass, &partial.boxes, origin);
     if !is_sound(&mass.building) {
