@@ -195,14 +195,7 @@ impl Trial for Ranking {
     fn posed(posed: &Posed) -> Result<Question> {
         let mut grids = Vec::new();
         if let Some(folder) = &posed.learn {
-            let fail = |e| Error::io(folder, "read", e);
-            let listed: std::io::Result<Vec<_>> = std::fs::read_dir(folder)
-                .map_err(fail)?
-                .map(|entry| entry.map(|e| e.path()))
-                .collect();
-            let mut paths = listed.map_err(fail)?;
-            paths.sort();
-            for path in paths {
+            for path in crate::layouts::files(folder, ".json")? {
                 grids.push(read_grid(&path)?);
             }
         }

@@ -180,14 +180,7 @@ impl Trial for Completion {
         let observed = elements(&facade.facade)?;
         let mut layouts = Vec::new();
         if let Some(folder) = &posed.learn {
-            let fail = |e| Error::io(folder, "read", e);
-            let listed: std::io::Result<Vec<_>> = std::fs::read_dir(folder)
-                .map_err(fail)?
-                .map(|entry| entry.map(|e| e.path()))
-                .collect();
-            let mut paths = listed.map_err(fail)?;
-            paths.sort();
-            for path in paths {
+            for path in crate::layouts::files(folder, ".json")? {
                 let facade = facade_json::read(&path)?;
                 layouts.push(Layout {
                     elements: elements(&facade)?,

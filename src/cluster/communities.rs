@@ -11,6 +11,8 @@ use petgraph::graph::{NodeIndex, UnGraph};
 use petgraph::visit::EdgeRef;
 use rayon::prelude::*;
 
+use super::moves::{best_label, links};
+
 /// A graph whose edges carry weights, positive and finite.
 pub type WeightedGraph = UnGraph<(), f64>;
 
@@ -314,28 +316,16 @@ impl Level {
         let mut waiting = vec![true; n];
         while let Some(Reverse(v)) = queue.pop() {
             waiting[v] = false;
-            let mut links: BTreeMap<usize, f64> = BTreeMap::new();
-            for &(w, weight) in &self.neighbours[v] {
-                *links.entry(label[w]).or_default() += weight;
-            }
             let own = label[v];
             sum[own] -= self.degree[v];
-            // Gain of joining c, over standing alone, times the total weight.
-            let gain =
-                |c: usize, weight: f64| weight - self.degree[v] * sum[c] / (2.0 * self.total);
-            let mut best = (gain(own, links.get(&own).copied().unwrap_or(0.0)), own);
-            for (&c, &weight) in &links {
-                let g = gain(c, weight);
-                if g > best.0 + 1e-12 * self.total {
-                    best = (g, c);
-                }
-            }
-            sum[best.1] += self.degree[v];
-            if best.1 != own {
+            let links = links(&self.neighbours[v], &label);
+            let best = best_label(&links, own, self.degree[v], self.total, &sum);
+            sum[best] += self.degree[v];
+            if best != own {
                 any = true;
-                label[v] = best.1;
+                label[v] = best;
                 for &(w, _) in &self.neighbours[v] {
-                    if label[w] != best.1 && !waiting[w] {
+                    if label[w] != best && !waiting[w] {
                         waiting[w] = true;
                         queue.push(Reverse(w));
                     }

@@ -12,6 +12,7 @@ use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 
 use super::communities::{Communities, WeightedGraph, modularity, renumbered};
+use super::moves::{best_label, links};
 
 /// Randomness of the refinement: gains, in shares of the total weight, that differ by less are chosen between nearly evenly.
 const THETA: f64 = 0.01;
@@ -125,15 +126,6 @@ impl Level {
         }
     }
 
-    /// Weight from a node to each label around it.
-    fn links(&self, v: usize, label: &[usize]) -> BTreeMap<usize, f64> {
-        let mut links = BTreeMap::new();
-        for &(w, weight) in &self.neighbours[v] {
-            *links.entry(label[w]).or_default() += weight;
-        }
-        links
-    }
-
     /// Moves nodes in random order, those whose surroundings changed again.
     fn moves<R: Rng>(&self, label: &mut [usize], rng: &mut R) {
         let n = self.degree.len();
@@ -147,21 +139,13 @@ impl Level {
             waiting[v] = false;
             let own = label[v];
             sum[own] -= self.degree[v];
-            let links = self.links(v, label);
-            let gain =
-                |c: usize, weight: f64| weight - self.degree[v] * sum[c] / (2.0 * self.total);
-            let mut best = (gain(own, links.get(&own).copied().unwrap_or(0.0)), own);
-            for (&c, &weight) in &links {
-                let g = gain(c, weight);
-                if g > best.0 + 1e-12 * self.total {
-                    best = (g, c);
-                }
-            }
-            sum[best.1] += self.degree[v];
-            if best.1 != own {
-                label[v] = best.1;
+            let links = links(&self.neighbours[v], label);
+            let best = best_label(&links, own, self.degree[v], self.total, &sum);
+            sum[best] += self.degree[v];
+            if best != own {
+                label[v] = best;
                 for &(w, _) in &self.neighbours[v] {
-                    if label[w] != best.1 && !waiting[w] {
+                    if label[w] != best && !waiting[w] {
                         waiting[w] = true;
                         queue.push_back(w);
                     }

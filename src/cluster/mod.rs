@@ -16,6 +16,7 @@ mod description;
 mod kd_tree;
 mod kmeans;
 mod leiden;
+mod moves;
 mod retrieval;
 mod ward;
 

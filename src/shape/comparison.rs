@@ -196,8 +196,8 @@ fn matched(
     matched
 }
 
-/// Area of a union of rectangles, strip by strip.
-fn covered(rects: &[Rect]) -> f64 {
+/// Area of a union of rectangles, strip by strip; in the square of their unit.
+pub fn covered(rects: &[Rect]) -> f64 {
     let mut xs: Vec<f64> = rects.iter().flat_map(|r| [r.x, r.right()]).collect();
     xs.sort_by(f64::total_cmp);
     xs.dedup();

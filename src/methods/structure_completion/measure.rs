@@ -1,6 +1,7 @@
 //! Agreement of a completion with the truth, computed without knowledge of any method.
 
 use super::layout::{Class, Element};
+use edifice_shape::comparison::covered;
 use edifice_shape::{Axis, Rect};
 
 /// Precision, recall and their harmonic mean.
@@ -73,28 +74,6 @@ pub fn area_iou(predicted: &[Element], truth: &[Element]) -> f64 {
         union += both;
     }
     if union > 0.0 { shared / union } else { 1.0 }
-}
-
-/// Area of a union of rectangles, strip by strip.
-fn covered(rects: &[Rect]) -> f64 {
-    let mut xs: Vec<f64> = rects.iter().flat_map(|r| [r.x, r.right()]).collect();
-    xs.sort_by(f64::total_cmp);
-    xs.dedup();
-    let mut area = 0.0;
-    for strip in xs.windows(2) {
-        let across = rects
-            .iter()
-            .filter(|r| r.x <= strip[0] && r.right() >= strip[1]);
-        let mut spans: Vec<(f64, f64)> = across.map(|r| (r.y, r.top())).collect();
-        spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (mut length, mut reached) = (0.0, f64::NEG_INFINITY);
-        for (from, to) in spans {
-            length += (to - from.max(reached)).max(0.0);
-            reached = reached.max(to);
-        }
-        area += length * (strip[1] - strip[0]);
-    }
-    area
 }
 
 /// Share of the smaller of two elements above which they overlap.
