@@ -14,6 +14,7 @@ use edifice::methods::building_exteriors::mass::{MassTarget, Search, search};
 use edifice::model::hierarchy::{Constant, Settings, learn};
 use edifice::rng::stream;
 use edifice::shape::solid::faces;
+use edifice_base::unwatched;
 use edifice_experiments::building_exteriors::houses::houses;
 use rayon::prelude::*;
 
@@ -42,7 +43,7 @@ fn of_houses(c: &mut Criterion) {
     let mut group = c.benchmark_group("learn");
     group.sample_size(10);
     group.bench_function("houses_200_styles_7", |b| {
-        b.iter(|| learn(&data.table, &data.groups, &settings, 1))
+        b.iter(|| learn(&data.table, &data.groups, &settings, 1, &unwatched))
     });
     group.finish();
 }

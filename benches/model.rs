@@ -9,6 +9,7 @@ use edifice::model::gmm::{Points, Settings, fit};
 use edifice::model::hierarchy::{self, Group, learn};
 use edifice::model::network::{Evidence, Network};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use linfa::Dataset;
 use linfa::traits::Fit;
 use linfa_clustering::GaussianMixtureModel;
@@ -76,7 +77,7 @@ fn search(c: &mut Criterion) {
     group.sample_size(10);
     let settings = hierarchy::Settings::default();
     group.bench_function("structure_search_200x49_styles_2_to_25", |b| {
-        b.iter(|| learn(black_box(&table), &groups, &settings, 1).expect("learns"));
+        b.iter(|| learn(black_box(&table), &groups, &settings, 1, &unwatched).expect("learns"));
     });
     for n in [1_000, 10_000] {
         let (table, groups) = houses(n);
@@ -93,8 +94,11 @@ fn em(table: &Table, groups: &[Group]) -> f64 {
         max_rounds: 10,
         ..Stopping::default()
     };
-    let settings = hierarchy::Settings::default();
-    let fitted = hierarchy::fit(table, groups, 7, &[3; 10], &settings.priors, &stopping, 1);
+    let settings = hierarchy::Settings {
+        stopping,
+        ..hierarchy::Settings::default()
+    };
+    let fitted = hierarchy::fit(table, groups, 7, &[3; 10], &settings, 1, &unwatched);
     fitted.expect("fits").score
 }
 

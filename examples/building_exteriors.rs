@@ -6,6 +6,7 @@ use edifice::model::Table;
 use edifice::model::hierarchy::{Group, Settings, learn};
 use edifice::rng::stream;
 use edifice::shape::{BoxStyle, Building, MassBox, Ridge, Roof, RoofStyle};
+use edifice_base::unwatched;
 
 fn mass(style: BoxStyle, x: f64, width: f64, height: f64) -> MassBox {
     MassBox {
@@ -48,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Group::new("size", &["width"]),
         Group::new("parts", &["garage"]),
     ];
-    let model = learn(&table, &groups, &Settings::default(), 1)?.model;
+    let model = learn(&table, &groups, &Settings::default(), 1, &unwatched)?.model;
     println!(
         "{} styles: {:.2?}",
         model.styles(),

@@ -3,6 +3,7 @@
 
 use edifice::optim::annealing::{Annealing, Cooling, Landscape};
 use edifice::optim::projection::BoundedSimplex;
+use edifice_base::unwatched;
 use rand::{Rng, RngExt};
 
 /// Floors of a house in some order; neighbours should differ little in height.
@@ -42,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         start: 2.0,
         end: 0.01,
     };
-    let run = Annealing::new(cooling, 100, 50, 1)?.run(&mut floors, |_| {})?;
+    let run = Annealing::new(cooling, 100, 50, 1)?.run(&mut floors, &unwatched)?;
     let rounds = run.trace.len();
     println!(
         "annealing: {:?}, {:?} after {rounds} rounds",

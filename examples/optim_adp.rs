@@ -2,6 +2,7 @@
 //! `cargo run --example optim_adp --no-default-features`
 
 use edifice::optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
+use edifice_base::unwatched;
 use rand::{Rng, RngExt};
 
 /// Ten steps; to land on an odd one costs twice.
@@ -52,7 +53,7 @@ impl Approximation<Stairs> for Table {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dear = |step| if step >= 10 { 0.0 } else { 100.0 };
     let table = Table(std::array::from_fn(dear));
-    let run = Adp::new(Coin, table, Epsilon::default(), 500, 7).run(&mut Stairs, |_| {})?;
+    let run = Adp::new(Coin, table, Epsilon::default(), 500, 7).run(&mut Stairs, &unwatched)?;
     println!("strides {:?}, cost {}", run.best, run.cost);
     assert_eq!(run.cost, 6.0);
     Ok(())

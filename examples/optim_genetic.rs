@@ -2,6 +2,7 @@
 //! `cargo run --example optim_genetic --no-default-features`
 
 use edifice::optim::genetic::{Breed, Genetic, Settings};
+use edifice_base::unwatched;
 use rand::{Rng, RngExt};
 
 /// Twelve pieces, each one of a catalogue's widths, that should fill a wall.
@@ -41,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         goal: 0.005,
         ..Settings::default()
     };
-    let (run, population) = Genetic::new(settings, Vec::new(), 1)?.run(&mut wall, |_| {})?;
+    let (run, population) = Genetic::new(settings, Vec::new(), 1)?.run(&mut wall, &unwatched)?;
     println!("{:?}: {:?}, off by {:.4}", run.outcome, run.best, run.cost);
     println!(
         "second best of the last generation: off by {:.4}",

@@ -11,6 +11,7 @@ use edifice::model::network::structure::{Score, Search, score, search};
 use edifice::model::network::{Evidence, Network};
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
@@ -54,7 +55,7 @@ fn learn(path: &Path, rows: usize) -> Result<(), Box<dyn Error>> {
             ..Search::default()
         };
         let start = Instant::now();
-        let found = search(&data, &settings, 1)?;
+        let found = search(&data, &settings, 1, &unwatched)?;
         let seconds = start.elapsed().as_secs_f64();
         let place = |name: &String| names.iter().position(|n| n == name).unwrap_or(0);
         let pair = |(p, c): &(String, String)| (place(p), place(c));

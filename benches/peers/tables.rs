@@ -21,6 +21,7 @@ use edifice::model::tables::encoding::Encoding;
 use edifice::model::tables::schema::Schema;
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use rand::{Rng, RngExt};
 
 /// Points drawn in the box of a row.
@@ -112,7 +113,7 @@ fn compare(
                 Contender::Extended => &spread.but_atoms,
                 _ => &spread.all,
             };
-            let rows = held_out(model, &learned, drawn, &settings, SEED)?;
+            let rows = held_out(model, &learned, drawn, &settings, SEED, &unwatched)?;
             let seconds = start.elapsed().as_secs_f64();
             let at_atoms = match model {
                 Contender::Extended => &vec![0.0; test.len()],

@@ -4,6 +4,7 @@ use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::design::{Edit, completions, edited, observed, suggested};
 use edifice_building_exteriors::house::walls::walls_of_pieces;
@@ -33,7 +34,8 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
     let seen = shipped
         .data
         .select(&(0..buildings.len()).collect::<Vec<_>>());
-    let found = learn(&seen.table, &seen.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let found = learn(&seen.table, &seen.groups, &settings, ctx.seed(), &unwatched)
+        .map_err(Error::method)?;
     Ok(Learned {
         model: found.model,
         database: Database::new(buildings).map_err(Error::method)?,

@@ -4,6 +4,7 @@ use super::views::{FRONT, Panel, sheet};
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::wanted_rows;
@@ -19,8 +20,14 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;
-    let learned =
-        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let learned = learn(
+        table,
+        &shipped.data.groups,
+        &settings,
+        ctx.seed(),
+        &unwatched,
+    )
+    .map_err(Error::method)?;
     let model = learned.model;
     let posterior = model.style_posterior(table).map_err(Error::method)?;
     let labels: Vec<usize> = posterior.iter().map(|p| data::argmax(p)).collect();

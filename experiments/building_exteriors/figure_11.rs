@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{data, houses, settings};
 use crate::{Budget, Context};
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::agreement::edge_agreement;
 use edifice_building_exteriors::attributes::{GROUPS, Level};
@@ -24,8 +25,14 @@ pub fn left(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;
-    let learned =
-        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let learned = learn(
+        table,
+        &shipped.data.groups,
+        &settings,
+        ctx.seed(),
+        &unwatched,
+    )
+    .map_err(Error::method)?;
     let found = learned.model.lateral_edges();
     let truth = &shipped.truth.dependencies;
     let (precision, recall) = edge_agreement(&found, truth);
@@ -65,7 +72,8 @@ pub fn left(ctx: &mut Context) -> Result<()> {
             let made = houses::houses(seed, n);
             let buildings: Vec<_> = made.into_iter().map(|h| h.building).collect();
             let data = data::measure(&buildings)?;
-            let learned = learn(&data.table, &data.groups, &growth, seed).map_err(Error::method)?;
+            let learned = learn(&data.table, &data.groups, &growth, seed, &unwatched)
+                .map_err(Error::method)?;
             Ok(Edges {
                 found: learned.model.lateral_edges(),
                 styles: learned.model.styles(),
@@ -157,8 +165,14 @@ pub fn right(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;
-    let learned =
-        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let learned = learn(
+        table,
+        &shipped.data.groups,
+        &settings,
+        ctx.seed(),
+        &unwatched,
+    )
+    .map_err(Error::method)?;
     let keep = ctx.budget().choose(20, 1000, 1000);
     let pool = ctx.budget().choose(100, 4000, 20000);
     let mut rng = stream(ctx.seed(), "building_exteriors/figure_11_right", 0);

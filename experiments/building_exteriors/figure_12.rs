@@ -4,6 +4,7 @@ use super::averages::mean_and_error;
 use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
@@ -39,7 +40,7 @@ pub fn left(ctx: &mut Context) -> Result<()> {
                 background,
                 ..settings.clone()
             };
-            let losses = held_out(contender, &train, &test, &settings, seed);
+            let losses = held_out(contender, &train, &test, &settings, seed, &unwatched);
             Ok(mean_and_error(&losses.map_err(Error::method)?).0)
         },
     )?;
@@ -190,7 +191,7 @@ pub fn right(ctx: &mut Context) -> Result<()> {
             let (train, test) = split(data.table.rows(), 0.8, seed, index);
             let train = &train[..size.min(train.len())];
             let (train, test) = (data.select(train), data.select(&test));
-            let losses = held_out(Contender::Ours, &train, &test, &settings, seed);
+            let losses = held_out(Contender::Ours, &train, &test, &settings, seed, &unwatched);
             Ok(mean_and_error(&losses.map_err(Error::method)?).0)
         },
     )?;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_model::hierarchy::learn;
@@ -48,8 +49,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         |&index| {
             let (train, test) = split(all.table.rows(), 0.8, seed, index);
             let (train, test) = (all.select(&train), all.select(&test));
-            let learned =
-                learn(&train.table, &train.groups, &settings, seed).map_err(Error::method)?;
+            let learned = learn(&train.table, &train.groups, &settings, seed, &unwatched)
+                .map_err(Error::method)?;
             let prior = &settings.priors.linear;
             let most = *settings.styles.end();
             let gmm = Baseline::learn(&train.table, prior, most, seed).map_err(Error::method)?;

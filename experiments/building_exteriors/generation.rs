@@ -8,6 +8,7 @@ use super::houses::wild;
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{COLUMNS, mass_attributes};
 use edifice_building_exteriors::design::possible_rows;
@@ -68,7 +69,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("houses", many);
     ctx.setting("houses_of_paper", slow);
     let table = &shipped.data.table;
-    let learned = learn(table, &shipped.data.groups, &settings, seed).map_err(Error::method)?;
+    let learned =
+        learn(table, &shipped.data.groups, &settings, seed, &unwatched).map_err(Error::method)?;
     let mut rng = stream(seed, "building_exteriors/generation", 0);
     let sampled = learned
         .model

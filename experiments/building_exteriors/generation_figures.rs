@@ -3,6 +3,7 @@
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::design::possible_rows;
 use edifice_building_exteriors::house::scene::{Placed, scene};
@@ -78,7 +79,7 @@ pub fn figure_15(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let settings = settings(ctx);
     let (table, groups) = (&shipped.data.table, &shipped.data.groups);
-    let learned = learn(table, groups, &settings, seed).map_err(Error::method)?;
+    let learned = learn(table, groups, &settings, seed, &unwatched).map_err(Error::method)?;
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
     let mut rng = stream(seed, "building_exteriors/figure_15", 0);
     let mut houses = Vec::new();

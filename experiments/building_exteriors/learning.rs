@@ -2,6 +2,7 @@
 
 use super::{data, settings};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_model::hierarchy::{Settings, learn};
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
@@ -21,7 +22,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let data = shipped.data.select(&(0..houses).collect::<Vec<_>>());
         // One after the other, since the search itself takes all threads.
         let start = std::time::Instant::now();
-        learn(&data.table, &data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+        learn(&data.table, &data.groups, &settings, ctx.seed(), &unwatched)
+            .map_err(Error::method)?;
         let seconds = start.elapsed().as_secs_f64();
         line.push((houses as f64, seconds));
         ctx.observe(Row {

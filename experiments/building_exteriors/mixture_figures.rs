@@ -4,6 +4,7 @@ use super::views::{BACK, FRONT, Panel, plan, sheet};
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::wanted_rows;
@@ -136,7 +137,7 @@ pub fn figure_14(ctx: &mut Context) -> Result<()> {
     let (table, groups) = (&shipped.data.table, &shipped.data.groups);
     let most = *settings.styles.end();
     let gmm = Baseline::learn(table, &settings.priors.linear, most, seed).map_err(Error::method)?;
-    let learned = learn(table, groups, &settings, seed).map_err(Error::method)?;
+    let learned = learn(table, groups, &settings, seed, &unwatched).map_err(Error::method)?;
     let has = |row: usize, c| data::number(table, c, row).is_some_and(|w| w > 0.5);
     let house = (0..table.rows())
         .find(|&row| has(row, "garage.w") && has(row, "porch.front.w"))

@@ -3,6 +3,7 @@
 
 use super::averages::mean_and_error;
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
@@ -50,7 +51,7 @@ pub fn explain(
         |(index, c)| format!("reason/{name}/{index}/{}", c.name()),
         |&(index, contender)| {
             let (train, test) = parts(data, index);
-            judge(contender, &train, &test, settings, seed).map_err(Error::method)
+            judge(contender, &train, &test, settings, seed, &unwatched).map_err(Error::method)
         },
     )?;
     let of = |contender: Contender| -> Vec<&Judged> {
@@ -108,7 +109,7 @@ pub fn explain(
             |(index, c)| format!("reason/{name}/without/{attribute}/{index}/{}", c.name()),
             |&(index, contender)| {
                 let (train, test) = parts(&less, index);
-                let losses = held_out(contender, &train, &test, settings, seed);
+                let losses = held_out(contender, &train, &test, settings, seed, &unwatched);
                 Ok(mean_and_error(&losses.map_err(Error::method)?).0)
             },
         )?;

@@ -6,9 +6,9 @@ use super::data;
 use crate::Context;
 use crate::frame::memory::{peak_megabytes, reset_peak};
 use edifice_base::rng::stream;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, unwatched};
 use edifice_model::em::Stopping;
-use edifice_model::hierarchy::{Priors, fit};
+use edifice_model::hierarchy::{Settings, fit};
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// Cardinalities of the hidden variables: those of the generator.
@@ -26,10 +26,13 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     );
     ctx.setting("sizes", sizes.clone());
     ctx.setting("rounds", ROUNDS);
-    let stopping = Stopping {
-        movement: 0.0,
-        gain: 0.0,
-        max_rounds: ROUNDS,
+    let settings = Settings {
+        stopping: Stopping {
+            movement: 0.0,
+            gain: 0.0,
+            max_rounds: ROUNDS,
+        },
+        ..Settings::default()
     };
     let mut table = Table::new("One run of EM, 7 styles, 20 rounds").numbers([
         "houses",
@@ -50,9 +53,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             &data.groups,
             7,
             &KINDS,
-            &Priors::default(),
-            &stopping,
+            &settings,
             ctx.seed(),
+            &unwatched,
         )
         .map_err(Error::method)?;
         let seconds = start.elapsed().as_secs_f64();

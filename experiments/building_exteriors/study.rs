@@ -110,7 +110,14 @@ fn run_learn(settings: &Learn, given: &Given) -> Result<Outcome> {
         ModelName::Gmm => Contender::Gmm,
     };
     // Judged by the likelihood of rows that were not learnt from.
-    let losses = held_out(contender, &train, &test, &learning, settings.seed);
+    let losses = held_out(
+        contender,
+        &train,
+        &test,
+        &learning,
+        settings.seed,
+        &given.watched.inner(),
+    );
     let mut found = Outcome::default();
     let mean = mean_and_error(&losses.map_err(Error::method)?).0;
     found.metrics.insert("nll".into(), mean);

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data;
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{
     Mode,
@@ -38,8 +39,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         |c| cities[*c].0.clone(),
         |&c| {
             let city = &cities[c].1;
-            let made =
-                proceduralize(city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+            let made = proceduralize(city, &data::settings(Mode::Best, 4, seed), &unwatched)
+                .map_err(Error::method)?;
             let components = &made.decomposition.components;
             let placed = placed_components(city, components, &made.types);
             let leaves = made.types.representatives.len();

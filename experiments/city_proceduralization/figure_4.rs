@@ -2,6 +2,7 @@
 
 use super::{data, exhibits};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::types::paper_types;
 use edifice_city_proceduralization::{
@@ -26,8 +27,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .column("city", Align::Left)
         .numbers(WEIGHTS.map(|w| format!("weight {w}")));
     for (name, city) in data::cities(ctx)? {
-        let made =
-            proceduralize(&city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+        let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
+            .map_err(Error::method)?;
         if let Structure::Patterns { buildings, .. } = &made.structure {
             let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
             for &b in &buildings.order {

@@ -1,17 +1,16 @@
 //! The studies of this paper, for sweeps.
 
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::Mutex;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::likeness::likeness;
 use crate::sweep::{Better, Given, Outcome, Study};
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Progress, Result};
 use edifice_facade_grammar as facade_grammar;
-use edifice_facade_grammar::{Exploit, Method, Operations, Protect, Readings, infer_observed};
+use edifice_facade_grammar::{Exploit, Method, Operations, Protect, Readings, infer};
 use edifice_grammar::{Costs, Grammar, evaluate};
 use edifice_io::{ReadOptions, read_facade, read_grammar};
 
@@ -131,22 +130,24 @@ fn run(settings: &Infer, given: &Given) -> Result<Outcome> {
     let mut best = f64::INFINITY;
     let mut evaluations = 0.0;
     for restart in 0..settings.restarts.max(1) {
-        let trace: Rc<RefCell<Vec<[f64; 2]>>> = Rc::default();
-        let told = Rc::clone(&trace);
-        let observer = move |step: edifice_optim::Step| {
-            told.borrow_mut().push([step.iteration as f64, step.best])
+        let trace: Mutex<Vec<[f64; 2]>> = Mutex::default();
+        let watch = |progress: Progress| {
+            if let (Some(best), Ok(mut trace)) = (progress.best, trace.lock()) {
+                trace.push([(progress.done - 1) as f64, best]);
+            }
+            given.watched.tell(progress)
         };
         let seed = given
             .seed
             .wrapping_mul(settings.restarts.max(1))
             .wrapping_add(restart);
         let asked = asked(settings, costs, seed);
-        let outcome = infer_observed(std::slice::from_ref(&facade), &asked, observer)
-            .map_err(Error::method)?;
+        let outcome =
+            infer(std::slice::from_ref(&facade), &asked, &watch).map_err(Error::method)?;
         // The one evaluator, not the method, says what the grammar costs.
         let report = evaluate(&outcome.grammar, std::slice::from_ref(&facade), &costs)
             .map_err(Error::method)?;
-        for &[steps, value] in trace.borrow().iter() {
+        for &[steps, value] in trace.into_inner().unwrap_or_default().iter() {
             if found.trace.last().is_none_or(|last| value < last[1]) {
                 found.trace.push([evaluations + steps, value]);
             }

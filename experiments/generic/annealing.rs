@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::knapsack::{Knapsack, Solved};
 use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_optim::annealing::{Annealing, Cooling, Landscape};
 
@@ -53,7 +54,7 @@ fn run(settings: &Settings, given: &Given) -> Result<Outcome> {
     let mut landscape = Packing::empty(problem);
     let run = annealing
         .map_err(Error::method)?
-        .run(&mut landscape, |_| {})
+        .run(&mut landscape, &unwatched)
         .map_err(Error::method)?;
     let mut found = solved.judge(&run.best)?;
     for step in &run.trace {

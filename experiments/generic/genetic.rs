@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::knapsack::{Knapsack, Solved};
 use crate::sweep::{Better, Given, Outcome, Study};
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_optim::genetic::{self, Breed, Genetic};
 
@@ -62,7 +63,9 @@ fn run(settings: &Settings, given: &Given) -> Result<Outcome> {
     };
     let genetic = Genetic::new(asked, Vec::new(), given.seed).map_err(Error::method)?;
     let mut packers = Packers(&solved.problem);
-    let (run, _) = genetic.run(&mut packers, |_| {}).map_err(Error::method)?;
+    let (run, _) = genetic
+        .run(&mut packers, &unwatched)
+        .map_err(Error::method)?;
     let mut found = solved.judge(&run.best)?;
     let each = (settings.population - settings.elite) as u64;
     for step in &run.trace {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::data::Item;
 use super::figures::{drawn, in_size, without};
 use crate::sweep::{Better, Given, Outcome, Shared, Study};
+use edifice_base::Ended;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_io::{ReadOptions, read_source};
@@ -86,7 +87,12 @@ fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
     let added: Vec<Element> = if settings.method == Method::Paper {
         static MODELS: Shared<PaperModel> = Shared::new();
         let model = MODELS.get(key, || {
-            PaperModel::train(&layouts(given)?, given.seed).map_err(Error::method)
+            let watch = given.watched.inner();
+            let model = PaperModel::train(&layouts(given)?, given.seed, &watch);
+            match given.watched.is_stopped() {
+                false => model.map_err(Error::method),
+                true => Err(Error::Interrupted),
+            }
         })?;
         let budget = Budget {
             population: settings.population,
@@ -105,7 +111,14 @@ fn run(settings: &Complete, given: &Given) -> Result<Outcome> {
         }
         static MODELS: Shared<Model> = Shared::new();
         let model = MODELS.get(key, || {
-            Model::train(layouts(given)?, given.seed).map_err(Error::method)
+            let watch = given.watched.inner();
+            let trained =
+                Model::train(layouts(given)?, given.seed, &watch).map_err(Error::method)?;
+            // A model that is not finished serves no other task.
+            match trained.ended {
+                Ended::Finished => Ok(trained.model),
+                Ended::Interrupted => Err(Error::Interrupted),
+            }
         })?;
         let rng = &mut stream(given.seed, "completion", 0);
         let found = method::complete(settings.method, &partial, &model, 1, rng);

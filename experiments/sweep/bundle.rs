@@ -15,7 +15,7 @@ use super::plan::{Head, PLAN, Plan, Task, program};
 use super::run::entry;
 use super::study::Study;
 use crate::frame::provenance::{self, Machine};
-use edifice_base::{Error, Result, file};
+use edifice_base::{Error, Result, Watched, file, unwatched};
 
 /// The contents of a bundle.
 #[derive(Debug, Serialize, Deserialize)]
@@ -165,7 +165,9 @@ fn rerun(plan: &Plan, folder: &Path, study: &Study, sample: usize) -> Result<Ver
     let journal = super::journal::Journal::open(&again, (0, 1))?;
     for k in 0..chosen {
         let task = tasks[k * tasks.len() / chosen];
-        journal.put(&entry(plan, folder, study, task))?;
+        if let Some(entry) = entry(plan, folder, study, task, &Watched::new(&unwatched)) {
+            journal.put(&entry)?;
+        }
     }
     let known = read_all(&again, Keep::Presence)?;
     let sampled = Plan {

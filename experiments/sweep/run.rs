@@ -1,7 +1,7 @@
 //! Running a shard of a plan on this machine.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
@@ -10,9 +10,9 @@ use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task, program};
 use super::study::{Given, Study};
-use crate::frame::Progress;
+use crate::frame::Progress as Bar;
 use edifice_base::rng::stream;
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Progress, Result, Watch, Watched};
 
 /// The tasks of a shard that are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +32,8 @@ pub struct Ran {
     pub failed: usize,
     /// Tasks of the shard that had a result before.
     pub before: usize,
+    /// The way in which the run ended.
+    pub ended: Ended,
 }
 
 /// A shard that there is not.
@@ -57,18 +59,19 @@ pub fn shard(text: &str) -> Result<(usize, usize)> {
     }
 }
 
-/// Runs the tasks of a shard on all threads; every `n`th task belongs to it, from the `i`th. Stops when `stop` is set; what is finished is kept.
+/// Runs the tasks of a shard on all threads; every `n`th task belongs to it, from the `i`th. `watch` is told of each task, and
+/// from inside long ones; when it stops the run, the tasks in hand are given up, and what is finished is kept.
 ///
 /// # Errors
-/// [`Error::Io`] when a result cannot be kept, [`Error::Content`] when an instance has changed since the plan was made,
-/// [`Error::Interrupted`]. A task that fails is a result.
+/// [`Error::Io`] when a result cannot be kept, [`Error::Content`] when an instance has changed since the plan was made. A task
+/// that fails is a result.
 pub fn run(
     plan: &Plan,
     out: &Path,
     study: &Study,
     shard: (usize, usize),
     wanted: Wanted,
-    stop: &AtomicBool,
+    watch: &Watch,
 ) -> Result<Ran> {
     let journal = Journal::open(out, shard)?;
     // Results are filed under what the files were when the plan was made.
@@ -84,13 +87,18 @@ pub fn run(
     };
     let tasks: Vec<&Task> = ours.iter().filter(open).copied().collect();
     let before = ours.len() - tasks.len();
-    let progress = Progress::new(&plan.head.study, ours.len() as u64, before as u64);
+    let bar = Bar::new(&plan.head.study, ours.len() as u64, before as u64);
+    let watched = Watched::new(watch);
     let (finished, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let outcome: Result<()> = tasks.par_iter().try_for_each(|task| {
-        if stop.load(Ordering::Relaxed) {
-            return Err(Error::Interrupted);
+        let done = finished.load(Ordering::Relaxed) + failed.load(Ordering::Relaxed);
+        let told = Progress::of("tasks", done as u64, tasks.len() as u64);
+        if !watched.goes_on(told) {
+            return Ok(());
         }
-        let entry = entry(plan, out, study, task);
+        let Some(entry) = entry(plan, out, study, task, &watched) else {
+            return Ok(());
+        };
         journal.put(&entry)?;
         let counted = if entry.outcome.is_some() {
             &finished
@@ -98,7 +106,7 @@ pub fn run(
             &failed
         };
         counted.fetch_add(1, Ordering::Relaxed);
-        progress.step();
+        bar.step();
         Ok(())
     });
     outcome?;
@@ -106,11 +114,18 @@ pub fn run(
         finished: finished.into_inner(),
         failed: failed.into_inner(),
         before,
+        ended: watched.ended(),
     })
 }
 
-/// Runs one task.
-pub fn entry(plan: &Plan, out: &Path, study: &Study, task: &Task) -> Entry {
+/// Runs one task; `None` if it was stopped before it was finished.
+pub fn entry(
+    plan: &Plan,
+    out: &Path,
+    study: &Study,
+    task: &Task,
+    watched: &Watched,
+) -> Option<Entry> {
     let arm = &plan.head.arms[task.arm];
     let database = match study.learns {
         true => plan.database(out, task),
@@ -120,21 +135,25 @@ pub fn entry(plan: &Plan, out: &Path, study: &Study, task: &Task) -> Entry {
         path: &plan.path(out, task),
         database: &database,
         seed: chance(plan, task),
+        watched,
     };
     let start = ThreadTime::now();
     let found = study.run(&arm.settings, &given);
     let seconds = start.elapsed().as_secs_f64();
+    if watched.is_stopped() {
+        return None;
+    }
     let (outcome, failure) = match found {
         Ok(outcome) => (Some(outcome), None),
         Err(error) => (None, Some(error.to_string())),
     };
-    Entry {
+    Some(Entry {
         key: task.key.clone(),
         program: program().into(),
         outcome,
         failure,
         seconds,
-    }
+    })
 }
 
 /// The seed that a task hands on: the same for all arms where they are paired.

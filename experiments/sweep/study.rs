@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watched};
 
 /// The values of a metric that are better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,6 +56,8 @@ pub struct Given<'a> {
     pub database: &'a [PathBuf],
     /// Seed of all chance.
     pub seed: u64,
+    /// Asked by long tasks whether to go on. The outcome of a task that was stopped is not kept.
+    pub watched: &'a Watched<'a>,
 }
 
 type Run = Box<dyn Fn(&Map<String, Value>, &Given) -> Result<Outcome> + Send + Sync>;

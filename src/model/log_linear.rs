@@ -15,6 +15,7 @@
 
 use super::ModelError;
 use super::factor_graph::{Chain, Settings, fit};
+use edifice_base::Watch;
 use edifice_base::rng::Stream;
 
 /// A model by its features and its negative sampler.
@@ -74,6 +75,7 @@ where
         data: &[X],
         settings: &Settings,
         seed: u64,
+        watch: &Watch,
     ) -> Result<Vec<f64>, ModelError> {
         let all: Vec<Vec<f64>> = data.iter().map(&self.features).collect();
         for (i, scale) in self.scales.iter_mut().enumerate() {
@@ -81,7 +83,7 @@ where
             // A feature that never varies says nothing of its weight; its scale is arbitrary.
             *scale = if deviation > 0.0 { deviation } else { 1.0 };
         }
-        let scaled = fit(&self, data, settings, seed)?;
+        let scaled = fit(&self, data, settings, seed, watch)?;
         Ok(self.unscaled(&scaled))
     }
 

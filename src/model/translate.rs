@@ -1,6 +1,7 @@
 //! A hierarchical model as a Bayesian network: the same distribution, for everything that networks answer (any posterior,
 //! explanations, soft evidence), and each engine's judge of the other.
 
+use edifice_base::unwatched;
 use std::collections::HashSet;
 
 use super::ModelError;
@@ -185,7 +186,7 @@ mod tests {
                 restarts: 1,
                 ..Settings::default()
             };
-            let learned = learn(&table, &groups, &settings, 1);
+            let learned = learn(&table, &groups, &settings, 1, &unwatched);
             let mut model = learned.expect("a model").model;
             // Away from where EM ends, so that a step moves.
             model.params.style = vec![0.9, 0.1];

@@ -19,6 +19,7 @@
 //!
 //! # Examples
 //! ```
+//! use edifice_base::unwatched;
 //! use edifice_optim::adp::{Adp, Approximation, Epsilon, Heuristic, Process};
 //! use rand::{Rng, RngExt};
 //!
@@ -54,14 +55,15 @@
 //! }
 //! let table = Table(std::array::from_fn(|s| if s >= 10 { 0.0 } else { 100.0 }));
 //! let adp = Adp::new(Coin, table, Epsilon::default(), 500, 7);
-//! let run = adp.run(&mut Stairs, |_| {}).unwrap();
+//! let run = adp.run(&mut Stairs, &unwatched).unwrap();
 //! assert_eq!(run.cost, 6.0); // 3 + 3 + 3 + 1 and its orders: 2 + 1 + 2 + 1
 //! ```
 
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, State, TerminationReason};
 use rand::{Rng, RngExt};
 
-use super::run::{Run, Search, Step, execute};
+use super::run::{Run, Search, execute};
+use edifice_base::Watch;
 use edifice_base::rng::{Stream, stream};
 
 /// A finite decision process with additive costs.
@@ -260,17 +262,13 @@ impl<H, V> Adp<H, V> {
 }
 
 impl<H, V> Adp<H, V> {
-    /// Runs all iterations, telling `observer` of each; returns the actions of the cheapest walk.
+    /// Runs all iterations, telling `watch` of each; returns the actions of the cheapest walk.
     /// Lend the approximation (`&mut`) to [`Adp::new`] to keep what it has learnt.
     ///
     /// # Errors
     /// [`AdpError`] when there is no iteration to run, an exploration probability is out of range, or no walk has a cost that
     /// is a number.
-    pub fn run<P>(
-        self,
-        process: &mut P,
-        observer: impl FnMut(Step) + 'static,
-    ) -> Result<Run<Vec<P::Action>>, AdpError>
+    pub fn run<P>(self, process: &mut P, watch: &Watch) -> Result<Run<Vec<P::Action>>, AdpError>
     where
         P: Process,
         H: Heuristic<P>,
@@ -285,8 +283,14 @@ impl<H, V> Adp<H, V> {
         }
         let iterations = self.iterations;
         let limits = |state: Search<Vec<P::Action>>| state.max_iters(iterations);
-        let (run, _) = execute(process, self, |e| e.configure(limits), observer)
-            .map_err(|error| AdpError::Stopped(error.to_string()))?;
+        let (run, _) = execute(
+            process,
+            self,
+            |e| e.configure(limits),
+            watch,
+            Some(iterations),
+        )
+        .map_err(|error| AdpError::Stopped(error.to_string()))?;
         Ok(run)
     }
 

@@ -10,7 +10,8 @@
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
-use super::run::{Run, Search, Step, execute};
+use super::run::{Run, Search, execute};
+use edifice_base::Watch;
 use edifice_base::rng::{Stream, stream};
 
 /// A solution that can be changed a little and changed back.
@@ -99,6 +100,7 @@ impl Cooling {
 /// # Examples
 /// Numbers with signs, such that the sum is 0 (number partitioning):
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_optim::Outcome;
 /// use edifice_optim::annealing::{Annealing, Cooling, Landscape};
 /// use rand::{Rng, RngExt};
@@ -117,7 +119,7 @@ impl Cooling {
 /// }
 /// let mut signs = Signs { numbers: vec![8.0, 7.0, 6.0, 5.0, 4.0], flipped: 0 };
 /// let cooling = Cooling { start: 10.0, end: 0.5 };
-/// let run = Annealing::new(cooling, 100, 20, 1)?.until(0.0).run(&mut signs, |_| {})?;
+/// let run = Annealing::new(cooling, 100, 20, 1)?.until(0.0).run(&mut signs, &unwatched)?;
 /// assert_eq!((run.cost, run.outcome), (0.0, Outcome::TargetReached));
 /// assert_eq!(run.best[0].signum(), run.best[1].signum()); // 8 + 7 = 6 + 5 + 4
 /// # Ok::<(), edifice_optim::annealing::AnnealingError>(())
@@ -177,14 +179,14 @@ impl Annealing {
         Self { goal, ..self }
     }
 
-    /// Anneals, telling `observer` of every round; the landscape is left where the last move led.
+    /// Anneals, telling `watch` of every round; the landscape is left where the last move led.
     ///
     /// # Errors
     /// [`AnnealingError::Stopped`] when argmin fails.
     pub fn run<L: Landscape>(
         self,
         landscape: &mut L,
-        observer: impl FnMut(Step) + 'static,
+        watch: &Watch,
     ) -> Result<Run<L::Solution>, AnnealingError> {
         let (iterations, goal) = (self.iterations, self.goal);
         let (start, cost) = (landscape.solution(), landscape.cost());
@@ -192,8 +194,14 @@ impl Annealing {
             let state = state.param(start).cost(cost);
             state.max_iters(iterations).target_cost(goal)
         };
-        let (run, _) = execute(landscape, self, |e| e.configure(begin), observer)
-            .map_err(|error| AnnealingError::Stopped(error.to_string()))?;
+        let (run, _) = execute(
+            landscape,
+            self,
+            |e| e.configure(begin),
+            watch,
+            Some(iterations),
+        )
+        .map_err(|error| AnnealingError::Stopped(error.to_string()))?;
         Ok(run)
     }
 }
@@ -248,6 +256,7 @@ impl<L: Landscape> Solver<&mut L, Search<L::Solution>> for Annealing {
 mod tests {
     use super::*;
     use crate::Outcome;
+    use edifice_base::unwatched;
 
     /// Steps along a line with a shallow valley at 5, a barrier, and the optimum at 15.
     #[derive(Clone)]
@@ -283,7 +292,7 @@ mod tests {
     fn run(start: f64, goal: f64, seed: u64) -> Run<i32> {
         let cooling = Cooling { start, end: 0.01 };
         let annealing = Annealing::new(cooling, 200, 50, seed).unwrap().until(goal);
-        annealing.run(&mut VALLEY.clone(), |_| {}).unwrap()
+        annealing.run(&mut VALLEY.clone(), &unwatched).unwrap()
     }
 
     #[test]

@@ -25,7 +25,8 @@ use std::time::Duration;
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, State};
 use rand::{Rng, RngExt};
 
-use super::run::{Run, Search, Step, execute};
+use super::run::{Run, Search, execute};
+use edifice_base::Watch;
 use edifice_base::rng::{Stream, stream};
 
 /// The population's problem: the first genomes, their crossing and change, and their cost.
@@ -159,6 +160,7 @@ impl Settings {
 /// # Examples
 /// All bits of a word of 16 to 1, by one-point crossover and flips of single bits:
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_optim::Outcome;
 /// use edifice_optim::genetic::{Breed, Genetic, Settings};
 /// use rand::{Rng, RngExt};
@@ -174,7 +176,7 @@ impl Settings {
 ///     fn mutate<R: Rng>(&mut self, word: &mut u16, rng: &mut R) { *word ^= 1 << rng.random_range(0..16) }
 /// }
 /// let settings = Settings { population: 40, goal: 0.0, ..Settings::default() };
-/// let (run, population) = Genetic::new(settings, vec![0], 1)?.run(&mut Ones, |_| {})?;
+/// let (run, population) = Genetic::new(settings, vec![0], 1)?.run(&mut Ones, &unwatched)?;
 /// assert_eq!((run.best, run.outcome), (u16::MAX, Outcome::TargetReached));
 /// assert!(run.trace.windows(2).all(|w| w[1].cost <= w[0].cost));
 /// assert!(population.len() == 40 && population.is_sorted_by(|a, b| a.1 <= b.1));
@@ -205,14 +207,14 @@ impl<G: Clone> Genetic<G> {
         })
     }
 
-    /// Breeds all generations, telling `observer` of each; returns the last population besides.
+    /// Breeds all generations, telling `watch` of each; returns the last population besides.
     ///
     /// # Errors
     /// [`GeneticError::Stopped`] when argmin fails.
     pub fn run<B: Breed<Genome = G>>(
         self,
         breed: &mut B,
-        observer: impl FnMut(Step) + 'static,
+        watch: &Watch,
     ) -> Result<(Run<G>, Population<G>), GeneticError> {
         let settings = self.settings;
         let limits = |state: Search<G>| {
@@ -226,7 +228,8 @@ impl<G: Clone> Genetic<G> {
                 Some(limit) => executor.configure(limits).timeout(limit),
                 None => executor.configure(limits),
             },
-            observer,
+            watch,
+            Some(settings.generations),
         )
         .map_err(|error| GeneticError::Stopped(error.to_string()))?;
         Ok((run, solver.population))

@@ -7,6 +7,7 @@ use argmin::core::{CostFunction, Error as ArgminError, KV, Problem, Solver};
 use argmin::core::{TerminationReason, TerminationStatus};
 
 use super::run::{Run, Search, execute};
+use edifice_base::unwatched;
 
 /// Why a search has no result: from [`minimize`], [`GridError::Cost`] at the first point that fails.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -151,7 +152,7 @@ pub fn minimize<E: std::fmt::Display>(
         points: points(axes),
         left: size(axes),
     };
-    let (run, _) = execute(Objective(cost), grid, |e| e, |_| {})
+    let (run, _) = execute(Objective(cost), grid, |e| e, &unwatched, None)
         .map_err(|error| GridError::Cost(error.to_string()))?;
     Ok(run)
 }

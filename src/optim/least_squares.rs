@@ -10,7 +10,8 @@ use argmin::core::{
 };
 use nalgebra::{DMatrix, DVector};
 
-use super::run::{Run, Search, Step, execute};
+use super::run::{Run, Search, execute};
+use edifice_base::Watch;
 
 /// A vector of residuals that depends on a vector of variables.
 ///
@@ -43,7 +44,7 @@ pub struct Limits {
 #[error("least squares stopped: {0}")]
 pub struct LeastSquaresError(String);
 
-/// Minimises the sum of squares from `start`, telling `observer` of every iteration. The cost of the run is the sum of
+/// Minimises the sum of squares from `start`, telling `watch` of every iteration. The cost of the run is the sum of
 /// squared residuals; reaching a limit is no error.
 ///
 /// The steps are in the [module](self)'s formula, for m residuals of n variables. A local minimum is found, the one whose
@@ -59,6 +60,7 @@ pub struct LeastSquaresError(String);
 /// # Examples
 /// A decay `y = a exp(-b t)` through four points without errors:
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_optim::least_squares::{Limits, Residuals, minimize};
 /// struct Decay(Vec<(f64, f64)>);
 /// impl Residuals for Decay {
@@ -68,7 +70,7 @@ pub struct LeastSquaresError(String);
 /// }
 /// let points = (0..4).map(|t| (f64::from(t), 2.0 * (-0.5 * f64::from(t)).exp()));
 /// let limits = Limits { iterations: 100, step: 1.0, goal: 1e-20, difference: 1e-7 };
-/// let fit = minimize(&Decay(points.collect()), vec![1.0, 0.0], limits, |_| {})?;
+/// let fit = minimize(&Decay(points.collect()), vec![1.0, 0.0], limits, &unwatched)?;
 /// assert!((fit.best[0] - 2.0).abs() < 1e-6 && (fit.best[1] - 0.5).abs() < 1e-6);
 /// assert!(fit.cost < 1e-12);
 /// # Ok::<(), edifice_optim::least_squares::LeastSquaresError>(())
@@ -77,7 +79,7 @@ pub fn minimize<R: Residuals>(
     residuals: &R,
     start: Vec<f64>,
     limits: Limits,
-    observer: impl FnMut(Step) + 'static,
+    watch: &Watch,
 ) -> Result<Run<Vec<f64>>, LeastSquaresError> {
     let mut first = Vec::new();
     residuals.residuals(&start, &mut first);
@@ -92,7 +94,13 @@ pub fn minimize<R: Residuals>(
         let state = state.param(start).cost(cost);
         state.max_iters(limits.iterations).target_cost(limits.goal)
     };
-    let run = execute(residuals, solver, |e| e.configure(begin), observer);
+    let run = execute(
+        residuals,
+        solver,
+        |e| e.configure(begin),
+        watch,
+        Some(limits.iterations),
+    );
     let (run, _) = run.map_err(|e| LeastSquaresError(e.to_string()))?;
     Ok(run)
 }
@@ -191,6 +199,7 @@ impl LevenbergMarquardt {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use edifice_base::unwatched;
 
     struct Rosenbrock;
 
@@ -217,14 +226,14 @@ mod tests {
 
     #[test]
     fn a_curved_valley_is_followed_to_its_end() {
-        let fit = minimize(&Rosenbrock, vec![-1.2, 1.0], LIMITS, |_| {}).unwrap();
+        let fit = minimize(&Rosenbrock, vec![-1.2, 1.0], LIMITS, &unwatched).unwrap();
         assert!((fit.best[0] - 1.0).abs() < 1e-6 && (fit.best[1] - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn a_line_is_fitted_as_the_normal_equations_say() {
         let points = vec![(0.0, 1.0), (1.0, 2.0), (2.0, 4.0)];
-        let fit = minimize(&Line(points), vec![0.0, 0.0], LIMITS, |_| {}).unwrap();
+        let fit = minimize(&Line(points), vec![0.0, 0.0], LIMITS, &unwatched).unwrap();
         // Normal equations by hand: slope 3/2, intercept 5/6.
         assert!((fit.best[1] - 1.5).abs() < 1e-6 && (fit.best[0] - 5.0 / 6.0).abs() < 1e-6);
         assert!((fit.cost - 1.0 / 6.0).abs() < 1e-9);
@@ -238,7 +247,7 @@ mod tests {
                 out.push(x.iter().sum::<f64>() - 9.0);
             }
         }
-        let fit = minimize(&Total, vec![0.0; 3], LIMITS, |_| {}).unwrap();
+        let fit = minimize(&Total, vec![0.0; 3], LIMITS, &unwatched).unwrap();
         assert!(fit.cost < 1e-12);
         assert!(
             fit.best.iter().all(|v| (v - 3.0).abs() < 1e-5),

@@ -1,12 +1,9 @@
 //! The result of every optimizer, and the one way in which argmin runs them.
 
-use std::cell::RefCell;
-use std::rc::Rc;
-
-use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{
-    Error, Executor, IterState, KV, Solver, State, TerminationReason, TerminationStatus,
+    Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus,
 };
+use edifice_base::{Progress, Watch};
 
 /// The result of a run.
 ///
@@ -39,8 +36,8 @@ pub struct Run<S> {
 
 /// One iteration of a run.
 ///
-/// Both costs have the unit of the problem. Observers get each step when it is done; [`Run::trace`] keeps them all. [`Run`]
-/// has an example.
+/// Both costs have the unit of the problem. The watch of a run is told of each step when it is done; [`Run::trace`] keeps them
+/// all. [`Run`] has an example.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Step {
     /// Iterations done before this one.
@@ -70,6 +67,8 @@ pub enum Outcome {
     TimeLimit,
     /// The problem asked to stop, for example because memory is used up.
     Exhausted,
+    /// Its watch stopped it; the solution is the best until then.
+    Interrupted,
     /// No point satisfies the constraints.
     Infeasible,
     /// The cost has no lower bound on the feasible set.
@@ -94,8 +93,10 @@ impl Outcome {
             TerminationReason::TargetCostReached => Self::TargetReached,
             TerminationReason::MaxItersReached => Self::MaxIterations,
             TerminationReason::Timeout => Self::TimeLimit,
-            // Our solvers exit by themselves for this reason only; no run listens to signals.
-            TerminationReason::SolverExit(_) | TerminationReason::Interrupt => Self::Exhausted,
+            // Our solvers exit by themselves for this reason only.
+            TerminationReason::SolverExit(_) => Self::Exhausted,
+            // No run listens to signals.
+            TerminationReason::Interrupt => Self::Interrupted,
         }
     }
 }
@@ -103,58 +104,95 @@ impl Outcome {
 /// argmin's state for solutions that have no gradient.
 pub(super) type Search<S> = IterState<S, (), (), (), (), f64>;
 
-/// Runs a solver on a problem (which may be borrowed) with argmin's executor, telling `observer` of
-/// every iteration; returns the solver besides. `configure` sets limits and where to start.
+/// Runs a solver on a problem (which may be borrowed) with argmin's executor, telling `watch` of
+/// every iteration, of at most `most`; returns the solver besides. `configure` sets limits and where to start.
 ///
 /// # Errors
 /// Those of the solver, and when it ends without a solution.
 pub(super) fn execute<O, M, S: Clone>(
     problem: O,
     solver: M,
-    configure: impl FnOnce(Executor<O, M, Search<S>>) -> Executor<O, M, Search<S>>,
-    observer: impl FnMut(Step) + 'static,
+    configure: impl FnOnce(
+        Executor<O, Watching<'_, M>, Search<S>>,
+    ) -> Executor<O, Watching<'_, M>, Search<S>>,
+    watch: &Watch,
+    most: Option<u64>,
 ) -> Result<(Run<S>, M), Error>
 where
     M: Solver<O, Search<S>>,
 {
-    let trace = Rc::new(RefCell::new(Vec::new()));
-    let steps = Steps {
-        trace: Rc::clone(&trace),
-        observer,
+    let watching = Watching {
+        solver,
+        watch,
+        most,
+        trace: Vec::new(),
     };
-    let result = configure(Executor::new(problem, solver))
+    let result = configure(Executor::new(problem, watching))
         .ctrlc(false)
-        .add_observer(steps, ObserverMode::Always)
         .run()?;
-    let state = result.state;
+    let (state, watching) = (result.state, result.solver);
     let run = Run {
         best: (state.best_param).ok_or_else(|| Error::msg("no solution was found"))?,
         cost: state.best_cost,
         outcome: Outcome::of(&state.termination_status),
-        trace: trace.take(),
+        trace: watching.trace,
     };
-    Ok((run, result.solver))
+    Ok((run, watching.solver))
 }
 
-/// Records every iteration and passes it on.
-struct Steps<F> {
-    trace: Rc<RefCell<Vec<Step>>>,
-    observer: F,
+/// A solver whose iterations are recorded and told of; argmin's own observers would have to outlive the run.
+pub(super) struct Watching<'a, M> {
+    solver: M,
+    watch: &'a Watch<'a>,
+    most: Option<u64>,
+    trace: Vec<Step>,
 }
 
-impl<I, F> Observe<I> for Steps<F>
-where
-    I: State<Float = f64>,
-    F: FnMut(Step),
-{
-    fn observe_iter(&mut self, state: &I, _: &KV) -> Result<(), Error> {
+impl<O, S: Clone, M: Solver<O, Search<S>>> Solver<O, Search<S>> for Watching<'_, M> {
+    fn name(&self) -> &str {
+        self.solver.name()
+    }
+
+    fn init(
+        &mut self,
+        problem: &mut Problem<O>,
+        state: Search<S>,
+    ) -> Result<(Search<S>, Option<KV>), Error> {
+        self.solver.init(problem, state)
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<O>,
+        state: Search<S>,
+    ) -> Result<(Search<S>, Option<KV>), Error> {
+        let (mut state, kv) = self.solver.next_iter(problem, state)?;
+        // The executor does so afterwards again, which changes nothing.
+        state.update();
         let step = Step {
             iteration: state.get_iter(),
             cost: state.get_cost(),
             best: state.get_best_cost(),
         };
-        self.trace.borrow_mut().push(step);
-        (self.observer)(step);
-        Ok(())
+        self.trace.push(step);
+        let progress = Progress {
+            most: self.most,
+            ..Progress::stage("iterations")
+        };
+        let told = (self.watch)(
+            Progress {
+                done: step.iteration + 1,
+                ..progress
+            }
+            .costs(step.cost, step.best),
+        );
+        if told.is_break() && !state.terminated() {
+            state = state.terminate_with(TerminationReason::Interrupt);
+        }
+        Ok((state, kv))
+    }
+
+    fn terminate(&mut self, state: &Search<S>) -> TerminationStatus {
+        self.solver.terminate(state)
     }
 }

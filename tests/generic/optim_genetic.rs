@@ -5,6 +5,7 @@ use std::time::Duration;
 use edifice::optim::genetic::{Breed, Genetic, GeneticError, Population, Settings};
 use edifice::optim::{Outcome, Run};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use rand::{Rng, RngExt};
 
 /// Items of a knapsack as (weight, value); a genome says which are packed.
@@ -90,7 +91,7 @@ fn run<B: Breed>(
     settings: Settings,
     seed: u64,
 ) -> Result<Found<B::Genome>, GeneticError> {
-    Genetic::new(settings, Vec::new(), seed)?.run(&mut breed, |_| {})
+    Genetic::new(settings, Vec::new(), seed)?.run(&mut breed, &unwatched)
 }
 
 #[test]
@@ -157,7 +158,7 @@ fn a_start_is_kept_and_limits_end_a_run() {
     };
     let start = vec![[0.0; 4], [1.0; 4]];
     let genetic = Genetic::new(none, start.clone(), 1).unwrap();
-    let (evolved, population) = genetic.run(&mut Rastrigin(|c| c), |_| {}).unwrap();
+    let (evolved, population) = genetic.run(&mut Rastrigin(|c| c), &unwatched).unwrap();
     assert_eq!((evolved.best, evolved.cost), ([0.0; 4], 0.0));
     assert!(population.iter().any(|p| p.0 == start[1]));
 

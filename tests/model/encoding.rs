@@ -8,6 +8,7 @@ use edifice::model::tables::encoding::Encoding;
 use edifice::model::tables::transform::{Bounds, Tails, Transform};
 use edifice::model::{Cell, Table};
 use edifice::rng::{Stream, stream};
+use edifice_base::unwatched;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -143,7 +144,7 @@ fn an_encoded_density_integrates_to_one() {
     let encoding = Encoding::learn(&data, &settings().priors.linear, 1).unwrap();
     let table = encoding.encode(&data.table).unwrap();
     let groups = encoding.groups(&data.groups);
-    let model = learn(&table, &groups, &extended(&settings()), 1)
+    let model = learn(&table, &groups, &extended(&settings()), 1, &unwatched)
         .unwrap()
         .model;
     let log = |values: Vec<f64>| {
@@ -168,8 +169,15 @@ fn an_encoded_density_integrates_to_one() {
 #[test]
 fn categories_shift_groups_and_both_engines_agree() {
     let data = made(300, 3);
-    let published = learn(&data.table, &data.groups, &settings(), 1).unwrap();
-    let learned = learn(&data.table, &data.groups, &extended(&settings()), 1).unwrap();
+    let published = learn(&data.table, &data.groups, &settings(), 1, &unwatched).unwrap();
+    let learned = learn(
+        &data.table,
+        &data.groups,
+        &extended(&settings()),
+        1,
+        &unwatched,
+    )
+    .unwrap();
     assert!(learned.score >= published.score - 1e-6);
     let model = learned.model;
     let edges = model.lateral_edges();
@@ -221,7 +229,7 @@ fn categories_shift_groups_and_both_engines_agree() {
 fn held_out_rows_are_the_likelier_for_it() {
     let (train, test) = (made(300, 4), made(200, 5));
     let mean = |contender| {
-        let losses = held_out(contender, &train, &test, &settings(), 1).unwrap();
+        let losses = held_out(contender, &train, &test, &settings(), 1, &unwatched).unwrap();
         losses.iter().sum::<f64>() / losses.len() as f64
     };
     // At the atom the published model has a density, of a spike of which no scale is given: it is not to be compared
@@ -238,7 +246,7 @@ fn held_out_rows_are_the_likelier_for_it() {
     assert!(mean(Contender::Extended).is_finite());
     let (train, test) = (without(&train).unwrap(), without(&test).unwrap());
     let mean = |contender| {
-        let losses = held_out(contender, &train, &test, &settings(), 1).unwrap();
+        let losses = held_out(contender, &train, &test, &settings(), 1, &unwatched).unwrap();
         losses.iter().sum::<f64>() / losses.len() as f64
     };
     assert!(mean(Contender::Extended) < mean(Contender::Ours) - 0.05);
@@ -248,7 +256,14 @@ fn held_out_rows_are_the_likelier_for_it() {
 #[test]
 fn a_style_draws_its_own_categories() {
     let data = made(300, 3);
-    let learned = learn(&data.table, &data.groups, &extended(&settings()), 1).unwrap();
+    let learned = learn(
+        &data.table,
+        &data.groups,
+        &extended(&settings()),
+        1,
+        &unwatched,
+    )
+    .unwrap();
     let model = learned.model;
     let edges = model.lateral_edges();
     assert!(edges.iter().any(|(from, _)| from == "roof"), "{edges:?}");

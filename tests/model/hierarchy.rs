@@ -3,6 +3,7 @@
 use edifice::model::hierarchy::{Constant, Group, Hierarchy, Learned, Settings, Variant, learn};
 use edifice::model::{Cell, ModelError, Table};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -94,7 +95,7 @@ fn styles_of(model: &Hierarchy, table: &Table) -> Vec<usize> {
 fn learned(n: usize) -> (Learned, Table, Vec<usize>) {
     let (table, styles) = made(n, 4, 1);
     (
-        learn(&table, &groups(), &settings(), 7).unwrap(),
+        learn(&table, &groups(), &settings(), 7, &unwatched).unwrap(),
         table,
         styles,
     )
@@ -114,7 +115,9 @@ fn finds_styles_and_the_lateral_edge() {
     for (n, least_found) in [(200, 4), (400, 5)] {
         let found = (1..=5).filter(|&draw| {
             let (table, styles) = made(n, 4, draw);
-            let model = learn(&table, &groups(), &settings(), 7).unwrap().model;
+            let model = learn(&table, &groups(), &settings(), 7, &unwatched)
+                .unwrap()
+                .model;
             assert!(model.styles().abs_diff(4) <= 1);
             let edges = model.lateral_edges();
             let area = |a: &str, b: &str| [a, b] == ["size", "area"] || [a, b] == ["area", "size"];
@@ -139,7 +142,7 @@ fn variants_answer_and_ours_generalises_best() {
             variant,
             ..settings()
         };
-        let learned = learn(&table, &groups(), &settings, 7).unwrap();
+        let learned = learn(&table, &groups(), &settings, 7, &unwatched).unwrap();
         let l = learned.model.log_likelihood(&test).unwrap();
         assert!(l.iter().all(|v| v.is_finite()));
         mean.push(l.iter().sum::<f64>() / l.len() as f64);
@@ -185,7 +188,13 @@ fn same_seed_same_bytes_with_any_number_of_threads() {
 #[test]
 fn two_rows_still_answer() {
     let (table, _) = made(120, 4, 1);
-    let two = learn(&table.select(&[1, 2]), &groups(), &settings(), 7);
+    let two = learn(
+        &table.select(&[1, 2]),
+        &groups(),
+        &settings(),
+        7,
+        &unwatched,
+    );
     assert!(matches!(two, Err(ModelError::Constant { .. })), "{two:?}");
     for variant in VARIANTS {
         let lenient = Settings {
@@ -193,7 +202,7 @@ fn two_rows_still_answer() {
             constant: Constant::Keep,
             ..settings()
         };
-        let two = learn(&table.select(&[1, 2]), &groups(), &lenient, 7).unwrap();
+        let two = learn(&table.select(&[1, 2]), &groups(), &lenient, 7, &unwatched).unwrap();
         let l = two.model.log_likelihood(&table).unwrap();
         assert!(l.iter().all(|l| l.is_finite()));
     }
@@ -233,7 +242,7 @@ fn missing_values_still_answer() {
             most_states: 3,
             ..settings()
         };
-        let learned = learn(&holes, &groups(), &settings, 7).unwrap();
+        let learned = learn(&holes, &groups(), &settings, 7, &unwatched).unwrap();
         let l = learned.model.log_likelihood(&holes).unwrap();
         assert!(l.iter().all(|l| l.is_finite()), "{variant:?}");
         let mut rng = stream(1, "d", 0);
@@ -306,7 +315,7 @@ fn a_missing_value_is_integrated_out() {
 #[test]
 fn bad_input_is_named() {
     let (table, _) = made(30, 4, 1);
-    let fit = |t: &Table, g: &[Group]| learn(t, g, &settings(), 1).map(|_| ());
+    let fit = |t: &Table, g: &[Group]| learn(t, g, &settings(), 1, &unwatched).map(|_| ());
     let one = |name: &str| [Group::new("g", &[name])];
     let extra = |v: Vec<Option<f64>>| table.clone().real("extra", v).unwrap();
     assert!(matches!(
@@ -336,7 +345,7 @@ fn bad_input_is_named() {
         styles: 1..=1,
         ..settings()
     };
-    let model = learn(&styled.unwrap(), &one("roof"), &settings, 1)
+    let model = learn(&styled.unwrap(), &one("roof"), &settings, 1, &unwatched)
         .unwrap()
         .model;
     let new = Table::new()

@@ -6,10 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use edifice::model::ModelError;
 use edifice::model::Table;
 use edifice::model::em::Outcome;
-use edifice::model::hierarchy::{
-    Group, Settings, Step, Sweep, Variant, fit_observed, learn, learn_observed, refine,
-};
+use edifice::model::hierarchy::{Group, Settings, Sweep, Variant, fit, learn, refine};
 use edifice::rng::stream;
+use edifice_base::{Progress, unwatched};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -47,12 +46,12 @@ fn settings() -> Settings {
 fn an_observer_changes_nothing_and_hears_every_step() {
     let (data, groups) = table(150, 1);
     let heard = AtomicUsize::new(0);
-    let watched = learn_observed(&data, &groups, &settings(), 1, &|step: Option<&Step>| {
-        heard.fetch_add(usize::from(step.is_some()), Ordering::Relaxed);
+    let watched = learn(&data, &groups, &settings(), 1, &|told: Progress| {
+        heard.fetch_add(usize::from(told.cost.is_some()), Ordering::Relaxed);
         ControlFlow::Continue(())
     })
     .unwrap();
-    let plain = learn(&data, &groups, &settings(), 1).unwrap();
+    let plain = learn(&data, &groups, &settings(), 1, &unwatched).unwrap();
     assert_eq!(watched.score.to_bits(), plain.score.to_bits());
     assert_eq!(watched.trace, plain.trace);
     assert!(!watched.interrupted);
@@ -62,10 +61,10 @@ fn an_observer_changes_nothing_and_hears_every_step() {
 #[test]
 fn a_search_ended_at_any_time_returns_a_model_and_goes_on_from_it() {
     let (data, groups) = table(150, 2);
-    let whole = learn(&data, &groups, &settings(), 1).unwrap();
+    let whole = learn(&data, &groups, &settings(), 1, &unwatched).unwrap();
     for rounds in [0, 1, 5, 40, 300] {
         let left = AtomicUsize::new(rounds);
-        let ended = learn_observed(&data, &groups, &settings(), 1, &|_| {
+        let ended = learn(&data, &groups, &settings(), 1, &|_: Progress| {
             let more =
                 left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1));
             match more {
@@ -77,8 +76,7 @@ fn a_search_ended_at_any_time_returns_a_model_and_goes_on_from_it() {
         assert!(ended.interrupted && ended.score.is_finite());
         let logs = ended.model.log_likelihood(&data).unwrap();
         assert!(logs.iter().all(|l| l.is_finite()));
-        let go_on = |_: Option<&Step>| ControlFlow::Continue(());
-        let refined = refine(&ended.model, &data, &settings(), 1, &go_on).unwrap();
+        let refined = refine(&ended.model, &data, &settings(), 1, &unwatched).unwrap();
         assert!(!refined.interrupted);
         // EM raises the posterior, not the score: near the end both may differ by what is left of it.
         assert!(
@@ -103,8 +101,8 @@ fn many_rows_are_searched_on_a_sample_and_fitted_whole() {
         searched: 300,
         ..settings()
     };
-    let a = learn(&data, &groups, &sampled, 1).unwrap();
-    let b = learn(&data, &groups, &settings(), 1).unwrap();
+    let a = learn(&data, &groups, &sampled, 1, &unwatched).unwrap();
+    let b = learn(&data, &groups, &settings(), 1, &unwatched).unwrap();
     let mean = |l: &[f64]| l.iter().sum::<f64>() / l.len() as f64;
     let (a, b) = (
         mean(&a.model.log_likelihood(&data).unwrap()),
@@ -115,7 +113,7 @@ fn many_rows_are_searched_on_a_sample_and_fitted_whole() {
         searched: 0,
         ..settings()
     };
-    let error = learn(&data, &groups, &none, 1).unwrap_err();
+    let error = learn(&data, &groups, &none, 1, &unwatched).unwrap_err();
     assert!(matches!(error, ModelError::Parameter { .. }));
 }
 
@@ -128,7 +126,7 @@ fn a_sweep_of_few_styles_finds_what_one_of_all_does() {
             styles: 2..=9,
             ..Settings::default()
         };
-        learn(&data, &groups, &settings, 1).unwrap()
+        learn(&data, &groups, &settings, 1, &unwatched).unwrap()
     };
     let (few, all) = (with(Sweep::Few), with(Sweep::All));
     assert_eq!(few.model.styles(), all.model.styles());
@@ -139,8 +137,8 @@ fn a_sweep_of_few_styles_finds_what_one_of_all_does() {
 #[test]
 fn a_fit_can_be_ended_and_a_model_of_another_variant_is_refused() {
     let (data, groups) = table(200, 5);
-    let end = |_: Option<&Step>| ControlFlow::Break(());
-    let fitted = fit_observed(&data, &groups, 3, &[2, 2], &settings(), 1, &end).unwrap();
+    let end = |_: Progress| ControlFlow::Break(());
+    let fitted = fit(&data, &groups, 3, &[2, 2], &settings(), 1, &end).unwrap();
     assert_eq!(fitted.outcome, Outcome::Interrupted);
     let error = refine(&fitted.model, &data, &settings(), 1, &end).unwrap_err();
     assert!(error.to_string().contains("NoLateral"), "{error}");

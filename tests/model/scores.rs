@@ -3,6 +3,7 @@
 use edifice::model::Table;
 use edifice::model::conjugate::{LinearPrior, dirichlet_evidence, dirichlet_mode};
 use edifice::model::hierarchy::{Group, Settings, Variant, learn};
+use edifice_base::unwatched;
 
 const PRIOR: LinearPrior = LinearPrior {
     intercept: 0.5,
@@ -160,7 +161,7 @@ fn cheeseman_stutz_without_hidden_variables_is_the_marginal_likelihood() {
         ..Settings::default()
     };
     let groups = [Group::new("x", &["x"]), Group::new("b", &["b"])];
-    let learned = learn(&table, &groups, &settings, 1).unwrap();
+    let learned = learn(&table, &groups, &settings, 1, &unwatched).unwrap();
     let mean = x.iter().sum::<f64>() / f64::from(n);
     let scale = (x.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / f64::from(n)).sqrt();
     let rows: Vec<Vec<f64>> = x.iter().map(|v| vec![1.0, (v - mean) / scale]).collect();
@@ -192,7 +193,7 @@ fn cheeseman_stutz_with_a_hidden_variable_by_hand() {
         ..Settings::default()
     };
     settings.priors.linear.scatter = 1e-4;
-    let learned = learn(&table, &[Group::new("x", &["x"])], &settings, 1).unwrap();
+    let learned = learn(&table, &[Group::new("x", &["x"])], &settings, 1, &unwatched).unwrap();
     let mean = x.iter().sum::<f64>() / 40.0;
     let scale = (x.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 40.0).sqrt();
     let cluster = |c: usize| -> Vec<Vec<f64>> {

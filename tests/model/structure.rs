@@ -7,6 +7,7 @@ use edifice::model::network::structure::{Score, Search, score, search};
 use edifice::model::network::{Evidence, Network};
 use edifice::model::{Cell, ModelError, Table};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use proptest::prelude::*;
 use rand::RngExt;
 use statrs::function::gamma::ln_gamma;
@@ -131,7 +132,7 @@ proptest! {
         let data = random(&sizes, rows, seed);
         let kind = if bic { Score::Bic } else { Score::Bdeu(1.0 + (seed % 7) as f64) };
         let settings = Search { score: kind, restarts: 5, ..Search::default() };
-        let found = search(&data, &settings, seed).unwrap();
+        let found = search(&data, &settings, seed, &unwatched).unwrap();
         let parents = parents_of(&found.network, &data);
         prop_assert!(acyclic(&parents));
         let plain = plain_score(&data, &sizes, &parents, kind);
@@ -171,7 +172,7 @@ fn sampled(network: &Network, rows: usize, seed: u64) -> Table {
 fn the_skeleton_of_asia_comes_back() {
     let truth = asia();
     let data = sampled(&truth, 10_000, 1);
-    let found = search(&data, &Search::default(), 1).unwrap();
+    let found = search(&data, &Search::default(), 1, &unwatched).unwrap();
     let undirected = |edges: &[(String, String)]| {
         let both = edges
             .iter()
@@ -204,7 +205,7 @@ fn constraints_hold() {
         most_parents: 2,
         ..Search::default()
     };
-    let found = search(&data, &settings, 1).unwrap();
+    let found = search(&data, &settings, 1, &unwatched).unwrap();
     assert!(found.edges.contains(&pair("dysp", "asia")));
     for (p, c) in &found.edges {
         let pair = [p.as_str(), c.as_str()];
@@ -216,7 +217,7 @@ fn constraints_hold() {
             .iter()
             .all(|p| p.len() <= 2)
     );
-    let bad = |change: Search| search(&data, &change, 1).unwrap_err();
+    let bad = |change: Search| search(&data, &change, 1, &unwatched).unwrap_err();
     let circle = vec![pair("asia", "tub"), pair("tub", "asia")];
     let circle = bad(Search {
         required: circle,
@@ -250,11 +251,11 @@ fn constraints_hold() {
 fn what_cannot_be_counted_is_named() {
     let real = Table::new().real("w", [Some(1.0), Some(2.0)]).unwrap();
     assert!(matches!(
-        search(&real, &Search::default(), 1),
+        search(&real, &Search::default(), 1, &unwatched),
         Err(ModelError::Kind { .. })
     ));
     let missing = Table::new().binary("b", [Some(true), None]).unwrap();
-    let error = search(&missing, &Search::default(), 1).unwrap_err();
+    let error = search(&missing, &Search::default(), 1, &unwatched).unwrap_err();
     assert_eq!(
         error,
         ModelError::Missing {
@@ -262,10 +263,10 @@ fn what_cannot_be_counted_is_named() {
             row: 1
         }
     );
-    assert!(search(&Table::new(), &Search::default(), 1).is_err());
+    assert!(search(&Table::new(), &Search::default(), 1, &unwatched).is_err());
     // One column, and columns that never vary.
     let one = Table::new().binary("b", [Some(true); 3]).unwrap();
-    let found = search(&one, &Search::default(), 1).unwrap();
+    let found = search(&one, &Search::default(), 1, &unwatched).unwrap();
     assert!(found.edges.is_empty() && found.score.is_finite());
 }
 
@@ -275,7 +276,7 @@ fn the_same_seed_gives_the_same_structure_with_any_number_of_threads() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap()
-            .install(|| search(&data, &Search::default(), 7).unwrap())
+            .install(|| search(&data, &Search::default(), 7, &unwatched).unwrap())
     };
     let (one, two) = (with(1), with(2));
     assert_eq!(one.edges, two.edges);

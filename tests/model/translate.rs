@@ -4,6 +4,7 @@ use edifice::model::hierarchy::{Group, Hierarchy, Settings, Variant, learn};
 use edifice::model::network::Evidence;
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use rand::RngExt;
 
 const VARIANTS: [Variant; 4] = [
@@ -68,7 +69,7 @@ fn model(variant: Variant, background: f64, seed: u64) -> (Hierarchy, Table) {
         restarts: 1,
         ..Settings::default()
     };
-    let learned = learn(&table, &groups, &settings, seed).unwrap();
+    let learned = learn(&table, &groups, &settings, seed, &unwatched).unwrap();
     (learned.model, table)
 }
 

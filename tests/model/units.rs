@@ -6,6 +6,7 @@ use edifice::model::gmm::{self, Covariance, Points};
 use edifice::model::hierarchy::{self, Group};
 use edifice::model::network::{FitSettings, Network, Variable};
 use edifice::rng::stream;
+use edifice_base::unwatched;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -103,7 +104,7 @@ fn hierarchies() {
         };
         assert_invariant(|unit| {
             let data = table(unit);
-            let learned = hierarchy::learn(&data, &groups, &settings, 1);
+            let learned = hierarchy::learn(&data, &groups, &settings, 1, &unwatched);
             let model = learned.unwrap().model;
             model.log_likelihood(&data).unwrap().iter().sum()
         });

@@ -6,6 +6,7 @@ use edifice::io::{building_csv, json, read_bytes};
 use edifice::model::hierarchy::{Constant, Settings, learn};
 use edifice::model::tables::Dataset;
 use edifice::model::tables::schema::Schema;
+use edifice_base::unwatched;
 
 fn read(schema: &str, table: &str) -> Option<Dataset> {
     let table = format!("houses/{table}");
@@ -28,7 +29,7 @@ fn learns(data: &Dataset) {
         constant: Constant::Keep,
         ..Settings::default()
     };
-    let learned = learn(&few.table, &few.groups, &settings, 1).unwrap();
+    let learned = learn(&few.table, &few.groups, &settings, 1, &unwatched).unwrap();
     let logs = learned.model.log_likelihood(&data.table).unwrap();
     assert!(logs.iter().all(|l| l.is_finite()));
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization as method;
 use edifice_city_proceduralization::{
@@ -129,7 +130,7 @@ pub fn run(args: &Args) -> Result<()> {
                 print::message(&format!("{} templates: {found} bytes", g.templates.len()));
                 Ok(found <= bytes)
             };
-            method::largest(&input, &settings, small).map_err(|e| failure(e, args))?
+            method::largest(&input, &settings, small, &unwatched).map_err(|e| failure(e, args))?
         }
         (_, Some(least)) => {
             let good = |g: &InstanceGrammar| {
@@ -137,9 +138,12 @@ pub fn run(args: &Args) -> Result<()> {
                 print::message(&format!("{} templates: IoU {found:.4}", g.templates.len()));
                 Ok(found >= least)
             };
-            method::smallest(&input, &settings, good).map_err(|e| failure(e, args))?
+            method::smallest(&input, &settings, good, &unwatched).map_err(|e| failure(e, args))?
         }
-        _ => Some(method::proceduralize(&input, &settings).map_err(|e| failure(e.into(), args))?),
+        _ => Some(
+            method::proceduralize(&input, &settings, &unwatched)
+                .map_err(|e| failure(e.into(), args))?,
+        ),
     };
     let option = if args.bytes.is_some() {
         "--bytes"

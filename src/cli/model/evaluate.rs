@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_model::ModelError;
 use edifice_model::tables::Dataset;
@@ -63,7 +64,14 @@ impl Splits {
             let rows = (train.clone(), test.clone());
             let (train, test) = (data.select(&train), data.select(&test));
             for (contender, losses) in contenders.iter().zip(&mut losses) {
-                let found = held_out(*contender, &train, &test, &settings, self.search.seed);
+                let found = held_out(
+                    *contender,
+                    &train,
+                    &test,
+                    &settings,
+                    self.search.seed,
+                    &unwatched,
+                );
                 let found = found.map_err(|e| Error::content(path, within(&e, &rows, index)))?;
                 let mean = found.iter().sum::<f64>() / found.len() as f64;
                 print::line(&format!("{},{},{mean:.4}", contender.name(), index + 1))?;

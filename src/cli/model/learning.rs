@@ -7,11 +7,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Progress, Result};
 use edifice_model::em::Outcome;
-use edifice_model::hierarchy::{
-    Hierarchy, Learned, Settings, Step, fit_observed, learn_observed, refine,
-};
+use edifice_model::hierarchy::{Hierarchy, Learned, Settings, fit, learn, refine};
 use edifice_model::tables::Dataset;
 use edifice_model::{ModelError, Table};
 
@@ -102,11 +100,11 @@ impl Learning {
         watch: &Watch,
     ) -> std::result::Result<Found, ModelError> {
         let seed = self.search.seed;
-        let observer = |step: Option<&Step>| watch.tell(step);
+        let watch = |progress: Progress| watch.tell(progress);
         if let (Some(styles), Some(kinds)) = (self.styles, self.kinds) {
             let states = vec![kinds; data.real_groups()];
             let (table, groups) = (&data.table, &data.groups);
-            let fitted = fit_observed(table, groups, styles, &states, settings, seed, &observer)?;
+            let fitted = fit(table, groups, styles, &states, settings, seed, &watch)?;
             return Ok(Found {
                 model: fitted.model,
                 score: fitted.score,
@@ -116,8 +114,8 @@ impl Learning {
             });
         }
         let learned: Learned = match start {
-            Some(model) => refine(model, &data.table, settings, seed, &observer)?,
-            None => learn_observed(&data.table, &data.groups, settings, seed, &observer)?,
+            Some(model) => refine(model, &data.table, settings, seed, &watch)?,
+            None => learn(&data.table, &data.groups, settings, seed, &watch)?,
         };
         Ok(Found {
             model: learned.model,
@@ -149,8 +147,9 @@ struct Watch {
 
 #[derive(Default)]
 struct State {
-    tried: usize,
-    best: Option<Step>,
+    accepted: u64,
+    /// Minus the highest score so far.
+    best: Option<f64>,
     told: Duration,
 }
 
@@ -163,10 +162,13 @@ impl Watch {
         }
     }
 
-    fn tell(&self, step: Option<&Step>) -> ControlFlow<()> {
+    fn tell(&self, progress: Progress) -> ControlFlow<()> {
         let elapsed = self.start.elapsed();
         if let Ok(mut state) = self.state.lock() {
-            state.accept(step);
+            if progress.best.is_some() {
+                state.accepted = state.accepted.max(progress.done);
+                state.best = progress.best;
+            }
             if elapsed >= state.told + TELL {
                 state.told = elapsed;
                 print::message(&state.line(elapsed));
@@ -180,21 +182,13 @@ impl Watch {
 }
 
 impl State {
-    fn accept(&mut self, step: Option<&Step>) {
-        let Some(step) = step else { return };
-        self.tried += 1;
-        if self.best.as_ref().is_none_or(|b| step.score > b.score) {
-            self.best = Some(step.clone());
-        }
-    }
-
     fn line(&self, elapsed: Duration) -> String {
         let seconds = elapsed.as_secs();
         match &self.best {
             None => format!("{seconds} s: fitting"),
             Some(best) => format!(
-                "{seconds} s: {} configurations accepted, best so far {} styles, {} lateral edges, score {:.1}",
-                self.tried, best.styles, best.lateral_edges, best.score
+                "{seconds} s: {} configurations accepted, score of the best so far {:.1}",
+                self.accepted, -best
             ),
         }
     }

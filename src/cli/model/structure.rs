@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_model::network::structure::{Score, Search, search};
 
@@ -71,7 +72,7 @@ pub fn run(args: &Args) -> Result<()> {
         ..Search::default()
     };
     let start = Instant::now();
-    let found = search(&data.table, &settings, args.seed);
+    let found = search(&data.table, &settings, args.seed, &unwatched);
     let found = found.map_err(|e| Error::content(&args.input.table, e))?;
     let seconds = start.elapsed().as_secs_f64();
     super::network::write(&found.network, &args.output)?;

@@ -58,7 +58,7 @@ pub mod type_graph;
 pub mod types;
 pub mod windows;
 
-pub use components::{Component, Decomposition, decompose, decompose_watched};
+pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::type_graph::{
     DistanceWeights, NEIGHBOUR, NodeInstance, TypeEdge, neighbours, type_graph,
 };
+use edifice_base::{Progress, Watched};
 use edifice_cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
 use edifice_grammar::instance::{InstanceRule, Placement};
 
@@ -66,6 +67,7 @@ pub fn grow(
     instances: Vec<(usize, [f64; 3], Placement)>,
     detection: Detection,
     weights: DistanceWeights,
+    watched: &Watched,
 ) -> ParseTree {
     let mut tree = ParseTree {
         rules: Vec::new(),
@@ -85,7 +87,7 @@ pub fn grow(
         let mut active: Vec<usize> = grown.iter().map(|g| g.node).collect();
         active.sort_unstable();
         active.dedup();
-        if active.len() < 2 {
+        if active.len() < 2 || !watched.goes_on(Progress::stage("levels of communities")) {
             break;
         }
         let number: BTreeMap<usize, usize> =

@@ -28,6 +28,7 @@ use rayon::prelude::*;
 use super::error::ModelError;
 use super::information::Information;
 use edifice_base::rng::{Stream, stream};
+use edifice_base::{Progress, Watch, Watched};
 pub use gibbs::{Factor, Feature, Gibbs};
 
 /// A model family: features of a state, and a way to move between states.
@@ -196,13 +197,14 @@ pub fn gradient<C: Chain>(
 /// # Examples
 /// Two bits that are equal in 3 of 4 examples: the weight of "equal" is the log odds, `log 3`.
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::factor_graph::{Factor, Gibbs, Settings, fit};
 /// let equal = Factor { variables: vec![0, 1], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
 /// let gibbs = Gibbs::new(vec![2, 2], vec![equal])?;
 /// let examples = [[0, 0], [1, 1], [0, 0], [0, 1]].repeat(100);
 /// let data: Vec<Vec<usize>> = examples.into_iter().map(Vec::from).collect();
 /// let settings = Settings { newton: true, moves: 3, ..Settings::default() };
-/// let weights = fit(&gibbs, &data, &settings, 1)?;
+/// let weights = fit(&gibbs, &data, &settings, 1, &unwatched)?;
 /// assert!((weights[0] - 3.0_f64.ln()).abs() < 0.1);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
@@ -211,7 +213,9 @@ pub fn fit<C: Chain>(
     data: &[C::State],
     settings: &Settings,
     seed: u64,
+    watch: &Watch,
 ) -> Result<Vec<f64>, ModelError> {
+    let watched = Watched::new(watch);
     let fine = settings.rate > 0.0 && settings.decay > 0.0 && settings.penalty >= 0.0;
     if !fine || settings.rounds == 0 || settings.moves == 0 {
         return Err(ModelError::parameter(
@@ -236,7 +240,18 @@ pub fn fit<C: Chain>(
             settings.moves,
             seed,
             round as u64,
+            &watched,
         );
+        if watched.is_stopped() {
+            // Of the rounds until now: the mean of those that count, or the last weights.
+            let counted = round.saturating_sub(half) as f64;
+            let share = counted / (settings.rounds - half) as f64;
+            mean = match counted > 0.0 {
+                true => mean.iter().map(|m| m / share).collect(),
+                false => weights,
+            };
+            break;
+        }
         let negatives = all_features(chain, &states)?;
         let gap = mean_difference(&examples, &negatives);
         let ascent = weights.iter().zip(&gap);
@@ -271,8 +286,16 @@ fn advance<C: Chain>(
     moves: usize,
     seed: u64,
     round: u64,
+    watched: &Watched,
 ) {
+    let told = Progress {
+        done: round,
+        ..Progress::stage("rounds of contrastive divergence")
+    };
     states.par_iter_mut().enumerate().for_each(|(i, state)| {
+        if !watched.goes_on(told) {
+            return;
+        }
         let mut rng = stream(seed ^ round.rotate_left(32), "chain", i as u64);
         for _ in 0..moves {
             chain.step(state, weights, &mut rng);

@@ -23,6 +23,7 @@ use edifice_base::rng::categorical;
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{Cell, Table, em::Stopping, hierarchy::{Group, Priors, fit}};
 /// use edifice_base::rng::stream;
 /// let width = (0..60).map(|i| Some(if i % 3 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
@@ -30,7 +31,7 @@ use edifice_base::rng::categorical;
 ///     .real("width", width)?
 ///     .binary("garage", (0..60).map(|i| Some(i % 3 > 0)))?;
 /// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
-/// let model = fit(&houses, &groups, 2, &[2], &Priors::default(), &Stopping::default(), 1)?.model;
+/// let model = fit(&houses, &groups, 2, &[2], &Settings::default(), 1, &unwatched)?.model;
 /// let mut rng = stream(1, "draws", 0);
 /// let draws = model.sample(500, &mut rng)?;
 /// let told = model.log_likelihood(&draws.table)?;

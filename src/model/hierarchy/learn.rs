@@ -1,7 +1,5 @@
 //! Learning from a table: structure and parameters, or parameters alone.
 
-use std::ops::ControlFlow;
-
 use rand::seq::SliceRandom;
 
 use super::super::em::{Outcome, Stopping};
@@ -11,15 +9,16 @@ use super::fit::{Problem, Scored};
 use super::schema::{Rows, Schema};
 use super::search::Search;
 use super::structure::{Selector, Structure};
-use super::watch::Watch;
-use super::{Group, Hierarchy, Observer, Priors, Settings, Variant};
+use super::watch::Watching;
+use super::{Group, Hierarchy, Settings, Variant};
+use edifice_base::Watch;
 use edifice_base::rng::stream;
 
 /// Least gain of a round of EM on many rows, nats a row: while a structure is searched, where what decides is far more, and
 /// where the parameters of all rows are settled.
 const SETTLED: f64 = 1e-4;
 
-/// One accepted configuration of the search, for [`Learned::trace`] and [`Observer`]s.
+/// One accepted configuration of the search, for [`Learned::trace`].
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Step {
     /// |S|.
@@ -32,7 +31,7 @@ pub struct Step {
     pub score: f64,
 }
 
-/// Result of [`learn`], [`learn_observed`] and [`refine`]; the example of [`learn`] reads one.
+/// Result of [`learn`] and [`refine`]; the example of [`learn`] reads one.
 ///
 /// Scores are comparable, whatever the [`Variant`], between models of the same rows and groups that standardise columns alike,
 /// as [`learn`] does and [`refine`] need not: the logarithms of the columns' deviations are not in them.
@@ -59,6 +58,9 @@ pub struct Learned {
 /// product of the closed forms of [`conjugate`](crate::conjugate) (Fan and Wonka 2016, Eq. 2 with a uniform P(G);
 /// Cheeseman and Stutz 1996).
 ///
+/// `watch` is told of each configuration accepted, its cost being minus its score, and asked before each round of EM; a search
+/// that it stops returns the best model so far ([`Learned::interrupted`]).
+///
 /// Each value tried of |S|, of an |H_g| or of the lateral edges takes one run of EM, whose rounds are linear in rows; the same
 /// seed gives the same bytes with any number of threads.
 ///
@@ -68,6 +70,7 @@ pub struct Learned {
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{Table, hierarchy::{Group, Settings, learn}};
 /// let n = 40;
 /// let width = (0..n).map(|i| Some(if i % 2 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
@@ -76,11 +79,31 @@ pub struct Learned {
 ///     .binary("garage", (0..n).map(|i| Some(i % 2 == 1)))?;
 /// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
 /// let settings = Settings { styles: 2..=3, ..Settings::default() };
-/// let learned = learn(&houses, &groups, &settings, 1)?;
+/// let learned = learn(&houses, &groups, &settings, 1, &unwatched)?;
 /// assert_eq!(learned.model.styles(), 2);
 /// // All configurations score less than the model, but for what EM gained since.
 /// assert!(learned.trace.iter().all(|step| step.score < learned.score + 0.5));
 /// assert!(learned.trace.iter().any(|step| step.styles == 3) && !learned.interrupted);
+/// # Ok::<(), edifice_model::ModelError>(())
+/// ```
+/// Stopped at the first configuration, then gone on with:
+/// ```
+/// use edifice_base::unwatched;
+/// use std::ops::ControlFlow;
+/// use edifice_base::{Progress, unwatched};
+/// use edifice_model::{Table, hierarchy::{Group, Settings, learn, refine}};
+/// let width = (0..60).map(|i| Some([5.0, 12.0, 30.0][i % 3] + (i % 5) as f64 * 0.1));
+/// let houses = Table::new().real("width", width)?;
+/// let groups = [Group::new("size", &["width"])];
+/// let settings = Settings { styles: 1..=2, ..Settings::default() };
+/// let early = learn(&houses, &groups, &settings, 1, &|progress: Progress| match progress.cost {
+///     Some(_) => ControlFlow::Break(()),
+///     None => ControlFlow::Continue(()),
+/// })?;
+/// assert!(early.interrupted);
+/// let on = refine(&early.model, &houses, &settings, 1, &unwatched)?;
+/// assert!(!on.interrupted && on.score > early.score + 1.0);
+/// assert_eq!(on.model.cardinalities(), [3]);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn learn(
@@ -88,45 +111,12 @@ pub fn learn(
     groups: &[Group],
     settings: &Settings,
     seed: u64,
-) -> Result<Learned, ModelError> {
-    learn_observed(data, groups, settings, seed, &|_| ControlFlow::Continue(()))
-}
-
-/// As [`learn`], watched: a search that is ended early returns the best model so far.
-///
-/// # Errors
-/// As [`learn`].
-///
-/// # Examples
-/// Ended at the first configuration, then gone on with:
-/// ```
-/// use std::ops::ControlFlow;
-/// use edifice_model::{Table, hierarchy::{Group, Settings, learn_observed, refine}};
-/// let width = (0..60).map(|i| Some([5.0, 12.0, 30.0][i % 3] + (i % 5) as f64 * 0.1));
-/// let houses = Table::new().real("width", width)?;
-/// let groups = [Group::new("size", &["width"])];
-/// let settings = Settings { styles: 1..=2, ..Settings::default() };
-/// let early = learn_observed(&houses, &groups, &settings, 1, &|step| match step {
-///     Some(_) => ControlFlow::Break(()),
-///     None => ControlFlow::Continue(()),
-/// })?;
-/// assert!(early.interrupted);
-/// let on = refine(&early.model, &houses, &settings, 1, &|_| ControlFlow::Continue(()))?;
-/// assert!(!on.interrupted && on.score > early.score + 1.0);
-/// assert_eq!(on.model.cardinalities(), [3]);
-/// # Ok::<(), edifice_model::ModelError>(())
-/// ```
-pub fn learn_observed(
-    data: &Table,
-    groups: &[Group],
-    settings: &Settings,
-    seed: u64,
-    observer: &Observer,
+    watch: &Watch,
 ) -> Result<Learned, ModelError> {
     check(settings)?;
     let schema = Schema::learn(data, groups, settings.constant)?;
     let work = Work::new(&schema, data, settings, seed)?;
-    work.learn(observer, |search| {
+    work.learn(watch, |search| {
         let mut found = search.run(seed)?;
         if settings.category_edges && !search.large() {
             // Edges from categories compete with styles for the same dependencies: the search without them may end higher.
@@ -146,7 +136,7 @@ pub fn learn_observed(
 
 /// Goes on from a model that was learned before, from the same kind of table: its attributes, cardinalities and edges are
 /// where the search starts, and its columns stay standardised as they are. For a search that was interrupted, or new rows.
-/// Every |S| of the settings is tried above its second level; [`learn_observed`] has an example.
+/// Every |S| of the settings is tried above its second level; [`learn`] has an example.
 ///
 /// # Errors
 /// As [`learn`]; a category that the model does not know; [`ModelError::Parameter`] for a model of another variant.
@@ -155,7 +145,7 @@ pub fn refine(
     data: &Table,
     settings: &Settings,
     seed: u64,
-    observer: &Observer,
+    watch: &Watch,
 ) -> Result<Learned, ModelError> {
     check(settings)?;
     if model.variant != settings.variant {
@@ -164,7 +154,7 @@ pub fn refine(
     }
     let work = Work::new(&model.schema, data, settings, seed)?;
     let structure = model.shape.structure.clone();
-    work.learn(observer, |search| {
+    work.learn(watch, |search| {
         search.improve(structure, model.params.clone(), seed)
     })
 }
@@ -229,10 +219,10 @@ impl<'a> Work<'a> {
     /// Searches, then fits what was found to all rows.
     fn learn(
         &self,
-        observer: &Observer,
+        watch: &Watch,
         search: impl FnOnce(&Search) -> Result<(Scored, Vec<Step>), ModelError>,
     ) -> Result<Learned, ModelError> {
-        let watch = Watch::new(observer);
+        let watch = Watching::new(watch);
         let (settings, schema) = (self.settings, self.schema);
         let rows = self.sample.as_ref().unwrap_or(&self.rows);
         let mut searching = settings.clone();
@@ -269,7 +259,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Result of [`fit`] and [`fit_observed`]; the example of [`fit`] reads one. Scores are as in [`learn`].
+/// Result of [`fit`]; the example of [`fit`] reads one. Scores are as in [`learn`].
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The model.
@@ -280,7 +270,7 @@ pub struct Fitted {
     pub outcome: Outcome,
 }
 
-/// One run of EM for given cardinalities (`states` per real group, in order) without lateral
+/// One run of EM, with the priors, stopping and constant columns of `settings`, for given cardinalities (`states` per real group, in order) without lateral
 /// edges, from k-means++ clusters of at most 10,000 of the rows: for data too large to search.
 /// Time is linear in rows ([the module](crate::hierarchy) has the cost of a round); besides the data themselves one
 /// standardised copy is held. EM: Fan and Wonka 2016, Sec. 5.3, *Parameter learning*; [`em`](crate::em).
@@ -290,12 +280,13 @@ pub struct Fitted {
 ///
 /// # Examples
 /// ```
-/// use edifice_model::{Table, em::{Outcome, Stopping}, hierarchy::{Group, Priors, fit}};
+/// use edifice_base::unwatched;
+/// use edifice_model::{Table, em::Outcome, hierarchy::{Group, Settings, fit}};
 /// // Twenty narrow houses, forty wide ones.
 /// let width = (0..60).map(|i| Some(if i < 20 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
 /// let houses = Table::new().real("width", width)?;
 /// let groups = [Group::new("size", &["width"])];
-/// let fitted = fit(&houses, &groups, 1, &[2], &Priors::default(), &Stopping::default(), 1)?;
+/// let fitted = fit(&houses, &groups, 1, &[2], &Settings::default(), 1, &unwatched)?;
 /// assert_eq!(fitted.outcome, Outcome::Converged);
 /// let kinds = &fitted.model.state_probabilities("size")?[0];
 /// // The mode under Dirichlet(1.2, 1.2).
@@ -307,31 +298,9 @@ pub fn fit(
     groups: &[Group],
     styles: usize,
     states: &[usize],
-    priors: &Priors,
-    stopping: &Stopping,
-    seed: u64,
-) -> Result<Fitted, ModelError> {
-    let settings = Settings {
-        priors: *priors,
-        stopping: *stopping,
-        ..Settings::default()
-    };
-    let go_on = |_: Option<&Step>| ControlFlow::Continue(());
-    fit_observed(data, groups, styles, states, &settings, seed, &go_on)
-}
-
-/// As [`fit`], with priors, stopping and constant columns as in `settings`, watched before every round.
-///
-/// # Errors
-/// As [`fit`].
-pub fn fit_observed(
-    data: &Table,
-    groups: &[Group],
-    styles: usize,
-    states: &[usize],
     settings: &Settings,
     seed: u64,
-    observer: &Observer,
+    watch: &Watch,
 ) -> Result<Fitted, ModelError> {
     check(settings)?;
     let schema = Schema::learn(data, groups, settings.constant)?;
@@ -351,7 +320,7 @@ pub fn fit_observed(
     };
     let problem = Problem::new(&schema, &rows, &settings.priors, structure)?;
     let start = problem.start(&mut stream(seed, "fixed", 0))?;
-    let watch = Watch::new(observer);
+    let watch = Watching::new(watch);
     let (scored, outcome) = problem.fit_told(start, &settings.stopping, &|| watch.goes_on())?;
     Ok(Fitted {
         score: scored.score,

@@ -96,10 +96,9 @@ pub use super::conjugate::Priors;
 use super::em::Stopping;
 pub use super::standardize::Constant;
 pub use draw::Draws;
-pub use learn::{Fitted, Learned, Step, fit, fit_observed, learn, learn_observed, refine};
+pub use learn::{Fitted, Learned, Step, fit, learn, refine};
 pub use query::Hierarchy;
 pub use schema::Group;
-pub use watch::Observer;
 
 /// Which of the paper's models to learn: the table in [the module](self).
 ///
@@ -110,6 +109,7 @@ pub use watch::Observer;
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{Table, hierarchy::{Group, Settings, Variant, learn}};
 /// let width = |i: usize| 6.0 + (i % 7) as f64;
 /// let houses = Table::new()
@@ -118,7 +118,7 @@ pub use watch::Observer;
 ///     .real("age", (0..70).map(|i| Some((i % 10) as f64)))?;
 /// let groups = ["width", "area", "age"].map(|name| Group::new(name, &[name]));
 /// let settings = Settings { variant: Variant::Directed, ..Settings::default() };
-/// let model = learn(&houses, &groups, &settings, 1)?.model;
+/// let model = learn(&houses, &groups, &settings, 1, &unwatched)?.model;
 /// assert_eq!(model.styles(), 1);
 /// let edges = model.lateral_edges();
 /// assert_eq!(edges.len(), 1);
@@ -152,21 +152,20 @@ pub enum Sweep {
     Few,
 }
 
-/// Settings of [`learn`], and in part of [`fit_observed`]. The defaults are those of the paper where it has any; gains and
+/// Settings of [`learn`], and in part of [`fit`]. The defaults are those of the paper where it has any; gains and
 /// movements are as in [`Stopping`].
 ///
 /// # Examples
 /// The gain of a background on a row ten deviations away, in nats:
 /// ```
-/// use std::ops::ControlFlow;
-/// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, fit_observed}};
+/// use edifice_base::unwatched;
+/// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, fit}};
 /// let seen = Table::new().real("width", (0..70).map(|i| Some(10.0 + (i % 7) as f64)))?;
 /// let strange = Table::new().real("width", [Some(33.0)])?;
 /// let groups = [Group::new("size", &["width"])];
-/// let go_on = |_: Option<&_>| ControlFlow::Continue(());
 /// let told = |background: f64| -> Result<f64, ModelError> {
 ///     let settings = Settings { background, ..Settings::default() };
-///     let fitted = fit_observed(&seen, &groups, 1, &[1], &settings, 1, &go_on)?;
+///     let fitted = fit(&seen, &groups, 1, &[1], &settings, 1, &unwatched)?;
 ///     Ok(fitted.model.log_likelihood(&strange)?[0])
 /// };
 /// assert!(told(0.0)? < -45.0 && told(0.01)? > -15.0);

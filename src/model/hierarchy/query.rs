@@ -21,13 +21,14 @@ use super::wide::states;
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{Table, em::Stopping, hierarchy::{Group, Hierarchy, Priors, fit}};
 /// let width = (0..60).map(|i| Some(if i % 3 == 0 { 5.0 } else { 12.0 } + (i % 5) as f64 * 0.1));
 /// let houses = Table::new()
 ///     .real("width", width)?
 ///     .binary("garage", (0..60).map(|i| Some(i % 3 > 0)))?;
 /// let groups = [Group::new("size", &["width"]), Group::new("parts", &["garage"])];
-/// let model = fit(&houses, &groups, 2, &[2], &Priors::default(), &Stopping::default(), 1)?.model;
+/// let model = fit(&houses, &groups, 2, &[2], &Settings::default(), 1, &unwatched)?.model;
 /// // Of one house no more is known than that it has a garage. Bayes' rule by hand:
 /// let garage = Table::new().binary("garage", [Some(true)])?;
 /// let (p, yes) = (model.style_probabilities(), model.category_probabilities("garage")?);

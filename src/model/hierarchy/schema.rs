@@ -12,12 +12,13 @@ use super::super::table::{MISSING, Table, Values};
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{ModelError, Table, hierarchy::{Group, Settings, learn}};
 /// let houses = Table::new()
 ///     .real("width", (0..20).map(|i| Some(f64::from(i % 7))))?
 ///     .binary("garage", (0..20).map(|i| Some(i % 2 == 1)))?;
 /// let mixed = [Group::new("house", &["width", "garage"])];
-/// let refused = learn(&houses, &mixed, &Settings::default(), 1);
+/// let refused = learn(&houses, &mixed, &Settings::default(), 1, &unwatched);
 /// assert!(matches!(refused, Err(ModelError::Kind { column, .. }) if column == "garage"));
 /// # Ok::<(), ModelError>(())
 /// ```

@@ -15,7 +15,7 @@ use super::infer::Scratch;
 use super::params::Params;
 use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure};
-use super::watch::Watch;
+use super::watch::Watching;
 use super::wide::{Wide, states, wide};
 use super::{Settings, Step, Sweep, Variant};
 use edifice_base::rng::stream;
@@ -35,7 +35,7 @@ pub(crate) struct Search<'a> {
     pub settings: &'a Settings,
     /// True if edges from categories are searched.
     pub categories: bool,
-    pub watch: &'a Watch<'a>,
+    pub watch: &'a Watching<'a>,
 }
 
 impl<'a> Search<'a> {

@@ -1,47 +1,45 @@
-//! The observer of a search, which may end it.
+//! What a search tells of itself, and that it can be stopped.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use edifice_base::{Progress, Watch, Watched};
 
 use super::Step;
 
-/// Called with every accepted configuration, and with `None` before every round of EM, from any thread.
-/// [`ControlFlow::Break`] ends the search with the best configuration so far; the observer is not called again.
-/// [`learn_observed`](super::learn_observed) has an example.
-pub type Observer<'a> = dyn Fn(Option<&Step>) -> ControlFlow<()> + Sync + 'a;
-
-/// An observer, and whether it has ended the search.
-pub(crate) struct Watch<'a> {
-    observer: &'a Observer<'a>,
-    ended: AtomicBool,
+/// A search that is watched: told of with every accepted configuration, whose cost is minus its score, and before every round
+/// of EM.
+pub(crate) struct Watching<'a> {
+    watched: Watched<'a>,
+    /// Configurations accepted, and the lowest cost among them.
+    accepted: Mutex<(u64, f64)>,
 }
 
-impl<'a> Watch<'a> {
-    pub fn new(observer: &'a Observer<'a>) -> Self {
+impl<'a> Watching<'a> {
+    pub fn new(watch: &'a Watch<'a>) -> Self {
         Self {
-            observer,
-            ended: AtomicBool::new(false),
+            watched: Watched::new(watch),
+            accepted: Mutex::new((0, f64::INFINITY)),
         }
     }
 
-    /// Asks the observer; true if the search shall go on. Once false, it stays false.
+    /// True if the search shall go on. Once false, it stays false.
     pub fn goes_on(&self) -> bool {
-        self.tell(None);
-        !self.ended()
+        self.watched.goes_on(Progress::stage("rounds of EM"))
     }
 
     /// Tells of an accepted configuration.
     pub fn accepted(&self, step: &Step) {
-        self.tell(Some(step));
+        let (done, best) = {
+            let mut accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
+            *accepted = (accepted.0 + 1, accepted.1.min(-step.score));
+            *accepted
+        };
+        let mut progress = Progress::stage("configurations accepted").costs(-step.score, best);
+        progress.done = done;
+        self.watched.goes_on(progress);
     }
 
     pub fn ended(&self) -> bool {
-        self.ended.load(Ordering::Relaxed)
-    }
-
-    fn tell(&self, step: Option<&Step>) {
-        if !self.ended() && (self.observer)(step).is_break() {
-            self.ended.store(true, Ordering::Relaxed);
-        }
+        self.watched.is_stopped()
     }
 }

@@ -74,12 +74,19 @@ pub fn held_out(
     test: &Dataset,
     settings: &Settings,
     seed: u64,
+    watch: &Watch,
 ) -> Result<Vec<f64>, ModelError> {
     if contender == Contender::Extended {
         let encoding = Encoding::learn(train, &settings.priors.linear, seed)?;
         let table = encoding.encode(&train.table)?;
         let settings = extended(settings);
-        let learned = learn(&table, &encoding.groups(&train.groups), &settings, seed)?;
+        let learned = learn(
+            &table,
+            &encoding.groups(&train.groups),
+            &settings,
+            seed,
+            watch,
+        )?;
         let logs = learned
             .model
             .log_likelihood(&encoding.encode(&test.table)?)?;
@@ -92,7 +99,7 @@ pub fn held_out(
                 variant,
                 ..settings.clone()
             };
-            let learned = learn(&train.table, &train.groups, &settings, seed)?;
+            let learned = learn(&train.table, &train.groups, &settings, seed, watch)?;
             learned.model.log_likelihood(&test.table)?
         }
         None => {
@@ -136,6 +143,7 @@ pub fn judge(
     test: &Dataset,
     settings: &Settings,
     seed: u64,
+    watch: &Watch,
 ) -> Result<Option<Judged>, ModelError> {
     let Some(variant) = contender.variant() else {
         return Ok(None);
@@ -144,7 +152,7 @@ pub fn judge(
         variant,
         ..settings.clone()
     };
-    let model = learn(&train.table, &train.groups, &settings, seed)?.model;
+    let model = learn(&train.table, &train.groups, &settings, seed, watch)?.model;
     let mean = |logs: Vec<f64>| logs.iter().sum::<f64>() / logs.len().max(1) as f64;
     let all = mean(model.log_likelihood(&test.table)?);
     let mut attributes = Vec::with_capacity(test.groups.len());

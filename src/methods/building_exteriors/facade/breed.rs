@@ -19,6 +19,7 @@ use super::knapsack::widths;
 use super::layout::{FacadeTarget, Facades, door_strip};
 use super::room::{Room, Walls};
 use crate::attributes::facade_attributes;
+use edifice_base::unwatched;
 use edifice_optim::Step;
 use edifice_optim::genetic::{Breed, Genetic, GeneticError, Settings};
 use edifice_shape::solid::Faces;
@@ -67,7 +68,7 @@ pub fn breed(
         deviations,
         evaluations: 0,
     };
-    let (run, _) = Genetic::new(settings, Vec::new(), seed)?.run(&mut house, |_| ())?;
+    let (run, _) = Genetic::new(settings, Vec::new(), seed)?.run(&mut house, &unwatched)?;
     let pieces = house.pieces(&run.best);
     let facades = Facades {
         max_z: house.max_z(&pieces),

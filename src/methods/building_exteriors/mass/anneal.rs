@@ -15,6 +15,7 @@ use super::target::MassTarget;
 use super::{MASS, MassModel, THINNEST, max_z};
 use crate::attributes::{GROUPS, Group, mass_attributes};
 use crate::mass::scheme::PLAIN;
+use edifice_base::unwatched;
 use edifice_optim::Step;
 use edifice_optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
 use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion};
@@ -73,7 +74,7 @@ pub fn anneal(
         };
         let seed = seed.wrapping_add(restart);
         let annealing = Annealing::new(settings.cooling, settings.iterations, 1, seed)?;
-        let run = annealing.until(settings.goal).run(&mut model, |_| ())?;
+        let run = annealing.until(settings.goal).run(&mut model, &unwatched)?;
         evaluations += model.evaluations;
         steps.push(run.trace);
         if best.as_ref().is_none_or(|(_, least)| run.cost < *least) {

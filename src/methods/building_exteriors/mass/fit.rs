@@ -6,6 +6,7 @@ use super::scheme::{Block, Line, Scheme};
 use super::target::MassTarget;
 use super::{MASS, max_z};
 use crate::attributes::mass_attributes;
+use edifice_base::unwatched;
 use edifice_optim::least_squares::{Limits, Residuals, minimize};
 use edifice_shape::Building;
 
@@ -84,7 +85,7 @@ fn once(scheme: &Scheme, target: &MassTarget, deviations: &[f64]) -> (Vec<f64>, 
     // Without free lines, or should argmin fail, the start is what there is.
     let fit = match start.is_empty() {
         true => None,
-        false => minimize(&model, start, LIMITS, |_| {}).ok(),
+        false => minimize(&model, start, LIMITS, &unwatched).ok(),
     };
     let x = fit.map_or_else(|| scheme.start.clone(), |run| run.best);
     let mut rounded = scheme.clone();

@@ -14,6 +14,7 @@ use super::partial::PartialLayout;
 use super::policy::{Scene, added, paper_model};
 use super::score::{Change, Scored};
 use edifice_base::rng::Stream;
+use edifice_base::unwatched;
 use edifice_optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
 use edifice_shape::Rect;
 
@@ -129,7 +130,7 @@ pub fn anneal(
     };
     let rounds = settings.evaluations.div_ceil(100);
     let annealing = Annealing::new(settings.cooling, rounds, 100, seed)?;
-    let run = annealing.run(&mut landscape, |_| {})?;
+    let run = annealing.run(&mut landscape, &unwatched)?;
     Ok((run.best, -run.cost))
 }
 

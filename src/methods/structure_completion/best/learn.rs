@@ -1,5 +1,7 @@
 //! The probability of a candidate element, learnt from whole layouts with parts hidden.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use rayon::prelude::*;
 
 use super::candidates::{Candidate, Candidates};
@@ -10,6 +12,7 @@ use crate::measure::agreement;
 use crate::model::Model;
 use crate::task::Task;
 use edifice_base::rng::stream;
+use edifice_base::{Progress, Watched};
 use edifice_model::boosting::{Boosting, BoostingError, Settings};
 
 /// Most candidates that are learnt from; of more, every second, third, ... is.
@@ -89,19 +92,28 @@ fn rows(
 }
 
 /// Learns element probabilities: every layout of the database is completed with each part hidden, from the rest of
-/// the database without its near-twins.
+/// the database without its near-twins. Stopped, from the parts that were hidden until then.
 ///
 /// # Errors
 /// [`BoostingError`] when no layout has a candidate.
-pub fn learn(model: &Model, seed: u64) -> Result<Boosting, BoostingError> {
+pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Boosting, BoostingError> {
     let layouts: Vec<Layout> = model.examples.iter().map(|e| e.layout.clone()).collect();
     let group = twins(&layouts);
     let units: Vec<(usize, Task)> = (0..layouts.len())
         .flat_map(|index| Task::ALL.map(|task| (index, task)))
         .collect();
+    let done = AtomicU64::new(0);
     let parts: Vec<(Vec<Vec<f64>>, Vec<f64>)> = units
         .par_iter()
         .map(|&(index, task)| {
+            let told = Progress::of(
+                "facades with a part hidden",
+                done.fetch_add(1, Ordering::Relaxed),
+                units.len() as u64,
+            );
+            if !watched.goes_on(told) {
+                return (Vec::new(), Vec::new());
+            }
             let twin = |other: &usize| group[*other] == group[index];
             let without: Vec<usize> = (0..layouts.len()).filter(twin).collect();
             rows(model, index, &without, task, seed)
@@ -119,5 +131,5 @@ pub fn learn(model: &Model, seed: u64) -> Result<Boosting, BoostingError> {
         rate: 0.12,
         ..Settings::default()
     };
-    Boosting::learn(&features, &targets, settings)
+    Boosting::learn(&features, &targets, settings, &watched.inner())
 }

@@ -13,6 +13,7 @@ use super::tried::Tried;
 use super::{Policy, Scene};
 use crate::layout::Element;
 use edifice_base::rng::{Stream, stream};
+use edifice_base::unwatched;
 use edifice_optim::adp::{Adp, AdpError, Approximation, Epsilon, Heuristic, Process};
 
 /// Completion of one partial layout.
@@ -125,7 +126,7 @@ pub fn rollouts(
         rng: stream(seed, "rollouts", 0),
     };
     let adp = Adp::new(policy, approximation, Epsilon::default(), iterations, seed);
-    let run = adp.run(&mut Growth(scene), |_| {})?;
+    let run = adp.run(&mut Growth(scene), &unwatched)?;
     let items = run.best.iter().filter_map(|step| step.0.as_ref());
     let added = items.filter(|i| !i.empty).map(|i| i.element);
     Ok((added.collect(), -run.cost))

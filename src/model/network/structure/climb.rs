@@ -8,6 +8,7 @@ use super::super::super::error::ModelError;
 use super::Search;
 use super::constraints::Allowed;
 use super::families::Families;
+use edifice_base::{Progress, Watched};
 
 /// Gains below this are rounding.
 const LEAST_GAIN: f64 = 1e-9;
@@ -48,6 +49,7 @@ pub(super) struct Climb<'a, 'd> {
     below: Vec<Vec<u64>>,
     best: (Vec<Vec<usize>>, f64),
     moves: usize,
+    watched: &'a Watched<'a>,
 }
 
 impl<'a, 'd> Climb<'a, 'd> {
@@ -56,6 +58,7 @@ impl<'a, 'd> Climb<'a, 'd> {
         families: &'a mut Families<'d>,
         allowed: &'a Allowed,
         settings: &'a Search,
+        watched: &'a Watched<'a>,
     ) -> Result<Self, ModelError> {
         let n = families.variables();
         let mut climb = Self {
@@ -68,6 +71,7 @@ impl<'a, 'd> Climb<'a, 'd> {
             below: Vec::new(),
             best: (Vec::new(), f64::NEG_INFINITY),
             moves: 0,
+            watched,
         };
         climb.start(allowed.required.clone());
         climb.keep();
@@ -78,6 +82,9 @@ impl<'a, 'd> Climb<'a, 'd> {
     pub fn run<R: Rng>(&mut self, rng: &mut R) {
         self.climb();
         for restart in 0..self.settings.restarts {
+            if self.watched.is_stopped() {
+                break;
+            }
             self.start(self.best.0.clone());
             self.turn(rng);
             if restart % 2 == 1 {
@@ -100,7 +107,9 @@ impl<'a, 'd> Climb<'a, 'd> {
             let Some((change, gain)) = self.choose(&tabu) else {
                 return;
             };
-            self.apply(change, gain);
+            if !self.apply(change, gain) {
+                return;
+            }
             if self.settings.tabu > 0 {
                 if tabu.len() == self.settings.tabu {
                     tabu.pop_front();
@@ -111,6 +120,13 @@ impl<'a, 'd> Climb<'a, 'd> {
                 true => 0,
                 false => idle + 1,
             };
+            let told = Progress {
+                done: self.moves as u64,
+                ..Progress::stage("moves")
+            };
+            if !self.watched.goes_on(told.costs(-self.score, -self.best.1)) {
+                return;
+            }
         }
     }
 
@@ -164,7 +180,8 @@ impl<'a, 'd> Climb<'a, 'd> {
         }
     }
 
-    fn apply(&mut self, change: Move, gain: f64) {
+    /// Makes a move; false if the search is stopped, and the gains of further moves are not known.
+    fn apply(&mut self, change: Move, gain: f64) -> bool {
         let (Move::Add(p, c) | Move::Remove(p, c) | Move::Reverse(p, c)) = change;
         toggle(&mut self.parents[c], p);
         let mut changed = vec![c];
@@ -175,7 +192,7 @@ impl<'a, 'd> Climb<'a, 'd> {
         self.score += gain;
         self.moves += 1;
         self.below = descendants(&self.parents);
-        self.refresh(&changed);
+        self.refresh(&changed)
     }
 
     /// A new structure to go on from.
@@ -236,7 +253,8 @@ impl<'a, 'd> Climb<'a, 'd> {
     }
 
     /// The gains of moves into the given children anew.
-    fn refresh(&mut self, children: &[usize]) {
+    /// False if the search was stopped meanwhile: then no move may be chosen by them.
+    fn refresh(&mut self, children: &[usize]) -> bool {
         let n = self.parents.len();
         let most = self.settings.most_parents;
         let mut wanted = Vec::new();
@@ -251,7 +269,9 @@ impl<'a, 'd> Climb<'a, 'd> {
                 }
             }
         }
-        self.families.prepare(wanted);
+        if !self.families.prepare(wanted, self.watched) {
+            return false;
+        }
         for &c in children {
             let now = self.families.score(c, &self.parents[c]);
             for p in (0..n).filter(|&p| p != c) {
@@ -265,6 +285,7 @@ impl<'a, 'd> Climb<'a, 'd> {
                 };
             }
         }
+        true
     }
 
     fn reaches(&self, from: usize, to: usize) -> bool {

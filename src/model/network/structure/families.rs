@@ -1,5 +1,6 @@
 //! Scores of families, each counted once.
 
+use edifice_base::{Progress, Watched};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use statrs::function::gamma::ln_gamma;
@@ -76,14 +77,22 @@ impl<'a> Families<'a> {
         score
     }
 
-    /// Counts the families that are not yet known, in parallel.
-    pub fn prepare(&mut self, mut wanted: Vec<(usize, Vec<usize>)>) {
+    /// Counts the families that are not yet known, in parallel; false if the search was stopped before all were.
+    pub fn prepare(&mut self, mut wanted: Vec<(usize, Vec<usize>)>, watched: &Watched) -> bool {
         wanted.retain(|key| !self.known.contains_key(key));
-        let scores: Vec<f64> = wanted
+        let counting = Progress::stage("scores of families");
+        let scores: Vec<Option<f64>> = wanted
             .par_iter()
-            .map(|(child, parents)| self.count(*child, parents))
+            .map(|(child, parents)| {
+                let goes_on = watched.goes_on(counting);
+                goes_on.then(|| self.count(*child, parents))
+            })
             .collect();
-        self.known.extend(wanted.into_iter().zip(scores));
+        let all = scores.iter().all(Option::is_some);
+        let counted = wanted.into_iter().zip(scores);
+        self.known
+            .extend(counted.filter_map(|(family, score)| Some((family, score?))));
+        all
     }
 
     fn count(&self, child: usize, parents: &[usize]) -> f64 {

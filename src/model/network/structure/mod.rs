@@ -32,6 +32,7 @@ use super::{FitSettings, Network, Variable};
 use climb::Climb;
 use constraints::Allowed;
 use edifice_base::rng::stream;
+use edifice_base::{Ended, Watch, Watched};
 use families::Families;
 
 /// The score that is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
@@ -66,16 +67,17 @@ pub enum Score {
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{Table, network::structure::{Search, search}};
 /// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
 /// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
 /// let data = Table::new().binary("wet", wet)?.binary("rain", rain)?;
 /// let own = |name: &str| name.to_owned();
 /// let tiers = vec![vec![own("rain")], vec![own("wet")]];
-/// let found = search(&data, &Search { tiers, ..Search::default() }, 1)?;
+/// let found = search(&data, &Search { tiers, ..Search::default() }, 1, &unwatched)?;
 /// assert_eq!(found.edges, [(own("rain"), own("wet"))]);
 /// let forbidden = vec![(own("rain"), own("wet")), (own("wet"), own("rain"))];
-/// let none = search(&data, &Search { forbidden, ..Search::default() }, 1)?;
+/// let none = search(&data, &Search { forbidden, ..Search::default() }, 1, &unwatched)?;
 /// assert!(none.edges.is_empty() && none.score < found.score);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
@@ -128,11 +130,14 @@ pub struct Found {
     pub moves: usize,
     /// Families counted.
     pub families: usize,
+    /// The way in which the search ended.
+    pub ended: Ended,
 }
 
 /// Searches the structure of highest score for the categorical columns of `data`.
 ///
-/// The same seed gives the same structure with any number of threads.
+/// `watch` is told of each move, with minus the score as its cost; a search that it stops returns the best structure so far. The
+/// same seed gives the same structure with any number of threads.
 ///
 /// # Errors
 /// [`ModelError::Kind`] for a real column, [`ModelError::Missing`] for a missing cell, [`ModelError::Unknown`] for a name in
@@ -141,19 +146,26 @@ pub struct Found {
 ///
 /// # Examples
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::{Table, network::structure::{Search, search}};
 /// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
 /// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
 /// let noise: Vec<Option<bool>> = (0..200).map(|i| Some(i / 7 % 2 == 0)).collect();
 /// let data = Table::new().binary("rain", rain)?.binary("wet", wet)?.binary("noise", noise)?;
-/// let found = search(&data, &Search::default(), 1)?;
+/// let found = search(&data, &Search::default(), 1, &unwatched)?;
 /// assert_eq!(found.edges.len(), 1);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
-pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, ModelError> {
+pub fn search(
+    data: &Table,
+    settings: &Search,
+    seed: u64,
+    watch: &Watch,
+) -> Result<Found, ModelError> {
+    let watched = Watched::new(watch);
     let mut families = Families::new(data, settings.score)?;
     let allowed = Allowed::new(data, settings)?;
-    let mut climb = Climb::new(&mut families, &allowed, settings)?;
+    let mut climb = Climb::new(&mut families, &allowed, settings, &watched)?;
     climb.run(&mut stream(seed, "network/structure", 0));
     let (parents, score, moves) = climb.best();
     let columns = data.columns();
@@ -178,6 +190,7 @@ pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, Model
         score,
         moves,
         families: families.counted(),
+        ended: watched.ended(),
     })
 }
 
