@@ -6,10 +6,6 @@ use include_dir::{Dir, DirEntry, include_dir};
 
 use edifice_base::{Error, Result};
 
-/// The model of facades with which a completion starts, learnt from the shipped layouts by `edifice facade train`.
-pub const DEFAULT_COMPLETION_MODEL: &str =
-    include_str!("structure_completion/default.completion.json");
-
 /// `datasets/` of the checkout that the program was built from.
 static DATASETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR");
 
@@ -42,6 +38,11 @@ pub fn shipped_bytes(name: &str) -> Result<&'static [u8]> {
     let file = DATASETS.get_file(name);
     let file = file.ok_or_else(|| Error::content(&Path::new("datasets").join(name), NotShipped))?;
     Ok(file.contents())
+}
+
+/// The text of a shipped file, named by its path below `datasets/`; none when there is none of this name, or it is no text.
+pub fn shipped_text(name: &str) -> Option<&'static str> {
+    DATASETS.get_file(name)?.contents_utf8()
 }
 
 /// Writes a shipped file or folder below `folder` and returns its path there.

@@ -97,7 +97,8 @@ fn only_its_own_files_name_a_method() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// Slow: checks the library once for each method. `.ci/run` runs it.
+/// Slow: checks the library, the experiments and the studio once for each method. `.ci/run` runs it. The command line is left
+/// out: a method's commands are part of it.
 #[test]
 #[ignore = "compiles the library once for each method"]
 fn the_library_compiles_without_each_method() {
@@ -111,10 +112,17 @@ fn the_library_compiles_without_each_method() {
             .current_dir(&copy)
             .args([
                 "check",
-                "--workspace",
                 "--lib",
                 "--quiet",
                 "--offline",
+                "--no-default-features",
+            ])
+            .args(["--features", "io,report", "-p", "edifice"])
+            .args([
+                "-p",
+                "edifice-experiments",
+                "-p",
+                "edifice-studio",
                 "--target-dir",
             ])
             .arg(target)

@@ -168,5 +168,7 @@ impl Model {
 /// # Errors
 /// [`ModelFileError`]; a test keeps it readable.
 pub fn shipped_model() -> Result<Model, ModelFileError> {
-    Model::from_json(edifice_datasets::DEFAULT_COMPLETION_MODEL)
+    let file = "structure_completion/default.completion.json";
+    // An empty text is refused below.
+    Model::from_json(edifice_datasets::shipped_text(file).unwrap_or_default())
 }
