@@ -137,7 +137,8 @@ fn trace(
         ..Settings::default()
     };
     let points = Mutex::new(Vec::new());
-    let last = Mutex::new((ThreadTime::now(), 0u64, f64::INFINITY));
+    let now = || ThreadTime::now().as_duration();
+    let last = Mutex::new((now(), 0u64, f64::INFINITY));
     let watch = |progress: Progress| {
         let Some(best) = progress.best else {
             return ControlFlow::Continue(());
@@ -150,9 +151,9 @@ fn trace(
             seen.push(Point {
                 iteration: clock.1,
                 best: clock.2,
-                pace: clock.0.elapsed().as_secs_f64() / every as f64,
+                pace: (now() - clock.0).as_secs_f64() / every as f64,
             });
-            clock.0 = ThreadTime::now();
+            clock.0 = now();
         }
         ControlFlow::Continue(())
     };
@@ -164,7 +165,7 @@ fn trace(
         points.push(Point {
             iteration: made,
             best,
-            pace: since.elapsed().as_secs_f64() / (made % every) as f64,
+            pace: (now() - since).as_secs_f64() / (made % every) as f64,
         });
     }
     Ok(points)

@@ -90,17 +90,31 @@ fn grammar_inference() {
         iterations: 2_500,
         ..Default::default()
     };
-    let found = |after| stopped(after, |watch| infer(&facades, &settings, watch).expect("ends"));
+    let found = |after| {
+        stopped(after, |watch| {
+            infer(&facades, &settings, watch).expect("ends")
+        })
+    };
     // In the rules of all regions, in the bound, and beyond it.
     for after in [1, 300, 3_000, 5_000] {
         let found = found(after);
-        let cost = evaluate(&found.grammar, &facades, &costs).expect("derives it").cost;
+        let cost = evaluate(&found.grammar, &facades, &costs)
+            .expect("derives it")
+            .cost;
         assert_eq!(found.ended, Ended::Interrupted);
         let lower = found.lower_bound.expect("a bound");
         assert!(lower > 0.0 && lower <= cost + 1e-6, "{lower} {cost}");
     }
-    let joint = [facades[0].clone(), Facade { name: "again".into(), ..chequered() }];
-    let found = stopped(2_000, |watch| infer(&joint, &settings, watch).expect("ends"));
+    let joint = [
+        facades[0].clone(),
+        Facade {
+            name: "again".into(),
+            ..chequered()
+        },
+    ];
+    let found = stopped(2_000, |watch| {
+        infer(&joint, &settings, watch).expect("ends")
+    });
     assert_eq!(found.ended, Ended::Interrupted);
     evaluate(&found.grammar, &joint, &costs).expect("derives both");
 }
@@ -227,8 +241,14 @@ fn sweep() {
     let study = plan.study(&studies).expect("a study");
     let go = |watch: &Watch| run(&plan, folder.path(), study, (0, 1), Wanted::Missing, watch);
     let ran = stopped(50, |watch| go(watch).expect("ends"));
-    assert_eq!((ran.ended, ran.finished, ran.failed), (Ended::Interrupted, 0, 0));
+    assert_eq!(
+        (ran.ended, ran.finished, ran.failed),
+        (Ended::Interrupted, 0, 0)
+    );
     // What was given up is run again.
     let ran = go(&unwatched).expect("runs");
-    assert_eq!((ran.ended, ran.finished, ran.before), (Ended::Finished, 2, 0));
+    assert_eq!(
+        (ran.ended, ran.finished, ran.before),
+        (Ended::Finished, 2, 0)
+    );
 }

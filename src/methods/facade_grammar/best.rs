@@ -115,7 +115,7 @@ impl Search<'_> {
         let annealing =
             Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
         let before = before + rounds;
-        let watch = |round: Progress| self.watched.tell(self.step("annealing", before, round));
+        let watch = self.watch("annealing", before);
         let run = annealing.run(&mut set, &watch)?;
         Ok((run.best, lower))
     }

@@ -10,26 +10,13 @@ use super::schema::{Rows, Schema};
 use super::search::Search;
 use super::structure::{Selector, Structure};
 use super::watch::Watching;
-use super::{Group, Hierarchy, Settings, Variant};
+use super::{Group, Hierarchy, Settings, Step, Variant};
 use edifice_base::Watch;
 use edifice_base::rng::stream;
 
 /// Least gain of a round of EM on many rows, nats a row: while a structure is searched, where what decides is far more, and
 /// where the parameters of all rows are settled.
 const SETTLED: f64 = 1e-4;
-
-/// One accepted configuration of the search, for [`Learned::trace`].
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Step {
-    /// |S|.
-    pub styles: usize,
-    /// |H_g| of every real group, in order.
-    pub cardinalities: Vec<usize>,
-    /// Number of lateral edges.
-    pub lateral_edges: usize,
-    /// Cheeseman-Stutz score, nats, on standardised columns of the rows searched.
-    pub score: f64,
-}
 
 /// Result of [`learn`] and [`refine`]; the example of [`learn`] reads one.
 ///

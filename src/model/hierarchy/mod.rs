@@ -85,6 +85,7 @@ mod revise;
 mod schema;
 mod search;
 mod split;
+mod step;
 mod store;
 pub(crate) mod structure;
 mod watch;
@@ -96,9 +97,10 @@ pub use super::conjugate::Priors;
 use super::em::Stopping;
 pub use super::standardize::Constant;
 pub use draw::Draws;
-pub use learn::{Fitted, Learned, Step, fit, learn, refine};
+pub use learn::{Fitted, Learned, fit, learn, refine};
 pub use query::Hierarchy;
 pub use schema::Group;
+pub use step::Step;
 
 /// Which of the paper's models to learn: the table in [the module](self).
 ///

@@ -1,6 +1,7 @@
 //! The methods of inference, as far as they share what they start from.
 
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use super::exploitation::{AllRules, Remembered};
@@ -114,18 +115,26 @@ impl<'a> Search<'a> {
             iterations,
             self.settings.seed,
         );
-        let watch = |walk: Progress| self.watched.tell(self.step("walks", before, walk));
+        let watch = self.watch("walks", before);
         let run = adp.run(&mut self.process(), &watch)?;
         Ok((run.best, values))
     }
 
-    /// A step of a stage before which so many were made.
-    pub fn step(&self, stage: &'static str, before: u64, progress: Progress) -> Progress {
-        Progress {
-            stage,
-            done: before + progress.done,
-            most: Some(self.settings.steps()),
-            ..progress
+    /// A watch of a stage before which so many steps were made.
+    pub fn watch(
+        &self,
+        stage: &'static str,
+        before: u64,
+    ) -> impl Fn(Progress) -> ControlFlow<()> + Sync + use<'a> {
+        let (watched, most) = (self.watched, Some(self.settings.steps()));
+        move |progress| {
+            let done = before + progress.done;
+            watched.tell(Progress {
+                stage,
+                done,
+                most,
+                ..progress
+            })
         }
     }
 
