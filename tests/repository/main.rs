@@ -2,6 +2,7 @@
 
 mod datasets;
 mod experiments;
+mod formats;
 mod installed;
 mod prose;
 #[cfg(unix)]

@@ -60,7 +60,7 @@ use check::check;
 pub use evidence::Evidence;
 pub use learn::{FitSettings, Fitted};
 pub use query::{Answer, Explanation};
-pub use store::FORMAT;
+pub use store::{FORMAT, VERSION};
 
 /// A conditional distribution as stated.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,13 +3,19 @@
 use super::super::error::ModelError;
 use super::{Cpd, Network, Stated, Variable};
 
-/// Format of the text; raised when its meaning changes.
-pub const FORMAT: &str = "edifice-network-1";
+/// The value of the key `format`.
+pub const FORMAT: &str = "edifice/network";
+/// The version written, and the only one read.
+pub const VERSION: u64 = 1;
+/// The id of files without a version, which mean the same as version 1.
+const OLD_FORMAT: &str = "edifice-network-1";
 
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Stored {
     format: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    version: Option<u64>,
     variables: Vec<StoredVariable>,
 }
 
@@ -60,6 +66,7 @@ impl Network {
         });
         let stored = Stored {
             format: FORMAT.to_owned(),
+            version: Some(VERSION),
             variables: variables.collect(),
         };
         serde_json::to_string_pretty(&stored)
@@ -77,9 +84,17 @@ impl Network {
                 e.to_string(),
             )
         })?;
-        if stored.format != FORMAT {
-            let problem = format!("`{}` is not `{FORMAT}`", stored.format);
-            return Err(ModelError::corrupt("format", problem));
+        match (stored.format.as_str(), stored.version) {
+            (FORMAT, Some(VERSION)) | (OLD_FORMAT, None) => {}
+            (FORMAT, version) => {
+                let found = version.map_or("missing".to_owned(), |v| v.to_string());
+                let problem = format!("{found}, expected {VERSION}");
+                return Err(ModelError::corrupt("version", problem));
+            }
+            (other, _) => {
+                let problem = format!("`{other}` is not `{FORMAT}`");
+                return Err(ModelError::corrupt("format", problem));
+            }
         }
         let variables = stored.variables.into_iter().map(|v| Variable {
             name: v.name,
