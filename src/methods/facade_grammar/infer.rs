@@ -1,7 +1,5 @@
 //! Inference: from facades to one grammar.
 
-use std::rc::Rc;
-
 use std::fmt;
 use std::str::FromStr;
 
@@ -12,8 +10,8 @@ use super::adp::search::Search;
 use super::best::further_steps;
 use super::lagrangian::NOISE;
 use super::operations::Operations;
+use edifice_base::{Ended, Watch, Watched};
 use edifice_grammar::{CostError, Costs, Grammar};
-use edifice_optim::Step;
 use edifice_optim::adp::AdpError;
 use edifice_optim::annealing::AnnealingError;
 use edifice_shape::{Facade, LayoutError, splittable};
@@ -60,7 +58,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Steps that an observer is told of at most: the iterations, and of `best` what comes before and after.
+    /// Steps that a watch is told of at most: the iterations, and of `best` what comes before and after.
     pub fn steps(&self) -> u64 {
         match self.method {
             Method::AdpBest => self.iterations + further_steps(self.iterations),
@@ -94,6 +92,8 @@ pub struct Outcome {
     pub iterations: u64,
     /// No grammar of these facades costs less, as far as [`Method::AdpBest`] found out (see [`super::lower_bound`]).
     pub lower_bound: Option<f64>,
+    /// The way in which the search ended; that it was proven optimal says [`Outcome::proves`].
+    pub ended: Ended,
 }
 
 impl Outcome {
@@ -187,50 +187,29 @@ impl FromStr for Method {
     }
 }
 
-/// Infers one grammar that derives all facades.
+/// Infers one grammar that derives all facades, telling `watch` of every step, of which there are at most [`Settings::steps`].
+///
+/// Steps are told of with their costs; between them, inside the Lagrangian bound above all, the watch is asked without. A
+/// search that it stops returns the cheapest grammar met, and the greatest lower bound, with [`Ended::Interrupted`].
 ///
 /// # Errors
 /// [`InferError`].
-pub fn infer(facades: &[Facade], settings: &Settings) -> Result<Outcome, InferError> {
-    infer_observed(facades, settings, |_| {})
-}
-
-/// As [`infer`], telling `observer` of every step; there are at most [`Settings::steps`].
-///
-/// # Errors
-/// [`InferError`].
-pub fn infer_observed(
+pub fn infer(
     facades: &[Facade],
     settings: &Settings,
-    observer: impl FnMut(Step) + Clone + 'static,
-) -> Result<Outcome, InferError> {
-    infer_watched(facades, settings, observer, Rc::new(|| {}))
-}
-
-/// Called often inside steps that take long, the Lagrangian bound above all: whoever waits no longer may unwind from it.
-pub type Pulse = Rc<dyn Fn()>;
-
-/// As [`infer_observed`], calling `pulse` inside long steps, too.
-///
-/// # Errors
-/// [`InferError`].
-pub fn infer_watched(
-    facades: &[Facade],
-    settings: &Settings,
-    observer: impl FnMut(Step) + Clone + 'static,
-    pulse: Pulse,
+    watch: &Watch,
 ) -> Result<Outcome, InferError> {
     settings.costs.check()?;
     check(facades)?;
-    let mut search = Search::new(facades, settings)?;
-    search.pulse = pulse;
+    let watched = Watched::new(watch);
+    let search = Search::new(facades, settings, &watched)?;
     let (rules, lower_bound) = match settings.method {
         Method::AdpBest => {
-            let (rules, lower) = search.best(facades, observer)?;
+            let (rules, lower) = search.best(facades)?;
             (rules, Some(lower))
         }
-        Method::AdpPaper => (search.paper(settings.iterations, observer)?.0, None),
-        Method::Importance => (search.importance(observer)?, None),
+        Method::AdpPaper => (search.paper(settings.iterations)?.0, None),
+        Method::Importance => (search.importance()?, None),
         Method::Greedy => (search.greedy(), None),
         Method::Bayesian => (search.all_lines(), None),
         Method::Symmetry => (search.symmetry_maximization(), None),
@@ -243,6 +222,7 @@ pub fn infer_watched(
         grammar: search.grammar(facades, &rules),
         iterations,
         lower_bound,
+        ended: watched.ended(),
     })
 }
 

@@ -136,9 +136,6 @@ mod rules;
 
 pub use adp::readings::{Exploit, Protect, Readings};
 pub use bound::{Bound, Weakness, lower_bound};
-pub use infer::{
-    InferError, Method, Outcome, Pulse, Settings, UnknownMethod, infer, infer_observed,
-    infer_watched,
-};
+pub use infer::{InferError, Method, Outcome, Settings, UnknownMethod, infer};
 pub use lagrangian::BoundLimits;
 pub use operations::{Operations, UnknownOperation};
