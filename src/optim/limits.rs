@@ -4,9 +4,6 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use argmin::core::{TerminationReason, TerminationStatus};
-use edifice_base::Progress;
-
-use super::run::Step;
 
 /// Limits of a run; none unless given. One that is reached is an [`Outcome`](super::Outcome), not an error.
 ///
@@ -49,35 +46,6 @@ impl Answer for () {
 impl Answer for ControlFlow<()> {
     fn stops(self) -> bool {
         self.is_break()
-    }
-}
-
-/// The observer of a run that tells the watch of a longer call of every step, of at most `most`.
-///
-/// # Examples
-/// ```
-/// use std::ops::ControlFlow;
-/// use edifice_base::Progress;
-/// use edifice_optim::{Step, tell};
-/// let second = |progress: Progress| match progress.done {
-///     2.. => ControlFlow::Break(()),
-///     _ => ControlFlow::Continue(()),
-/// };
-/// let mut observer = tell(&second, Some(10));
-/// assert!(observer(Step { iteration: 0, cost: 3.0, best: 3.0 }).is_continue());
-/// assert!(observer(Step { iteration: 1, cost: 4.0, best: 3.0 }).is_break());
-/// ```
-pub fn tell<'a>(
-    watch: &'a edifice_base::Watch<'a>,
-    most: Option<u64>,
-) -> impl FnMut(Step) -> ControlFlow<()> + 'a {
-    move |step| {
-        let done = Progress {
-            done: step.iteration + 1,
-            most,
-            ..Progress::stage("iterations")
-        };
-        watch(done.costs(step.cost, step.best))
     }
 }
 

@@ -28,5 +28,5 @@ pub mod qp_problem;
 mod run;
 pub mod tempering;
 
-pub use limits::{Answer, Limits, tell};
-pub use run::{Outcome, Run, Step};
+pub use limits::{Answer, Limits};
+pub use run::{Outcome, Run, Step, tell};

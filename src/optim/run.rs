@@ -1,8 +1,12 @@
 //! The result of every optimizer, and the one way in which argmin runs them.
 
+use std::ops::ControlFlow;
+
 use argmin::core::{
     Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus,
 };
+
+use edifice_base::{Progress, Watch};
 
 use super::limits::{Answer, EVALUATIONS};
 
@@ -106,6 +110,35 @@ impl Outcome {
             // Our solvers exit by themselves for this reason only; no run listens to signals.
             TerminationReason::SolverExit(_) | TerminationReason::Interrupt => Self::Exhausted,
         }
+    }
+}
+
+/// The observer of a run that tells the watch of a longer call of every step, of at most `most`.
+///
+/// # Examples
+/// ```
+/// use std::ops::ControlFlow;
+/// use edifice_base::Progress;
+/// use edifice_optim::{Step, tell};
+/// let second = |progress: Progress| match progress.done {
+///     2.. => ControlFlow::Break(()),
+///     _ => ControlFlow::Continue(()),
+/// };
+/// let mut observer = tell(&second, Some(10));
+/// assert!(observer(Step { iteration: 0, cost: 3.0, best: 3.0 }).is_continue());
+/// assert!(observer(Step { iteration: 1, cost: 4.0, best: 3.0 }).is_break());
+/// ```
+pub fn tell<'a>(
+    watch: &'a Watch<'a>,
+    most: Option<u64>,
+) -> impl FnMut(Step) -> ControlFlow<()> + 'a {
+    move |step| {
+        let done = Progress {
+            done: step.iteration + 1,
+            most,
+            ..Progress::stage("iterations")
+        };
+        watch(done.costs(step.cost, step.best))
     }
 }
 

@@ -172,10 +172,11 @@ fn sweep() {
     let at = |name: &str| folder.path().join(name);
     let facade = edifice::io::facade_json::to_string(&chequered());
     std::fs::write(at("chequered.facade.json"), facade).expect("a file");
-    let text = "study = \"facade_grammar/infer\"\ndata = [\"./chequered.facade.json\"]\nseeds = 2\n[base]\niterations = 100\n";
+    let text = "study = \"facade_grammar/infer\"\ndata = [\"./chequered.facade.json\"]\nseeds = 2\n[base]\niterations = 100\n[[arm]]\nname = \"own\"\n";
     std::fs::write(at("sweep.toml"), text).expect("a file");
     let studies = studies();
-    let plan = Plan::make(&at("sweep.toml"), folder.path(), &studies).expect("a plan");
+    let plan =
+        Plan::make(&at("sweep.toml"), folder.path(), &studies).unwrap_or_else(|e| panic!("{e}"));
     let study = plan.study(&studies).expect("a study");
     let go = |watch: &Watch| run(&plan, folder.path(), study, (0, 1), Wanted::Missing, watch);
     let ran = stopped(50, |watch| go(watch).expect("ends"));

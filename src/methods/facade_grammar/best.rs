@@ -6,9 +6,9 @@ use super::adp::search::Search;
 use super::adp::walk::ShortestPathRules;
 use super::annealing::NonterminalSet;
 use super::bound::{few_rules, saved_by_grids};
-use super::infer::{InferError, Settings};
 use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
 use super::rules::RulePricer;
+use super::settings::{InferError, Settings, second_stage_steps};
 use crate::rules::AddRule;
 use edifice_base::Progress;
 use edifice_optim::adp::Epsilon;
@@ -208,17 +208,6 @@ struct Bounded {
     lower: f64,
 }
 
-/// Walks by shortest paths, and as many rounds of annealing, in the second stage of `best`.
-fn second_stage_steps(iterations: u64) -> u64 {
-    (iterations / SECOND_STAGE_SHARE).max(1)
-}
-
-/// Maximum steps beyond `iterations`: the Lagrangian bound counts as one, then come the walks and rounds of the
-/// second stage.
-pub(super) fn further_steps(iterations: u64) -> u64 {
-    1 + 2 * second_stage_steps(iterations)
-}
-
 /// Items of rules that the Lagrangian bound may look at for each iteration and facade: a second or two for 10,000.
 const ITEMS_PER_ITERATION: usize = 9_000;
 /// Items of rules, some 30 bytes each, beyond which the Lagrangian bound is not tried.
@@ -235,8 +224,6 @@ const MOST_BRANCHES: u64 = 1_000;
 const MOST_STRIPS: usize = 8_000_000;
 /// Regions that the walks over layouts without a Lagrangian bound may derive, all walks together.
 const MOST_WALKED: u64 = 3_000_000;
-/// The second stage of `best` has one walk and one round of annealing for so many iterations.
-const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 100;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.

@@ -4,10 +4,11 @@ use std::fmt;
 
 use rustc_hash::FxHashSet;
 
-use super::infer::{InferError, Method, Settings, infer};
+use super::infer::infer;
 use super::lagrangian::{BoundLimits, Incumbent, Program, solve};
 use super::operations::Operations;
 use super::regions::Types;
+use super::settings::{InferError, Method, Settings};
 use edifice_base::{Watch, Watched};
 use edifice_grammar::Costs;
 use edifice_shape::{Axis, Facade};

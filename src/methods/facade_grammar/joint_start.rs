@@ -11,12 +11,12 @@ use std::rc::Rc;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::adp::search::Search;
-use crate::infer::InferError;
 use crate::regions::{LayoutIndex, Region, Strips, TypeId, Types};
 use crate::rules::AddRule;
 use crate::rules::RuleCandidate;
 use crate::rules::RulePricer;
 use crate::rules::grid;
+use crate::settings::InferError;
 use edifice_base::{Progress, Watched};
 use edifice_shape::{Axis, Facade};
 

@@ -2,8 +2,8 @@
 
 use crate::adp::search::Search;
 use crate::adp::walk::{Derivation, Inference};
-use crate::infer::InferError;
 use crate::rules::AddRule;
+use crate::settings::InferError;
 use edifice_optim::adp::{Approximation, Epsilon};
 
 /// The approximation of importance sampling: it learns nothing, so that every step explores.
