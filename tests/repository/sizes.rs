@@ -56,7 +56,10 @@ fn pictures_of_the_readme_are_packaged() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = |name: &str| std::fs::read_to_string(root.join(name)).expect("a text");
     let (readme, manifest) = (text("README.md"), text("Cargo.toml"));
-    let links = readme.split("](").skip(1).filter_map(|l| l.split(')').next());
+    let links = readme
+        .split("](")
+        .skip(1)
+        .filter_map(|l| l.split(')').next());
     let pictures: Vec<&str> = links.filter(|l| l.ends_with(".png")).collect();
     assert!(!pictures.is_empty());
     for picture in pictures {
