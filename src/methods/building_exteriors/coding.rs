@@ -192,7 +192,8 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
     }
     let mut own: Vec<&str> = Vec::new();
     for (k, name) in SHAPES.iter().enumerate() {
-        if houses.iter().any(|h| h.shape[k].is_some()) {
+        // Without a rectangle, or with recesses everywhere, the numbers tell all.
+        if houses.iter().any(|h| h.shape[k] == Some(k == 0)) {
             table = table.binary(name, houses.iter().map(|h| h.shape[k]))?;
             own.push(name);
         }
