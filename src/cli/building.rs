@@ -93,7 +93,7 @@ Columns are those of `building attributes`. Wishes that no house can have togeth
     #[command(after_help = "Examples:
   edifice building check houses/*.building.json
   edifice building check houses/house_0001.obj
-  edifice building check --plausible generated/*.building.json")]
+  edifice building check --plausible datasets/examples/cottage.building.json")]
     Check(check::CheckArgs),
     /// Draw houses: a view (PNG), elevations and plan (SVG), a scene (GLB).
     #[command(after_help = "Examples:

@@ -24,9 +24,6 @@ use super::produce::{Order, Output, produce};
 use crate::model::given::evidence;
 use crate::print;
 
-/// Further samples for each house, where one would not believe the house of the first.
-const OTHERS: usize = 3;
-
 /// Options of `build`.
 #[derive(clap::Args)]
 pub struct BuildArgs {
@@ -133,7 +130,6 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
             name,
             wanted: std::array::from_fn(|c| row[c].unwrap_or(0.0)),
             given,
-            others: Vec::new(),
         })
         .collect())
 }
@@ -199,26 +195,18 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
                 Some(plan) => distance(row, &is_given, plan, deviations),
                 None => 0.0,
             };
-            let wanted = args.count * (1 + OTHERS);
-            let possible = possible_rows(wanted, &is_given, deviations, reach, whole)?;
-            tell(&possible, args.count, plan.is_some());
+            let possible = possible_rows(args.count, &is_given, deviations, reach, whole)?;
+            tell(&possible, plan.is_some());
             possible.rows
         }
     };
-    let (first, others) = rows.split_at(args.count.min(rows.len()));
-    let orders: Vec<Order> = first
+    let orders: Vec<Order> = rows
         .iter()
         .enumerate()
         .map(|(row, wanted)| Order {
             name: format!("house_{:04}", row + 1),
             wanted: *wanted,
             given: is_given,
-            others: others
-                .iter()
-                .skip(row)
-                .step_by(args.count)
-                .copied()
-                .collect(),
         })
         .collect();
     let options = Options {
@@ -229,10 +217,8 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
 }
 
 /// Says how many samples were passed over.
-fn tell(possible: &Possible, wanted: usize, on_plan: bool) {
+fn tell(possible: &Possible, on_plan: bool) {
     let houses = possible.rows.len();
-    let spare = houses.saturating_sub(wanted);
-    let impossible = possible.impossible.saturating_sub(spare);
     let what = match on_plan {
         true => "stands on the footprint",
         false => "can have them",
@@ -245,10 +231,10 @@ fn tell(possible: &Possible, wanted: usize, on_plan: bool) {
             possible.drawn
         ));
     }
-    if impossible > 0 {
+    if possible.impossible > 0 {
         print::message(&format!(
-            "the last {impossible} of {wanted} houses are of such samples: nothing better was drawn; their reports say \
-             what is missed"
+            "the last {} of {houses} rows were among them: nothing better was drawn; their reports say what is missed",
+            possible.impossible
         ));
     }
 }
