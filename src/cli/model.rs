@@ -40,7 +40,7 @@ pub enum Command {
   edifice model learn large.csv -o large.table-model.json --from large.table-model.json
   edifice model learn large.csv -o large.table-model.json --fit-only --styles 8 --kinds 4")]
     Learn(tables::LearnArgs),
-    /// Print the log-likelihood of every row of a table under a model.
+    /// Print the log probability mass of the categories of every row of a table under a model, and the log density of its numbers given these.
     #[command(after_help = "Examples:
   edifice model score penguins.table-model.json others.csv")]
     Score(tables::ScoreArgs),
