@@ -131,8 +131,7 @@ impl Splits {
         settings: Settings,
     ) -> Receiver<(u64, usize, std::result::Result<f64, ModelError>)> {
         let (tell, told) = channel();
-        let (data, splits, share, seed) =
-            (data.clone(), self.splits, self.share, self.search.seed);
+        let (data, splits, share, seed) = (data.clone(), self.splits, self.share, self.search.seed);
         let contenders: Vec<Contender> = contenders.iter().map(|(_, c)| *c).collect();
         std::thread::spawn(move || {
             for index in 0..splits {

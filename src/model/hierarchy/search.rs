@@ -81,6 +81,9 @@ impl<'a> Search<'a> {
             best = self.with_edges(self.grow(best, &mut trace)?)?;
             best = self.polish(best, &styles, seed, &mut trace)?;
         }
+        if self.behind(&best, BEHIND) {
+            return Ok((best, trace));
+        }
         Ok((self.settled(best)?, trace))
     }
 

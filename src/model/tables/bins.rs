@@ -105,9 +105,8 @@ pub fn cuts(values: &[f64]) -> Vec<f64> {
         }
         least = next;
         before.push(from);
-        let length = least[ends - 1]
-            + regrets[bins - 1]
-            + ln_binomial(places.len() as u64, bins as u64 - 1);
+        let length =
+            least[ends - 1] + regrets[bins - 1] + ln_binomial(places.len() as u64, bins as u64 - 1);
         if best.is_none_or(|(shortest, _)| length < shortest) {
             best = Some((length, bins));
         }

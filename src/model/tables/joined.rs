@@ -127,8 +127,7 @@ pub fn learn_joined(
             other_score,
         })
     };
-    let Some((learned, together)) = learn_one_group(data, groups, settings, seed, observer)?
-    else {
+    let Some((learned, together)) = learn_one_group(data, groups, settings, seed, observer)? else {
         return apart(None, None);
     };
     // On the rows searched.

@@ -23,7 +23,10 @@ fn chains(draws: usize) -> Chains {
 
 /// Means of all numbers of a name, in order, beside the truth.
 fn check<T>(posterior: &Posterior<T>, name: &str, truth: &str) {
-    let (means, errors) = (data(&format!("{truth}_mean")), data(&format!("{truth}_error")));
+    let (means, errors) = (
+        data(&format!("{truth}_mean")),
+        data(&format!("{truth}_error")),
+    );
     let all = posterior.summary();
     let own = |s: &&edifice_model::program::Summary| {
         s.name == name
@@ -47,12 +50,18 @@ fn check<T>(posterior: &Posterior<T>, name: &str, truth: &str) {
 
 /// As [`check`], of numbers that follow from choices.
 fn check_of<T>(posterior: &Posterior<T>, of: impl Fn(&T, usize) -> f64, truth: &str) {
-    let (means, errors) = (data(&format!("{truth}_mean")), data(&format!("{truth}_error")));
+    let (means, errors) = (
+        data(&format!("{truth}_mean")),
+        data(&format!("{truth}_error")),
+    );
     let length = posterior.draws.len() / chains(1).chains;
     for (i, (mean, error)) in means.into_iter().zip(errors).enumerate() {
         let found = posterior.estimate(|d| of(&d.out, i));
         let z = (found.mean - mean).abs() / found.error.hypot(error);
-        assert!(z < 4.0, "{truth} {i}: {found:?} is not {mean}, {z:.1} errors");
+        assert!(
+            z < 4.0,
+            "{truth} {i}: {found:?} is not {mean}, {z:.1} errors"
+        );
         let values: Vec<f64> = posterior.draws.iter().map(|d| of(&d.out, i)).collect();
         let by_chain: Vec<Vec<f64>> = values.chunks(length).map(<[f64]>::to_vec).collect();
         let r_hat = r_hat(&by_chain);
@@ -165,7 +174,13 @@ impl Program for Volatility {
 
 #[test]
 fn stochastic_volatility() {
-    let posterior = nuts(&Volatility { seen: data("returns") }, &chains(1000)).unwrap();
+    let posterior = nuts(
+        &Volatility {
+            seen: data("returns"),
+        },
+        &chains(1000),
+    )
+    .unwrap();
     check(&posterior, "mean", "volatility_mean_log");
     check(&posterior, "shock", "volatility_shock");
     check_of(&posterior, |out, _| out.0, "volatility_persistence");
@@ -197,6 +212,12 @@ impl Program for Lorenz {
 
 #[test]
 fn lorenz_bridge() {
-    let posterior = nuts(&Lorenz { seen: data("lorenz") }, &chains(1000)).unwrap();
+    let posterior = nuts(
+        &Lorenz {
+            seen: data("lorenz"),
+        },
+        &chains(1000),
+    )
+    .unwrap();
     check(&posterior, "at", "lorenz_state");
 }
