@@ -53,15 +53,22 @@ pub struct Splits {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
+    let begun = Instant::now();
     let (data, _) = args.input.read()?;
     args.splits
-        .evaluate(&data, &args.input.table, Contender::Extended)
+        .evaluate(&data, &args.input.table, Contender::Extended, begun)
 }
 
 impl Splits {
     /// `learned` is the model that `ours` names. Prints the mean negative log-likelihood of unseen rows by model and split as CSV; means, standard errors and paired
-    /// differences go to standard error. `path` names the data in errors.
-    pub fn evaluate(&self, data: &Dataset, path: &Path, learned: Contender) -> Result<()> {
+    /// differences go to standard error. `path` names the data in errors; the limit of time counts from `begun`.
+    pub fn evaluate(
+        &self,
+        data: &Dataset,
+        path: &Path,
+        learned: Contender,
+        begun: Instant,
+    ) -> Result<()> {
         if !(self.share > 0.0 && self.share < 1.0) {
             return Err(Error::option("--share", "must lie between 0 and 1"));
         }
@@ -69,7 +76,6 @@ impl Splits {
             let problem = format!("{limit} is not a positive number of seconds");
             return Err(Error::option("--time-limit", problem));
         }
-        let begun = Instant::now();
         let settings = self.search.settings(BACKGROUND)?;
         let contenders = self.contenders(learned)?;
         let (train, test) = split(data.table.rows(), self.share, self.search.seed, 0);

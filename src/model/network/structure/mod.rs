@@ -183,15 +183,17 @@ pub fn search_while(
         let names: Vec<&str> = parents.iter().map(|&p| columns[p].name()).collect();
         let categories = columns[child].categories().unwrap_or_default();
         let categories: Vec<&str> = categories.iter().map(String::as_str).collect();
-        variables.push(Variable::discrete(
+        // Complete rows: EM is one count.
+        let table = families.table(child, parents, FitSettings::default().priors.dirichlet);
+        variables.push(Variable::table(
             columns[child].name(),
             &categories,
             &names,
+            &table,
         ));
     }
-    let fitted = Network::new(variables)?.fit_from(data, &FitSettings::default())?;
     Ok(Found {
-        network: fitted.network,
+        network: Network::new(variables)?,
         edges,
         score,
         moves,
