@@ -62,7 +62,16 @@ fn tell_commit(root: &Path) {
         return;
     };
     println!("cargo::rustc-env=EDIFICE_COMMIT={commit}");
-    let sources = ["status", "--porcelain", "--", "src", "experiments", "datasets", "Cargo.toml", "Cargo.lock"];
+    let sources = [
+        "status",
+        "--porcelain",
+        "--",
+        "src",
+        "experiments",
+        "datasets",
+        "Cargo.toml",
+        "Cargo.lock",
+    ];
     if let Some(changed) = git(&sources) {
         println!("cargo::rustc-env=EDIFICE_DIRTY={}", !changed.is_empty());
     }

@@ -246,11 +246,24 @@ mod tests {
         // One run ended early with a cheap facade, one goes on: the averages are of both everywhere.
         let runs = [run(&[(3, 10.0)]), run(&[(5, 50.0), (10, 40.0), (15, 40.0)])];
         let (line, band, times) = curves(&runs.iter().collect::<Vec<_>>(), 5, 20);
-        assert_eq!(line, [(5.0, 30.0), (10.0, 25.0), (15.0, 25.0), (20.0, 25.0)]);
+        assert_eq!(
+            line,
+            [(5.0, 30.0), (10.0, 25.0), (15.0, 25.0), (20.0, 25.0)]
+        );
         assert!(line.windows(2).all(|pair| pair[0].1 >= pair[1].1));
-        assert!(band.iter().all(|&(_, low, high)| low == 10.0 && high >= 40.0));
+        assert!(
+            band.iter()
+                .all(|&(_, low, high)| low == 10.0 && high >= 40.0)
+        );
         assert_eq!(times.len(), 3);
-        let mean_at = |few| mean(&runs.iter().filter_map(|t| cost_at(t, few)).collect::<Vec<_>>());
+        let mean_at = |few| {
+            mean(
+                &runs
+                    .iter()
+                    .filter_map(|t| cost_at(t, few))
+                    .collect::<Vec<_>>(),
+            )
+        };
         assert_eq!([mean_at(1), mean_at(8), mean_at(20)], [30.0, 30.0, 25.0]);
     }
 }

@@ -130,7 +130,11 @@ mod tests {
             ("s", "1", State::Current),
             ("", "1", State::Unknown),
             ("t", "1", State::Older(vec!["code".into()])),
-            ("t", "2", State::Older(vec!["code".into(), "datasets/a".into()])),
+            (
+                "t",
+                "2",
+                State::Older(vec!["code".into(), "datasets/a".into()]),
+            ),
             ("", "2", State::Older(vec!["datasets/a".into()])),
         ] {
             assert_eq!(digests.state(&made(sources, data), "s").unwrap(), expected);

@@ -62,7 +62,9 @@ pub fn run(args: Args) -> Result<()> {
     match running.count_offered() {
         0 => {}
         1 => print::message("unsaved work of 1 document is offered on the page"),
-        more => print::message(&format!("unsaved work of {more} documents is offered on the page")),
+        more => print::message(&format!(
+            "unsaved work of {more} documents is offered on the page"
+        )),
     }
     print::message("Ctrl-C ends the studio");
     running.serve_until_interrupted(ends)
@@ -76,7 +78,9 @@ fn ends(names: &[String]) -> bool {
         print::message(&format!("not saved: {names}; {kept}"));
         return true;
     }
-    print::message(&format!("\nnot saved: {names}; {kept}. End the studio? [y/N]"));
+    print::message(&format!(
+        "\nnot saved: {names}; {kept}. End the studio? [y/N]"
+    ));
     let mut answer = String::new();
     match std::io::stdin().read_line(&mut answer) {
         // The end of the input is no wish to go on.

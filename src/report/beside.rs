@@ -27,7 +27,8 @@ fn numbers(text: &str) -> Vec<f64> {
             ')' | ']' => depth -= 1,
             _ => {}
         }
-        let part = sign.is_alphanumeric() || "._-".contains(sign) || (sign == ',' && !word.is_empty());
+        let part =
+            sign.is_alphanumeric() || "._-".contains(sign) || (sign == ',' && !word.is_empty());
         if part && depth == 0 {
             word.push(sign);
             continue;
@@ -118,6 +119,9 @@ mod tests {
             ours: ours.into(),
         });
         let counts = Counts::of(&all);
-        assert_eq!((counts.near, counts.far, counts.none, counts.all()), (1, 1, 1, 3));
+        assert_eq!(
+            (counts.near, counts.far, counts.none, counts.all()),
+            (1, 1, 1, 3)
+        );
     }
 }

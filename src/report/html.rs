@@ -83,7 +83,11 @@ fn verdict(page: &Page) -> Markup {
     let counts = Counts::of(page.sections.iter().flat_map(|s| &s.beside));
     let part = |n: usize| format!("flex: {n}");
     let made = page.sections.iter().filter(|s| s.skipped.is_none()).count();
-    let left: Vec<&Section> = page.sections.iter().filter(|s| s.skipped.is_some()).collect();
+    let left: Vec<&Section> = page
+        .sections
+        .iter()
+        .filter(|s| s.skipped.is_some())
+        .collect();
     let link = |s: &Section| format!("#{}-{}", page.slug, s.name);
     html! {
         li {
@@ -214,13 +218,20 @@ mod tests {
         assert!(after("href=\"#facade_grammar-table_1\"") < after("id=\"facade_grammar-table_1\""));
         assert!(text.contains("-5.0 %"), "{text}");
         // What is not there is named, and no link leads to it.
-        assert!(text.contains("scene.glb (not kept)") && !text.contains("href=\"facade_grammar/scene.glb\""));
+        assert!(
+            text.contains("scene.glb (not kept)")
+                && !text.contains("href=\"facade_grammar/scene.glb\"")
+        );
         assert!(
             text.contains(
                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
             )
         );
-        for rule in ["@media (max-width: 640px)", "@media print", "(prefers-color-scheme: dark)"] {
+        for rule in [
+            "@media (max-width: 640px)",
+            "@media print",
+            "(prefers-color-scheme: dark)",
+        ] {
             assert!(STYLE.contains(rule), "{rule}");
         }
         // Pictures shrink to the column; tables wider than it scroll by themselves.

@@ -203,8 +203,13 @@ async fn document(
     Path(id): Path<String>,
     uri: axum::http::Uri,
 ) -> Answer {
-    let shows = uri.query().and_then(|q| q.strip_prefix("shows=")?.parse().ok());
-    on(&studio, id, move |open, id| Ok(answer(&open.whole_for(id, shows)?))).await
+    let shows = uri
+        .query()
+        .and_then(|q| q.strip_prefix("shows=")?.parse().ok());
+    on(&studio, id, move |open, id| {
+        Ok(answer(&open.whole_for(id, shows)?))
+    })
+    .await
 }
 
 #[derive(Deserialize)]
@@ -254,14 +259,16 @@ async fn edit(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: 
 async fn ask(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
     let question: Value = body(&bytes)?;
     let state = on(&studio, id, |open, _| Ok(open.document.state().clone())).await?;
-    let said = work(move || match question.get("preview").and_then(Value::as_array) {
-        Some(commands) => {
-            let made = steps(&state, commands, &edifice_editing::work::Work::default())?;
-            let state = made.last().map_or(&state, |step| &step.state);
-            Ok(json!({"view": state.view()?}))
-        }
-        None => Ok(state.ask(&question)?),
-    })
+    let said = work(
+        move || match question.get("preview").and_then(Value::as_array) {
+            Some(commands) => {
+                let made = steps(&state, commands, &edifice_editing::work::Work::default())?;
+                let state = made.last().map_or(&state, |step| &step.state);
+                Ok(json!({"view": state.view()?}))
+            }
+            None => Ok(state.ask(&question)?),
+        },
+    )
     .await?;
     Ok(answer(&said))
 }

@@ -256,7 +256,8 @@ impl Open {
         // A script of the studio for this document, written at another time, is its own; one that somebody changed is not.
         let target = self.document.target();
         let own = |old: &Vec<u8>| {
-            self.known_script.as_ref() == Some(old) || is_written(&String::from_utf8_lossy(old), &target)
+            self.known_script.as_ref() == Some(old)
+                || is_written(&String::from_utf8_lossy(old), &target)
         };
         if !overwrite && content(&beside)?.is_some_and(|old| !own(&old)) {
             return Err(SaveError::Changed(script));

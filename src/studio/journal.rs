@@ -214,7 +214,10 @@ impl Journal {
         let mut file = private::take_file(path)?;
         let mut text = Vec::new();
         file.read_to_end(&mut text).ok()?;
-        let whole = text.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
+        let whole = text
+            .iter()
+            .rposition(|b| *b == b'\n')
+            .map_or(0, |at| at + 1);
         let changed = file.metadata().and_then(|m| m.modified()).ok();
         let mut lines = text[..whole].split_inclusive(|b| *b == b'\n');
         let head = lines.next().map(serde_json::from_slice::<Head>);
@@ -272,7 +275,11 @@ mod tests {
     fn half_a_line_at_the_end_is_dropped() {
         let folder = tempfile::tempdir().unwrap();
         let mut journal = begun(folder.path());
-        let lines = [Line::Did(vec![json!({"do": "edit"})]), Line::Undo, Line::Redo];
+        let lines = [
+            Line::Did(vec![json!({"do": "edit"})]),
+            Line::Undo,
+            Line::Redo,
+        ];
         for line in &lines {
             journal.add(line).unwrap();
         }

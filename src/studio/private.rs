@@ -1,7 +1,7 @@
 //! Files for this user alone, in the folder where programs keep their state.
 //!
 //! The folder has the mode 0700 and its files 0600: no other user of the machine reads them. It holds the journals of documents
-//! ([`super::journal`]) and, while a studio runs, the file that leads the browser to it ([`super::redirect`]).
+//! (`journal`) and, while a studio runs, the file that leads the browser to it ([`super::redirect`]).
 
 use std::fs::{DirBuilder, File, OpenOptions};
 use std::io;

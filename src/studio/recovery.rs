@@ -113,7 +113,11 @@ impl Offered {
     }
 
     /// The state that the document began from.
-    fn start(&self, head: &Head, work: &Work) -> Result<(std::sync::Arc<dyn editing::State>, Source)> {
+    fn start(
+        &self,
+        head: &Head,
+        work: &Work,
+    ) -> Result<(std::sync::Arc<dyn editing::State>, Source)> {
         match &head.start {
             Start::Example(id) => Ok((example(id, work)?, Source::Example(id.clone()))),
             Start::File { path, state, kept } => {

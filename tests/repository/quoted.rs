@@ -10,7 +10,8 @@ use serde_json::Value;
 
 /// Words before a number that is a name: of a figure, of a level.
 const NAMES: [&str; 13] = [
-    "Fig.", "Figs.", "Table", "Tables", "Eq.", "Sec.", "Secs.", "Model", "level", "levels", "rank", "ranks", "Level",
+    "Fig.", "Figs.", "Table", "Tables", "Eq.", "Sec.", "Secs.", "Model", "level", "levels", "rank",
+    "ranks", "Level",
 ];
 
 /// A number of prose: its value, its decimals, and if it is in per cent.
@@ -40,7 +41,9 @@ fn plain(text: &str) -> String {
 fn number(word: &str) -> Option<(f64, i32)> {
     let word = word.trim_matches(|c: char| !c.is_ascii_digit());
     let digits = word.replace(',', "");
-    if !word.starts_with(|c: char| c.is_ascii_digit()) || digits.contains(|c: char| c.is_alphabetic() && c != 'e') {
+    if !word.starts_with(|c: char| c.is_ascii_digit())
+        || digits.contains(|c: char| c.is_alphabetic() && c != 'e')
+    {
         return None;
     }
     let decimals = digits.split_once('.').map_or(0, |(_, after)| after.len());
@@ -71,7 +74,10 @@ fn quoted(text: &str) -> Vec<Quoted> {
                 });
             }
             Some(_) => {}
-            None => named = NAMES.contains(&word) || (named && ["to", "and", "left", "right"].contains(&word)),
+            None => {
+                named = NAMES.contains(&word)
+                    || (named && ["to", "and", "left", "right"].contains(&word))
+            }
         }
     }
     found
@@ -115,7 +121,11 @@ fn told(reports: &Path, artefacts: &[(&str, &str)]) -> Vec<f64> {
         let run: Value = serde_json::from_str(&run).expect("run.json is JSON");
         let made = &run["artefacts"][name];
         let page = std::fs::read_to_string(folder.join(format!("{name}.md"))).unwrap_or_default();
-        for text in [page, made["comparisons"].to_string(), made["settings"].to_string()] {
+        for text in [
+            page,
+            made["comparisons"].to_string(),
+            made["settings"].to_string(),
+        ] {
             all.extend(numbers(&text));
         }
     }
@@ -136,7 +146,11 @@ fn numbers_in_prose_are_those_of_the_runs() {
             }
             let there = told(&root.join("reports"), &artefacts);
             let prose = match is_table {
-                true => line.trim_end_matches([' ', '|']).rsplit('|').next().unwrap_or(line),
+                true => line
+                    .trim_end_matches([' ', '|'])
+                    .rsplit('|')
+                    .next()
+                    .unwrap_or(line),
                 false => line,
             };
             if there.is_empty() {
@@ -145,22 +159,39 @@ fn numbers_in_prose_are_those_of_the_runs() {
             for quoted in quoted(prose) {
                 checked += 1;
                 if !stands(quoted, &there) {
-                    wrong.push(format!("{file}:{}: {} is not on {artefacts:?}", k + 1, quoted.value));
+                    wrong.push(format!(
+                        "{file}:{}: {} is not on {artefacts:?}",
+                        k + 1,
+                        quoted.value
+                    ));
                 }
             }
         }
     }
     assert!(checked > 150, "only {checked} numbers");
-    assert!(wrong.is_empty(), "{} numbers:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} numbers:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }
 
 #[test]
 fn a_number_of_another_run_is_found() {
     let page = numbers("| cost | 1.20 | 1,121 | 0.907 |");
     let wrong = |prose: &str| quoted(prose).iter().filter(|q| !stands(**q, &page)).count();
-    assert_eq!(wrong("IS/ADP 1.20, of 1,121 terminals, see [a page 7](x/a_9.md) of Fig. 9 left and Table 1"), 0);
+    assert_eq!(
+        wrong(
+            "IS/ADP 1.20, of 1,121 terminals, see [a page 7](x/a_9.md) of Fig. 9 left and Table 1"
+        ),
+        0
+    );
     assert_eq!(wrong("90.7 % and 9.3 %, `--seed 4`, ECP2011, F1"), 0);
     assert_eq!(wrong("IS/ADP 1.19, and 90.7 of them, +1.3 ± 0.5"), 4);
-    assert_eq!(quoted("10 to 90 %").iter().filter(|q| q.per_cent).count(), 2);
+    assert_eq!(
+        quoted("10 to 90 %").iter().filter(|q| q.per_cent).count(),
+        2
+    );
     assert_eq!(linked("see [a](x/a.md) and [b](y/b.csv)"), [("x", "a")]);
 }

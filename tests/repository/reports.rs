@@ -24,11 +24,15 @@ fn root() -> PathBuf {
 fn kept() -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for experiment in ALL {
-        let path = root().join("reports").join(experiment.slug).join("run.json");
+        let path = root()
+            .join("reports")
+            .join(experiment.slug)
+            .join("run.json");
         let text = std::fs::read_to_string(path).expect("run.json");
         let run: Value = serde_json::from_str(&text).expect("JSON");
         let artefacts = run["artefacts"].as_object().expect("artefacts");
-        let named = |(name, made): (&String, &Value)| (format!("{}/{name}", experiment.slug), made.clone());
+        let named =
+            |(name, made): (&String, &Value)| (format!("{}/{name}", experiment.slug), made.clone());
         all.extend(artefacts.iter().map(named));
     }
     assert!(all.len() > 60, "{}", all.len());
@@ -40,20 +44,31 @@ fn pages() -> Vec<PathBuf> {
     let output = std::process::Command::new("git")
         .arg("-C")
         .arg(root())
-        .args(["ls-files", "-co", "--exclude-standard", "*.md", "reports/*.html"])
+        .args([
+            "ls-files",
+            "-co",
+            "--exclude-standard",
+            "*.md",
+            "reports/*.html",
+        ])
         .output();
     let Ok(output) = output.map_err(|_| ()) else {
         return Vec::new();
     };
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    text.lines().map(|line| root().join(line)).filter(|p| p.is_file()).collect()
+    text.lines()
+        .map(|line| root().join(line))
+        .filter(|p| p.is_file())
+        .collect()
 }
 
 /// Targets of the links and pictures of a page, those inside code left out.
 fn targets(text: &str, is_html: bool) -> Vec<String> {
     if is_html {
         let pieces = text.split("href=\"").chain(text.split("src=\"")).skip(1);
-        let cut = pieces.filter_map(|p| p.split_once('"')).map(|(t, _)| t.to_owned());
+        let cut = pieces
+            .filter_map(|p| p.split_once('"'))
+            .map(|(t, _)| t.to_owned());
         return cut.filter(|t| !t.contains(['<', '\n'])).collect();
     }
     let mut fenced = false;
@@ -76,7 +91,9 @@ fn targets(text: &str, is_html: bool) -> Vec<String> {
 /// The name by which a heading is linked.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();
-    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    let kept = heading
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
@@ -88,7 +105,10 @@ fn no_link_leads_nowhere() {
         let text = std::fs::read_to_string(&page).expect("text");
         let is_html = page.extension().is_some_and(|e| e == "html");
         for target in targets(&text, is_html) {
-            if target.contains("://") || target.starts_with("mailto:") || target.starts_with("data:") {
+            if target.contains("://")
+                || target.starts_with("mailto:")
+                || target.starts_with("data:")
+            {
                 continue;
             }
             count += 1;
@@ -98,10 +118,16 @@ fn no_link_leads_nowhere() {
                 path => page.parent().expect("a folder").join(path),
             };
             let own = || std::fs::read_to_string(&file).unwrap_or_default();
-            let there = match (file.exists(), place, file.extension().and_then(|e| e.to_str())) {
+            let there = match (
+                file.exists(),
+                place,
+                file.extension().and_then(|e| e.to_str()),
+            ) {
                 (false, _, _) => false,
                 (true, "", _) => true,
-                (true, place, Some("md")) => own().lines().any(|l| l.starts_with('#') && anchor(l) == place),
+                (true, place, Some("md")) => own()
+                    .lines()
+                    .any(|l| l.starts_with('#') && anchor(l) == place),
                 (true, place, _) => own().contains(&format!("id=\"{place}\"")),
             };
             if !there {
@@ -110,7 +136,12 @@ fn no_link_leads_nowhere() {
         }
     }
     println!("{count} links");
-    assert!(dead.is_empty(), "{} dead links:\n{}", dead.len(), dead.join("\n"));
+    assert!(
+        dead.is_empty(),
+        "{} dead links:\n{}",
+        dead.len(),
+        dead.join("\n")
+    );
 }
 
 #[test]
@@ -123,14 +154,20 @@ fn no_lowest_cost_so_far_rises() {
         let (facade, iteration) = cells[3].split_once('@').expect("facade@iteration");
         if cells[5] == "cost" {
             let key = format!("{} {facade} {}", cells[2], cells[4]);
-            let point = (iteration.parse().expect("a number"), cells[6].parse().expect("a number"));
+            let point = (
+                iteration.parse().expect("a number"),
+                cells[6].parse().expect("a number"),
+            );
             series.entry(key).or_default().push(point);
         }
     }
     assert!(series.len() > 8, "{}", series.len());
     for (name, mut points) in series {
         points.sort_by_key(|p| p.0);
-        assert!(points.windows(2).all(|pair| pair[0].1 >= pair[1].1), "{name}: {points:?}");
+        assert!(
+            points.windows(2).all(|pair| pair[0].1 >= pair[1].1),
+            "{name}: {points:?}"
+        );
     }
     // Averages at a time and at the end are of the same runs.
     for (artefact, made) in kept() {
@@ -139,7 +176,10 @@ fn no_lowest_cost_so_far_rises() {
             if quantity.contains("cost at") && quantity.ends_with("and at the end") {
                 let ours = comparison["ours"].as_str().unwrap_or_default();
                 let costs: Vec<f64> = ours.split(", ").filter_map(|c| c.parse().ok()).collect();
-                assert!(costs.len() == 2 && costs[0] >= costs[1], "{artefact}: {quantity}: {ours}");
+                assert!(
+                    costs.len() == 2 && costs[0] >= costs[1],
+                    "{artefact}: {quantity}: {ours}"
+                );
             }
         }
     }
@@ -147,7 +187,11 @@ fn no_lowest_cost_so_far_rises() {
 
 /// True for options of `edifice reproduce` by which this artefact is made.
 fn are_options(words: &[&str], artefact: &str) -> bool {
-    let only: Vec<&str> = words.windows(2).filter(|w| w[0] == "--only").flat_map(|w| w[1].split(',')).collect();
+    let only: Vec<&str> = words
+        .windows(2)
+        .filter(|w| w[0] == "--only")
+        .flat_map(|w| w[1].split(','))
+        .collect();
     let known = words.chunks(2).all(|pair| match pair {
         ["--data" | "--out" | "--only", value] => !value.starts_with('-'),
         ["--budget", budget] => ["smoke", "default", "paper"].contains(budget),
@@ -165,7 +209,9 @@ fn every_kept_artefact_has_a_command_that_can_be_typed() {
         let command = made["command"].as_str().unwrap_or_default();
         let words: Vec<&str> = command.split_whitespace().collect();
         let options = match words.as_slice() {
-            ["edifice", "reproduce", paper, options @ ..] => *paper == slug && are_options(options, name),
+            ["edifice", "reproduce", paper, options @ ..] => {
+                *paper == slug && are_options(options, name)
+            }
             _ => false,
         };
         let of_paper = ALL.iter().find(|e| e.slug == slug);
@@ -174,21 +220,34 @@ fn every_kept_artefact_has_a_command_that_can_be_typed() {
             wrong.push(format!("{artefact}: {command}"));
         }
     }
-    assert!(wrong.is_empty(), "{} commands:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} commands:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }
 
 #[test]
 fn no_kept_artefact_is_of_an_unoptimized_build_but_those_listed() {
     let unoptimized = |(_, made): &(String, Value)| made["machine"]["optimized"] != true;
-    let found: BTreeSet<String> = kept().into_iter().filter(unoptimized).map(|(name, _)| name).collect();
-    let listed: BTreeSet<String> = UNOPTIMIZED.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let found: BTreeSet<String> = kept()
+        .into_iter()
+        .filter(unoptimized)
+        .map(|(name, _)| name)
+        .collect();
+    let listed: BTreeSet<String> = UNOPTIMIZED
+        .iter()
+        .map(|(name, _)| (*name).to_owned())
+        .collect();
     assert_eq!(found, listed, "the list names all of them, and no others");
 }
 
 /// The first page is small: at most 1 MB before its pictures.
 #[test]
 fn the_first_page_is_small_and_asks_nobody() {
-    let page = std::fs::read_to_string(Path::new(&root()).join("reports/index.html")).expect("kept");
+    let page =
+        std::fs::read_to_string(Path::new(&root()).join("reports/index.html")).expect("kept");
     assert!(page.len() < 1_000_000, "{} bytes", page.len());
     for foreign in ["<script src", "<link", "@import", "url(http"] {
         assert!(!page.contains(foreign), "{foreign}");

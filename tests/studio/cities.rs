@@ -231,11 +231,20 @@ fn an_edit_is_told_by_its_difference() {
     let told = edit(format!("weight {rule}=3"), 0, 0.into());
     assert!(told["view"].is_null(), "the difference stands in its place");
     let (short, long) = (told["difference"].to_string(), opened["view"].to_string());
-    assert!(5 * short.len() < long.len(), "{} of {} bytes", short.len(), long.len());
+    assert!(
+        5 * short.len() < long.len(),
+        "{} of {} bytes",
+        short.len(),
+        long.len()
+    );
     // Who shows another revision, or none, is told the whole.
     for shows in [Value::Null, 0.into(), 7.into()] {
         let revision = api.get(&format!("/api/documents/{id}"))["revision"].as_u64();
-        let told = edit(format!("weight {rule}=5"), revision.expect("a number"), shows);
+        let told = edit(
+            format!("weight {rule}=5"),
+            revision.expect("a number"),
+            shows,
+        );
         assert!(told["view"].is_object() && told["difference"].is_null());
     }
 }

@@ -15,7 +15,7 @@ mod limits;
 mod photograph;
 mod recovery;
 mod saving;
-mod secrets;
 mod scripts;
+mod secrets;
 mod socket;
 mod speed;

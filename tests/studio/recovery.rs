@@ -36,7 +36,12 @@ fn killed_with_unsaved_work_it_loses_nothing_that_was_answered() {
     let path = large(folder.path(), 12);
     let before = std::fs::read(&path).expect("there");
     let process = Process::start_in(&[], &path, state.path());
-    let edits = ["move #0=0.25,0.25", "move #1=1.25,0.25", "move #2=2.25,0.25", "move #3=3.25,0.25"];
+    let edits = [
+        "move #0=0.25,0.25",
+        "move #1=1.25,0.25",
+        "move #2=2.25,0.25",
+        "move #3=3.25,0.25",
+    ];
     for (revision, edit) in edits.iter().enumerate() {
         let answer = process.edit(revision, edit);
         assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
@@ -47,8 +52,12 @@ fn killed_with_unsaved_work_it_loses_nothing_that_was_answered() {
     assert_eq!(std::fs::read(&path).expect("there"), before);
     // Half a line is what a kill in the middle of a write leaves.
     let journal = Path::new("edifice/studio");
-    let journals = std::fs::read_dir(state.path().join(journal)).expect("listed").flatten();
-    let journal = journals.map(|e| e.path()).find(|p| p.to_string_lossy().ends_with(".jsonl"));
+    let journals = std::fs::read_dir(state.path().join(journal))
+        .expect("listed")
+        .flatten();
+    let journal = journals
+        .map(|e| e.path())
+        .find(|p| p.to_string_lossy().ends_with(".jsonl"));
     let mut text = std::fs::read(journal.as_ref().expect("one")).expect("there");
     text.extend_from_slice(b"{\"did\":[{\"do\"");
     std::fs::write(journal.expect("one"), text).expect("written");
@@ -59,14 +68,20 @@ fn killed_with_unsaved_work_it_loses_nothing_that_was_answered() {
     let process = Process::start_in(&[], &other, state.path());
     let offers = offered(&process);
     assert_eq!(offers.len(), 1, "{offers:?}");
-    assert_eq!((&offers[0]["name"], &offers[0]["edits"]), (&json!("f"), &json!(4)));
+    assert_eq!(
+        (&offers[0]["name"], &offers[0]["edits"]),
+        (&json!("f"), &json!(4))
+    );
     // Another studio does not offer what this one holds.
     let second = Process::start_in(&[], &other, state.path());
     assert!(offered(&second).is_empty());
     let id = offers[0]["id"].as_str().expect("an id");
     let again = json_of(&process.ask(&format!("/api/unsaved/{id}/open"), "{}"));
     assert_eq!(again["view"], shown["view"]);
-    assert_eq!((&again["unsaved"], &again["redo"]), (&json!(true), &json!(true)));
+    assert_eq!(
+        (&again["unsaved"], &again["redo"]),
+        (&json!(true), &json!(true))
+    );
     assert_eq!(again["log"], shown["log"]);
     assert!(offered(&process).is_empty());
     // It goes on in the same journal.
@@ -93,15 +108,26 @@ fn what_was_saved_closed_or_discarded_is_not_offered() {
     assert!(offered(&process).is_empty());
     process.edit(0, "move #0=0.5,0.25");
     assert!(process.post("close", "{}").starts_with("HTTP/1.1 409"));
-    assert!(process.post("close", "{\"discard\": true}").starts_with("HTTP/1.1 200"));
-    assert!(process.ask("/api/documents/d1", "").starts_with("HTTP/1.1 404"));
+    assert!(
+        process
+            .post("close", "{\"discard\": true}")
+            .starts_with("HTTP/1.1 200")
+    );
+    assert!(
+        process
+            .ask("/api/documents/d1", "")
+            .starts_with("HTTP/1.1 404")
+    );
     kill(process);
     let process = Process::start_in(&[], &path, state.path());
     assert!(offered(&process).is_empty());
     process.edit(0, "move #0=0.25,0.5");
     kill(process);
     let process = Process::start_in(&[], &path, state.path());
-    let id = offered(&process)[0]["id"].as_str().expect("an id").to_owned();
+    let id = offered(&process)[0]["id"]
+        .as_str()
+        .expect("an id")
+        .to_owned();
     process.ask(&format!("/api/unsaved/{id}/discard"), "{}");
     kill(process);
     let left = std::fs::read_dir(state.path().join("edifice/studio")).expect("listed");
@@ -129,7 +155,10 @@ fn a_recovered_example_is_what_its_commands_make_of_it() {
     });
     assert_eq!(reads.get("/api/documents")["unsaved"], json!([]));
     let api = Api::new(&settings);
-    let id = api.get("/api/documents")["unsaved"][0]["id"].as_str().expect("offered").to_owned();
+    let id = api.get("/api/documents")["unsaved"][0]["id"]
+        .as_str()
+        .expect("offered")
+        .to_owned();
     let again = api.post(&format!("/api/unsaved/{id}/open"), json!({}));
     assert_eq!(again["view"], shown["view"]);
 }
@@ -142,7 +171,12 @@ fn a_closed_document_is_gone_and_the_others_keep_their_ids() {
     }
     api.post("/api/documents/d2/close", json!({}));
     let listed = api.get("/api/documents");
-    let ids: Vec<&str> = listed["documents"].as_array().expect("a list").iter().filter_map(|d| d["id"].as_str()).collect();
+    let ids: Vec<&str> = listed["documents"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(|d| d["id"].as_str())
+        .collect();
     assert_eq!(ids, ["d1", "d3"]);
     let opened = api.post("/api/documents", json!({"example": "four"}));
     assert_eq!(opened["id"], "d4");
@@ -156,7 +190,12 @@ fn only_what_can_be_merged_says_so() {
             "{{ \"format\": \"edifice/facade\", \"version\": 1, \"name\": \"f\", \"unit\": \"{unit}\", \"width\": 2, \"height\": 1,
              \"regions\": [ {{ \"label\": \"wall\", \"x\": 0, \"y\": 0, \"width\": 2, \"height\": 1 }} ] }}"
         );
-        open(Path::new("f.facade.json"), text.as_bytes(), &Work::default()).expect("opens")
+        open(
+            Path::new("f.facade.json"),
+            text.as_bytes(),
+            &Work::default(),
+        )
+        .expect("opens")
     };
     for unit in ["m", "px"] {
         let document = Document::new(grammar(unit));

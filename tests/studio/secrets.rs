@@ -48,7 +48,11 @@ fn the_token_is_in_no_argument_and_in_no_file_of_others() {
     let opener = bin.join("xdg-open");
     std::fs::write(&opener, OPENER).expect("written");
     std::fs::set_permissions(&opener, std::fs::Permissions::from_mode(0o755)).expect("set");
-    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default());
+    let path = format!(
+        "{}:{}",
+        bin.display(),
+        std::env::var("PATH").unwrap_or_default()
+    );
     // A terminal, in which the studio opens the browser.
     let command = format!("exec {} studio", env!("CARGO_BIN_EXE_edifice"));
     let mut child = Command::new("script")
@@ -84,7 +88,10 @@ fn the_token_is_in_no_argument_and_in_no_file_of_others() {
         stdin.write_all(b"\x03").expect("sent");
     }
     let status = child.wait().expect("ends");
-    assert!(hidden, "the token is among the arguments or the environment of a process");
+    assert!(
+        hidden,
+        "the token is among the arguments or the environment of a process"
+    );
     assert!(!given.contains(token) && !environment.contains(token));
     assert!(page.contains(address) && page.contains(token), "{page}");
     assert_eq!(modes, [0o600, 0o700]);
@@ -108,11 +115,22 @@ fn as_another_user(redirect: &Path, token: &str) -> Option<String> {
         return None;
     }
     let seen = Command::new("setpriv")
-        .args(["--reuid=65534", "--regid=65534", "--clear-groups", "sh", "-c", &look])
+        .args([
+            "--reuid=65534",
+            "--regid=65534",
+            "--clear-groups",
+            "sh",
+            "-c",
+            &look,
+        ])
         .output()
         .ok()?;
     let text = String::from_utf8_lossy(&seen.stdout).into_owned();
-    assert!(text.contains("looked"), "{}", String::from_utf8_lossy(&seen.stderr));
+    assert!(
+        text.contains("looked"),
+        "{}",
+        String::from_utf8_lossy(&seen.stderr)
+    );
     assert!(!token.is_empty());
     Some(text)
 }
