@@ -14,7 +14,7 @@ use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::line;
 use super::provenance::{Comparison, Machine, Made, Run, commit};
-use super::verify::{State, sources_of, verify};
+use super::verify::{say_which_are_older, sources_of};
 use super::{Artefact, Experiment};
 use crate::sweep::definition::suggestion;
 use edifice_base::{Error, Result};
@@ -302,42 +302,6 @@ fn built_from(made: &Made) -> String {
     }
 }
 
-/// Some artefacts are not of this code and this data.
-#[derive(Debug, thiserror::Error)]
-#[error("{older} of {all} artefacts are older than the code or the data that they show")]
-struct Stale {
-    older: usize,
-    all: usize,
-}
-
-/// Says of each artefact if it is of this code and this data.
-///
-/// # Errors
-/// When one is older, or data cannot be read.
-fn say_which_are_older(experiments: &[&'static Experiment], options: &Options) -> Result<()> {
-    let found = verify(&choose(experiments, &options.only)?, options)?;
-    let mut older = 0;
-    for (name, state) in &found {
-        let said = match state {
-            State::Current => "is of this code and data".to_owned(),
-            State::Missing => "is not in the report".to_owned(),
-            State::Unknown => "was made before the digest of its code was recorded".to_owned(),
-            State::Older(parts) => {
-                older += 1;
-                format!("is older than: {}", parts.join(", "))
-            }
-        };
-        line(&format!("{name} {said}"));
-    }
-    match older {
-        0 => Ok(()),
-        older => Err(Error::method(Stale {
-            older,
-            all: found.len(),
-        })),
-    }
-}
-
 /// Removes the journals of finished artefacts, whatever their settings, and the unpacked data sets. The
 /// journals of other artefacts stay for the runs that go on with them.
 fn remove_work(folder: &Path, artefacts: &[&'static Artefact]) -> Result<()> {
@@ -391,7 +355,7 @@ pub fn main(experiment: &'static Experiment) -> ExitCode {
 pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()> {
     let options = args.check()?;
     if options.verify {
-        return say_which_are_older(experiments, &options);
+        return say_which_are_older(&choose(experiments, &options.only)?, &options);
     }
     // A second Ctrl-C stops at once: nothing finished is lost either way.
     let _ = ctrlc::set_handler(|| {

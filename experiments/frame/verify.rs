@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::options::Options;
+use super::progress::line;
 use super::provenance::{self, Made, Run};
 use super::{Artefact, Experiment};
 use crate::sweep::sources;
-use edifice_base::Result;
+use edifice_base::{Error, Result};
 use edifice_datasets as datasets;
 
 /// The state of a kept artefact.
@@ -38,7 +39,7 @@ pub fn verify(
     chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
     options: &Options,
 ) -> Result<Vec<(String, State)>> {
-    let unpacked = tempfile::tempdir().map_err(edifice_base::Error::method)?;
+    let unpacked = tempfile::tempdir().map_err(Error::method)?;
     let mut digests = Digests {
         unpacked: unpacked.path(),
         data: options.data.as_deref(),
@@ -56,6 +57,45 @@ pub fn verify(
         }
     }
     Ok(found)
+}
+
+/// Some artefacts are not of this code and this data.
+#[derive(Debug, thiserror::Error)]
+#[error("{older} of {all} artefacts are older than the code or the data that they show")]
+struct Stale {
+    older: usize,
+    all: usize,
+}
+
+/// Says of each artefact if it is of this code and this data.
+///
+/// # Errors
+/// When one is older, or data cannot be read.
+pub fn say_which_are_older(
+    chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
+    options: &Options,
+) -> Result<()> {
+    let found = verify(chosen, options)?;
+    let mut older = 0;
+    for (name, state) in &found {
+        let said = match state {
+            State::Current => "is of this code and data".to_owned(),
+            State::Missing => "is not in the report".to_owned(),
+            State::Unknown => "was made before the digest of its code was recorded".to_owned(),
+            State::Older(parts) => {
+                older += 1;
+                format!("is older than: {}", parts.join(", "))
+            }
+        };
+        line(&format!("{name} {said}"));
+    }
+    match older {
+        0 => Ok(()),
+        older => Err(Error::method(Stale {
+            older,
+            all: found.len(),
+        })),
+    }
 }
 
 /// Digests of data, each made once.

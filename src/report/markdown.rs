@@ -23,7 +23,7 @@ pub fn html(text: &str, place: Place) -> Markup {
             @if block.starts_with("# ") {}
             @else if block.starts_with('|') { (table(block, place)) }
             @else if let Some(heading) = block.strip_prefix("## ") { h4 { (inline(heading, place)) } }
-            @else if block.starts_with("```") { pre { (block.trim_matches('`').trim()) } }
+            @else if block.starts_with("```") { pre tabindex="0" { (block.trim_matches('`').trim()) } }
             @else if block.starts_with("- ") {
                 ul { @for line in block.lines() { li { (inline(line.trim_start_matches("- "), place)) } } }
             }

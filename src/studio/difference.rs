@@ -33,7 +33,7 @@ pub fn difference(old: &Value, new: &Value) -> Value {
 mod tests {
     use super::*;
 
-    /// What the page does with a difference.
+    /// The view that the page makes of a difference.
     fn applied(old: &Value, difference: &Value) -> Value {
         let mut now = old.clone();
         for key in difference["gone"].as_array().unwrap() {

@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The folder of the studio's state, by the customs of the system: `$XDG_STATE_HOME/edifice/studio`, otherwise
-/// `~/.local/state/edifice/studio`; on macOS below `~/Library/Application Support`, on Windows below `%LOCALAPPDATA%`.
+/// `~/.local/state/edifice/studio`; on a Mac below `~/Library/Application Support`, on Windows below `%LOCALAPPDATA%`.
 /// `None` where the environment names no such place.
 pub fn state_folder() -> Option<PathBuf> {
     let place = |name: &str| {
