@@ -2,8 +2,8 @@
 
 use edifice_base::rng;
 use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
-use edifice_layout::resize::{AlignError, align};
-use edifice_shape::Facade;
+use edifice_layout::resize::{AlignError, align, resized};
+use edifice_shape::{Facade, LayoutError};
 
 /// The wanted derivation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,9 +38,13 @@ pub enum DeriveError {
     /// Edges cannot be aligned.
     #[error(transparent)]
     Align(#[from] AlignError),
+    /// A derivation that is no tiling.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
 }
 
-/// Derives a start: as it is written at its own size; at another, size-independent and with aligned edges.
+/// Derives a start: as it is written at its own size; at another by whole columns and floors ([`resized`]) where its sizes
+/// are all absolute, else as its relative sizes say and with aligned edges.
 ///
 /// # Errors
 /// [`DeriveError`].
@@ -64,13 +68,24 @@ pub fn derived(grammar: &Grammar, wish: &Wish) -> Result<Derived, DeriveError> {
             unequal: Vec::new(),
         });
     }
-    let grammar = size_independent(grammar);
+    let free = size_independent(grammar);
+    // Where the author of the rules has not said what gives way, columns and floors repeat together.
+    let unsaid = free != *grammar;
+    let grammar = free;
     let derivation = at(&grammar, size)?;
     if !wish.align {
         return Ok(Derived {
             facade: derivation.facade.clone(),
             derivation,
             unequal: Vec::new(),
+        });
+    }
+    if unsaid {
+        let banded = resized(&at(&grammar, own)?.facade, size.0, size.1)?;
+        return Ok(Derived {
+            facade: banded.facade,
+            derivation,
+            unequal: banded.cut,
         });
     }
     let aligned = align(&at(&grammar, own)?, &derivation)?;

@@ -34,6 +34,7 @@
 //! - A proof of the cost holds for this parse and collapse: not over all grammars with parameters.
 //! - All lengths are multiples of the library's step (a pixel). Facades off the step are refused, not rounded.
 
+mod bands;
 mod bodies;
 mod codec;
 mod coder;
@@ -47,6 +48,7 @@ mod library;
 mod names;
 mod phrases;
 mod program;
+mod recombine;
 mod rules;
 mod show;
 mod sizes;
