@@ -1,7 +1,9 @@
 //! A facade of a grammar, at its own or another size.
 
 use edifice_base::rng;
-use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
+use edifice_grammar::{
+    Derivation, Grammar, GrammarError, Operation, Size, derive_at, size_independent,
+};
 use edifice_layout::resize::{AlignError, align, resized};
 use edifice_shape::{Facade, LayoutError};
 
@@ -68,10 +70,12 @@ pub fn derived(grammar: &Grammar, wish: &Wish) -> Result<Derived, DeriveError> {
             unequal: Vec::new(),
         });
     }
-    let free = size_independent(grammar);
     // Where the author of the rules has not said what gives way, columns and floors repeat together.
-    let unsaid = free != *grammar;
-    let grammar = free;
+    let unsaid = !grammar
+        .rules
+        .iter()
+        .any(|rule| is_relative(&rule.operation));
+    let grammar = size_independent(grammar);
     let derivation = at(&grammar, size)?;
     if !wish.align {
         return Ok(Derived {
@@ -94,4 +98,16 @@ pub fn derived(grammar: &Grammar, wish: &Wish) -> Result<Derived, DeriveError> {
         derivation,
         unequal: aligned.unequal,
     })
+}
+
+/// True if a size of a rule is relative.
+fn is_relative(operation: &Operation) -> bool {
+    let relative = |size: &Size| matches!(size, Size::Relative(_));
+    match operation {
+        Operation::Split { successors, .. }
+        | Operation::Repeat { successors, .. }
+        | Operation::SymSplit { successors, .. } => successors.iter().any(|s| relative(&s.size)),
+        Operation::RepeatAba { a, b, .. } => relative(&a.size) || relative(&b.size),
+        Operation::GridSplit { columns, rows, .. } => columns.iter().chain(rows).any(relative),
+    }
 }

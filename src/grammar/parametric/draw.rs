@@ -3,11 +3,10 @@
 //! 1. A facade of the library is drawn, and another one with the same root and counts, if there is one. Between two
 //!    such facades every edge is `(1 - t) a + t b` with one `t` from 0 to 1 for all: what is aligned, equal, mirrored or
 //!    repeated in both stays so.
-//! 2. Along each axis the number of columns or floors is drawn from the facades of the library, and columns and floors
-//!    are inserted or taken away until the facade has it, as far as it can be done without a seam: a *band*
-//!    reaches from one line of the facade to another at which the picture is the same from end to end, so that
-//!    beside every seam stands what stands beside one of these lines already. A band that would double something
-//!    which the facade has once (a door), or take away all of something, is left alone.
+//! 2. It gets the upper strips (floors) of a further facade, from a strip on that both have (`recombine.rs`): ground
+//!    floors, orders of floors and roofs come together anew.
+//! 3. Along each axis the number of columns or floors is drawn from the smoothed numbers of the library's facades, and columns and floors
+//!    are inserted or taken away until the facade has it, as far as it can be done without a seam (`bands.rs`).
 //!
 //! This is not the distribution of codes ([`Library::draw_code`]), which draws every size for itself
 //! and is the one that bits speak of.

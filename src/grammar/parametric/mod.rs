@@ -23,7 +23,7 @@
 //! | `coder.rs` | counting, writing, reading and drawing as one walk |
 //! | `structure.rs`, `extents.rs`, `counts.rs`, `sizes.rs`, `codec.rs` | the model, part by part, and its walk |
 //! | `library.rs` | [`Library`]: learn, score, encode, decode |
-//! | `draw.rs` | new facades |
+//! | `draw.rs`, `recombine.rs`, `bands.rs` | new facades: sizes between two, floors of two, columns and floors more or less |
 //! | `fixed.rs` | what one facade costs alone, sizes included |
 //! | `written.rs`, `show.rs`, `names.rs` | a library as a split grammar, and as text |
 //!

@@ -3,6 +3,8 @@
 mod bands;
 mod in_line;
 mod terminals;
+#[cfg(test)]
+mod tests;
 
 pub use bands::{Banded, resized};
 pub use terminals::terminal_classes;
