@@ -2,8 +2,9 @@
 //!
 //! A facade is a sequence of strips (its floors, or its bays), each a symbol with counts. Where a strip `i` of one
 //! and a strip `j` of another agree in both, `a_1 ... a_i b_{j+1} ... b_m` is a sequence in which every strip
-//! stands beside a strip that it stands beside already. The number of strips stays between those of
-//! the two. Across the strips the second facade is stretched so that the cuts of strip `j` fall on those of strip `i`,
+//! stands beside a strip that it stands beside already. The sequence is neither that of the first nor that of the second; the number
+//! of strips stays between theirs. The second facade is drawn among the structures of the library, each as often as another, so that
+//! rare orders of floors take part as much as frequent ones: draws are more varied than the library. Across the strips the second facade is stretched so that the cuts of strip `j` fall on those of strip `i`,
 //! piecewise linearly: what is in line with them in the second facade is so in the result. Along them it is scaled so
 //! that both strips have one size.
 
@@ -16,7 +17,7 @@ use super::tree::{Parse, slots};
 use edifice_shape::{Axis, Facade, Rect, Region};
 
 /// Facades that are tried as the second one.
-const TRIES: usize = 12;
+const TRIES: usize = 40;
 
 /// Greatest scale along the strips, and the inverse of the least.
 const SCALE: f64 = 1.6;
@@ -53,6 +54,12 @@ fn strips(parse: &Parse, rules: &Rules) -> Option<(Axis, Vec<Strip>)> {
     Some((rule.axis, found))
 }
 
+/// True if the strips of the first up to `i` and those of the second from after `j` are not those of either.
+fn is_new((own, i): (&[Strip], usize), (other, j): (&[Strip], usize)) -> bool {
+    let joined = || own[..=i].iter().chain(&other[j + 1..]).map(|s| s.symbol);
+    !joined().eq(own.iter().map(|s| s.symbol)) && !joined().eq(other.iter().map(|s| s.symbol))
+}
+
 /// The number of terminals of a symbol, whose counts are taken from the front.
 fn terminals(symbol: Symbol, rules: &Rules, counts: &mut &[u32]) -> Option<usize> {
     let Symbol::Rule(rule) = symbol else {
@@ -79,9 +86,12 @@ impl Library {
         let Some((axis, own)) = strips(&first.parse, self.rules()) else {
             return Ok(None);
         };
+        let roots: Vec<Symbol> = self.tables().structure.roots().keys().copied().collect();
         for _ in 0..TRIES {
-            let members = self.members();
-            let second = &members[rng.random_range(0..members.len())];
+            let root = roots[rng.random_range(0..roots.len())];
+            let alike = self.members().iter().filter(|m| m.parse.root == root);
+            let alike: Vec<&Member> = alike.collect();
+            let second = alike[rng.random_range(0..alike.len())];
             let Some((other_axis, other)) = strips(&second.parse, self.rules()) else {
                 continue;
             };
@@ -94,7 +104,11 @@ impl Library {
                 for (j, b) in other.iter().enumerate() {
                     let same = a.symbol == b.symbol && a.counts == b.counts;
                     let whole = matches!(a.symbol, Symbol::Rule(_));
-                    if same && whole && range.contains(&(i + other.len() - j)) {
+                    if same
+                        && whole
+                        && range.contains(&(i + other.len() - j))
+                        && is_new((&own, i), (&other, j))
+                    {
                         joints.push((i, j));
                     }
                 }
