@@ -107,7 +107,7 @@ impl Library {
                     if same
                         && whole
                         && range.contains(&(i + other.len() - j))
-                        && is_new((&own, i), (&other, j))
+                        && is_new((&own[..], i), (&other[..], j))
                     {
                         joints.push((i, j));
                     }
