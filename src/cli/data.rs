@@ -24,7 +24,9 @@ pub enum Command {
     )]
     Check(Check),
     /// Describe a folder of files: writes dataset.toml where there is none, and croissant.json
-    #[command(after_help = "Example:\n  edifice data describe draws --files '*.facade.json'\n  edifice data check draws/dataset.toml")]
+    #[command(
+        after_help = "Example:\n  edifice data describe draws --files '*.facade.json'\n  edifice data check draws/dataset.toml"
+    )]
     Describe(Describe),
 }
 

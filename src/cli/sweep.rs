@@ -50,7 +50,9 @@ pub enum Command {
     #[command(after_help = "Example: edifice sweep report ablation.toml --out ablation")]
     Report(Report),
     /// Pack file, plan, instances and results into one zip
-    #[command(after_help = "Example: edifice sweep bundle ablation.toml --out ablation -o ablation.zip")]
+    #[command(
+        after_help = "Example: edifice sweep bundle ablation.toml --out ablation -o ablation.zip"
+    )]
     Bundle(Bundle),
     /// Check a bundle: its digests, and a sample of its tasks run again
     #[command(after_help = "Example: edifice sweep verify ablation.zip --sample 1")]

@@ -95,7 +95,11 @@ fn of_readme() -> Vec<String> {
 fn every_example_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let home = tempfile::tempdir().expect("a folder");
-    for below in [".local/share/bash-completion/completions", ".zfunc", ".config/fish/completions"] {
+    for below in [
+        ".local/share/bash-completion/completions",
+        ".zfunc",
+        ".config/fish/completions",
+    ] {
         std::fs::create_dir_all(home.path().join(below)).expect("a folder");
     }
     for (name, bytes) in edifice_datasets::files() {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::house::inspect::implausible;
 use edifice_building_exteriors::house::{
     Database, GenerateError, Generated, HouseReport, Joining, Method, Options, generate,
 };
-use edifice_building_exteriors::house::inspect::implausible;
 use edifice_building_exteriors::mass::contradiction::check_given;
 use edifice_building_exteriors::mass::footprint::reconcile;
 use edifice_io::{gltf, write_atomic};
