@@ -44,7 +44,7 @@ export function bar(session: Session<unknown>, readOnly: boolean, leave: () => v
   return h(
     "header",
     { class: "bar" },
-    button("Studio", leave, { class: "home", "aria-label": "All documents" }),
+    button("Studio", leave, { class: "home", "aria-label": "Studio: all documents" }),
     h("div", { class: "title" }, name, kind),
     h("div", { class: "group" }, undo, redo),
     h("div", { class: "group seed" }, h("label", {}, h("span", {}, "Seed"), seed), anew),
