@@ -29,7 +29,7 @@ const MOST: usize = 8;
 pub struct Binned {
     /// The column.
     pub column: String,
-    /// Where it is cut, ascending, in its own unit: a value at a cut is of the upper bin.
+    /// Its cuts, ascending, in its own unit: a value at a cut is of the upper bin.
     pub cuts: Vec<f64>,
 }
 
