@@ -29,7 +29,7 @@ const MOST: usize = 8;
 pub struct Binned {
     /// The column.
     pub column: String,
-    /// Where it is cut, ascending, in its own unit: a value at a cut is of the upper bin.
+    /// Its cuts, ascending, in its own unit: a value at a cut is of the upper bin.
     pub cuts: Vec<f64>,
 }
 
@@ -93,16 +93,12 @@ pub fn cuts(values: &[f64]) -> Vec<f64> {
     let mut best: Option<(f64, usize)> = None;
     let regrets = regrets(n, MOST);
     for bins in 2..=MOST.min(ends - 1) {
-        let mut next = vec![f64::INFINITY; ends];
-        let mut from = vec![0; ends];
-        for b in bins..ends {
-            for a in bins - 1..b {
-                let total = least[a] + cost(a, b);
-                if total < next[b] {
-                    (next[b], from[b]) = (total, a);
-                }
-            }
-        }
+        let shortest = |b: usize| {
+            let ways = (bins - 1..b).map(|a| (least[a] + cost(a, b), a));
+            let best = ways.min_by(|x, y| x.0.total_cmp(&y.0));
+            best.unwrap_or((f64::INFINITY, 0))
+        };
+        let (next, from): (Vec<f64>, Vec<usize>) = (0..ends).map(shortest).unzip();
         least = next;
         before.push(from);
         let length =

@@ -8,7 +8,7 @@ use edifice_model::program::{Handler, Program, exact};
 
 const ROOFS: [&str; 3] = ["flat", "gable", "hip"];
 
-/// What is known of a house: width, depth, garage, roof.
+/// The known attributes of a house: width, depth, garage, roof.
 #[derive(Clone, Copy)]
 struct House(Option<f64>, Option<f64>, Option<usize>, Option<usize>);
 
