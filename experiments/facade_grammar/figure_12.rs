@@ -242,7 +242,7 @@ fn in_line(facade: &Facade) -> f64 {
             kept += usize::from(pair[1].iter().any(same));
         }
     }
-    f64::from(kept) / f64::from(all.max(1))
+    kept as f64 / f64::from(all.max(1))
 }
 
 /// Distinct sizes, label by label.

@@ -1,6 +1,6 @@
 //! The ease with which a classifier tells drawn facades from real ones.
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, unwatched};
 use edifice_model::boosting::{Boosting, Settings};
 use edifice_shape::{Axis, Facade};
 
@@ -31,7 +31,8 @@ pub fn area(folds: &[Fold], labels: &[&str]) -> Result<f64> {
         let mut targets = vec![0.0; all.len()];
         all.extend(rows(&fold.drawn));
         targets.resize(all.len(), 1.0);
-        let learnt = Boosting::learn(&all, &targets, Settings::default()).map_err(Error::method)?;
+        let learnt = Boosting::learn(&all, &targets, Settings::default(), &unwatched)
+            .map_err(Error::method)?;
         let judged = |facades: &[Facade]| -> Vec<f64> {
             rows(facades)
                 .iter()

@@ -13,9 +13,9 @@ use crate::print;
 /// Options of `edifice grammar derive`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar derive house.cga -o house.facade.json
-  edifice grammar derive house.grammar.json --width 800 --height 600 -o wide.svg
-  edifice grammar derive street.cga --seed 7 -o variation.png
+  edifice grammar derive facade.cga -o facade.facade.json
+  edifice grammar derive fig9.grammar.json --width 800 --height 600 -o wide.svg
+  edifice grammar derive joint.grammar.json --facade terrace_a --seed 7 -o terrace_a.png
 
 At its own size a grammar gives the facade that it was inferred from. At another size, columns that
 stand together are repeated or taken away together in all floors, floors likewise, and the rest is
