@@ -217,3 +217,67 @@ fn joined(
     .ok()?;
     made.check_tiling().is_ok().then_some(made)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_base::rng::stream;
+
+    /// Floors from the ground up, `w` with windows and `b` with balconies below them, all of three columns, `unit` wide.
+    fn house(name: &str, floors: &str, unit: f64) -> Facade {
+        let mut regions = Vec::new();
+        let width = 7.0 * unit;
+        let mut at = 0.0;
+        let mut put = |label: &str, x: f64, y: f64, w: f64, h: f64| {
+            let label = label.to_owned();
+            let rect = Rect::new(x, y, w, h);
+            regions.push(Region { label, rect });
+        };
+        for floor in floors.chars() {
+            put("wall", 0.0, at, width, 3.0);
+            for k in 0..7 {
+                let x = f64::from(k) * unit;
+                match (k % 2, floor) {
+                    (0, _) => put("wall", x, at + 3.0, unit, 9.0),
+                    (_, 'b') => {
+                        put("balcony", x, at + 3.0, unit, 3.0);
+                        put("window", x, at + 6.0, unit, 6.0);
+                    }
+                    _ => put("window", x, at + 3.0, unit, 9.0),
+                }
+            }
+            at += 12.0;
+        }
+        put("roof", 0.0, at, width, 5.0);
+        Facade::new(name, "px", width, at + 5.0, regions).unwrap()
+    }
+
+    #[test]
+    fn floors_of_two_facades_come_together_with_their_columns_in_line() {
+        let all = [
+            house("a", "wbw", 4.0),
+            house("b", "bbww", 6.0),
+            house("c", "wwwb", 5.0),
+        ];
+        let library = Library::learn(&all).unwrap();
+        let mut new = 0;
+        for k in 0..40 {
+            let mut rng = stream(3, "recombine", k);
+            let first = &library.members()[0];
+            let own = library.between(first, first, 0.0, "own").unwrap();
+            let Some(made) = library.recombined((first, &own), &mut rng).unwrap() else {
+                continue;
+            };
+            made.check_tiling().unwrap();
+            assert!(library.is_new(&made).unwrap());
+            assert_eq!(made.width, 28.0);
+            let windows = made.regions.iter().filter(|r| r.label == "window");
+            let mut places: Vec<i64> = windows.map(|r| r.rect.x as i64).collect();
+            places.sort_unstable();
+            places.dedup();
+            assert_eq!(places, [4, 12, 20]);
+            new += 1;
+        }
+        assert!(new > 30, "{new} of 40");
+    }
+}
