@@ -53,12 +53,11 @@ const BOUNDARY: usize = 4;
 const SHARES: [usize; 3] = [6, 7, 8];
 /// Largest extent of a drawn house (m).
 const LARGEST: f64 = 60.0;
-/// Coverage from which a plan is a rectangle, and what its boundary exceeds that of its bounding box by if it has a recess
-/// (m); least area cut off a plan that is none (square metres), and least excess of one with a recess (m).
+/// Coverage from which a plan is a rectangle, else the least area cut off (square metres); what the boundary of a plan with
+/// a recess exceeds that of its bounding box by, as measured and as drawn (m).
 const FULL: f64 = 0.995;
-const EXCESS: f64 = 0.6;
 const CUT: f64 = 1.5;
-const RECESS: f64 = 2.4;
+const EXCESS: [f64; 2] = [0.6, 2.4];
 /// Heights of storeys of draws, and the usual one (m).
 const STOREYS: [f64; 2] = [2.4, 4.0];
 const USUAL_STOREY: f64 = 2.9;
@@ -100,7 +99,7 @@ fn shape(row: &AttributeRow) -> [Option<bool>; 2] {
     let recess = match (row[0], row[1], row[COVERED], row[BOUNDARY]) {
         (Some(w), Some(d), Some(covered), Some(boundary)) => {
             let excess = boundary - least_boundary(w, d, covered);
-            Some(excess * (covered * w * d).max(0.0).sqrt() > EXCESS)
+            Some(excess * (covered * w * d).max(0.0).sqrt() > EXCESS[0])
         }
         _ => None,
     };
@@ -146,11 +145,8 @@ impl Observation {
             (_, Some(k)) => self.there[k] == Some(true),
             _ => true,
         };
-        let value = self.row[c].filter(|_| counts);
-        match (c, self.floors) {
-            (HEIGHT, Some(floors)) => value.map(|h| h / floors as f64),
-            _ => value,
-        }
+        let storeys = self.floors.filter(|_| c == HEIGHT).unwrap_or(1);
+        self.row[c].filter(|_| counts).map(|v| v / storeys as f64)
     }
 }
 
@@ -356,7 +352,7 @@ fn plan(row: &mut AttributeRow, shape: [Option<bool>; 2], given: &AttributeRow) 
         return;
     };
     let least = least_boundary(w, d, covered);
-    let with_recess = least + RECESS / (covered * w * d).sqrt();
+    let with_recess = least + EXCESS[1] / (covered * w * d).sqrt();
     row[BOUNDARY] = match shape {
         [Some(true), _] | [_, Some(false)] => Some(least),
         [_, Some(true)] => row[BOUNDARY].map(|v| v.max(with_recess)),
