@@ -10,6 +10,7 @@
 
 mod axis;
 mod bars;
+mod beside;
 mod chart;
 mod colour;
 mod dendrogram;
@@ -28,10 +29,12 @@ mod tiles;
 
 pub use axis::Scale;
 pub use bars::{BarGroup, Bars};
-pub use chart::{Chart, Corner, Series};
+pub use beside::{Beside, Counts};
+pub use chart::{Chart, Series};
 pub use colour::{Colour, category, ramp};
 pub use dendrogram::{Dendrogram, Merge};
 pub use figure::{Figure, MOST_SVG_BYTES, Panel, write_figure, write_report_figure};
+pub use frame::Corner;
 pub use heat_map::HeatMap;
 pub use html::{Page, Section, index};
 pub use indexed::few_colours;

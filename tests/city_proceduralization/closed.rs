@@ -6,6 +6,7 @@ use std::path::Path;
 use edifice::io::city::{glb, gltf};
 use edifice::methods::city_proceduralization::{Budget, Settings, proceduralize};
 use edifice::shape::triangles::{City, repair};
+use edifice::unwatched;
 use edifice_experiments::city_proceduralization::synthetic;
 
 fn closed(city: &City) -> usize {
@@ -21,7 +22,7 @@ fn derived_cities_stay_closed_and_have_no_more_triangles() {
             budget: Budget::Level(level),
             ..Settings::default()
         };
-        let grammar = proceduralize(&city, &settings).unwrap().grammar;
+        let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
         for grammar in [&grammar, &grammar.rules_only()] {
             let bytes = glb::to_bytes(grammar, &grammar.derive().unwrap(), true).unwrap();
             let derived = gltf::parse(&bytes, Path::new("city.glb")).unwrap();
