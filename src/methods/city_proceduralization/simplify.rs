@@ -61,7 +61,8 @@ pub(super) fn templates(
             for p in &mut mesh.positions {
                 *p = [p[0] / w, p[1] / d, p[2] / h];
             }
-            let mesh = stitched(&on_grid(own, mesh), EXACT);
+            // Once more on the grid: corners that no triangle has any more fall away.
+            let mesh = on_grid(own, stitched(&on_grid(own, mesh), EXACT));
             let fewer = |o: &Reduced| mesh.triangles.len() < o.mesh.triangles.len();
             if !out.last().is_none_or(fewer) {
                 continue;
