@@ -5,11 +5,12 @@ mod examples;
 mod studies;
 mod submit;
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Args, Subcommand};
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Progress, Result};
 use edifice_experiments::studies as all_studies;
 use edifice_experiments::sweep::collect::{ArmState, RESULTS, collect, state};
 use edifice_experiments::sweep::plan::{PLAN, Plan};
@@ -209,12 +210,19 @@ fn tasks(options: &Run, studies: &[Study], wanted: Wanted) -> Result<()> {
     let study = plan.study(studies)?;
     static STOP: AtomicBool = AtomicBool::new(false);
     // A second handler is refused only where one is set already.
-    let _ = ctrlc::set_handler(|| STOP.store(true, std::sync::atomic::Ordering::Relaxed));
+    let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build();
     let pool = pool.map_err(Error::method)?;
-    let ran = pool.install(|| run_shard(&plan, &common.out, study, shard, wanted, &STOP))?;
+    let watch = |_: Progress| match STOP.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let ran = pool.install(|| run_shard(&plan, &common.out, study, shard, wanted, &watch))?;
+    if ran.ended == Ended::Interrupted {
+        return Err(Error::Interrupted);
+    }
     print::message(&format!(
         "{} tasks finished, {} failed, {} had a result before",
         ran.finished, ran.failed, ran.before

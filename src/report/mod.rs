@@ -28,10 +28,11 @@ mod tiles;
 
 pub use axis::Scale;
 pub use bars::{BarGroup, Bars};
-pub use chart::{Chart, Corner, Series};
+pub use chart::{Chart, Series};
 pub use colour::{Colour, category, ramp};
 pub use dendrogram::{Dendrogram, Merge};
 pub use figure::{Figure, MOST_SVG_BYTES, Panel, write_figure, write_report_figure};
+pub use frame::Corner;
 pub use heat_map::HeatMap;
 pub use html::{Page, Section, index};
 pub use indexed::few_colours;

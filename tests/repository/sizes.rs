@@ -50,3 +50,19 @@ fn reports_stay_below_8_megabytes() {
     let text = complaint(&sized(9)).expect("too large");
     assert!(text.contains("reports have 8100000 bytes"), "{text}");
 }
+
+#[test]
+fn pictures_of_the_readme_are_packaged() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = |name: &str| std::fs::read_to_string(root.join(name)).expect("a text");
+    let (readme, manifest) = (text("README.md"), text("Cargo.toml"));
+    let links = readme
+        .split("](")
+        .skip(1)
+        .filter_map(|l| l.split(')').next());
+    let pictures: Vec<&str> = links.filter(|l| l.ends_with(".png")).collect();
+    assert!(!pictures.is_empty());
+    for picture in pictures {
+        assert!(manifest.contains(&format!("\"!{picture}\"")), "{picture}");
+    }
+}

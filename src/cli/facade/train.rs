@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_io::write_atomic;
 use edifice_structure_completion::layout::scope::in_scope;
@@ -44,7 +45,8 @@ pub fn run(args: &Args) -> Result<()> {
     layouts.extend(facades::several(args.made.into(), args.seed));
     let read = layouts.len();
     let regular = layouts.iter().filter(|l| in_scope(l)).count();
-    let model = Model::train(layouts, args.seed).map_err(Error::method)?;
+    let trained = Model::train(layouts, args.seed, &unwatched).map_err(Error::method)?;
+    let model = trained.model;
     let used = model.examples.len();
     write_atomic(&args.output, model.to_json().as_bytes())?;
     if used < read {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, unwatched};
 use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
 use edifice_grammar::{Costs, Grammar, derive, evaluate};
 use edifice_io::read_grammar;
@@ -113,7 +113,8 @@ fn bound(grammar: &Grammar, facade: &Facade, costs: Costs) -> Result<(f64, bool)
         },
         ..Settings::default()
     };
-    let found = lower_bound(facade, &settings, &BoundLimits::default()).map_err(Error::method)?;
+    let found = lower_bound(facade, &settings, &BoundLimits::default(), &unwatched)
+        .map_err(Error::method)?;
     Ok((found.lower, found.proven))
 }
 

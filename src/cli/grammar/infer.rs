@@ -1,12 +1,13 @@
 //! `edifice grammar infer`.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Progress, Result};
 use edifice_experiments::peers;
-use edifice_facade_grammar::{Method, Operations, Outcome, Protect, Settings, infer_observed};
+use edifice_facade_grammar::{Method, Operations, Outcome, Protect, Settings, infer};
 use edifice_grammar::{Costs, Evaluation, evaluate, listing};
 use edifice_io as io;
 use edifice_shape::Facade;
@@ -178,13 +179,16 @@ fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<Outcome> {
         settings.readings.protection = Protect::Never;
     }
     let bar = progress_bar(settings.steps());
-    let ticker = bar.clone();
-    let outcome = infer_observed(facades, &settings, move |step| {
-        if step.iteration % 64 == 0 {
-            ticker.set_position(step.iteration);
-            ticker.set_message(format!("cost {:.1}", step.best));
+    let watch = |progress: Progress| {
+        if let Some(best) = progress.best
+            && progress.done % 64 == 1
+        {
+            bar.set_position(progress.done);
+            bar.set_message(format!("cost {best:.1}"));
         }
-    });
+        ControlFlow::Continue(())
+    };
+    let outcome = infer(facades, &settings, &watch);
     bar.finish_and_clear();
     outcome.map_err(Error::method)
 }
@@ -201,6 +205,7 @@ fn procedural_logic_grammar(facades: &[Facade]) -> Result<Outcome> {
         grammar,
         iterations: 1,
         lower_bound: None,
+        ended: Ended::Finished,
     })
 }
 

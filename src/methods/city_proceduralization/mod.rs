@@ -66,10 +66,10 @@ pub mod type_graph;
 pub mod types;
 pub mod windows;
 
-pub use components::{Component, Decomposition, decompose, decompose_watched};
+pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{
     Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize, proceduralize_watched, smallest,
+    Structure, from_components, largest, proceduralize, smallest,
 };

@@ -14,7 +14,7 @@
 //! symmetry of the facade.
 
 use super::belong;
-use super::regular::Host;
+use super::regular::{Host, clash};
 use super::scene::{Scene, of};
 use super::shared::SAME_SIZE;
 use crate::completion::Reason;
@@ -33,6 +33,8 @@ enum Known {
     Without,
     /// It may have one.
     Open,
+    /// There is no room for one, which says nothing of the others.
+    Blocked,
 }
 
 /// A window with what is known of its balcony.
@@ -91,11 +93,13 @@ pub fn even(
         let host = hosts[h];
         let place = seen[h].or(drawn[h]).or_else(|| as_nearest(&hung, &host))?;
         let element = Element::new(Class::Balcony, place);
-        let taken = |e: &Element| e.class == Class::Balcony && e.rect.overlap(&place) > 0.0;
+        let (x, y) = place.centre();
+        let taken = |e: &Element| clash(e, &element);
         let known = match seen[h] {
             Some(_) => Known::With,
+            None if host.given.is_none() && !scene.partial.is_unknown(x, y) => Known::Without,
             None if !scene.partial.has_room(&element) || scene.elements.any_near(&place, taken) => {
-                Known::Without
+                Known::Blocked
             }
             None => Known::Open,
         };
