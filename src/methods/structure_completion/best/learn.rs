@@ -154,33 +154,20 @@ fn thinned<T>(parts: Vec<(Vec<Vec<f64>>, Vec<T>)>, most: usize) -> (Vec<Vec<f64>
 /// Intersections over union at which a candidate is true.
 const OVERLAPS: [f64; 2] = [0.5, 0.75];
 
-<<<<<<< HEAD
 /// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed
-/// with each part hidden, with and without a mask, from the rest of the database without its near-twins.
-=======
-/// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed with each part hidden, from the rest of
-/// the database without its near-twins. Stopped, from the parts that were hidden until then.
->>>>>>> df8a6ec47a571a90d055e4c248ab99081ba36771
+/// with each part hidden, with and without a mask, from the rest of the database without its near-twins. Stopped, from the parts
+/// that were hidden until then.
 ///
 /// # Errors
 /// [`BoostingError`] when no layout has a candidate.
 pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, BoostingError> {
     let layouts: Vec<Layout> = model.examples.iter().map(|e| e.layout.clone()).collect();
     let group = twins(&layouts);
-<<<<<<< HEAD
     let units: Vec<Unit> = (0..layouts.len()).flat_map(Unit::of).collect();
-    let parts: Vec<(Rows, DoorRows)> = units
-        .par_iter()
-        .map(|&unit| {
-            let twin = |other: &usize| group[*other] == group[unit.index];
-=======
-    let units: Vec<(usize, Task)> = (0..layouts.len())
-        .flat_map(|index| Task::ALL.map(|task| (index, task)))
-        .collect();
     let done = AtomicU64::new(0);
     let parts: Vec<(Rows, DoorRows)> = units
         .par_iter()
-        .map(|&(index, task)| {
+        .map(|&unit| {
             let told = Progress::of(
                 "facades with a part hidden",
                 done.fetch_add(1, Ordering::Relaxed),
@@ -189,8 +176,7 @@ pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, Boos
             if !watched.goes_on(told) {
                 return Default::default();
             }
-            let twin = |other: &usize| group[*other] == group[index];
->>>>>>> df8a6ec47a571a90d055e4c248ab99081ba36771
+            let twin = |other: &usize| group[*other] == group[unit.index];
             let without: Vec<usize> = (0..layouts.len()).filter(twin).collect();
             rows(model, unit, &without, seed)
         })
