@@ -39,7 +39,7 @@ pub enum Command {
   edifice model learn plans.csv -o plans.table-model.json --from plans.table-model.json --time-limit 2
   edifice model learn plans.csv -o plans.table-model.json --fit-only --styles 3 --kinds 2")]
     Learn(tables::LearnArgs),
-    /// Print the log-likelihood of every row of a table under a model.
+    /// Print the log probability mass of the categories of every row of a table under a model, and the log density of its numbers given these.
     #[command(after_help = "Examples:
   edifice model score plans.table-model.json plans.csv")]
     Score(tables::ScoreArgs),

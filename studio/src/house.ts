@@ -116,7 +116,7 @@ export function house(session: Session<View>): Editor<View> {
         tabindex: 0,
         role: "button",
         "aria-pressed": index === selected ? "true" : "false",
-        "aria-label": `${STYLES[b.style]} box ${index}, ${tidy(b.width)} by ${tidy(b.depth)} metres, ${b.floors} floors${locked ? ", fixed by you" : ""}`,
+        "aria-label": `${STYLES[b.style]} box ${index}, ${tidy(b.width, 1)} × ${tidy(b.depth, 1)} m, ${b.floors} floors${locked ? ", fixed by you" : ""}`,
       },
       shape,
       label,

@@ -121,9 +121,13 @@ fn a_table_is_learned_scored_sampled_and_completed() {
     assert!(output(&["show", &model]).0.contains("styles"));
 
     let (scores, _) = output(&["score", &model, &table]);
-    let scores: Vec<f64> = (scores.lines().skip(1))
-        .map(|l| l.split(',').nth(1).unwrap().parse().unwrap())
-        .collect();
+    assert!(scores.starts_with("row,log_probability_mass,log_density\n"));
+    // Of categories and of numbers together.
+    let both = |line: &str| -> f64 {
+        let parts = line.split(',').skip(1);
+        parts.map(|part| part.parse::<f64>().unwrap()).sum()
+    };
+    let scores: Vec<f64> = scores.lines().skip(1).map(both).collect();
     assert_eq!(scores.len(), 90);
     // A bird of one island with the lengths of another is less likely than any real one.
     let odd = folder.write(
@@ -131,7 +135,7 @@ fn a_table_is_learned_scored_sampled_and_completed() {
         "island,bill,flipper,banded\nBiscoe,50.5,101.5,no\n",
     );
     let (odd, _) = output(&["score", &model, &odd]);
-    let odd: f64 = odd.lines().nth(1).unwrap()[2..].parse().unwrap();
+    let odd = both(odd.lines().nth(1).unwrap());
     assert!(scores.iter().all(|s| *s > odd), "{odd} {scores:?}");
 
     let sampled = ["sample", &model, "-n", "20", "--given", "island=Dream"];

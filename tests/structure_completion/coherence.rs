@@ -107,3 +107,115 @@ fn a_thing_that_is_drawn_twice_counts_once() {
         assert!(!complete(method, &partial, &model, 1, &mut rng).is_empty());
     }
 }
+
+/// The shipped layouts with each part hidden: no warning about the input, nothing overlaps, and of the new windows no more than 1.5 %
+/// lack a column or a row.
+#[test]
+fn shipped_layouts_are_completed_on_lines() {
+    let model = shipped_model().expect("the shipped model");
+    let shipped = model.layouts().into_iter();
+    let shipped: Vec<Layout> = shipped.filter(|l| !l.name.starts_with("made_")).collect();
+    assert!(shipped.len() > 30);
+    let (mut windows, mut off) = (0, 0);
+    for (k, layout) in shipped.iter().enumerate() {
+        for task in Task::ALL {
+            let mut rng = stream(9, task.name(), k as u64);
+            let (partial, _) = task.hide(layout, &mut rng);
+            assert_eq!(partial.overlaps(), [], "{}", layout.name);
+            let done = complete(Method::Best, &partial, &model, 1, &mut rng);
+            let added = added(&done[0]);
+            assert_eq!(overlaps(&partial.observed, &added), 0, "{}", layout.name);
+            windows += added.iter().filter(|e| e.class == Class::Window).count();
+            off += off_lines(&partial.observed, &added);
+        }
+    }
+    println!("{off} of {windows} new windows lack a column or a row");
+    assert!(off as f64 <= 0.015 * windows as f64, "{off} of {windows}");
+}
+
+#[test]
+fn a_facade_gets_one_door_and_no_second_beside_a_seen_one() {
+    let model = shipped_model().expect("the shipped model");
+    for (k, (partial, _)) in cases().iter().enumerate() {
+        let mut rng = stream(10, "complete", k as u64);
+        let seen = partial.of(Class::Door).count();
+        for answer in complete(Method::Best, partial, &model, 3, &mut rng) {
+            let doors = added(&answer)
+                .iter()
+                .filter(|e| e.class == Class::Door)
+                .count();
+            assert!(
+                doors <= usize::from(seen == 0),
+                "{k}: {seen} seen, {doors} added"
+            );
+        }
+    }
+}
+
+/// Windows of one row that are of one width, `with` of `all` before which a balcony hangs.
+fn rows_of_balconies(elements: &[Element], upper: f64) -> Vec<(usize, usize)> {
+    let of = |class| {
+        elements
+            .iter()
+            .filter(move |e| e.class == class)
+            .map(|e| e.rect)
+    };
+    let mut rows: Vec<Vec<Rect>> = Vec::new();
+    for window in of(Class::Window).filter(|w| w.y > upper) {
+        let same = |w: &Rect| {
+            let near = (w.centre().1 - window.centre().1).abs() < 0.35 * window.height;
+            near && (w.width / window.width).ln().abs() < 0.12
+        };
+        match rows.iter_mut().find(|r| same(&r[0])) {
+            Some(row) => row.push(window),
+            None => rows.push(vec![window]),
+        }
+    }
+    let hangs = |w: &Rect| {
+        of(Class::Balcony).any(|b| {
+            let beside = (b.centre().0 - w.centre().0).abs() < 0.5 * w.width;
+            beside
+                && b.y < w.centre().1
+                && b.top() > w.y - 0.5 * w.height
+                && b.width < 2.0 * w.width
+        })
+    };
+    let counts = rows
+        .iter()
+        .map(|r| (r.iter().filter(|w| hangs(w)).count(), r.len()));
+    counts.collect()
+}
+
+#[test]
+fn balconies_are_even_within_a_row() {
+    let model = shipped_model().expect("the shipped model");
+    let (mut uneven, mut rows) = (0, 0);
+    for k in 0..120 {
+        let layout = facades::facade(k as usize, &mut stream(11, "facade", k));
+        let even = |elements: &[Element]| {
+            let rows = rows_of_balconies(elements, 0.2 * layout.height);
+            (
+                rows.iter().filter(|r| r.0 > 0 && r.0 < r.1).count(),
+                rows.iter().filter(|r| r.0 > 0).count(),
+            )
+        };
+        // Facades whose balconies are even themselves.
+        if even(&layout.elements).0 > 0 || even(&layout.elements).1 == 0 {
+            continue;
+        }
+        let mut rng = stream(11, "mask", k);
+        let (partial, _) = Task::Side50.hide(&layout, &mut rng);
+        let done = complete(Method::Best, &partial, &model, 1, &mut rng);
+        let whole: Vec<Element> = partial
+            .observed
+            .iter()
+            .copied()
+            .chain(added(&done[0]))
+            .collect();
+        let (own, all) = even(&whole);
+        uneven += own;
+        rows += all;
+    }
+    println!("{uneven} of {rows} rows are uneven");
+    assert!(rows > 20 && uneven * 8 <= rows, "{uneven} of {rows}");
+}

@@ -36,7 +36,12 @@
 //!   say how grids are found.
 //! - Balconies wider than 0.4 of the facade, and shops, take no part in the chain; they come from symmetry and the database.
 //! - One door is added where none is seen and the best place has a probability above 0.08, though that lowers the
-//!   expected score: a facade without a door is not plausible. An exact lattice gets none.
+//!   expected score: a facade without a door is not plausible. An exact lattice gets none. Beside a single seen door no other is
+//!   added.
+//! - Balconies of single windows are decided on row by row ([`best`]): all of a row's windows of one width, none, those of the mirror
+//!   image, or those of the columns of another row.
+//! - Without a mask, a lattice of which nearly every cell is seen is taken as a region that is seen: that no line is seen beyond it says
+//!   nothing. Element probabilities are learnt with and without masks.
 //! - New windows that would be alone on a column or on a row are left out.
 //! - Facades in scope ([`layout::scope`]): at least 8 windows, half of the cells of their lattice occupied, 70 % of the windows with
 //!   another one in their row and column.

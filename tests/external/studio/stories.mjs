@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { keyboard, narrow, unnamed } from "./access.mjs";
 import { designs } from "./designs.mjs";
-import { browser, changed, open, picture, press, shown, studio } from "./studio.mjs";
+import { browser, changed, open, picture, press, shown, studio, violations } from "./studio.mjs";
 
 /** Saves, runs the script elsewhere, and compares the bytes. */
 async function saved(server, page, ending) {
@@ -29,6 +29,32 @@ async function begin(server, context, title) {
 }
 
 const stories = {
+  /** What was not saved when the studio was killed is offered, opened again, closed; the page asks before it is left. */
+  async recovery(server, context) {
+    const { page, faults } = await begin(server, context, /An empty facade/);
+    const asked = [];
+    page.on("dialog", (dialog) => {
+      asked.push(dialog.type());
+      void dialog.accept();
+    });
+    await changed(page, () => page.evaluate(() => void window.studio.run(() => [{ do: "edit", edits: ["add window@2,2,1,1"] }])));
+    await page.mouse.click(300, 400);
+    await page.goto("about:blank");
+    assert.deepEqual(asked, ["beforeunload"]);
+    const next = await server.killed();
+    await page.goto(next);
+    await page.getByRole("button", { name: /sketch.*1 edit not saved/ }).click();
+    const doc = await shown(page);
+    assert.equal(doc.view.elements.length, 1);
+    await page.keyboard.press("Control+z");
+    await page.getByRole("button", { name: "all documents" }).click();
+    await page.getByRole("button", { name: "Close sketch" }).click();
+    await page.getByRole("heading", { name: "Open", exact: true }).waitFor({ state: "detached" });
+    assert.deepEqual(asked, ["beforeunload", "confirm"]);
+    // The next studio is another place.
+    return faults.filter((fault) => !fault.startsWith(`asked ${new URL(next).origin}`));
+  },
+
   async start(server, context) {
     const { page, faults } = await open(context, server.address);
     await page.getByRole("heading", { name: "Edifice studio" }).waitFor();
@@ -216,6 +242,7 @@ for (const [name, story] of Object.entries(stories)) {
     const faults = await story(server, context);
     assert.deepEqual(faults, [], "the page had faults");
     for (const page of context.pages()) assert.deepEqual(await unnamed(page), [], "controls without a name");
+    for (const page of context.pages()) assert.deepEqual(await violations(page), [], "what axe finds");
     const times = changed.times.map((t) => t.toFixed(0)).join(", ");
     console.log(`studio: ${name} passed${times ? `; page time of its edits ${times} ms` : ""}`);
   } catch (error) {
@@ -225,6 +252,24 @@ for (const [name, story] of Object.entries(stories)) {
   }
   await context.close();
   await server.end();
+}
+// The first page of the report, in the light, in the dark and on a phone.
+if (!only || only === "report") {
+  for (const [colorScheme, width] of [["light", 1280], ["dark", 1280], ["light", 390]]) {
+    const context = await chrome.newContext({ colorScheme, viewport: { width, height: 900 } });
+    const page = await context.newPage();
+    try {
+      await page.goto(`file://${process.env.REPORT}`);
+      assert.deepEqual(await violations(page), [], "what axe finds");
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth > innerWidth), false, "wider than the window");
+      console.log(`studio: report passed, ${colorScheme}, ${width} wide`);
+    } catch (error) {
+      failed += 1;
+      console.error("studio: report failed:", error);
+    }
+    await picture(page, `report_${colorScheme}_${width}`);
+    await context.close();
+  }
 }
 // Narrow, in the dark and in the light.
 if (!only || only === "narrow") {

@@ -11,17 +11,29 @@ const { EDIFICE, BROWSER, PICTURES } = process.env;
 /** Starts the program in a folder of its own; its address. */
 export async function studio(args = []) {
   const folder = mkdtempSync(join(tmpdir(), "studio-"));
-  const child = spawn(EDIFICE, ["studio", "--no-open", ...args], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
-  const address = await new Promise((found, failed) => {
-    let text = "";
-    child.stdout.on("data", (bytes) => {
-      text += bytes;
-      if (text.includes("\n")) found(text.split("\n")[0]);
+  // Its state in a folder of its own, too: what other studios of this user left is not offered.
+  const env = { ...process.env, XDG_STATE_HOME: mkdtempSync(join(tmpdir(), "studio-state-")) };
+  let child;
+  const begin = () => {
+    child = spawn(EDIFICE, ["studio", "--no-open", ...args], { cwd: folder, env, stdio: ["ignore", "pipe", "inherit"] });
+    return new Promise((found, failed) => {
+      let text = "";
+      child.stdout.on("data", (bytes) => {
+        text += bytes;
+        if (text.includes("\n")) found(text.split("\n")[0]);
+      });
+      child.on("exit", (code) => failed(new Error(`the studio ended with ${code}`)));
     });
-    child.on("exit", (code) => failed(new Error(`the studio ended with ${code}`)));
-  });
+  };
   return {
-    address,
+    address: await begin(),
+    /** Kills it and starts another on the same state; its address. */
+    killed: async () => {
+      child.removeAllListeners("exit");
+      child.kill("SIGKILL");
+      await new Promise((ended) => child.on("exit", ended));
+      return begin();
+    },
     folder,
     read: (name) => readFileSync(join(folder, name)),
     /** Processor time that it has used, in milliseconds, in steps of a clock tick of 10 ms; not a number where there is no /proc. */
@@ -91,6 +103,14 @@ export async function press(page, terminal) {
     return [at.x, at.y];
   }, terminal);
   await page.mouse.click(x, y);
+}
+
+const AXE = readFileSync(new URL("./node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
+
+/** What axe finds wrong in a page: rule, and the first element. */
+export async function violations(page) {
+  await page.evaluate(AXE);
+  return page.evaluate(async () => (await window.axe.run()).violations.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 120)}`));
 }
 
 export const picture = (page, name) => page.screenshot({ path: join(PICTURES, `${name}.png`) });

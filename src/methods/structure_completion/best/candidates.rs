@@ -37,6 +37,7 @@ pub struct Candidates {
     pub of_draw: Vec<Vec<usize>>,
     /// For each candidate those like it (itself among them), with how alike they are, 0 to 1.
     pub alike: Vec<Vec<(usize, f64)>>,
+    index: Index,
 }
 
 /// Likeness of two elements: from 0 at an intersection over union of 0.35 to 1 at 0.65.
@@ -100,9 +101,15 @@ impl Candidates {
             all: all.collect(),
             of_draw,
             alike,
+            index,
         };
-        candidates.add_features(scene, &index);
+        candidates.add_features(scene);
         candidates
+    }
+
+    /// Candidates that may overlap an element.
+    pub fn near(&self, element: &Element) -> Vec<usize> {
+        self.index.near(element)
     }
 
     /// Probability of each candidate by boosted trees over all features, or over those of before.
@@ -114,6 +121,7 @@ impl Candidates {
     /// Adds a candidate that no draw has.
     pub fn add(&mut self, element: Element, reason: Reason) {
         self.alike.push(vec![(self.all.len(), 1.0)]);
+        self.index.insert(&element, self.all.len());
         self.all.push(Candidate {
             element,
             support: [0.0; Origin::ALL.len()],
@@ -122,7 +130,7 @@ impl Candidates {
         });
     }
 
-    fn add_features(&mut self, scene: &Scene, index: &Index) {
+    fn add_features(&mut self, scene: &Scene) {
         let context = Context::new(scene);
         let total = |c: &Candidate| c.support[..5].iter().sum::<f64>();
         let rows: Vec<Vec<f64>> = self
@@ -130,11 +138,15 @@ impl Candidates {
             .iter()
             .map(|candidate| {
                 // The strongest candidate that cannot stand beside it, unless it is much the same.
-                let rivals = index.near(&candidate.element).into_iter().filter(|&other| {
-                    let other = &self.all[other].element;
-                    other.excludes(&candidate.element)
-                        && other.rect.iou(&candidate.element.rect) < 0.5
-                });
+                let rivals = self
+                    .index
+                    .near(&candidate.element)
+                    .into_iter()
+                    .filter(|&other| {
+                        let other = &self.all[other].element;
+                        other.excludes(&candidate.element)
+                            && other.rect.iou(&candidate.element.rect) < 0.5
+                    });
                 let rival = rivals
                     .map(|other| total(&self.all[other]))
                     .fold(0.0, f64::max);

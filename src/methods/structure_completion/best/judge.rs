@@ -7,13 +7,17 @@
 //!
 //! Sets are not free: the windows of a layout lie on the lines of one lattice. For each lattice of the pool, candidates on its
 //! lines are taken by falling `p_i` as long as the score rises and nothing overlaps; what is chosen is put on shared
-//! lines (`regular`), and windows that then stand alone on a line are left out. The layout of the highest score is
-//! the one of least expected risk among those that were tried.
+//! lines (`regular`), windows that then stand alone on a line are left out, and the balconies of each row are made even
+//! (`rows`). The layout of the highest score is the one of least expected risk among those that were tried.
+//!
+//! Doors are not chosen by their score. A facade that is seen without a door gets at most one, and that is asked beforehand
+//! ([`super::doors`]); one that shows a single door gets no other; one that shows several may get more.
 
 use super::by_place::ByPlace;
 use super::candidates::Candidates;
-use super::regular::{Regular, clash, regular, without_loners};
-use super::scene::Scene;
+use super::regular::{clash, regular, without_loners};
+use super::rows;
+use super::scene::{Scene, of};
 use crate::completion::Reason;
 use crate::layout::{Class, Element};
 use edifice_shape::Axis;
@@ -23,10 +27,10 @@ const ON_LINE: f64 = 0.15;
 /// Two elements of one class this alike are one.
 const SAME: f64 = 0.3;
 
-/// A coherent layout: added elements, each with the candidate that it was, and its score.
+/// A coherent layout: added elements, each with the candidate that it was or that stands for it, and its score.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    /// Added elements, by falling probability.
+    /// Added elements, those of one class by falling probability but for balconies.
     pub added: Vec<(Element, Reason, usize)>,
     /// Expected score, 0 to 1.
     pub score: f64,
@@ -83,6 +87,8 @@ impl<'a> Judge<'a> {
         let partial = self.scene.partial;
         let facade = [partial.width, partial.height];
         let mut taken = ByPlace::new(facade, self.scene.size, self.expected as usize);
+        // Only a facade that shows several doors gets more than the one that was asked for.
+        let several = of(&self.scene.elements, Class::Door).count() > 1;
         let mut chosen: Vec<usize> = Vec::new();
         let (mut sum, mut score) = (0.0, 0.0);
         for c in self.door.into_iter().chain(self.order.iter().copied()) {
@@ -90,8 +96,7 @@ impl<'a> Judge<'a> {
             let met = |o: &Element| {
                 clash(o, own) || (o.class == own.class && o.rect.iou(&own.rect) > SAME)
             };
-            // A facade that is seen without a door gets one.
-            let second = own.class == Class::Door && self.door.is_some_and(|d| d != c);
+            let second = own.class == Class::Door && self.door != Some(c) && !several;
             if second || !allowed(own) || taken.any_near(&own.rect, met) {
                 continue;
             }
@@ -114,19 +119,42 @@ impl<'a> Judge<'a> {
             .iter()
             .map(|&c| (all[c].element, all[c].reason))
             .collect();
-        let made: Regular = regular(self.scene, &given);
-        let added = without_loners(self.scene, made);
-        let added: Vec<(Element, Reason, usize)> = added
+        let made = regular(self.scene, &given);
+        let mut added: Vec<(Element, Reason, usize)> = without_loners(self.scene, made)
             .into_iter()
             .map(|(e, r, k)| (e, r, chosen[k]))
             .collect();
-        let whole: Vec<(Element, Reason)> = added.iter().map(|(e, r, _)| (*e, *r)).collect();
-        let lines = regular(self.scene, &whole).lines;
+        let score = self.score(added.iter().map(|a| a.2));
+        let whole = |added: &[(Element, Reason, usize)]| {
+            let whole: Vec<(Element, Reason)> = added.iter().map(|(e, r, _)| (*e, *r)).collect();
+            regular(self.scene, &whole)
+        };
+        let hosts = whole(&added).hosts;
+        // A balcony pays where its value is above half of the score.
+        if let Some(balconies) =
+            rows::even(self.scene, &hosts, &added, score / 2.0, |b| self.like(b))
+        {
+            added.retain(|(e, ..)| !rows::is_single(self.scene, e));
+            added.extend(balconies);
+            let kept = whole(&added).added.into_iter();
+            added = kept.map(|(e, r, k)| (e, r, added[k].2)).collect();
+        }
+        let lines = whole(&added).lines;
         Layout {
             score: self.score(added.iter().map(|a| a.2)),
             lattice: (lines[0].all.len(), lines[1].all.len()),
             added,
         }
+    }
+
+    /// The candidate of the highest value that is like an element, and its value.
+    fn like(&self, element: &Element) -> Option<(usize, f64)> {
+        let near = self.candidates.near(element).into_iter().filter(|&c| {
+            let own = &self.candidates.all[c].element;
+            own.class == element.class && own.rect.iou(&element.rect) > SAME
+        });
+        near.map(|c| (c, self.value[c]))
+            .reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
     /// The best coherent layout on a lattice with columns and rows at these places.

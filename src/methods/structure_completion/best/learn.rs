@@ -71,12 +71,43 @@ type Rows = (Vec<Vec<f64>>, Vec<[f64; 2]>);
 /// Places of a door: the features of each, and whether a hidden door is there.
 type DoorRows = (Vec<Vec<f64>>, Vec<f64>);
 
+/// A layout with a part hidden; without a mask all that is not seen is unknown.
+#[derive(Clone, Copy)]
+struct Unit {
+    index: usize,
+    task: Task,
+    masked: bool,
+}
+
+impl Unit {
+    /// A layout with each part hidden, and where that is a region also without a mask, as the paper's own input is.
+    fn of(index: usize) -> impl Iterator<Item = Unit> {
+        let both = Task::ALL
+            .into_iter()
+            .flat_map(|task| [(task, true), (task, false)]);
+        both.filter(|(task, masked)| *masked || !matches!(task, Task::R20 | Task::R50))
+            .map(move |(task, masked)| Unit {
+                index,
+                task,
+                masked,
+            })
+    }
+}
+
 /// Features and truth of all candidates of one layout with a part hidden.
-fn rows(model: &Model, index: usize, without: &[usize], task: Task, seed: u64) -> (Rows, DoorRows) {
+fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorRows) {
+    let Unit {
+        index,
+        task,
+        masked,
+    } = unit;
     let layout = &model.examples[index].layout;
-    let stream_index = (index * Task::ALL.len() + task as usize) as u64;
-    let mut rng = stream(seed, "structure completion: learning", stream_index);
-    let (partial, hidden) = task.hide(layout, &mut rng);
+    let place = 2 * (index * Task::ALL.len() + task as usize) + usize::from(!masked);
+    let mut rng = stream(seed, "structure completion: learning", place as u64);
+    let (mut partial, hidden) = task.hide(layout, &mut rng);
+    if !masked {
+        partial.unknown = None;
+    }
     let draws = pool(&partial, model, without, &mut rng);
     let fallback = model.window_size(partial.width, partial.height);
     let scene = Scene::new(&partial, partial.observed.clone(), fallback);
@@ -123,21 +154,20 @@ fn thinned<T>(parts: Vec<(Vec<Vec<f64>>, Vec<T>)>, most: usize) -> (Vec<Vec<f64>
 /// Intersections over union at which a candidate is true.
 const OVERLAPS: [f64; 2] = [0.5, 0.75];
 
-/// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed with each part hidden, from the rest of
-/// the database without its near-twins. Stopped, from the parts that were hidden until then.
+/// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed
+/// with each part hidden, with and without a mask, from the rest of the database without its near-twins. Stopped, from the parts
+/// that were hidden until then.
 ///
 /// # Errors
 /// [`BoostingError`] when no layout has a candidate.
 pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, BoostingError> {
     let layouts: Vec<Layout> = model.examples.iter().map(|e| e.layout.clone()).collect();
     let group = twins(&layouts);
-    let units: Vec<(usize, Task)> = (0..layouts.len())
-        .flat_map(|index| Task::ALL.map(|task| (index, task)))
-        .collect();
+    let units: Vec<Unit> = (0..layouts.len()).flat_map(Unit::of).collect();
     let done = AtomicU64::new(0);
     let parts: Vec<(Rows, DoorRows)> = units
         .par_iter()
-        .map(|&(index, task)| {
+        .map(|&unit| {
             let told = Progress::of(
                 "facades with a part hidden",
                 done.fetch_add(1, Ordering::Relaxed),
@@ -146,9 +176,9 @@ pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, Boos
             if !watched.goes_on(told) {
                 return Default::default();
             }
-            let twin = |other: &usize| group[*other] == group[index];
+            let twin = |other: &usize| group[*other] == group[unit.index];
             let without: Vec<usize> = (0..layouts.len()).filter(twin).collect();
-            rows(model, index, &without, task, seed)
+            rows(model, unit, &without, seed)
         })
         .collect();
     let (parts, places): (Vec<Rows>, Vec<DoorRows>) = parts.into_iter().unzip();

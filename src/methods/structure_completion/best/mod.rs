@@ -4,7 +4,8 @@
 //!    database below the lowest seen row, and database facades warped to the seen lines.
 //! 2. [`candidates`]: every distinct element, with the share of the pool that supports it and features of its place.
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
-//! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75.
+//! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75, with balconies that are even
+//!    within their rows (`rows`) and the one door that is likely ([`doors`]).
 
 mod belong;
 mod by_place;
@@ -19,6 +20,7 @@ pub mod learn;
 pub mod modes;
 pub mod pool;
 mod regular;
+mod rows;
 pub mod scene;
 mod shared;
 mod spacing;

@@ -9,6 +9,10 @@ use edifice_shape::{Axis, Rect};
 /// Share of the cells of a lattice that hold a window, where nothing else is known.
 const OCCUPANCY: f64 = 0.9;
 
+/// Without a mask: up to the first share of its cells a lattice is taken as seen element by element, from the second on as
+/// seen in one region.
+const REGION: [f64; 2] = [0.65, 0.85];
+
 /// A partial layout with the lattice of its elements.
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
@@ -84,7 +88,8 @@ impl<'a> Scene<'a> {
     }
 
     /// Factor of an invented line at `at` along `axis`: for each crossing line, how probable it is that its
-    /// cell shows no window though there is one.
+    /// cell shows no window though there is one. Without a mask, beyond the seen lines, this is mixed with 1 by the
+    /// probability that a region is seen.
     pub fn evidence(&self, axis: Axis, at: f64) -> f64 {
         let crossing = self.lines(axis.other());
         let factor = |line: &Line| {
@@ -98,7 +103,18 @@ impl<'a> Scene<'a> {
                 Some(_) => 1.0 - OCCUPANCY,
             }
         };
-        crossing.iter().map(factor).product::<f64>().max(1e-12)
+        let scattered = crossing.iter().map(factor).product::<f64>();
+        // Without a mask, a lattice that is seen nearly whole is a part of the facade that is seen, and says nothing of
+        // what lies beyond it.
+        let beyond = match (&self.partial.unknown, self.lines(axis)) {
+            (None, [first, .., last]) => at < first.at || at > last.at,
+            _ => false,
+        };
+        let region = match beyond {
+            true => ((self.seen - REGION[0]) / (REGION[1] - REGION[0])).clamp(0.0, 0.95),
+            false => 0.0,
+        };
+        (region + (1.0 - region) * scattered).max(1e-12)
     }
 }
 

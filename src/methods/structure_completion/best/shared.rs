@@ -15,7 +15,7 @@ const ON_LINE: f64 = 0.35;
 /// Windows of a line that differ by more than this share of their extent do not share one place.
 const SPREAD: f64 = 0.12;
 /// Sizes are one size up to this ratio.
-const SAME_SIZE: f64 = 1.15;
+pub const SAME_SIZE: f64 = 1.15;
 
 /// A window on a line.
 #[derive(Debug, Clone, Copy)]

@@ -175,7 +175,8 @@ fn door(bays: &Bays, high: f64, elements: &mut Vec<Element>, rng: &mut Stream) {
         true => (bays.at[bay] + bays.at[bay - 1]) / 2.0,
         false => bays.at[bay],
     };
-    let wide = bays.wide[bay] * rng.random_range(0.75..1.6);
+    // A door with its frame is seldom narrower than a window, a gateway twice as wide.
+    let wide = bays.wide[bay] * rng.random_range(0.9..2.0);
     let left = (x - wide / 2.0).clamp(0.0, (bays.width - wide).max(0.0));
     let door = Element::new(Class::Door, Rect::new(left, 0.0, wide, high));
     elements.retain(|e| e.rect.overlap(&door.rect) <= 0.0);
@@ -214,7 +215,7 @@ fn ground_floor(bays: &Bays, ground: f64, elements: &mut Vec<Element>, rng: &mut
         }
     }
     if rng.random_bool(0.9) {
-        let door_high = high * rng.random_range(0.85..1.1);
+        let door_high = high * rng.random_range(0.85..1.15);
         door(bays, door_high, elements, rng);
     }
 }
