@@ -40,9 +40,41 @@ fn main() -> Anyway<()> {
             hex(&Sha256::digest(foreign(&locked)))
         );
     }
+    if manifest.is_file() && root.join(".git").exists() {
+        tell_commit(&root);
+    }
     let out = PathBuf::from(std::env::var("OUT_DIR")?).join("sources.rs");
     std::fs::write(out, format!("&[\n{rows}]"))?;
     Ok(())
+}
+
+/// Tells the commit that the sources were built from, and if they differ from it; nothing where git does not answer. A commit alone
+/// builds nothing anew: the program says which one its sources were last built at.
+fn tell_commit(root: &Path) {
+    let git = |arguments: &[&str]| {
+        let mut command = std::process::Command::new("git");
+        let output = command.arg("-C").arg(root).args(arguments).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    // A version control that cannot be asked is as good as none.
+    let Some(commit) = git(&["rev-parse", "HEAD"]) else {
+        return;
+    };
+    println!("cargo::rustc-env=EDIFICE_COMMIT={commit}");
+    let sources = [
+        "status",
+        "--porcelain",
+        "--",
+        "src",
+        "experiments",
+        "datasets",
+        "Cargo.toml",
+        "Cargo.lock",
+    ];
+    if let Some(changed) = git(&sources) {
+        println!("cargo::rustc-env=EDIFICE_DIRTY={}", !changed.is_empty());
+    }
 }
 
 /// Name and folder of each member of the workspace.

@@ -1,5 +1,6 @@
 //! Fig. 14: cost and time against iterations.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
@@ -104,7 +105,7 @@ fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>]
             .filter(|((_, m, _), _)| *m == method);
         mean(&mine.filter_map(|(_, t)| pick(t)).collect::<Vec<_>>())
     };
-    let early = |t: &Vec<Point>| t.iter().find(|p| p.iteration >= few).map(|p| p.best);
+    let early = |t: &Vec<Point>| cost_at(t, few);
     let late = |t: &Vec<Point>| t.last().map(|p| p.best);
     for method in [BEST, PAPER, Method::Importance] {
         ctx.compare(
@@ -173,31 +174,41 @@ fn trace(
 
 type Line = Vec<(f64, f64)>;
 
-/// Mean cost, its band over the seeds, and mean milliseconds per iteration. The cost of a run that ended early stays what
-/// it was; the time of the steps before its end, fewer than `every`, is left out.
+/// The lowest cost that a run had found after so many iterations: that of a run which ended before stays what it was. Of a run
+/// whose first point comes later it is that of the first point.
+fn cost_at(trace: &[Point], iteration: u64) -> Option<f64> {
+    let before = trace.iter().rfind(|p| p.iteration <= iteration);
+    before.or(trace.first()).map(|p| p.best)
+}
+
+/// Mean cost, its band over the seeds, and mean milliseconds per iteration, at every iteration that a run has a point of and at
+/// the last. At each of them all runs are averaged; the time of the steps before an early end, fewer than `every`, is left out.
 fn curves(
     traces: &[&Vec<Point>],
     every: u64,
     iterations: u64,
 ) -> (Line, Vec<(f64, f64, f64)>, Line) {
-    let length = traces.iter().map(|t| t.len()).min().unwrap_or(0);
+    let points = || traces.iter().flat_map(|t| t.iter());
+    // All runs have a first point from here on.
+    let first = traces.iter().filter_map(|t| t.first()).map(|p| p.iteration);
+    let first = first.max().unwrap_or(iterations);
+    let marks: BTreeSet<u64> = points().map(|p| p.iteration).chain([iterations]).collect();
     let (mut line, mut band, mut times) = (Vec::new(), Vec::new(), Vec::new());
-    for i in 0..length {
-        let x = traces[0][i].iteration as f64;
-        let costs: Vec<f64> = traces.iter().map(|t| t[i].best).collect();
-        let paces: Vec<f64> = traces.iter().map(|t| 1e3 * t[i].pace).collect();
+    for &mark in marks.range(first.min(iterations)..) {
+        let x = mark as f64;
+        let costs: Vec<f64> = traces.iter().filter_map(|t| cost_at(t, mark)).collect();
         let range = costs
             .iter()
             .fold((f64::INFINITY, 0.0_f64), |(l, h), &c| (l.min(c), h.max(c)));
         line.push((x, mean(&costs)));
         band.push((x, range.0, range.1));
-        if traces[0][i].iteration.is_multiple_of(every) {
-            times.push((x, mean(&paces)));
-        }
     }
-    if let (Some(&(_, cost)), Some(&(_, low, high))) = (line.last(), band.last()) {
-        line.push((iterations as f64, cost));
-        band.push((iterations as f64, low, high));
+    for &mark in marks.iter().filter(|m| m.is_multiple_of(every)) {
+        let here = points().filter(|p| p.iteration == mark);
+        let paces: Vec<f64> = here.map(|p| 1e3 * p.pace).collect();
+        if !paces.is_empty() {
+            times.push((mark as f64, mean(&paces)));
+        }
     }
     (line, band, times)
 }
@@ -219,5 +230,45 @@ fn observe(ctx: &mut Context, facade: &str, method: String, seed: u64, trace: &[
                 ..Row::default()
             });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(points: &[(u64, f64)]) -> Vec<Point> {
+        let point = |&(iteration, best)| Point {
+            iteration,
+            best,
+            pace: 0.001,
+        };
+        points.iter().map(point).collect()
+    }
+
+    #[test]
+    fn the_lowest_cost_so_far_never_rises() {
+        // One run ended early with a cheap facade, one goes on: the averages are of both everywhere.
+        let runs = [run(&[(3, 10.0)]), run(&[(5, 50.0), (10, 40.0), (15, 40.0)])];
+        let (line, band, times) = curves(&runs.iter().collect::<Vec<_>>(), 5, 20);
+        assert_eq!(
+            line,
+            [(5.0, 30.0), (10.0, 25.0), (15.0, 25.0), (20.0, 25.0)]
+        );
+        assert!(line.windows(2).all(|pair| pair[0].1 >= pair[1].1));
+        assert!(
+            band.iter()
+                .all(|&(_, low, high)| low == 10.0 && high >= 40.0)
+        );
+        assert_eq!(times.len(), 3);
+        let mean_at = |few| {
+            mean(
+                &runs
+                    .iter()
+                    .filter_map(|t| cost_at(t, few))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!([mean_at(1), mean_at(8), mean_at(20)], [30.0, 30.0, 25.0]);
     }
 }

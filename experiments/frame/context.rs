@@ -242,7 +242,7 @@ impl<'a> Context<'a> {
         Ok(())
     }
 
-    /// Writes another file beside the artefact, for example `figure_16.glb`, and links it; a PNG is brought to 256 colours.
+    /// Writes another file beside the artefact, for example `figure_16.glb`, and links it, unless it is a scene; a PNG is brought to 256 colours.
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be written.
@@ -255,7 +255,11 @@ impl<'a> Context<'a> {
             edifice_base::file::write_atomic(&path, bytes)?;
         }
         self.files.push(name.to_string());
-        self.document.block(format!("[{name}]({name}): {what}"));
+        // Scenes are not kept beside the page: it names them, and the first page of the report leads to those that are there.
+        self.document.block(match name.ends_with(".glb") {
+            true => format!("`{name}`: {what}"),
+            false => format!("[{name}]({name}): {what}"),
+        });
         Ok(())
     }
 

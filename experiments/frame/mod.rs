@@ -10,6 +10,7 @@ mod own;
 mod progress;
 pub(super) mod provenance;
 mod run;
+mod verify;
 
 pub use context::Context;
 pub use options::{Args, Budget, Options};

@@ -18,6 +18,11 @@ pub enum Budget {
 }
 
 impl Budget {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        self.choose("smoke", "default", "paper")
+    }
+
     /// The value of this budget.
     pub fn choose<T>(self, smoke: T, default: T, paper: T) -> T {
         match self {
@@ -56,6 +61,9 @@ pub struct Args {
     /// Threads to use; 0 for one per core
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
+    /// Make nothing: say which artefacts of the report are older than the code or the data that they show
+    #[arg(long)]
+    pub verify: bool,
 }
 
 /// Checked options.
@@ -75,8 +83,8 @@ pub struct Options {
     pub out: PathBuf,
     /// Threads; 0 for one per core.
     pub threads: usize,
-    /// The command as the user typed it, without the path of the program.
-    pub command: String,
+    /// Say which artefacts are older than the code or the data, and make none.
+    pub verify: bool,
 }
 
 impl Args {
@@ -109,20 +117,29 @@ impl Args {
             budget: self.budget,
             out: self.out,
             threads: self.threads,
-            command: command_line(),
+            verify: self.verify,
         })
     }
 }
 
-/// The command, with the program's folder left out: it says nothing that another machine shares.
-fn command_line() -> String {
-    let mut words = std::env::args();
-    let program = words.next().unwrap_or_default();
-    let program = std::path::Path::new(&program)
-        .file_stem()
-        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    std::iter::once(program)
-        .chain(words)
-        .collect::<Vec<_>>()
-        .join(" ")
+impl Options {
+    /// The command that makes one artefact again with these options: one that can be typed, whatever the program that ran was called
+    /// and whatever else it made. `DATA` stands for the folder of the real data, and the threads are left out, since results do not
+    /// depend on them.
+    pub fn command(&self, slug: &str, artefact: &str) -> String {
+        let mut words = format!("edifice reproduce {slug} --only {artefact}");
+        if self.data.is_some() {
+            words.push_str(" --data DATA");
+        }
+        for own in &self.own {
+            words.push_str(&format!(" --dataset {}=FILES", own.name));
+        }
+        if self.seed != 1 {
+            words.push_str(&format!(" --seed {}", self.seed));
+        }
+        if self.budget != Budget::Default {
+            words.push_str(&format!(" --budget {}", self.budget.name()));
+        }
+        words
+    }
 }

@@ -22,11 +22,11 @@ pub struct Run {
 }
 
 /// The way in which an artefact was made.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Made {
     /// Its subject.
     pub title: String,
-    /// The command.
+    /// The command that makes it again; `DATA` stands for the folder of the real data.
     pub command: String,
     /// The seed.
     pub seed: u64,
@@ -38,6 +38,15 @@ pub struct Made {
     pub data: BTreeMap<String, String>,
     /// Version of the crate.
     pub version: String,
+    /// The commit that the program was built from; `None` without version control.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// True if files of the sources differed from that commit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dirty: Option<bool>,
+    /// Digest of the sources that it depends on ([`super::verify::sources_of`]); empty where none was recorded.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub sources: String,
     /// Seconds from start to end, units taken from the journal not counted.
     pub wall_seconds: f64,
     /// The machine: cores, threads used, system.
@@ -51,7 +60,7 @@ pub struct Made {
 }
 
 /// A machine, as far as it matters for times.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Machine {
     /// Logical cores.
     pub cores: usize,
@@ -73,6 +82,13 @@ impl Machine {
             optimized: !cfg!(debug_assertions),
         }
     }
+}
+
+/// The commit that the program was built from, and if files differed from it, as the build script found them.
+pub fn commit() -> (Option<String>, Option<bool>) {
+    let commit = option_env!("EDIFICE_COMMIT").map(str::to_owned);
+    let dirty = option_env!("EDIFICE_DIRTY").map(|d| d == "true");
+    (commit, dirty)
 }
 
 /// A quantity, what the paper printed, what this run found.

@@ -13,12 +13,13 @@ use super::document::readable;
 use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::line;
-use super::provenance::{Machine, Made, Run};
+use super::provenance::{Comparison, Machine, Made, Run, commit};
+use super::verify::{say_which_are_older, sources_of};
 use super::{Artefact, Experiment};
 use crate::sweep::definition::suggestion;
 use edifice_base::{Error, Result};
 use edifice_report as report;
-use edifice_report::{Page, Section};
+use edifice_report::{Beside, Page, Section};
 
 /// The outcome of a run.
 #[derive(Debug, Clone, Default)]
@@ -182,14 +183,18 @@ fn make(
     run.experiment = experiment.slug.to_string();
     run.paper = experiment.paper.to_string();
     run.order = experiment.artefacts.iter().map(|a| a.name.into()).collect();
+    let (commit, dirty) = commit();
     let made = Made {
         title: artefact.title.to_string(),
-        command: options.command.clone(),
+        command: options.command(experiment.slug, artefact.name),
         seed: options.seed,
-        budget: format!("{:?}", options.budget).to_lowercase(),
+        budget: options.budget.name().to_owned(),
         settings: ctx.settings,
         data: ctx.data,
         version: env!("CARGO_PKG_VERSION").to_string(),
+        commit,
+        dirty,
+        sources: sources_of(experiment.slug),
         wall_seconds: start.elapsed().as_secs_f64(),
         machine: Machine::this(rayon::current_num_threads()),
         files: ctx.files,
@@ -241,18 +246,25 @@ fn page(folder: &Path, run: &Run) -> Page {
     let sections = run.order.iter().filter_map(|name| {
         let made = run.artefacts.get(name)?;
         let markdown = std::fs::read_to_string(folder.join(format!("{name}.md"))).ok()?;
+        let there = |file: &String| folder.join(file).is_file();
+        let (files, absent) = made.files.iter().cloned().partition(there);
         Some(Section {
             name: name.clone(),
             heading: format!("{}: {}", readable(name), made.title),
             markdown,
-            files: made.files.clone(),
+            files,
+            absent,
+            command: made.command.clone(),
+            beside: made.comparisons.iter().map(beside).collect(),
+            skipped: made.skipped.clone(),
             made: format!(
-                "{}, version {}, {:.1} s on {} threads, {}{}",
+                "{}, version {}{}, {:.1} s on {} threads, {}{}",
                 match made.budget.as_str() {
                     "sweep" => "sweep, processor time".to_owned(),
                     budget => format!("seed {}, budget {budget}", made.seed),
                 },
                 made.version,
+                built_from(made),
                 made.wall_seconds,
                 made.machine.threads,
                 made.machine.system,
@@ -267,6 +279,26 @@ fn page(folder: &Path, run: &Run) -> Page {
         slug: run.experiment.clone(),
         paper: run.paper.clone(),
         sections: sections.collect(),
+    }
+}
+
+fn beside(comparison: &Comparison) -> Beside {
+    Beside {
+        quantity: comparison.quantity.clone(),
+        printed: comparison.printed.clone(),
+        ours: comparison.ours.clone(),
+    }
+}
+
+/// The commit in words, where it is known.
+fn built_from(made: &Made) -> String {
+    let Some(commit) = &made.commit else {
+        return String::new();
+    };
+    let short: String = commit.chars().take(10).collect();
+    match made.dirty {
+        Some(true) => format!(", commit {short} with changes"),
+        _ => format!(", commit {short}"),
     }
 }
 
@@ -322,6 +354,9 @@ pub fn main(experiment: &'static Experiment) -> ExitCode {
 /// As [`run`] and [`Report::check`].
 pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()> {
     let options = args.check()?;
+    if options.verify {
+        return say_which_are_older(&choose(experiments, &options.only)?, &options);
+    }
     // A second Ctrl-C stops at once: nothing finished is lost either way.
     let _ = ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {

@@ -62,7 +62,7 @@ fn options(out: &std::path::Path) -> Options {
         budget: Budget::Smoke,
         out: out.to_path_buf(),
         threads: 1,
-        command: "test".into(),
+        verify: false,
     }
 }
 

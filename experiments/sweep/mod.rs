@@ -30,7 +30,7 @@ pub mod plan;
 pub mod report;
 pub mod run;
 mod shared;
-mod sources;
+pub(super) mod sources;
 pub mod statistics;
 pub mod study;
 pub mod submit;

@@ -8,9 +8,9 @@ use super::print;
 
 /// Options of `edifice reproduce`.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example: edifice reproduce facade_grammar --only table_1 --budget smoke --out reports"
-)]
+#[command(after_help = "Examples:
+  edifice reproduce facade_grammar --only table_1 --budget smoke --out reports
+  edifice reproduce --verify")]
 pub struct Args {
     /// Papers to run; all when none is named
     papers: Vec<String>,

@@ -1,10 +1,12 @@
 //! `edifice studio`.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use edifice_base::Result;
+use edifice_studio::private::state_folder;
+use edifice_studio::redirect::Redirect;
 use edifice_studio::{Settings, start};
 
 use super::print;
@@ -13,15 +15,16 @@ use super::print;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   edifice studio
-  edifice studio office.facade.json house_0001.building.json
+  edifice studio office_1.facade.json houses/house_0001.building.json
   edifice studio fig9.grammar.json --port 8080 --no-open --read-only
 
 The first line on standard output is the address, with the token that opens it; Ctrl-C ends the studio. It listens on this
 machine only, and its page asks nothing of any other. Files open in the editor that suits them: whole facades and grammars
 (.facade.json, .grammar.json, .cga), partial facades (.facade.json), houses (.building.json), cities (.city-grammar.json, or
 triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
-Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes. A photograph
-that is drawn over is kept in the file.")]
+Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes; a file or a
+script of somebody else is not replaced unasked. A photograph that is drawn over is kept in the file. What is not saved is kept in
+the user's state folder ($XDG_STATE_HOME/edifice/studio, by default ~/.local/state/edifice/studio) and offered at the next start.")]
 pub struct Args {
     /// Files to open; without any, the page begins with examples
     files: Vec<PathBuf>,
@@ -38,34 +41,66 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<()> {
+    let state = state_folder();
     let running = start(&Settings {
         files: args.files,
         port: args.port,
         read_only: args.read_only,
+        state: state.clone(),
         ..Settings::default()
     })?;
     print::line(running.address())?;
-    if !args.no_open && std::io::stdout().is_terminal() {
-        open(running.address());
+    let wanted = !args.no_open && std::io::stdout().is_terminal();
+    let redirect = state
+        .filter(|_| wanted)
+        .and_then(|folder| Redirect::new(&folder, running.address()).ok());
+    match &redirect {
+        Some(redirect) if open(redirect.path()) => {}
+        _ if wanted => print::message("open the address above in a browser"),
+        _ => {}
+    }
+    match running.count_offered() {
+        0 => {}
+        1 => print::message("unsaved work of 1 document is offered on the page"),
+        more => print::message(&format!(
+            "unsaved work of {more} documents is offered on the page"
+        )),
     }
     print::message("Ctrl-C ends the studio");
-    running.serve_until_interrupted()
+    running.serve_until_interrupted(ends)
 }
 
-/// Opens the address in the browser, where there is a program for that; the user has the address in any case.
-fn open(address: &str) {
+/// Asks whether the studio is to end with unsaved work; without a terminal it ends.
+fn ends(names: &[String]) -> bool {
+    let kept = "what is not saved is kept and offered at the next start";
+    let names = names.join(", ");
+    if !std::io::stdin().is_terminal() {
+        print::message(&format!("not saved: {names}; {kept}"));
+        return true;
+    }
+    print::message(&format!(
+        "\nnot saved: {names}; {kept}. End the studio? [y/N]"
+    ));
+    let mut answer = String::new();
+    match std::io::stdin().read_line(&mut answer) {
+        // The end of the input is no wish to go on.
+        Ok(0) | Err(_) => true,
+        Ok(_) => matches!(answer.trim(), "y" | "Y" | "yes"),
+    }
+}
+
+/// Opens a file in the browser, where there is a program for that; true if it was started.
+fn open(file: &Path) -> bool {
     let program = match std::env::consts::OS {
         "macos" => "open",
         "windows" => "explorer",
         _ => "xdg-open",
     };
     let command = Command::new(program)
-        .arg(address)
+        .arg(file)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn();
-    if command.is_err() {
-        print::message("open the address above in a browser");
-    }
+    command.is_ok()
 }

@@ -23,6 +23,7 @@ use super::print;
 #[derive(Subcommand)]
 pub enum Command {
     /// List the studies with every setting, its type, default and meaning
+    #[command(after_help = "Example: edifice sweep studies")]
     Studies(studies::Options),
     /// List the sweep files that ship with the program (the papers' ablations), or print one
     Examples(examples::Options),
@@ -30,23 +31,31 @@ pub enum Command {
     #[command(after_help = "Example: edifice sweep plan ablation.toml --out ablation")]
     Plan(Common),
     /// Run the tasks that have no result yet, here
-    #[command(after_help = "Example: edifice sweep run ablation.toml --out ablation --shard 0/3")]
+    #[command(after_help = "Example: edifice sweep run ablation.toml --out ablation --shard 0/30")]
     Run(Run),
     /// Run the tasks that failed or have no result, here
+    #[command(after_help = "Example: edifice sweep retry ablation.toml --out ablation")]
     Retry(Run),
     /// Write the scripts of a cluster, and submit them
     Submit(submit::Options),
     /// Answer one question by a study's built-in method, as a command of an arm does
     Candidate(candidate::Options),
     /// Say what is finished, failed and missing
+    #[command(after_help = "Example: edifice sweep status ablation.toml --out ablation")]
     Status(Common),
     /// Write results.csv
+    #[command(after_help = "Example: edifice sweep collect ablation.toml --out ablation")]
     Collect(Common),
     /// Write tables, tests and figures
+    #[command(after_help = "Example: edifice sweep report ablation.toml --out ablation")]
     Report(Report),
     /// Pack file, plan, instances and results into one zip
+    #[command(
+        after_help = "Example: edifice sweep bundle ablation.toml --out ablation -o ablation.zip"
+    )]
     Bundle(Bundle),
     /// Check a bundle: its digests, and a sample of its tasks run again
+    #[command(after_help = "Example: edifice sweep verify ablation.zip --sample 1")]
     Verify(Verify),
 }
 

@@ -284,6 +284,10 @@ impl State for Editing {
         }
     }
 
+    fn merges_in(&self) -> Option<&str> {
+        Some(&self.grammar.unit)
+    }
+
     fn formats(&self) -> &'static [&'static str] {
         FORMATS
     }

@@ -161,6 +161,11 @@ impl Document {
         steps.flat_map(|s| s.warnings.clone()).collect()
     }
 
+    /// Name of the file that the script writes.
+    pub fn target(&self) -> String {
+        format!("{}{}", self.state().name(), self.state().ending())
+    }
+
     /// The shell script that makes the present state from the first one.
     ///
     /// # Errors
@@ -168,8 +173,7 @@ impl Document {
     pub fn script(&self) -> Result<String> {
         let steps = self.entries[..self.at].iter().flat_map(|e| &e.steps);
         let shells: Vec<Shell> = steps.map(|s| s.shell.clone()).collect();
-        let target = format!("{}{}", self.state().name(), self.state().ending());
         let start = || self.start.bytes();
-        script(&target, self.start.ending(), start, &shells)
+        script(&self.target(), self.start.ending(), start, &shells)
     }
 }

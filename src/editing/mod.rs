@@ -102,6 +102,11 @@ pub trait State: Send + Sync {
         parse::<NoQuestion>(question).map(|none| match none {})
     }
 
+    /// The unit of a document that can be merged with others of its kind and unit; `None` if it cannot be merged.
+    fn merges_in(&self) -> Option<&str> {
+        None
+    }
+
     /// Formats of [`State::export`], as endings of file names.
     fn formats(&self) -> &'static [&'static str];
 

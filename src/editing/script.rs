@@ -73,11 +73,8 @@ pub fn script<E>(
     start: impl Fn() -> Result<Vec<u8>, E>,
     steps: &[Shell],
 ) -> Result<String, E> {
-    let mut text = format!(
-        "#!/bin/sh\n# Written by `edifice studio`: the same edits as commands. Writes the file named by its argument.\nset -eu\n\
-         edifice=${{EDIFICE:-edifice}}\ntarget=${{1:-{}}}\nhere=$(dirname \"$0\")\nwork=$(mktemp -d)\ntrap 'rm -rf \"$work\"' EXIT\n",
-        quoted(target)
-    );
+    let mut text = begin(target);
+    text.push_str("here=$(dirname \"$0\")\nwork=$(mktemp -d)\ntrap 'rm -rf \"$work\"' EXIT\n");
     let mut input = format!("\"$work\"/0{ending}");
     let mut output = String::new();
     let anew = |s: &Shell| !s.words.is_empty() && !s.words.contains(&Word::Input);
@@ -113,7 +110,35 @@ pub fn script<E>(
         }
     }
     let _ = writeln!(text, "cp {input} \"$target\"");
+    let sum = checksum(&text);
+    let _ = writeln!(text, "{SUM}{sum:016x}");
     Ok(text)
+}
+
+/// The first lines of a script that writes a file of the name `target`.
+fn begin(target: &str) -> String {
+    format!(
+        "#!/bin/sh\n# Written by `edifice studio`: the same edits as commands. Writes the file named by its argument.\nset -eu\n\
+         edifice=${{EDIFICE:-edifice}}\ntarget=${{1:-{}}}\n",
+        quoted(target)
+    )
+}
+
+/// Begins the last line of a script, which holds a checksum of all lines above it.
+const SUM: &str = "# Unchanged since it was written if the lines above have this sum: ";
+
+/// FNV-1a of the bytes: it tells a script that somebody changed from one that nobody did; it is no seal.
+fn checksum(text: &str) -> u64 {
+    let step = |h: u64, b: u8| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
+}
+
+/// True for a script that [`script`] wrote for a file of the name `target` and that nobody changed since.
+pub fn is_written(text: &str, target: &str) -> bool {
+    let Some((above, sum)) = text.rsplit_once(SUM) else {
+        return false;
+    };
+    above.starts_with(&begin(target)) && sum == format!("{:016x}\n", checksum(above))
 }
 
 /// The lines that write a text to a place.
@@ -166,6 +191,17 @@ mod tests {
                 .unwrap();
             assert_eq!(String::from_utf8(out.stdout).unwrap(), word);
         }
+    }
+
+    #[test]
+    fn a_script_that_somebody_changed_is_known() {
+        let none = || Ok::<_, ()>(b"a\n".to_vec());
+        let text = script("out file", ".txt", none, &[]).unwrap();
+        assert!(is_written(&text, "out file"));
+        assert!(!is_written(&text, "out"));
+        assert!(!is_written(&text.replace("set -eu", "set -e"), "out file"));
+        assert!(!is_written(&format!("{text}echo mine\n"), "out file"));
+        assert!(!is_written("#!/bin/sh\necho mine\n", "out file"));
     }
 
     #[test]

@@ -1,11 +1,12 @@
-//! The first page of the report: every artefact beside what the paper printed.
+//! The first page of the report: a verdict on each paper, every printed number beside ours, then every artefact.
 
-use maud::{DOCTYPE, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::beside::{Beside, Counts, is_near};
 use super::markdown;
 
 /// One artefact.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Section {
     /// File name without extension.
     pub name: String,
@@ -13,10 +14,18 @@ pub struct Section {
     pub heading: String,
     /// Its page, in Markdown.
     pub markdown: String,
-    /// Files it wrote, relative to the paper's folder.
+    /// Files that are there, relative to the paper's folder.
     pub files: Vec<String>,
+    /// Files that the command makes and that are not there.
+    pub absent: Vec<String>,
+    /// The command that makes it.
+    pub command: String,
     /// Seed, budget, version, time.
     pub made: String,
+    /// Its quantities beside the printed ones.
+    pub beside: Vec<Beside>,
+    /// Why nothing was made, when nothing was.
+    pub skipped: Option<String>,
 }
 
 /// One paper.
@@ -30,26 +39,10 @@ pub struct Page {
     pub sections: Vec<Section>,
 }
 
-const STYLE: &str = "
-body { margin: 0; font: 15px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #22262b; background: #f6f7f8; }
-main { max-width: 1080px; margin: 0 auto; padding: 24px 20px 80px; }
-nav { background: #fff; border: 1px solid #e0e4e8; padding: 12px 18px; columns: 2; font-size: 13px; }
-nav h2 { margin: 0 0 6px; font-size: 15px; column-span: all; } nav h3 { margin: 4px 0; font-size: 13px; break-after: avoid; } nav ul { margin: 0 0 8px; padding-left: 18px; }
-section { background: #fff; border: 1px solid #e0e4e8; margin: 22px 0; padding: 6px 22px 16px; }
-h1 { font-size: 26px; } h2 { font-size: 20px; margin-top: 44px; } h3 { font-size: 17px; }
-img { max-width: 100%; height: auto; } .scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 13px; margin: 4px 0 14px; }
-th, td { padding: 3px 10px; border-bottom: 1px solid #e6e9ec; text-align: left; vertical-align: top; }
-thead th { border-bottom: 2px solid #9aa2ab; } .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.made { color: #5f6770; font-size: 12px; } code, pre { font: 12.5px 'DejaVu Sans Mono', monospace; background: #f1f3f5; padding: 1px 3px; }
-pre { padding: 10px 14px; overflow-x: auto; }
-p, li, h1, h2, h3, h4 { overflow-wrap: anywhere; }
-@media (max-width: 640px) {
-  body { font-size: 16px; } main { padding: 12px 10px 60px; } nav { columns: 1; font-size: 16px; padding: 10px 14px; } nav h3 { font-size: 16px; }
-  nav li { padding: 5px 0; } section { padding: 4px 12px 12px; } h1 { font-size: 22px; } h2 { font-size: 19px; margin-top: 30px; }
-  table { font-size: 14px; } .made { font-size: 14px; }
-}
-";
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+/// Relative difference at which a bar is full.
+const FULL: f64 = 0.5;
 
 /// The page as HTML text.
 pub fn index(pages: &[Page]) -> String {
@@ -59,74 +52,191 @@ pub fn index(pages: &[Page]) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
                 title { "Edifice: report" }
                 style { (PreEscaped(STYLE)) }
             }
-            body { main {
-                h1 { "Edifice: report" }
-                nav aria-label="Contents" { h2 { "Contents" } @for page in pages {
-                    h3 { (page.paper) }
-                    ul { @for s in &page.sections { li { a href=(format!("#{}-{}", page.slug, s.name)) { (s.heading) } } } }
-                } }
-                p { "Every table and figure that was made, each beside what its paper printed. Pictures link to their vector form where it is small enough to ship." }
-                @for page in pages {
-                    h2 { (page.paper) }
-                    p.made { a href=(format!("{}/run.json", page.slug)) { "run.json" } ": commands, seeds, settings, digests of the data" }
-                    @for s in &page.sections {
-                        section id=(format!("{}-{}", page.slug, s.name)) {
-                            h3 { (s.heading) }
-                            (markdown::html(&s.markdown, markdown::Place { folder: &page.slug, files: &s.files }))
-                            p.made {
-                                (s.made) ". Files: "
-                                @for (i, file) in s.files.iter().enumerate() {
-                                    @if i > 0 { ", " }
-                                    a href=(format!("{}/{file}", page.slug)) { (file) }
-                                }
-                            }
-                        }
+            body {
+                header {
+                    h1 { "Edifice: report" }
+                    p.lead { "Every table and figure that was made, each beside what its paper printed. The counts below are made from the runs' own records; a difference is no error by itself, the notes of each artefact say why it is there." }
+                }
+                main {
+                    ul.verdicts { @for page in pages { (verdict(page)) } }
+                    @for page in pages {
+                        h2 id=(page.slug) { (page.paper) }
+                        (contents(page))
+                        (numbers(page))
+                        @for section in &page.sections { (artefact(&page.slug, section)) }
                     }
                 }
-            } }
+                footer { "Pictures lead to their vector form where it is small enough to ship. Numbers, seeds, settings and digests of the data stand in the " code { "run.json" } " of each paper." }
+                script { (PreEscaped(SCRIPT)) }
+            }
         }
     }
     .into_string()
+}
+
+/// A paper in a few words, on the first screen.
+fn verdict(page: &Page) -> Markup {
+    let counts = Counts::of(page.sections.iter().flat_map(|s| &s.beside));
+    let part = |n: usize| format!("flex: {n}");
+    let made = page.sections.iter().filter(|s| s.skipped.is_none()).count();
+    let left: Vec<&Section> = page
+        .sections
+        .iter()
+        .filter(|s| s.skipped.is_some())
+        .collect();
+    let link = |s: &Section| format!("#{}-{}", page.slug, s.name);
+    html! {
+        li {
+            strong { a href=(format!("#{}", page.slug)) { (page.paper) } }
+            @if counts.all() > 0 {
+                div.share aria-hidden="true" { span.near style=(part(counts.near)) {} span.far style=(part(counts.far)) {} span.none style=(part(counts.none)) {} }
+                p { "Of " (counts.all()) " printed quantities, " (counts.near) " of ours are within 5 %, " (counts.far) " differ by more; " (counts.none) " are not a number against a number." }
+            } @else { p { "The paper prints pictures; no number stands beside ours." } }
+            p { (made) " of " (page.sections.len()) " artefacts made here."
+                @for s in left { " " a href=(link(s)) { (s.name.replace('_', " ")) } ": " (s.skipped.as_deref().unwrap_or_default()) "." }
+            }
+        }
+    }
+}
+
+fn contents(page: &Page) -> Markup {
+    html! {
+        nav aria-label=(format!("Artefacts of {}", page.paper)) {
+            details { summary { (page.sections.len()) " artefacts" }
+                ul { @for s in &page.sections { li { a href=(format!("#{}-{}", page.slug, s.name)) { (s.heading) } } } }
+            }
+        }
+    }
+}
+
+/// All quantities of a paper, the printed number beside ours.
+fn numbers(page: &Page) -> Markup {
+    let all: Vec<(&Section, &Beside)> = page
+        .sections
+        .iter()
+        .flat_map(|s| s.beside.iter().map(move |b| (s, b)))
+        .collect();
+    html! {
+        @if !all.is_empty() {
+            div.scroll tabindex="0" role="group" aria-label=(format!("Printed numbers beside ours: {}", page.paper)) {
+                table.sortable {
+                    caption { "Printed numbers beside ours" }
+                    thead { tr { th scope="col" { "artefact" } th scope="col" { "quantity" } th.number scope="col" { "printed" } th.number scope="col" { "ours" } th scope="col" { "difference" } } }
+                    tbody { @for (s, b) in all {
+                        @let difference = b.difference();
+                        tr {
+                            td { a href=(format!("#{}-{}", page.slug, s.name)) { (s.name.replace('_', " ")) } }
+                            td { (b.quantity) }
+                            td.number { (b.printed) }
+                            td.number { (b.ours) }
+                            td data-value=(difference.map_or(String::new(), |d| format!("{d:.6}"))) { (bar(difference)) }
+                        }
+                    } }
+                }
+            }
+        }
+    }
+}
+
+/// A difference as a bar to the left or right of the middle, and in words.
+fn bar(difference: Option<f64>) -> Markup {
+    let Some(d) = difference else {
+        return html! { span.made { "–" } };
+    };
+    let side = if d < 0.0 { "low" } else { "high" };
+    let class = if is_near(d) { "near" } else { "far" };
+    let width = (d.abs() / FULL).min(1.0) * 100.0;
+    html! {
+        div.difference {
+            span.bar aria-hidden="true" { i class=(format!("{side} {class}")) style=(format!("width: {width:.0}%")) {} }
+            span { (format!("{:+.1} %", 100.0 * d)) }
+        }
+    }
+}
+
+fn artefact(slug: &str, s: &Section) -> Markup {
+    html! {
+        section id=(format!("{slug}-{}", s.name)) {
+            h3 { (s.heading) }
+            (markdown::html(&s.markdown, markdown::Place { folder: slug, files: &s.files }))
+            @if !s.command.is_empty() { p.made { "Made again by " code { (s.command) } } }
+            p.made {
+                (s.made) ". Files: "
+                @for (i, file) in s.files.iter().enumerate() {
+                    @if i > 0 { ", " }
+                    a href=(format!("{slug}/{file}")) { (file) }
+                }
+                @for file in &s.absent { ", " (file) " (not kept)" }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_page_opens_with_its_contents_and_reads_on_a_phone() {
+    fn page() -> Page {
         let section = Section {
             name: "table_1".into(),
             heading: "Table 1".into(),
             markdown: "# Table 1\n\n| a |\n| --- |\n| 1 |\n\n![plot](table_1.png)".into(),
             files: vec!["table_1.csv".into()],
+            absent: vec!["scene.glb".into()],
+            command: "edifice reproduce facade_grammar --only table_1".into(),
             made: "seed 0".into(),
+            beside: vec![Beside {
+                quantity: "cost".into(),
+                printed: "40".into(),
+                ours: "38".into(),
+            }],
+            skipped: None,
         };
-        let page = Page {
+        let people = Section {
+            name: "table_3".into(),
+            heading: "Table 3".into(),
+            skipped: Some("this needs people".into()),
+            ..Section::default()
+        };
+        Page {
             slug: "facade_grammar".into(),
             paper: "Wu et al. 2014".into(),
-            sections: vec![section],
-        };
-        let text = index(&[page]);
+            sections: vec![section, people],
+        }
+    }
+
+    #[test]
+    fn the_page_opens_with_its_verdicts_and_reads_on_a_phone() {
+        let text = index(&[page()]);
         let after = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}: {text}"));
-        // Nothing but the title stands before the list, and each entry leads to its section.
-        assert!(text.contains("<h1>Edifice: report</h1><nav"), "{text}");
-        assert!(after("</nav>") < after("<section") && after("</nav>") < after("<p>"));
+        assert!(after("Of 1 printed quantities, 1 of ours are within 5 %") < after("<section"));
+        assert!(after("this needs people") < after("<section"));
         assert!(after("href=\"#facade_grammar-table_1\"") < after("id=\"facade_grammar-table_1\""));
+        assert!(text.contains("-5.0 %"), "{text}");
+        // What is not there is named, and no link leads to it.
+        assert!(
+            text.contains("scene.glb (not kept)")
+                && !text.contains("href=\"facade_grammar/scene.glb\"")
+        );
         assert!(
             text.contains(
                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
             )
         );
-        let phone = &STYLE[STYLE.find("@media (max-width: 640px)").unwrap()..];
-        assert!(phone.contains("nav { columns: 1;"));
+        for rule in [
+            "@media (max-width: 640px)",
+            "@media print",
+            "(prefers-color-scheme: dark)",
+        ] {
+            assert!(STYLE.contains(rule), "{rule}");
+        }
         // Pictures shrink to the column; tables wider than it scroll by themselves.
-        assert!(
-            STYLE.contains("img { max-width: 100%; height: auto; } .scroll { overflow-x: auto; }")
-        );
-        assert!(text.contains("<div class=\"scroll\"><table>"));
+        assert!(STYLE.contains("img { max-width: 100%; height: auto;"));
+        assert!(text.contains("<div class=\"scroll\""));
+        assert!(!text.contains("http://") && !text.contains("https://"));
     }
 }

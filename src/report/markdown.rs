@@ -23,7 +23,7 @@ pub fn html(text: &str, place: Place) -> Markup {
             @if block.starts_with("# ") {}
             @else if block.starts_with('|') { (table(block, place)) }
             @else if let Some(heading) = block.strip_prefix("## ") { h4 { (inline(heading, place)) } }
-            @else if block.starts_with("```") { pre { (block.trim_matches('`').trim()) } }
+            @else if block.starts_with("```") { pre tabindex="0" { (block.trim_matches('`').trim()) } }
             @else if block.starts_with("- ") {
                 ul { @for line in block.lines() { li { (inline(line.trim_start_matches("- "), place)) } } }
             }
@@ -34,6 +34,8 @@ pub fn html(text: &str, place: Place) -> Markup {
 
 /// Rows of a table that the index shows; the rest stand in the artefact's own page.
 const MOST_ROWS: usize = 40;
+/// Rows from which on a table is folded.
+const FOLDED: usize = 14;
 
 fn table(block: &str, place: Place) -> Markup {
     let cells = |line: &str| -> Vec<String> {
@@ -51,19 +53,22 @@ fn table(block: &str, place: Place) -> Markup {
         .map(|c| c.ends_with(':'))
         .collect();
     let class = |i: usize| {
-        if right.get(i) == Some(&true) {
-            "number"
-        } else {
-            ""
-        }
+        let number = right.get(i) == Some(&true);
+        number.then_some("number")
     };
-    html! {
-        div.scroll { table {
-            thead { tr { @for (i, cell) in head.iter().enumerate() { th class=(class(i)) { (inline(cell, place)) } } } }
-            tbody { @for line in lines.by_ref().take(MOST_ROWS) {
-                tr { @for (i, cell) in cells(line).iter().enumerate() { td class=(class(i)) { (inline(cell, place)) } } }
+    let rows: Vec<&str> = lines.by_ref().take(MOST_ROWS).collect();
+    let whole = html! {
+        div.scroll tabindex="0" role="group" aria-label="Table" { table {
+            thead { tr { @for (i, cell) in head.iter().enumerate() {
+                @if cell.is_empty() { td {} } @else { th class=[class(i)] scope="col" { (inline(cell, place)) } }
+            } } }
+            tbody { @for line in &rows {
+                tr { @for (i, cell) in cells(line).iter().enumerate() { td class=[class(i)] { (inline(cell, place)) } } }
             } }
         } }
+    };
+    html! {
+        @if rows.len() > FOLDED { details { summary { "Table of " (rows.len()) " rows" } (whole) } } @else { (whole) }
         @let left = lines.count();
         @if left > 0 {
             p.made { (left) " more rows" @if let Some(page) = page { " in " a href=(format!("{}/{page}", place.folder)) { (page) } } }
@@ -142,7 +147,7 @@ mod tests {
         };
         let page = html(text, place).into_string();
         assert!(
-            page.contains("<td class=\"\">x | y</td><td class=\"number\"><b>1.5</b></td>"),
+            page.contains("<td>x | y</td><td class=\"number\"><b>1.5</b></td>"),
             "{page}"
         );
         assert!(
@@ -170,6 +175,7 @@ mod tests {
         };
         let page = html(&format!("| a |\n| --- |\n{rows}"), place).into_string();
         assert_eq!(page.matches("<td").count(), MOST_ROWS);
+        assert!(page.contains("<summary>Table of 40 rows</summary>"));
         assert!(
             page.contains("3 more rows in <a href=\"x/t.md\">t.md</a>"),
             "{page}"

@@ -10,6 +10,7 @@
 
 mod axis;
 mod bars;
+mod beside;
 mod chart;
 mod colour;
 mod dendrogram;
@@ -28,6 +29,7 @@ mod tiles;
 
 pub use axis::Scale;
 pub use bars::{BarGroup, Bars};
+pub use beside::{Beside, Counts};
 pub use chart::{Chart, Series};
 pub use colour::{Colour, category, ramp};
 pub use dendrogram::{Dendrogram, Merge};

@@ -68,11 +68,14 @@ pub fn router(studio: Arc<Studio>) -> Router {
         .route("/undo", post(undo))
         .route("/redo", post(redo))
         .route("/save", post(save))
+        .route("/close", post(close))
         .route("/script", get(script))
         .route("/export/{format}", get(export));
     Router::new()
         .route("/api/documents", get(documents).post(open))
         .nest("/api/documents/{id}", one)
+        .route("/api/unsaved/{id}/open", post(recover))
+        .route("/api/unsaved/{id}/discard", post(discard))
         .route("/api/jobs/{id}", get(job))
         .route("/api/jobs/{id}/stop", post(stop))
         .fallback(assets::asset)
@@ -162,13 +165,11 @@ fn lock(document: &Mutex<Open>) -> std::sync::MutexGuard<'_, Open> {
 async fn documents(State(studio): State<Arc<Studio>>) -> Answer {
     work(move || {
         let all = studio.all();
-        let each = all.iter().enumerate();
-        let documents: Vec<Value> = each
-            .map(|(k, d)| lock(d).summary(&format!("d{}", k + 1)))
-            .collect();
+        let documents: Vec<Value> = all.iter().map(|(id, d)| lock(d).summary(id)).collect();
+        let unsaved: Vec<Value> = studio.offered().iter().map(|o| o.shown()).collect();
         Ok(answer(&json!({
             "version": env!("CARGO_PKG_VERSION"), "readOnly": studio.read_only, "documents": documents,
-            "examples": examples().collect::<Vec<_>>(),
+            "examples": examples().collect::<Vec<_>>(), "unsaved": unsaved,
         })))
     })
     .await
@@ -188,7 +189,7 @@ async fn open(State(studio): State<Arc<Studio>>, bytes: Bytes) -> Answer {
         if job.is_over() {
             return Err(Stopped.into());
         }
-        let id = studio.add(Open::new(start, None))?;
+        let id = studio.add(Open::example(&wanted.example, start))?;
         job.made(&id);
         let document = known(&studio, &id)?;
         let whole = lock(&document).whole(&id)?;
@@ -197,16 +198,29 @@ async fn open(State(studio): State<Arc<Studio>>, bytes: Bytes) -> Answer {
     .await
 }
 
-async fn document(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
-    on(&studio, id, |open, id| Ok(answer(&open.whole(id)?))).await
+async fn document(
+    State(studio): State<Arc<Studio>>,
+    Path(id): Path<String>,
+    uri: axum::http::Uri,
+) -> Answer {
+    let shows = uri
+        .query()
+        .and_then(|q| q.strip_prefix("shows=")?.parse().ok());
+    on(&studio, id, move |open, id| {
+        Ok(answer(&open.whole_for(id, shows)?))
+    })
+    .await
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edit {
     commands: Vec<Value>,
-    /// The revision that the page shows.
+    /// The revision that is edited.
     revision: u64,
+    /// The revision whose view the page has.
+    #[serde(default)]
+    shows: Option<u64>,
 }
 
 async fn edit(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
@@ -235,8 +249,9 @@ async fn edit(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: 
         if !job.end(End::Done) {
             return Err(Stopped.into());
         }
-        open.take(&wanted.commands, steps, start.elapsed().as_secs_f64() * 1e3);
-        Ok(open.whole(&id)?)
+        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        open.take(&wanted.commands, steps, milliseconds, studio.journals());
+        Ok(open.whole_for(&id, wanted.shows)?)
     })
     .await
 }
@@ -244,7 +259,17 @@ async fn edit(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: 
 async fn ask(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
     let question: Value = body(&bytes)?;
     let state = on(&studio, id, |open, _| Ok(open.document.state().clone())).await?;
-    let said = work(move || Ok(state.ask(&question)?)).await?;
+    let said = work(
+        move || match question.get("preview").and_then(Value::as_array) {
+            Some(commands) => {
+                let made = steps(&state, commands, &edifice_editing::work::Work::default())?;
+                let state = made.last().map_or(&state, |step| &step.state);
+                Ok(json!({"view": state.view()?}))
+            }
+            None => Ok(state.ask(&question)?),
+        },
+    )
+    .await?;
     Ok(answer(&said))
 }
 
@@ -264,18 +289,20 @@ async fn stop(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answ
 }
 
 async fn undo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
-    on(&studio, id, |open, id| {
+    let own = studio.clone();
+    on(&studio, id, move |open, id| {
         free(open)?;
-        open.document.undo();
+        open.undo(own.journals());
         Ok(answer(&open.whole(id)?))
     })
     .await
 }
 
 async fn redo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
-    on(&studio, id, |open, id| {
+    let own = studio.clone();
+    on(&studio, id, move |open, id| {
         free(open)?;
-        open.document.redo();
+        open.redo(own.journals());
         Ok(answer(&open.whole(id)?))
     })
     .await
@@ -298,6 +325,62 @@ async fn save(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: 
         Ok(answer(&json!({"file": file, "script": script})))
     })
     .await
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Close {
+    #[serde(default)]
+    discard: bool,
+}
+
+async fn close(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
+    let wanted: Close = body(&bytes)?;
+    let own = studio.clone();
+    on(&studio, id, move |open, id| {
+        if open.is_unsaved() && !wanted.discard {
+            let text = "the document has unsaved work: save it, or close it without saving";
+            return Err(Refusal(StatusCode::CONFLICT, text.into()));
+        }
+        if let Some(job) = &open.job {
+            job.stop();
+        }
+        open.forget();
+        own.close(id);
+        Ok(answer(&json!({})))
+    })
+    .await
+}
+
+fn offered(studio: &Studio, id: &str) -> Result<super::recovery::Offered, Refusal> {
+    let missing = || Refusal(StatusCode::NOT_FOUND, format!("no unsaved work {id:?}"));
+    studio.offer(id).ok_or_else(missing)
+}
+
+async fn recover(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
+    let offer = offered(&studio, &id)?;
+    let job = studio.jobs.begin(None);
+    waited(job, move |job| {
+        let open = match offer.open(&job.work) {
+            Ok(open) => open,
+            Err((offer, error)) => {
+                // It is offered again.
+                studio.offered().push(*offer);
+                return Err(error.into());
+            }
+        };
+        let id = studio.add(open)?;
+        job.made(&id);
+        let document = known(&studio, &id)?;
+        let whole = lock(&document).whole(&id)?;
+        Ok(whole)
+    })
+    .await
+}
+
+async fn discard(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
+    offered(&studio, &id)?.discard();
+    Ok(answer(&json!({})))
 }
 
 async fn script(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {

@@ -5,11 +5,14 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::difference::difference;
 use super::jobs::Job;
+use super::journal::{Journal, Line, Source};
 use edifice_base::file::write_atomic;
 use edifice_base::{Error, Result};
 use edifice_editing as editing;
 use edifice_editing::history::{Document, steps};
+use edifice_editing::script::is_written;
 use edifice_editing::work::Work;
 use edifice_editing::{State, Step};
 use edifice_io as io;
@@ -24,10 +27,20 @@ pub struct Open {
     file: String,
     /// The content of the file when it was read or written last; `None` before it is saved.
     known: Option<Vec<u8>>,
+    /// The content of the script when it was written last.
+    known_script: Option<Vec<u8>>,
     saved_at: u64,
     milliseconds: f64,
     /// The work that is done on it.
     pub job: Option<Arc<Job>>,
+    /// The origin of the document, until a journal holds it.
+    source: Option<Source>,
+    /// The journal, once something was done.
+    journal: Option<Journal>,
+    /// A warning of the document itself, not of its last edit.
+    warning: Option<String>,
+    /// The view that was told last, and its revision.
+    told: Option<(u64, Value)>,
 }
 
 /// Why a document is not saved.
@@ -60,7 +73,56 @@ impl Open {
         let bytes = io::read_bytes(path)?;
         let start = editing::open(path, &bytes, &Work::default())?;
         let real = std::fs::canonicalize(path).map_err(|e| Error::io(path, "read", e))?;
-        Ok(Self::new(start, Some(&real)))
+        let mut open = Self::new(start, Some(&real));
+        open.source = Some(Source::File(real, bytes));
+        Ok(open)
+    }
+
+    /// Opens an example that is known by its id.
+    pub fn example(id: &str, start: Arc<dyn State>) -> Self {
+        let mut open = Self::new(start, None);
+        open.source = Some(Source::Example(id.to_owned()));
+        open
+    }
+
+    /// A document that is opened again at its folder and file name, before its edits are done again.
+    pub(super) fn again(start: Arc<dyn State>, source: Source, place: (PathBuf, String)) -> Self {
+        let path = match &source {
+            Source::File(path, _) => Some(path.as_path()),
+            Source::Example(_) => None,
+        };
+        let mut open = Self::new(start, path);
+        if open.known.is_some()
+            && let Source::File(_, bytes) = &source
+        {
+            // The file as it was when it was opened, not as it is now.
+            open.known = Some(bytes.clone());
+        }
+        (open.folder, open.file) = place;
+        open.source = Some(source);
+        open
+    }
+
+    /// Goes on with a journal.
+    pub(super) fn keep_journal(&mut self, journal: Journal) {
+        self.journal = Some(journal);
+        self.source = None;
+    }
+
+    /// Warns of the document itself, until the next save.
+    pub(super) fn warn(&mut self, warning: String) {
+        self.warning = Some(warning);
+    }
+
+    /// Notes that the document as it is now was saved, without writing it.
+    ///
+    /// # Errors
+    /// As [`State::bytes`].
+    pub(super) fn was_saved(&mut self) -> Result<()> {
+        self.known = Some(self.document.state().bytes()?);
+        self.known_script = Some(self.document.script()?.into_bytes());
+        self.saved_at = self.document.revision();
+        Ok(())
     }
 
     /// A document; it is saved beside its file, or in the present folder.
@@ -78,9 +140,14 @@ impl Open {
             folder: folder.unwrap_or_else(|| present().unwrap_or_default()),
             file,
             known,
+            known_script: None,
             saved_at: 0,
             milliseconds: 0.0,
             job: None,
+            source: None,
+            journal: None,
+            warning: None,
+            told: None,
         }
     }
 
@@ -91,14 +158,83 @@ impl Open {
     pub fn edit(&mut self, commands: &[Value]) -> Result<()> {
         let start = std::time::Instant::now();
         let steps = steps(self.document.state(), commands, &Work::default())?;
-        self.take(commands, steps, start.elapsed().as_secs_f64() * 1e3);
+        self.take(commands, steps, start.elapsed().as_secs_f64() * 1e3, None);
         Ok(())
     }
 
-    /// Takes the results of commands, and the milliseconds that they took.
-    pub fn take(&mut self, commands: &[Value], steps: Vec<Step>, milliseconds: f64) {
+    /// Takes the results of commands, and the milliseconds that they took; journals are in a folder, where there is one.
+    pub fn take(
+        &mut self,
+        commands: &[Value],
+        steps: Vec<Step>,
+        milliseconds: f64,
+        journals: Option<&Path>,
+    ) {
         self.document.take(commands, steps);
         self.milliseconds = milliseconds;
+        self.note(&Line::Did(commands.to_vec()), journals);
+    }
+
+    /// Takes back the last edit.
+    pub fn undo(&mut self, journals: Option<&Path>) {
+        if self.document.undo() {
+            self.note(&Line::Undo, journals);
+        }
+    }
+
+    /// Does again what was taken back.
+    pub fn redo(&mut self, journals: Option<&Path>) {
+        if self.document.redo() {
+            self.note(&Line::Redo, journals);
+        }
+    }
+
+    /// Adds a line to the journal, which begins with the first one. A journal that cannot be written is told of, and the
+    /// document goes on without.
+    fn note(&mut self, line: &Line, journals: Option<&Path>) {
+        let noted = match (&mut self.journal, journals) {
+            (Some(journal), _) => journal.add(line),
+            (None, Some(folder)) => self.begin_journal(folder, std::slice::from_ref(line)),
+            (None, None) => Ok(()),
+        };
+        if let Err(error) = noted {
+            // Half a journal would be offered as if it were whole.
+            if let Some(journal) = self.journal.take() {
+                journal.remove();
+            }
+            self.source = None;
+            self.warning = Some(format!(
+                "edits are not kept for the case that the studio ends, save often: {error}"
+            ));
+        }
+    }
+
+    /// Begins a journal with all that was done so far.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(super) fn begin_journal(&mut self, folder: &Path, lines: &[Line]) -> Result<()> {
+        let Some(source) = self.source.take() else {
+            return Ok(());
+        };
+        let state = self.document.state();
+        let place = (self.folder.as_path(), self.file.as_str());
+        let mut journal = Journal::begin(folder, &source, state.kind(), self.stem(), place)?;
+        let added = lines.iter().try_for_each(|line| journal.add(line));
+        self.journal = Some(journal);
+        added
+    }
+
+    /// True if something was done since it was opened or saved.
+    pub fn is_unsaved(&self) -> bool {
+        self.document.revision() != self.saved_at
+    }
+
+    /// Removes the journal: the document is closed, or nothing in it is unsaved.
+    pub fn forget(&mut self) {
+        if let Some(journal) = self.journal.take() {
+            journal.remove();
+        }
     }
 
     /// Writes the file and the script beside it; their names.
@@ -111,21 +247,31 @@ impl Open {
         for place in [&path, &beside] {
             own_place(&self.folder, place)?;
         }
-        let there = match std::fs::read(&path) {
-            Ok(bytes) => Some(bytes),
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
-            Err(e) => return Err(Error::io(&path, "read", e).into()),
-        };
+        let there = content(&path)?;
         if !overwrite && there.is_some() && there != self.known {
             return Err(SaveError::Changed(self.file.clone()));
         }
         let bytes = self.document.state().bytes()?;
         let text = self.document.script()?;
+        // A script of the studio for this document, written at another time, is its own; one that somebody changed is not.
+        let target = self.document.target();
+        let own = |old: &Vec<u8>| {
+            self.known_script.as_ref() == Some(old)
+                || is_written(&String::from_utf8_lossy(old), &target)
+        };
+        if !overwrite && content(&beside)?.is_some_and(|old| !own(&old)) {
+            return Err(SaveError::Changed(script));
+        }
         // The script first: whoever has the document has what made it.
         write_atomic(&beside, text.as_bytes())?;
         write_atomic(&path, &bytes)?;
         self.known = Some(bytes);
+        self.known_script = Some(text.into_bytes());
         self.saved_at = self.document.revision();
+        self.warning = None;
+        if self.journal.is_some() {
+            self.note(&Line::Saved, None);
+        }
         Ok([self.file.clone(), script])
     }
 
@@ -140,7 +286,7 @@ impl Open {
         let state = self.document.state();
         json!({
             "id": id, "kind": state.kind(), "name": self.stem(), "revision": self.document.revision(),
-            "unsaved": self.document.revision() != self.saved_at,
+            "unsaved": self.is_unsaved(), "mergesIn": state.merges_in(),
             "job": self.job.as_ref().filter(|j| !j.is_over()).map(|j| j.shown()),
         })
     }
@@ -149,7 +295,15 @@ impl Open {
     ///
     /// # Errors
     /// As [`State::view`].
-    pub fn whole(&self, id: &str) -> Result<Value> {
+    pub fn whole(&mut self, id: &str) -> Result<Value> {
+        self.whole_for(id, None)
+    }
+
+    /// The same for a page that shows a revision: with the difference to it in place of the view, where that one was told last.
+    ///
+    /// # Errors
+    /// As [`State::view`].
+    pub fn whole_for(&mut self, id: &str, shows: Option<u64>) -> Result<Value> {
         let (undo, redo) = self.document.can();
         let state = self.document.state();
         let mut whole = self.summary(id);
@@ -157,11 +311,32 @@ impl Open {
         whole["redo"] = redo.into();
         whole["file"] = self.file.as_str().into();
         whole["formats"] = json!(state.formats());
-        whole["warnings"] = json!(self.document.warnings());
+        let mut warnings = self.document.warnings();
+        warnings.extend(self.warning.clone());
+        whole["warnings"] = json!(warnings);
         whole["log"] = json!(self.document.log());
         whole["milliseconds"] = self.milliseconds.into();
-        whole["view"] = state.view()?;
+        let view = state.view()?;
+        match &self.told {
+            Some((revision, told)) if shows == Some(*revision) => {
+                whole["difference"] = difference(told, &view);
+            }
+            _ => whole["view"] = view.clone(),
+        }
+        // Others are short.
+        if state.kind() == "city" {
+            self.told = Some((self.document.revision(), view));
+        }
         Ok(whole)
+    }
+}
+
+/// The content of a file; `None` if there is none.
+fn content(path: &Path) -> Result<Option<Vec<u8>>> {
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(Error::io(path, "read", e)),
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! A page of another site can make a browser send requests here, and by a name that is bound to 127.0.0.1 (rebinding) even
 //! read the answers. So: the `Host` must be one of two names with this port, an `Origin` one of two, `Sec-Fetch-Site` this
-//! site or nobody, and all of `/api` needs the token, which is in the address that the command prints and nowhere else. The
+//! site or nobody (but for a window that goes to `/`), and all of `/api` needs the token, which is in the address that the command
+//! prints and in a file that only this user reads ([`super::redirect`]). The
 //! token is a header, which no form and no picture can send. Bodies are JSON, and limited in size and time.
 
 use std::time::Duration;
@@ -89,6 +90,9 @@ impl Guard {
         }
         match only(headers, "sec-fetch-site") {
             Ok(None | Some("same-origin" | "none")) => {}
+            // The file that leads the browser here. The page in a window of its own tells nothing, without the token it can do
+            // nothing, and no other page may hold it in a frame.
+            Ok(Some("cross-site")) if is_visit(request) => {}
             _ => return refuse("foreign site"),
         }
         if !matches!(*request.method(), Method::GET | Method::POST) {
@@ -108,6 +112,15 @@ impl Guard {
         }
         Ok(())
     }
+}
+
+/// True for a window that goes to the page itself.
+fn is_visit(request: &Request) -> bool {
+    let says = |name, value| only(request.headers(), name) == Ok(Some(value));
+    *request.method() == Method::GET
+        && request.uri().path() == "/"
+        && says("sec-fetch-mode", "navigate")
+        && says("sec-fetch-dest", "document")
 }
 
 /// The value of a header that stands at most once.

@@ -20,6 +20,7 @@ pub struct Running {
     app: Router,
     head: Duration,
     address: String,
+    studio: Arc<Studio>,
 }
 
 /// Opens the files and listens on the loopback address only.
@@ -37,12 +38,13 @@ pub fn start(settings: &Settings) -> Result<Running> {
     let token = token()?;
     Ok(Running {
         app: guarded(
-            router(studio),
+            router(studio.clone()),
             Guard::new(port, token.clone(), settings.limits),
         ),
         head: settings.limits.head,
         address: format!("http://127.0.0.1:{port}/#token={token}"),
         listener,
+        studio,
     })
 }
 
@@ -76,11 +78,9 @@ fn guarded(routes: Router, who: Guard) -> Router {
     Router::new().fallback_service(routes).layer(checked)
 }
 
-/// 128 bits from the operating system, the one thing here that no seed decides.
+/// 128 bits from the operating system, which no seed decides.
 fn token() -> Result<String> {
-    let mut bytes = [0_u8; 16];
-    getrandom::fill(&mut bytes).map_err(Error::method)?;
-    Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
+    super::private::random_name(16)
 }
 
 impl Running {
@@ -108,18 +108,45 @@ impl Running {
             }
         });
         runtime.shutdown_background();
+        self.studio.end();
         served.map_err(Error::method)
     }
 
-    /// Answers until Ctrl-C.
+    /// Number of documents with unsaved work of studios that ended, which the page offers.
+    pub fn count_offered(&self) -> usize {
+        self.studio.count_offered()
+    }
+
+    /// Answers until Ctrl-C. With unsaved work `ask` is then called with the names of the documents: true ends the studio, false
+    /// goes on, and another Ctrl-C before the answer ends it. What is unsaved stays in the journals in any case.
     ///
     /// # Errors
     /// As [`Self::serve`].
-    pub fn serve_until_interrupted(self) -> Result<()> {
-        self.serve(async {
-            // Without the signal there is nothing to wait for but the system ending the process.
-            if tokio::signal::ctrl_c().await.is_err() {
-                std::future::pending::<()>().await;
+    pub fn serve_until_interrupted(
+        self,
+        ask: impl Fn(&[String]) -> bool + Send + Sync + 'static,
+    ) -> Result<()> {
+        let studio = self.studio.clone();
+        let ask = Arc::new(ask);
+        self.serve(async move {
+            loop {
+                // Without the signal there is nothing to wait for but the system ending the process.
+                if tokio::signal::ctrl_c().await.is_err() {
+                    std::future::pending::<()>().await;
+                }
+                let (studio, ask) = (studio.clone(), ask.clone());
+                // Others may hold a document while it works: the server's own threads do not wait for it.
+                let asked = tokio::task::spawn_blocking(move || {
+                    let names = studio.unsaved();
+                    names.is_empty() || ask(&names)
+                });
+                let ends = tokio::select! {
+                    answer = asked => answer.unwrap_or(true),
+                    again = tokio::signal::ctrl_c() => again.is_ok(),
+                };
+                if ends {
+                    return;
+                }
             }
         })
     }

@@ -13,6 +13,8 @@ export interface Summary {
   revision: number;
   unsaved: boolean;
   job: Job | null;
+  /** The unit in which it is merged with others of its kind; null if it cannot be merged. */
+  mergesIn: string | null;
 }
 
 /** Work that takes longer than an answer may. */
@@ -44,11 +46,22 @@ export interface Example {
   about: string;
 }
 
+/** Work of a studio that ended, which can be opened again. */
+export interface Unsaved {
+  id: string;
+  kind: Summary["kind"];
+  name: string;
+  file: string;
+  edits: number;
+  seconds: number | null;
+}
+
 export interface Listing {
   version: string;
   readOnly: boolean;
   documents: Summary[];
   examples: Example[];
+  unsaved: Unsaved[];
 }
 
 /** An answer that says no. */
@@ -94,8 +107,8 @@ async function json<T>(path: string, body?: unknown): Promise<T> {
 
 const POLL = 150;
 
-/** Waits for a job, telling how far it is; what it came to. */
-async function followed(job: Job, tell: (job: Job) => void): Promise<Doc> {
+/** Waits for a job, telling how far it is; what it came to, for a page that shows a document. */
+async function followed(job: Job, tell: (job: Job) => void, shown?: Doc): Promise<Doc> {
   let now = job;
   while (now.state === "running") {
     tell(now);
@@ -104,26 +117,52 @@ async function followed(job: Job, tell: (job: Job) => void): Promise<Doc> {
   }
   if (now.state === "stopped") throw new Refused(499, "Stopped: the document is as it was before.");
   if (now.state === "failed" || now.document === null) throw new Refused(422, now.error ?? "the work failed");
-  return get(now.document);
+  return get(now.document, shown);
 }
 
 /** A document, at once or when the job is over that makes it. */
-async function document(path: string, body: unknown, tell: (job: Job) => void): Promise<Doc> {
-  const said = await json<Doc | { job: Job; id?: undefined }>(path, body);
-  return said.id === undefined && said.job ? followed(said.job, tell) : (said as Doc);
+async function document(path: string, body: unknown, tell: (job: Job) => void, shown?: Doc): Promise<Doc> {
+  const said = await json<Told | { job: Job; id?: undefined }>(path, body);
+  return said.id === undefined && said.job ? followed(said.job, tell, shown) : seen(said as Told, shown);
 }
+
+/** A document as it is told, perhaps by the difference of its view to the one that the page shows. */
+interface Told extends Doc {
+  difference?: { set: Record<string, unknown>; at: Record<string, Record<string, unknown>>; gone: string[] };
+}
+
+/** The document with its view. */
+function seen({ difference, ...doc }: Told, shown?: Doc): Doc {
+  if (!difference || !shown) return doc;
+  const view: Record<string, unknown> = { ...(shown.view as Record<string, unknown>), ...difference.set };
+  for (const key of difference.gone) delete view[key];
+  for (const [key, entries] of Object.entries(difference.at)) {
+    const list = [...(view[key] as unknown[])];
+    for (const [k, value] of Object.entries(entries)) list[Number(k)] = value;
+    view[key] = list;
+  }
+  return { ...doc, view };
+}
+
+/** The revision of a document whose view may be told by its difference: that of a city, whose lists are long. */
+const shows = (shown?: Doc) => (shown?.kind === "city" ? shown.revision : undefined);
 
 export const listing = () => json<Listing>("/documents");
 export const openExample = (example: string, tell: (job: Job) => void) => document("/documents", { example }, tell);
-export const get = (id: string) => json<Doc>(`/documents/${id}`);
-export const edit = (id: string, commands: unknown[], revision: number, tell: (job: Job) => void) =>
-  document(`/documents/${id}/edit`, { commands, revision }, tell);
+export const get = async (id: string, shown?: Doc) =>
+  seen(await json<Told>(`/documents/${id}${shows(shown) === undefined ? "" : `?shows=${shows(shown)}`}`), shown);
+/** Does commands on a document that is shown; long lists of its view that stay the same are not sent again. */
+export const edit = (shown: Doc, commands: unknown[], tell: (job: Job) => void) =>
+  document(`/documents/${shown.id}/edit`, { commands, revision: shown.revision, shows: shows(shown) }, tell, shown);
 export const stop = (job: string) => json<{ job: Job }>(`/jobs/${job}/stop`, {});
 export const question = <T>(id: string, asked: unknown) => json<T>(`/documents/${id}/ask`, asked);
 export const undo = (id: string) => json<Doc>(`/documents/${id}/undo`, {});
 export const redo = (id: string) => json<Doc>(`/documents/${id}/redo`, {});
 export const save = (id: string, overwrite: boolean) =>
   json<{ file: string; script: string }>(`/documents/${id}/save`, { overwrite });
+export const close = (id: string, discard: boolean) => json<object>(`/documents/${id}/close`, { discard });
+export const recover = (id: string, tell: (job: Job) => void) => document(`/unsaved/${id}/open`, {}, tell);
+export const discard = (id: string) => json<object>(`/unsaved/${id}/discard`, {});
 export const script = async (id: string) => (await ask(`/documents/${id}/script`)).blob();
 export const exported = async (id: string, format: string) =>
   (await ask(`/documents/${id}/export/${format}`)).blob();

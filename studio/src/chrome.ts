@@ -101,9 +101,16 @@ export function footer(session: Session<unknown>): HTMLElement {
   return h("div", {}, section("Commands", empty, log, time), section("Download", exports));
 }
 
-/** Undo, redo and save by the usual keys. */
-export function keys(session: Session<unknown>, readOnly: boolean): (event: KeyboardEvent) => void {
+/** Undo, redo and save by the usual keys, and Escape, which lets go of what is selected. */
+export function keys(session: Session<unknown>, readOnly: boolean, clear: () => void): (event: KeyboardEvent) => void {
   return (event) => {
+    if (event.key === "Escape" && !event.defaultPrevented && !document.querySelector("dialog[open]")) {
+      // First out of the field, then out of the selection.
+      const field = document.activeElement;
+      if (field instanceof HTMLInputElement || field instanceof HTMLTextAreaElement || field instanceof HTMLSelectElement) field.blur();
+      else clear();
+      return;
+    }
     if (!(event.ctrlKey || event.metaKey)) return;
     const key = event.key.toLowerCase();
     const typing = event.target instanceof HTMLInputElement;

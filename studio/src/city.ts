@@ -330,6 +330,12 @@ export function city(session: Session<View>): Editor<View> {
     stage,
     panel,
     show,
+    clear: () => {
+      picked = null;
+      known = null;
+      set = new Set();
+      show(session.doc);
+    },
     close: () => {
       original?.geometry.dispose();
       beside?.close();

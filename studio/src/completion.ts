@@ -332,5 +332,9 @@ export function completion(session: Session<View>): Editor<View> {
   }
 
   drawing.draggable(drawing.svg, begin);
-  return { stage, panel, show, close: () => {} };
+  const clear = () => {
+    selected.clear();
+    show(session.doc);
+  };
+  return { stage, panel, show, clear, close: () => {} };
 }

@@ -90,7 +90,9 @@ export function grammar(session: Session<View>): Editor<View> {
         drawing.draggable(border, () => (dx, dy, done) => {
           const by = along ? dx : dy;
           border.setAttribute("transform", along ? `translate(${by},0)` : `translate(0,${by})`);
-          if (done) void edit(`border ${own}.${line.names[part]}=${four(by / (relative ? scale : 1))}`);
+          const command = `border ${own}.${line.names[part]}=${four(by / (relative ? scale : 1))}`;
+          if (done) void edit(command);
+          else void session.preview([{ do: "edit", edits: [command] }], preview);
         });
         return border;
       });
@@ -110,6 +112,7 @@ export function grammar(session: Session<View>): Editor<View> {
       size = done ? null : [w, hh];
       outline();
       if (done) void derive([w, hh]);
+      else void session.preview([{ do: "derive", size: [w, hh], seed: view.seed, start: view.start }], preview);
     };
     drawing.draggable(right, () => (dx, _dy, done) => resize(dx, 0, done));
     drawing.draggable(upper, () => (_dx, dy, done) => resize(0, dy, done));
@@ -131,13 +134,36 @@ export function grammar(session: Session<View>): Editor<View> {
       path.push(`M${x} ${y}h${width}v${height}h${-width}z`);
     }
     const cells = [...paths].map(([label, path]) => {
-      const known = /^(wall|window|door|balcony|shop|roof|sky)/i.exec(label)?.[1].toLowerCase();
-      const cell = s("path", { d: path.join(""), class: `terminal ${known ?? ""}` }, s("title", {}, label));
-      if (!known) cell.style.fill = `color-mix(in srgb, rgb(${view.colors[label].join(",")}) 45%, var(--paper))`;
+      const cell = s("path", { d: path.join(""), class: "terminal" }, s("title", {}, label));
+      cell.style.fill = material(label, view.colors[label]);
       return cell;
     });
     return s("g", {}, ...cells);
   }
+
+  /** Shows a facade while something is dragged, in the frame of the one before. */
+  function preview(view: View) {
+    const next = facade(view);
+    cells.replaceWith(next);
+    cells = next;
+    drawn = null;
+  }
+
+  /** Materials, whatever the theme of the page. */
+  const MATERIALS: [RegExp, string][] = [
+    [/^(wall|facade|background)/i, "#e6dccb"],
+    [/^(window|glass|pane)/i, "#9dbbd1"],
+    [/^(shutter|blind)/i, "#7f9a86"],
+    [/^door/i, "#8d6748"],
+    [/^(balcony|rail)/i, "#8f8aa6"],
+    [/^shop/i, "#7fa58c"],
+    [/^(roof|chimney)/i, "#a2644f"],
+    [/^(sky)/i, "#cfe0ec"],
+    [/^(cornice|sill|molding|ledge|frame|deco|pillar|column|stone|base)/i, "#cbbfa8"],
+    [/^(plant|tree|hedge)/i, "#86a172"],
+  ];
+  const material = (label: string, [r, g, b]: [number, number, number]) =>
+    MATERIALS.find(([name]) => name.test(label))?.[1] ?? `color-mix(in srgb, rgb(${r},${g},${b}) 45%, #f4efe6)`;
 
   let drawn: View | null = null;
   let cells = s("g", {});
@@ -216,7 +242,7 @@ export function grammar(session: Session<View>): Editor<View> {
     const list = h("div", { class: "row" });
     void session.calmly(async () => {
       const all = await listing();
-      const others = all.documents.filter((d) => d.kind === "grammar" && d.id !== session.doc.id);
+      const others = all.documents.filter((d) => d.kind === "grammar" && d.mergesIn === session.doc.view.unit && d.id !== session.doc.id);
       list.replaceChildren(
         ...others.map((d) =>
           button(`With ${d.name}`, () => session.calmly(async () => merge([await (await exported(d.id, "facade.json")).text()])), { title: "One grammar of both facades, each as it is shown" }),
@@ -353,5 +379,10 @@ export function grammar(session: Session<View>): Editor<View> {
   drawing.svg.addEventListener("click", (event) => {
     if (!(event.target as Element).matches(".border, .edge")) pick(drawing.at(event));
   });
-  return { stage, panel, show, close: () => {} };
+  const clear = () => {
+    selection = null;
+    clicked = null;
+    show(session.doc);
+  };
+  return { stage, panel, show, clear, close: () => {} };
 }

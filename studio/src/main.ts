@@ -44,27 +44,59 @@ function go(id: string | null) {
   location.hash = hash.toString();
 }
 
-async function start() {
+/** A time that has passed, in words. */
+function ago(seconds: number): string {
+  const units: [number, string][] = [[86_400, "day"], [3600, "hour"], [60, "minute"]];
+  for (const [length, name] of units) {
+    const count = Math.floor(seconds / length);
+    if (count > 0) return `${count} ${name}${count === 1 ? "" : "s"} ago`;
+  }
+  return "just now";
+}
+
+async function start(): Promise<void> {
   const all = await api.listing();
   const card = (title: string, about: string, kind: api.Summary["kind"], act: () => void) =>
     h("li", {}, h("button", { type: "button", class: "card", onclick: act }, h("span", { class: "kind" }, kindName(kind)), h("strong", {}, title), h("span", {}, about)));
+  /** A card with a button in its corner. */
+  const removable = (item: HTMLElement, text: string, label: string, act: () => Promise<unknown>) => {
+    item.append(button(text, () => act().then(start).catch(fail), { class: "quiet remove", "aria-label": label }));
+    return item;
+  };
   const opened = all.documents.map((d) =>
-    card(d.name, d.unsaved ? "open, not saved" : "open", d.kind, () => go(d.id)),
+    removable(
+      card(d.name, d.unsaved ? "open, not saved" : "open", d.kind, () => go(d.id)),
+      "Close",
+      `Close ${d.name}`,
+      async () => {
+        if (!d.unsaved || confirm(`${d.name} has unsaved work. Close it without saving?`)) await api.close(d.id, d.unsaved);
+      },
+    ),
   );
   const working = h("div", { class: "work", hidden: true });
-  const examples = all.examples.map((e) =>
-    card(e.title, e.about, e.kind, async () => {
-      try {
-        const doc = await api.openExample(e.id, (job) => {
-          working.hidden = false;
-          working.replaceChildren(h("span", { role: "status" }, `${e.title}: ${job.step || "opening"}`), h("progress", { max: 1, value: job.part, "aria-label": "How much is done" }), button("Stop", () => void api.stop(job.id).catch(fail)));
-        });
-        go(doc.id);
-      } catch (error) {
-        working.hidden = true;
-        fail(error);
-      }
-    }),
+  /** Opens a document, telling of the work. */
+  const openBy = (title: string, work: (tell: (job: api.Job) => void) => Promise<api.Doc>) => async () => {
+    try {
+      const doc = await work((job) => {
+        working.hidden = false;
+        working.replaceChildren(h("span", { role: "status" }, `${title}: ${job.step || "opening"}`), h("progress", { max: 1, value: job.part, "aria-label": "How much is done" }), button("Stop", () => void api.stop(job.id).catch(fail)));
+      });
+      go(doc.id);
+    } catch (error) {
+      working.hidden = true;
+      fail(error);
+    }
+  };
+  const examples = all.examples.map((e) => card(e.title, e.about, e.kind, openBy(e.title, (tell) => api.openExample(e.id, tell))));
+  const unsaved = all.unsaved.map((u) =>
+    removable(
+      card(u.name, `${u.edits} ${u.edits === 1 ? "edit" : "edits"} not saved${u.seconds === null ? "" : `, ${ago(u.seconds)}`}: open it again`, u.kind, openBy(u.name, (tell) => api.recover(u.id, tell))),
+      "Discard",
+      `Discard the unsaved work on ${u.name}`,
+      async () => {
+        if (confirm(`Discard the unsaved work on ${u.name} for good?`)) await api.discard(u.id);
+      },
+    ),
   );
   document.title = "Edifice studio";
   app.replaceChildren(
@@ -74,6 +106,7 @@ async function start() {
       h("h1", {}, "Edifice studio"),
       working,
       h("p", { class: "lead" }, "Draw a part, and see what a method makes of the rest. What you fix stays; every edit is a command that can be run again without this page."),
+      ...(unsaved.length > 0 ? [h("h2", {}, "Not saved when the studio ended"), h("ul", { class: "cards unsaved" }, ...unsaved)] : []),
       ...(opened.length > 0 ? [h("h2", {}, "Open"), h("ul", { class: "cards" }, ...opened)] : []),
       h("h2", {}, "Begin with"),
       h("ul", { class: "cards" }, ...examples),
@@ -87,7 +120,7 @@ async function edit(id: string) {
   const [all, doc] = await Promise.all([api.listing(), api.get(id)]);
   const session = new Session<unknown>(doc, say);
   const editor = EDITORS[doc.kind](session);
-  const pressed = keys(session, all.readOnly);
+  const pressed = keys(session, all.readOnly, () => editor.clear?.());
   const show = () => {
     document.title = `${session.doc.name} · Edifice studio`;
     editor.show(session.doc);
@@ -102,6 +135,11 @@ async function edit(id: string) {
   session.onWork(() => app.classList.toggle("busy", session.busy));
   show();
   addEventListener("keydown", pressed);
+  // The studio keeps what is not saved, but the page is where it is seen.
+  const leaving = (event: BeforeUnloadEvent) => {
+    if (session.doc.unsaved || session.busy) event.preventDefault();
+  };
+  addEventListener("beforeunload", leaving);
   const poll = setInterval(() => {
     if (!document.hidden) session.refresh().catch(fail);
   }, POLL);
@@ -110,6 +148,7 @@ async function edit(id: string) {
   close = () => {
     clearInterval(poll);
     removeEventListener("keydown", pressed);
+    removeEventListener("beforeunload", leaving);
     editor.close();
   };
 }

@@ -9,6 +9,8 @@ export interface Editor<View> {
   panel: HTMLElement;
   /** Shows the document as it is now. */
   show(doc: api.Doc<View>): void;
+  /** Lets go of what is selected. */
+  clear?(): void;
   /** Lets go of what it holds. */
   close(): void;
 }
@@ -25,6 +27,8 @@ export class Session<View = never> {
   private listeners: (() => void)[] = [];
   private watchers: (() => void)[] = [];
   private say: (text: string, kind: "note" | "error") => void;
+  private wish: { commands: unknown[]; show: (view: View) => void } | null = null;
+  private asking = false;
   private pending: (() => unknown[])[] = [];
 
   constructor(doc: api.Doc<View>, say: (text: string, kind: "note" | "error") => void) {
@@ -78,6 +82,28 @@ export class Session<View = never> {
     }
   }
 
+  /** Shows what commands would make of the document, without doing them. While the server works only the last wish waits, and
+   * nothing is shown once the document has changed. */
+  async preview(commands: unknown[], show: (view: View) => void) {
+    this.wish = { commands, show };
+    if (this.asking) return;
+    this.asking = true;
+    try {
+      while (this.wish) {
+        const { commands: wanted, show: shown } = this.wish;
+        this.wish = null;
+        const { revision } = this.doc;
+        const { view } = await api.question<{ view: View }>(this.doc.id, { preview: wanted });
+        if (!this.busy && revision === this.doc.revision) shown(view);
+      }
+    } catch {
+      // What cannot be done is told when it is done, not while it is dragged.
+      this.wish = null;
+    } finally {
+      this.asking = false;
+    }
+  }
+
   /** Tells the user something. */
   note(text: string) {
     this.say(text, "note");
@@ -85,6 +111,7 @@ export class Session<View = never> {
 
   /** Does commands, made when their turn comes: an edit that waits sees what the one before came to. */
   async run(commands: () => unknown[]): Promise<void> {
+    this.wish = null;
     this.pending.push(commands);
     if (this.busy) return;
     this.busy = true;
@@ -99,7 +126,7 @@ export class Session<View = never> {
         // Of several that wait, each is done: none is lost while the server works.
         const next = this.pending.shift()!();
         if (next.length > 0) {
-          this.take(await api.edit(this.doc.id, next, this.doc.revision, working));
+          this.take(await api.edit(this.doc as api.Doc, next, working));
           this.say(this.doc.warnings.join("; "), "note");
         }
       }

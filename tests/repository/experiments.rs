@@ -15,7 +15,7 @@ fn options(out: &Path, threads: usize) -> Options {
         budget: Budget::Smoke,
         out: out.to_path_buf(),
         threads,
-        command: "test".into(),
+        verify: false,
     }
 }
 

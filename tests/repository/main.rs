@@ -7,5 +7,7 @@ mod formats;
 mod help_examples;
 mod installed;
 mod prose;
+mod quoted;
+mod reports;
 #[cfg(unix)]
 mod sizes;

@@ -216,3 +216,35 @@ fn a_building_knows_its_rules_and_is_found_again() {
         assert_eq!(status, 422, "{question}: {answer}");
     }
 }
+
+/// An edit of a city that a page shows is told by what changed.
+#[test]
+fn an_edit_is_told_by_its_difference() {
+    let api = Api::new(&Settings::default());
+    let opened = api.post("/api/documents", json!({"example": "town"}));
+    let id = opened["id"].as_str().expect("an id");
+    let rule = &opened["view"]["rules"][0]["rule"];
+    let edit = |command: String, revision: u64, shows: Value| {
+        let body = json!({"commands": [{"do": "edit", "edits": [command]}], "revision": revision, "shows": shows});
+        api.post(&format!("/api/documents/{id}/edit"), body)
+    };
+    let told = edit(format!("weight {rule}=3"), 0, 0.into());
+    assert!(told["view"].is_null(), "the difference stands in its place");
+    let (short, long) = (told["difference"].to_string(), opened["view"].to_string());
+    assert!(
+        5 * short.len() < long.len(),
+        "{} of {} bytes",
+        short.len(),
+        long.len()
+    );
+    // Who shows another revision, or none, is told the whole.
+    for shows in [Value::Null, 0.into(), 7.into()] {
+        let revision = api.get(&format!("/api/documents/{id}"))["revision"].as_u64();
+        let told = edit(
+            format!("weight {rule}=5"),
+            revision.expect("a number"),
+            shows,
+        );
+        assert!(told["view"].is_object() && told["difference"].is_null());
+    }
+}

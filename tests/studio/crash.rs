@@ -12,15 +12,25 @@ use edifice_editing::work::Work;
 use rand::RngExt;
 
 /// A studio in a process of its own.
-struct Process {
-    child: Child,
+pub struct Process {
+    pub child: Child,
     port: u16,
-    token: String,
+    pub token: String,
+    /// Folder of its state, unless the test has one of its own.
+    _state: Option<tempfile::TempDir>,
 }
 
 impl Process {
     /// Runs `prefix... edifice studio --no-open FILE`.
-    fn start(prefix: &[&str], file: &Path) -> Self {
+    pub fn start(prefix: &[&str], file: &Path) -> Self {
+        let state = tempfile::tempdir().expect("a folder");
+        let mut process = Self::start_in(prefix, file, state.path());
+        process._state = Some(state);
+        process
+    }
+
+    /// The same with a folder of its state.
+    pub fn start_in(prefix: &[&str], file: &Path, state: &Path) -> Self {
         let words = [
             prefix,
             &[env!("CARGO_BIN_EXE_edifice"), "studio", "--no-open"],
@@ -29,6 +39,7 @@ impl Process {
         let mut child = Command::new(words[0])
             .args(&words[1..])
             .arg(file)
+            .env("XDG_STATE_HOME", state)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -44,18 +55,24 @@ impl Process {
             child,
             port: port.expect("a port"),
             token: token.to_owned(),
+            _state: None,
         }
     }
 
     /// Sends a request; the connection that its answer comes on.
     fn send(&self, path: &str, body: &str) -> Option<TcpStream> {
+        self.send_to(&format!("/api/documents/d1/{path}"), body)
+    }
+
+    fn send_to(&self, path: &str, body: &str) -> Option<TcpStream> {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).ok()?;
         stream
             .set_read_timeout(Some(Duration::from_secs(30)))
             .ok()?;
         let text = format!(
-            "POST /api/documents/d1/{path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nX-Edifice-Token: {}\r\nConnection: close\r\n\
+            "{} {path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nX-Edifice-Token: {}\r\nConnection: close\r\n\
              Content-Type: application/json\r\nContent-Length: {}\r\n\r\n{body}",
+            if body.is_empty() { "GET" } else { "POST" },
             self.port,
             self.token,
             body.len()
@@ -64,14 +81,19 @@ impl Process {
         Some(stream)
     }
 
-    fn post(&self, path: &str, body: &str) -> String {
+    pub fn post(&self, path: &str, body: &str) -> String {
+        self.ask(&format!("/api/documents/d1/{path}"), body)
+    }
+
+    /// The answer to a request; GET without a body.
+    pub fn ask(&self, path: &str, body: &str) -> String {
         let mut text = String::new();
-        let mut stream = self.send(path, body).expect("connects");
+        let mut stream = self.send_to(path, body).expect("connects");
         stream.read_to_string(&mut text).expect("answers");
         text
     }
 
-    fn edit(&self, revision: usize, edit: &str) -> String {
+    pub fn edit(&self, revision: usize, edit: &str) -> String {
         let body = format!(
             "{{\"commands\": [{{\"do\": \"edit\", \"edits\": [\"{edit}\"]}}], \"revision\": {revision}}}"
         );
@@ -87,7 +109,7 @@ impl Drop for Process {
 }
 
 /// A layout of `count` elements: its file takes a while to write.
-fn large(folder: &Path, count: usize) -> PathBuf {
+pub fn large(folder: &Path, count: usize) -> PathBuf {
     let region = |k: usize| {
         let (x, y) = (k % 100, k / 100);
         format!(

@@ -103,6 +103,33 @@ fn a_foreign_origin_and_a_foreign_site_are_refused() {
 }
 
 #[test]
+fn a_window_may_come_from_elsewhere_to_the_page_alone() {
+    let server = server();
+    let from = |site| {
+        [
+            ("Sec-Fetch-Site", site),
+            ("Sec-Fetch-Mode", "navigate"),
+            ("Sec-Fetch-Dest", "document"),
+        ]
+    };
+    let page = server.ask("GET /", &from("cross-site"), "");
+    assert_eq!(page.status, 200, "{}", page.text);
+    assert!(page.text.contains("frame-ancestors 'none'"));
+    for line in ["GET /app.js", "GET /api/documents", "POST /", "GET /?x"] {
+        let allowed = line == "GET /?x";
+        let answer = server.ask(line, &from("cross-site"), "");
+        assert_eq!(answer.status == 200, allowed, "{line}: {}", answer.text);
+    }
+    let frame = [
+        ("Sec-Fetch-Site", "cross-site"),
+        ("Sec-Fetch-Mode", "navigate"),
+        ("Sec-Fetch-Dest", "iframe"),
+    ];
+    assert_eq!(server.ask("GET /", &frame, "").status, 403);
+    assert_eq!(server.ask("GET /", &from("same-site"), "").status, 403);
+}
+
+#[test]
 fn without_the_token_there_is_no_answer() {
     let server = server();
     let wrong = "0".repeat(server.token.len());

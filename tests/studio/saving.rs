@@ -55,6 +55,34 @@ fn what_another_program_wrote_is_not_replaced_unasked() {
 }
 
 #[test]
+fn a_foreign_script_is_not_replaced_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = file(folder.path());
+    let script = folder.path().join("f.sh");
+    let mine = "#!/bin/sh\necho mine\n";
+    std::fs::write(&script, mine).expect("written");
+    let message = edited(&path).save(false).expect_err("refused").to_string();
+    assert!(message.starts_with("f.sh exists"), "{message}");
+    assert_eq!(std::fs::read_to_string(&script).expect("there"), mine);
+    assert_eq!(std::fs::read_to_string(&path).expect("there"), FACADE);
+    // Asked, it is replaced; the studio's own script of another time needs no question.
+    assert!(edited(&path).save(true).is_ok());
+    let first = std::fs::read(&script).expect("there");
+    let mut again = Open::file(&path).expect("opens");
+    again
+        .edit(&[json!({"do": "edit", "edits": ["move #0=3,3"]})])
+        .expect("can be done");
+    assert!(again.save(false).is_ok());
+    assert_ne!(std::fs::read(&script).expect("there"), first);
+    // One line of somebody makes it his.
+    let mut own = std::fs::read_to_string(&script).expect("there");
+    own.push_str("echo mine\n");
+    std::fs::write(&script, &own).expect("written");
+    assert!(edited(&path).save(false).is_err());
+    assert_eq!(std::fs::read_to_string(&script).expect("there"), own);
+}
+
+#[test]
 fn two_studios_on_one_file_are_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = file(folder.path());

@@ -86,6 +86,7 @@ pub fn report(plan: &Plan, out: &Path, study: &Study, allow_missing: bool) -> Re
             markdown: text.clone(),
             files: Vec::new(),
             made: format!("version {}", plan.head.program),
+            ..Section::default()
         }],
     };
     write("report.html", &index(&[page]))?;

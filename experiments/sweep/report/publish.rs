@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::REPORT;
 use crate::frame::SWEEPS;
-use crate::frame::provenance::{Machine, Made, Run};
+use crate::frame::provenance::{Machine, Made, Run, commit};
 use crate::frame::write_index;
 use crate::sweep::collect::RESULTS;
 use crate::sweep::plan::Plan;
@@ -31,6 +31,7 @@ pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path
             .into(),
     );
     let data = head.instances.iter().chain(&head.learn);
+    let (commit, dirty) = commit();
     let made = Made {
         title: study.about.to_owned(),
         command: "edifice sweep report".to_owned(),
@@ -39,6 +40,9 @@ pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path
         settings,
         data: data.map(|i| (i.name.clone(), i.digest.clone())).collect(),
         version: head.program.clone(),
+        commit,
+        dirty,
+        sources: String::new(),
         wall_seconds: seconds,
         machine: Machine::this(rayon::current_num_threads()),
         files: files(folder)?,

@@ -16,7 +16,7 @@ use crate::reading::Reading;
 /// Options of `facade train`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice facade train layouts/ -o paris.completion.json\n  edifice facade train layouts/ --made 100 -o few.completion.json\n  edifice facade train a.facade.json b.facade.json cmp_b0001.xml -o mine.completion.json"
+    after_help = "Examples:\n  edifice facade train datasets/facade_grammar/layouts -o mine.completion.json\n  edifice facade train datasets/facade_grammar/layouts/terrace_*.facade.json --made 100 -o few.completion.json\n  edifice facade train datasets/examples/facade.png datasets/examples/facade_2.png datasets/examples/grid.txt -o two.completion.json"
 )]
 pub struct Args {
     /// Whole facades, and folders of them (.facade.json, .xml, .png)

@@ -14,8 +14,7 @@ use crate::reading::{self, Reading};
 /// Options of `edifice grammar evaluate`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice grammar infer house.facade.json -o house.grammar.json
-  edifice grammar evaluate house.grammar.json house.facade.json --bound --json
+  edifice grammar evaluate fig9.grammar.json datasets/facade_grammar/wu2014_fig9.facade.json --bound --json
 
 Exit code 1 when the grammar does not derive exactly the facades; the cost and the pixel error are told first.")]
 pub struct Args {

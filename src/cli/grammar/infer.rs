@@ -21,12 +21,11 @@ use crate::tolerance;
 /// Options of `edifice grammar infer`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar infer house.facade.json -o house.grammar.json
-  edifice grammar infer monge_42.png --ops split --seed 7 -o monge_42.cga --json
-  edifice grammar infer a.facade.json b.facade.json c.facade.json -o joint.grammar.json
-
-  edifice grammar infer segmented.png --tolerance 1% -o short.grammar.json
-  edifice grammar infer street/*.png --sizes free -o street.library.json
+  edifice grammar infer datasets/facade_grammar/wu2014_fig9.facade.json -o fig9.grammar.json
+  edifice grammar infer datasets/examples/facade.png --ops split --seed 7 -o facade.cga --json
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_*.facade.json -o joint.grammar.json
+  edifice grammar infer datasets/examples/facade.png --tolerance 1% -o short.grammar.json
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_*.facade.json --sizes free -o street.library.json
 
 Several facades give one joint grammar, with the rules that they share written once. With --sizes free, sizes and the
 counts of repeats are parameters of the rules, so that different facades share them: a library, which draws new facades

@@ -11,7 +11,9 @@ const { EDIFICE, BROWSER, PICTURES } = process.env;
 /** Starts the program in a folder of its own; its address. */
 export async function studio(args = []) {
   const folder = mkdtempSync(join(tmpdir(), "studio-"));
-  const child = spawn(EDIFICE, ["studio", "--no-open", ...args], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  // Its state in a folder of its own, too: what other studios of this user left is not offered.
+  const env = { ...process.env, XDG_STATE_HOME: mkdtempSync(join(tmpdir(), "studio-state-")) };
+  const child = spawn(EDIFICE, ["studio", "--no-open", ...args], { cwd: folder, env, stdio: ["ignore", "pipe", "inherit"] });
   const address = await new Promise((found, failed) => {
     let text = "";
     child.stdout.on("data", (bytes) => {

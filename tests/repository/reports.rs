@@ -1,0 +1,255 @@
+//! The kept report holds together: no link leads nowhere, no best-so-far series rises, every artefact has a command that can be
+//! typed, and none is of an unoptimized build but those listed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use edifice_experiments::ALL;
+use serde_json::Value;
+
+/// Kept artefacts of an unoptimized build, with the reason why they still are. This list may only shrink.
+const UNOPTIMIZED: [(&str, &str); 5] = [
+    ("building_exteriors/figure_10", "not run again since"),
+    ("building_exteriors/figure_12_right", "not run again since"),
+    ("building_exteriors/figure_14", "not run again since"),
+    ("structure_completion/figure_17", "not run again since"),
+    ("structure_completion/figure_18", "not run again since"),
+];
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// All kept artefacts: `paper/name`, and what `run.json` says of them.
+fn kept() -> Vec<(String, Value)> {
+    let mut all = Vec::new();
+    for experiment in ALL {
+        let path = root()
+            .join("reports")
+            .join(experiment.slug)
+            .join("run.json");
+        let text = std::fs::read_to_string(path).expect("run.json");
+        let run: Value = serde_json::from_str(&text).expect("JSON");
+        let artefacts = run["artefacts"].as_object().expect("artefacts");
+        let named =
+            |(name, made): (&String, &Value)| (format!("{}/{name}", experiment.slug), made.clone());
+        all.extend(artefacts.iter().map(named));
+    }
+    assert!(all.len() > 60, "{}", all.len());
+    all
+}
+
+/// Files of the repository that are pages, as git knows them; without git, none.
+fn pages() -> Vec<PathBuf> {
+    let output = std::process::Command::new("git")
+        .arg("-C")
+        .arg(root())
+        .args([
+            "ls-files",
+            "-co",
+            "--exclude-standard",
+            "*.md",
+            "reports/*.html",
+        ])
+        .output();
+    let Ok(output) = output.map_err(|_| ()) else {
+        return Vec::new();
+    };
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines()
+        .map(|line| root().join(line))
+        .filter(|p| p.is_file())
+        .collect()
+}
+
+/// Targets of the links and pictures of a page, those inside code left out.
+fn targets(text: &str, is_html: bool) -> Vec<String> {
+    if is_html {
+        let pieces = text.split("href=\"").chain(text.split("src=\"")).skip(1);
+        let cut = pieces
+            .filter_map(|p| p.split_once('"'))
+            .map(|(t, _)| t.to_owned());
+        return cut.filter(|t| !t.contains(['<', '\n'])).collect();
+    }
+    let mut fenced = false;
+    let mut found = Vec::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            fenced = !fenced;
+        }
+        if fenced {
+            continue;
+        }
+        let outside: Vec<&str> = line.split('`').step_by(2).collect();
+        for piece in outside.join("").split("](").skip(1) {
+            found.extend(piece.split_once(')').map(|(t, _)| t.to_owned()));
+        }
+    }
+    found
+}
+
+/// The name by which a heading is linked.
+fn anchor(heading: &str) -> String {
+    let heading = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = heading
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
+#[test]
+fn no_link_leads_nowhere() {
+    let mut dead = Vec::new();
+    let mut count = 0;
+    for page in pages() {
+        let text = std::fs::read_to_string(&page).expect("text");
+        let is_html = page.extension().is_some_and(|e| e == "html");
+        for target in targets(&text, is_html) {
+            if target.contains("://")
+                || target.starts_with("mailto:")
+                || target.starts_with("data:")
+            {
+                continue;
+            }
+            count += 1;
+            let (path, place) = target.split_once('#').unwrap_or((&target, ""));
+            let file = match path {
+                "" => page.clone(),
+                path => page.parent().expect("a folder").join(path),
+            };
+            let own = || std::fs::read_to_string(&file).unwrap_or_default();
+            let there = match (
+                file.exists(),
+                place,
+                file.extension().and_then(|e| e.to_str()),
+            ) {
+                (false, _, _) => false,
+                (true, "", _) => true,
+                (true, place, Some("md")) => own()
+                    .lines()
+                    .any(|l| l.starts_with('#') && anchor(l) == place),
+                (true, place, _) => own().contains(&format!("id=\"{place}\"")),
+            };
+            if !there {
+                dead.push(format!("{}: {target}", page.display()));
+            }
+        }
+    }
+    println!("{count} links");
+    assert!(
+        dead.is_empty(),
+        "{} dead links:\n{}",
+        dead.len(),
+        dead.join("\n")
+    );
+}
+
+#[test]
+fn no_lowest_cost_so_far_rises() {
+    let path = root().join("reports/facade_grammar/figure_14.csv");
+    let text = std::fs::read_to_string(path).expect("kept");
+    let mut series: BTreeMap<String, Vec<(u64, f64)>> = BTreeMap::new();
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (facade, iteration) = cells[3].split_once('@').expect("facade@iteration");
+        if cells[5] == "cost" {
+            let key = format!("{} {facade} {}", cells[2], cells[4]);
+            let point = (
+                iteration.parse().expect("a number"),
+                cells[6].parse().expect("a number"),
+            );
+            series.entry(key).or_default().push(point);
+        }
+    }
+    assert!(series.len() > 8, "{}", series.len());
+    for (name, mut points) in series {
+        points.sort_by_key(|p| p.0);
+        assert!(
+            points.windows(2).all(|pair| pair[0].1 >= pair[1].1),
+            "{name}: {points:?}"
+        );
+    }
+    // Averages at a time and at the end are of the same runs.
+    for (artefact, made) in kept() {
+        for comparison in made["comparisons"].as_array().expect("a list") {
+            let quantity = comparison["quantity"].as_str().unwrap_or_default();
+            if quantity.contains("cost at") && quantity.ends_with("and at the end") {
+                let ours = comparison["ours"].as_str().unwrap_or_default();
+                let costs: Vec<f64> = ours.split(", ").filter_map(|c| c.parse().ok()).collect();
+                assert!(
+                    costs.len() == 2 && costs[0] >= costs[1],
+                    "{artefact}: {quantity}: {ours}"
+                );
+            }
+        }
+    }
+}
+
+/// True for options of `edifice reproduce` by which this artefact is made.
+fn are_options(words: &[&str], artefact: &str) -> bool {
+    let only: Vec<&str> = words
+        .windows(2)
+        .filter(|w| w[0] == "--only")
+        .flat_map(|w| w[1].split(','))
+        .collect();
+    let known = words.chunks(2).all(|pair| match pair {
+        ["--data" | "--out" | "--only", value] => !value.starts_with('-'),
+        ["--budget", budget] => ["smoke", "default", "paper"].contains(budget),
+        ["--seed" | "--threads", number] => number.parse::<u64>().is_ok(),
+        _ => false,
+    });
+    known && (only.is_empty() || only.contains(&artefact))
+}
+
+#[test]
+fn every_kept_artefact_has_a_command_that_can_be_typed() {
+    let mut wrong = Vec::new();
+    for (artefact, made) in kept() {
+        let (slug, name) = artefact.split_once('/').expect("paper/name");
+        let command = made["command"].as_str().unwrap_or_default();
+        let words: Vec<&str> = command.split_whitespace().collect();
+        let options = match words.as_slice() {
+            ["edifice", "reproduce", paper, options @ ..] => {
+                *paper == slug && are_options(options, name)
+            }
+            _ => false,
+        };
+        let of_paper = ALL.iter().find(|e| e.slug == slug);
+        let exists = of_paper.is_some_and(|e| e.artefacts.iter().any(|a| a.name == name));
+        if !exists || !options {
+            wrong.push(format!("{artefact}: {command}"));
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "{} commands:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
+}
+
+#[test]
+fn no_kept_artefact_is_of_an_unoptimized_build_but_those_listed() {
+    let unoptimized = |(_, made): &(String, Value)| made["machine"]["optimized"] != true;
+    let found: BTreeSet<String> = kept()
+        .into_iter()
+        .filter(unoptimized)
+        .map(|(name, _)| name)
+        .collect();
+    let listed: BTreeSet<String> = UNOPTIMIZED
+        .iter()
+        .map(|(name, _)| (*name).to_owned())
+        .collect();
+    assert_eq!(found, listed, "the list names all of them, and no others");
+}
+
+/// The first page is small: at most 1 MB before its pictures.
+#[test]
+fn the_first_page_is_small_and_asks_nobody() {
+    let page =
+        std::fs::read_to_string(Path::new(&root()).join("reports/index.html")).expect("kept");
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    for foreign in ["<script src", "<link", "@import", "url(http"] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+}
