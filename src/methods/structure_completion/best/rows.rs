@@ -41,7 +41,7 @@ enum Known {
 struct Cell {
     host: Host,
     known: Known,
-    /// Where its balcony would hang, and the candidate for it with its value.
+    /// The place of its balcony, and the candidate for it with its value.
     place: Rect,
     candidate: Option<(usize, f64)>,
 }
@@ -152,7 +152,7 @@ fn groups(cells: &[Cell]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// What the open windows of a group get.
+/// The balconies that the open windows of a group get.
 fn decided(
     scene: &Scene,
     cells: &[Cell],
