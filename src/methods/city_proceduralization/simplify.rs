@@ -12,7 +12,7 @@ use super::components::{CELLS, Component, SAMPLES};
 use super::medoids::heights_apart;
 use super::types::Types;
 use edifice_grammar::instance::InstanceGrammar;
-use edifice_shape::triangles::{TriangleMesh, filled, height_map, is_closed, stitched};
+use edifice_shape::triangles::{TriangleMesh, filled, height_map, is_closed, merge_coplanar, stitched};
 use meshopt::{SimplifyOptions, simplify_decoder};
 
 /// Errors that are tried, in metres.
@@ -24,6 +24,8 @@ const FIRST_PRICE: f64 = 1e-3;
 const PRICES: usize = 30;
 /// Positions nearer than this are one, and corners nearer than this to an edge lie on it, in metres.
 const TOUCHING: f64 = 2e-3;
+/// Coplanar triangles of an open template are joined within this share of its box.
+const COPLANAR: f64 = 4e-3;
 /// A mesh of fewer triangles encloses nothing.
 const LEAST_TRIANGLES: usize = 4;
 
@@ -55,6 +57,11 @@ pub(super) fn templates(
         let own = &components[own];
         let [w, d, h] = own.frame.size;
         let whole = closed(own);
+        if !is_closed(&whole) {
+            // Open surfaces tear when they are simplified: only what is coplanar is joined.
+            let mesh = on_grid(own, merge_coplanar(&own.mesh, COPLANAR));
+            return vec![Reduced { mesh, apart: 0.0 }];
+        }
         let mut out: Vec<Reduced> = Vec::new();
         for error in ERRORS {
             let mut mesh = simplified(&whole, error);
