@@ -12,7 +12,9 @@ use super::components::{CELLS, Component, SAMPLES};
 use super::medoids::heights_apart;
 use super::types::Types;
 use edifice_grammar::instance::InstanceGrammar;
-use edifice_shape::triangles::{TriangleMesh, filled, height_map, is_closed, merge_coplanar, stitched};
+use edifice_shape::triangles::{
+    TriangleMesh, filled, height_map, is_closed, merge_coplanar, stitched,
+};
 use meshopt::{SimplifyOptions, simplify_decoder};
 
 /// Errors that are tried, in metres.
