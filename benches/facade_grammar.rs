@@ -3,6 +3,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use edifice::grammar::derive;
 use edifice::methods::facade_grammar::{Method, Settings, infer};
+use edifice::unwatched;
 use edifice_experiments::facade_grammar::made;
 
 fn settings(method: Method, iterations: u64) -> Settings {
@@ -24,7 +25,13 @@ fn ten_thousand_iterations(c: &mut Criterion) {
     for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
         let id = BenchmarkId::new(method.to_string(), facade.regions.len());
         group.bench_function(id, |b| {
-            b.iter(|| infer(std::slice::from_ref(&facade), &settings(method, 10_000)))
+            b.iter(|| {
+                infer(
+                    std::slice::from_ref(&facade),
+                    &settings(method, 10_000),
+                    &unwatched,
+                )
+            })
         });
     }
     group.finish();
@@ -40,7 +47,13 @@ fn scaling(c: &mut Criterion) {
         };
         let facade = layout.facade;
         let count = facade.regions.len();
-        let greedy = || infer(std::slice::from_ref(&facade), &settings(Method::Greedy, 1));
+        let greedy = || {
+            infer(
+                std::slice::from_ref(&facade),
+                &settings(Method::Greedy, 1),
+                &unwatched,
+            )
+        };
         group.bench_function(BenchmarkId::new("symmetry_and_greedy", count), |b| {
             b.iter(greedy)
         });

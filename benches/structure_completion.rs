@@ -14,6 +14,7 @@ use edifice::methods::structure_completion::score::{Change, Scored};
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
 use edifice::shape::{Axis, Rect};
+use edifice::unwatched;
 
 fn completion(c: &mut Criterion) {
     let model = shipped_model().expect("the shipped model");
@@ -67,7 +68,7 @@ fn paper(c: &mut Criterion) {
                 task.name(),
                 layout.elements.len()
             ),
-            |b| b.iter(|| optimize(&scene, &Budget::PAPER, 5, 1)),
+            |b| b.iter(|| optimize(&scene, &Budget::PAPER, 5, 1, &unwatched)),
         );
     }
     // Linear in the number of elements.
@@ -93,7 +94,7 @@ fn paper(c: &mut Criterion) {
     let hundred: Vec<_> = layouts.iter().cycle().take(100).collect();
     let states = weight_states(&hundred, 1);
     group.bench_function("weights/100", |b| {
-        b.iter(|| PaperModel::unbiased_weights(&paper.score, &states, &WEIGHTS, 1));
+        b.iter(|| PaperModel::unbiased_weights(&paper.score, &states, &WEIGHTS, 1, &unwatched));
     });
     group.finish();
 }

@@ -3,6 +3,7 @@
 
 use edifice::methods::city_proceduralization::{Budget, Settings, proceduralize};
 use edifice::shape::triangles::{City, CityBuilding, TriangleMesh};
+use edifice::unwatched;
 
 /// Appends the walls and the roof of a box to a mesh.
 fn push_box(mesh: &mut TriangleMesh, low: [f64; 3], size: [f64; 3]) {
@@ -45,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         budget: Budget::Templates(4),
         ..Settings::default()
     };
-    let made = proceduralize(&city, &settings)?;
+    let made = proceduralize(&city, &settings, &unwatched)?;
     println!(
         "{} buildings, {} components, {} templates, {} rules",
         city.buildings.len(),

@@ -4,6 +4,7 @@
 use edifice::grammar::{Costs, evaluate, listing};
 use edifice::methods::facade_grammar::{Settings, infer};
 use edifice::shape::{Facade, Rect, Region};
+use edifice::unwatched;
 
 /// Shops below five floors of windows; the top floor is lower.
 fn facade() -> Result<Facade, Box<dyn std::error::Error>> {
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         iterations: 200,
         ..Settings::default()
     };
-    let outcome = infer(&facades, &settings)?;
+    let outcome = infer(&facades, &settings, &unwatched)?;
     // No method marks its own work: this derives the grammar and compares with the facade.
     let found = evaluate(&outcome.grammar, &facades, &Costs::default())?;
     listing(&outcome.grammar, true)

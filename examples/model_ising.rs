@@ -4,6 +4,7 @@
 use edifice::model::ModelError;
 use edifice::model::factor_graph::{Factor, Gibbs, Settings, fit, sample};
 use edifice::rng::stream;
+use edifice::unwatched;
 
 const SIDE: usize = 3;
 
@@ -38,7 +39,7 @@ fn main() -> Result<(), ModelError> {
     let (model, truth) = (ising()?, [0.3, 0.1]);
     let start = vec![0; SIDE * SIDE];
     let data = sample(&model, &start, &truth, 2_000, 10, &mut stream(1, "data", 0));
-    let weights = fit(&model, &data, &Settings::default(), 1)?.weights;
+    let weights = fit(&model, &data, &Settings::default(), 1, &unwatched)?.weights;
     println!("weights {weights:.3?}, those of the data {truth:?}");
     assert!(weights.iter().zip(truth).all(|(w, t)| (w - t).abs() < 0.05));
     Ok(())

@@ -3,6 +3,7 @@
 
 use edifice::model::ModelError;
 use edifice::model::factor_graph::{Factor, Gibbs, Settings, exact_gradient, fit};
+use edifice::unwatched;
 
 const HIDDEN: usize = 4;
 
@@ -49,6 +50,7 @@ fn main() -> Result<(), ModelError> {
             ..Settings::default()
         },
         1,
+        &unwatched,
     )?;
     let (log, _) = exact_gradient(&machine, &data, &fitted.weights)?;
     let independent = 9.0 * (1.0_f64 / 3.0 * 3.0_f64.ln() + 2.0 / 3.0 * 1.5_f64.ln());

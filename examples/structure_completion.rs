@@ -8,6 +8,7 @@ use edifice::methods::structure_completion::model::Model;
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
 use edifice::shape::Rect;
+use edifice::unwatched;
 
 /// Floors of windows above a ground floor with a door in the middle.
 fn facade(floors: usize, columns: usize, axis: f64) -> Layout {
@@ -33,7 +34,7 @@ fn facade(floors: usize, columns: usize, axis: f64) -> Layout {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let database = (0..12).map(|i| facade(3 + i % 3, 3 + i % 4, 2.2 + 0.1 * (i % 5) as f64));
-    let model = Model::train(database.collect(), 1)?;
+    let model = Model::train(database.collect(), 1, &unwatched)?.model;
 
     let truth = facade(4, 7, 2.5);
     let mut rng = stream(1, "example", 0);

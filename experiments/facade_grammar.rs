@@ -33,6 +33,7 @@ mod table_2;
 mod table_3;
 mod table_4;
 mod table_5;
+mod told_apart;
 mod tolerance;
 mod trial;
 

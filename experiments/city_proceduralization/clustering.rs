@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::data;
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{decompose, features};
 use edifice_cluster::{kmeans, lloyd, means, sum_of_squares, ward};
@@ -26,7 +27,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let units: Vec<usize> = (0..cities.len()).collect();
     let key = |c: &usize| cities[*c].0.clone();
     let results: Vec<Vec<Sums>> = ctx.units(&units, key, |&c| {
-        let components = decompose(&cities[c].1, true).components;
+        let components = decompose(&cities[c].1, true, &unwatched).components;
         let points = features::paper_features(&components, &[1.0; 11]);
         let d = points.dimension;
         let n = components.len();

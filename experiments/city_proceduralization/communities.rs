@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data;
 use crate::Context;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watched, unwatched};
 use edifice_city_proceduralization::{
     Mode,
     emission::placed_components,
@@ -38,8 +38,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         |c| cities[*c].0.clone(),
         |&c| {
             let city = &cities[c].1;
-            let made =
-                proceduralize(city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+            let made = proceduralize(city, &data::settings(Mode::Best, 4, seed), &unwatched)
+                .map_err(Error::method)?;
             let components = &made.decomposition.components;
             let placed = placed_components(city, components, &made.types);
             let leaves = made.types.representatives.len();
@@ -48,6 +48,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 placed,
                 Detection::Louvain,
                 DistanceWeights::default(),
+                &Watched::new(&unwatched),
             );
             let Some(level) = tree.levels.first() else {
                 return Ok(None);

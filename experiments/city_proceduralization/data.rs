@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ingolstadt, synthetic};
 use crate::Context;
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Result, Watch};
 use edifice_city_proceduralization::{Budget, Mode, Proceduralized, Settings, proceduralize};
 use edifice_grammar::instance::Kept;
 use edifice_io::city;
@@ -97,9 +97,12 @@ pub fn name(mode: Mode) -> &'static str {
 }
 
 /// Proceduralizes a city and measures the result by its derived triangles.
-pub fn measure(city: &City, settings: &Settings) -> Result<Measures> {
+pub fn measure(city: &City, settings: &Settings, watch: &Watch) -> Result<Measures> {
     let start = std::time::Instant::now();
-    let made = proceduralize(city, settings).map_err(Error::method)?;
+    let made = proceduralize(city, settings, watch).map_err(Error::method)?;
+    if made.ended == Ended::Interrupted {
+        return Err(Error::Interrupted);
+    }
     let seconds = start.elapsed().as_secs_f64();
     let grammar = &made.grammar;
     Ok(Measures {

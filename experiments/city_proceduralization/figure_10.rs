@@ -3,6 +3,7 @@
 use super::photographs::Streets;
 use super::{data, judge};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::localization::{Landmark, landmarks};
 use edifice_city_proceduralization::{Mode, proceduralize};
@@ -67,7 +68,7 @@ fn photographs(ctx: &mut Context, views: usize) -> Result<()> {
 
 fn derived(city: &City, seed: u64) -> Result<City> {
     let settings = data::settings(Mode::Best, 1, seed);
-    let mut made = proceduralize(city, &settings).map_err(Error::method)?;
+    let mut made = proceduralize(city, &settings, &unwatched).map_err(Error::method)?;
     let textures = made.box_textures(city, 256);
     city::add_textures(&mut made.grammar, &textures).map_err(Error::method)?;
     let derivation = made.grammar.derive().map_err(Error::method)?;
@@ -88,8 +89,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         |c| cities[*c].0.clone(),
         |&c| {
             let city = &cities[c].1;
-            let made =
-                proceduralize(city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+            let made = proceduralize(city, &data::settings(Mode::Best, 4, seed), &unwatched)
+                .map_err(Error::method)?;
             let derived = made.grammar.derive().map_err(Error::method)?;
             let known = landmarks(&derived.city(&made.grammar)).0;
             // Views are taken of the city as it was; what is solid of a dirty mesh is not known.

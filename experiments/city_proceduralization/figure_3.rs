@@ -2,6 +2,7 @@
 
 use super::{data, exhibits};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Component, decompose};
 use edifice_io::city::picture::side_by_side;
@@ -20,7 +21,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .column("city", Align::Left)
         .numbers(["components", "buildings"]);
     for (name, city) in data::cities(ctx)? {
-        let components = decompose(&city, true).components;
+        let components = decompose(&city, true, &unwatched).components;
         let buildings: Vec<&[Component]> = components
             .chunk_by(|a, b| a.building == b.building)
             .collect();

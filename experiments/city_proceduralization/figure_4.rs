@@ -2,7 +2,7 @@
 
 use super::{data, exhibits};
 use crate::Context;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watched, unwatched};
 use edifice_city_proceduralization::types::paper_types;
 use edifice_city_proceduralization::{
     Component, Mode, PAPER_FEATURES, Representative, Structure, proceduralize,
@@ -26,8 +26,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .column("city", Align::Left)
         .numbers(WEIGHTS.map(|w| format!("weight {w}")));
     for (name, city) in data::cities(ctx)? {
-        let made =
-            proceduralize(&city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+        let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
+            .map_err(Error::method)?;
         if let Structure::Patterns { buildings, .. } = &made.structure {
             let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.count];
             for &b in &buildings.order {
@@ -60,7 +60,14 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 weights[at] = weight;
             }
             let nearest = Representative::Nearest;
-            let types = paper_types(components, CLUSTERS, &weights, nearest, seed);
+            let types = paper_types(
+                components,
+                CLUSTERS,
+                &weights,
+                nearest,
+                seed,
+                &Watched::new(&unwatched),
+            );
             let labels: Vec<usize> = types.uses.iter().map(|u| u.kind).collect();
             let value = spread(components, &labels) / spread(components, &vec![0; labels.len()]);
             let instance = format!("height_weight_{weight}");

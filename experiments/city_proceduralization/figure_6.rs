@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data;
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Detection, Mode, Structure, proceduralize};
 use edifice_report::{Align, Table};
@@ -31,7 +32,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let results: Vec<Vec<Grown>> = ctx.units(&units, key, |&(c, way)| {
         let mut settings = data::settings(Mode::Paper, 4, seed);
         settings.detection = ways[way].1;
-        let made = proceduralize(&cities[c].1, &settings).map_err(Error::method)?;
+        let made = proceduralize(&cities[c].1, &settings, &unwatched).map_err(Error::method)?;
         let Structure::Tree(tree) = made.structure else {
             return Ok(Vec::new());
         };

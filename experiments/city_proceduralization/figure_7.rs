@@ -3,6 +3,7 @@
 use super::data::{self, Measures};
 use crate::Context;
 use edifice_base::Result;
+use edifice_base::unwatched;
 use edifice_city_proceduralization::{Mode, Representative};
 use edifice_report::{Chart, Corner, Figure, Scale, Series};
 
@@ -27,7 +28,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let run = |&(c, k, level): &(usize, usize, u32)| {
         let mut settings = data::settings(curves[k].1, level, seed);
         settings.representative = curves[k].2;
-        data::measure(&cities[c].1, &settings)
+        data::measure(&cities[c].1, &settings, &unwatched)
     };
     let results: Vec<Measures> = ctx.units(&units, key, run)?;
     for (c, (name, _)) in cities.iter().enumerate() {

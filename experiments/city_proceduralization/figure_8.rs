@@ -2,6 +2,7 @@
 
 use super::data;
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Mode, proceduralize};
 use edifice_io::city::picture::side_by_side;
@@ -11,8 +12,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let width = ctx.budget().choose(160, 900, 1200);
     for (name, city) in data::cities(ctx)? {
-        let made =
-            proceduralize(&city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+        let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
+            .map_err(Error::method)?;
         let derived = made
             .grammar
             .derive()

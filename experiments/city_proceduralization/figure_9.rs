@@ -2,6 +2,7 @@
 
 use super::{data, judge};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_city_proceduralization::{Mode, proceduralize};
@@ -31,8 +32,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             "fill",
         ]);
     for (name, city) in data::cities(ctx)? {
-        let made =
-            proceduralize(&city, &data::settings(Mode::Best, 4, seed)).map_err(Error::method)?;
+        let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
+            .map_err(Error::method)?;
         let new = synthesize(&made.grammar, &shape, seed).map_err(Error::method)?;
         let derivation = new.derive().map_err(Error::method)?;
         if derivation.buildings.is_empty() {

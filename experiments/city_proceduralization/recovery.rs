@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{data, synthetic};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{
     Budget, Component, Mode, Settings, Structure, decompose, from_components,
@@ -85,7 +86,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 
 fn recover(mode: Mode, noise: u32, motifs: usize, seed: u64) -> Result<Found> {
     let (city, truth) = synthetic::city(motifs, f64::from(noise) / 100.0, seed);
-    let decomposition = decompose(&city, true);
+    let decomposition = decompose(&city, true, &unwatched);
     let components = &decomposition.components;
     let mut right = 0;
     for (b, t) in truth.iter().enumerate() {
@@ -108,7 +109,8 @@ fn recover(mode: Mode, noise: u32, motifs: usize, seed: u64) -> Result<Found> {
         seed,
         ..Settings::default()
     };
-    let made = from_components(&city, decomposition.clone(), &settings).map_err(Error::method)?;
+    let made = from_components(&city, decomposition.clone(), &settings, &unwatched)
+        .map_err(Error::method)?;
     let (found, rules) = match &made.structure {
         Structure::Tree(tree) => {
             let found: Vec<usize> = made.types.uses.iter().map(|u| u.kind).collect();

@@ -9,6 +9,7 @@ use crate::frame::Progress;
 use crate::frame::memory::{peak_megabytes, reset_peak};
 use crate::{Budget, Context};
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{
     Decomposition, Mode, decompose, from_components, proceduralize,
@@ -43,7 +44,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     for &motifs in sizes {
         let (city, _) = synthetic::city(motifs, 0.03, seed);
         let found = timed(city.buildings.len(), || {
-            let made = proceduralize(&city, &settings).map_err(Error::method)?;
+            let made = proceduralize(&city, &settings, &unwatched).map_err(Error::method)?;
             Ok((
                 made.decomposition.components.len(),
                 made.grammar.templates.len(),
@@ -69,7 +70,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let found = timed(buildings, || {
                 let (city, cut) = tiled(&manhattan, buildings, seed);
                 let components = cut.components.len();
-                let made = from_components(&city, cut, &settings).map_err(Error::method)?;
+                let made =
+                    from_components(&city, cut, &settings, &unwatched).map_err(Error::method)?;
                 Ok((components, made.grammar.templates.len()))
             })?;
             found.note(ctx, "manhattan, tiled", &mut table);
@@ -162,7 +164,7 @@ fn tiled(city: &City, buildings: usize, seed: u64) -> (City, Decomposition) {
             (copy / side) as f64 * span[1],
         ];
         let tile = jittered(city, buildings - first, copy, shift, seed);
-        let own = decompose(&tile, true);
+        let own = decompose(&tile, true, &unwatched);
         cut.components
             .extend(own.components.into_iter().map(|mut c| {
                 c.building += first;

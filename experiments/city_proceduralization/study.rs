@@ -122,7 +122,7 @@ fn run(settings: &Proceduralize, given: &Given) -> Result<Outcome> {
         iou,
         bytes,
         ..
-    } = data::measure(&city, &asked)?;
+    } = data::measure(&city, &asked, &given.watched.inner())?;
     let mut found = Outcome::default();
     for (name, value) in [
         ("iou", iou),

@@ -3,6 +3,7 @@
 use super::data::{self, Measures};
 use crate::Context;
 use edifice_base::Result;
+use edifice_base::unwatched;
 use edifice_city_proceduralization::{Detection, Mode};
 use edifice_report::{Align, Table};
 
@@ -42,7 +43,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         if cities[u.0].0 != "synthetic" {
             settings.detection = Detection::Louvain;
         }
-        data::measure(&cities[u.0].1, &settings)
+        data::measure(&cities[u.0].1, &settings, &unwatched)
     };
     let results: Vec<Measures> = ctx.units(&units, key, run)?;
     let mut table = Table::new("Sizes of four levels")

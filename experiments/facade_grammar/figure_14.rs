@@ -1,17 +1,17 @@
 //! Fig. 14: cost and time against iterations.
 
-use cpu_time::ThreadTime;
-use std::cell::RefCell;
 use std::collections::BTreeSet;
-use std::rc::Rc;
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
 
+use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER, data};
 use crate::Context;
-use edifice_base::{Error, Result};
-use edifice_facade_grammar::{Method, Settings, infer_observed};
+use edifice_base::{Error, Progress, Result};
+use edifice_facade_grammar::{Method, Settings, infer};
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 use edifice_shape::Facade;
 
@@ -137,31 +137,36 @@ fn trace(
         seed,
         ..Settings::default()
     };
-    let points = Rc::new(RefCell::new(Vec::new()));
-    let last = Rc::new(RefCell::new((ThreadTime::now(), 0u64, f64::INFINITY)));
-    let (seen, clock) = (Rc::clone(&points), Rc::clone(&last));
-    let observer = move |step: edifice_optim::Step| {
-        let mut clock = clock.borrow_mut();
-        clock.2 = clock.2.min(step.best);
+    let points = Mutex::new(Vec::new());
+    let now = || ThreadTime::now().as_duration();
+    let last = Mutex::new((now(), 0u64, f64::INFINITY));
+    let watch = |progress: Progress| {
+        let Some(best) = progress.best else {
+            return ControlFlow::Continue(());
+        };
+        let mut clock = last.lock().unwrap_or_else(PoisonError::into_inner);
+        clock.2 = clock.2.min(best);
         clock.1 += 1;
         if clock.1 % every == 0 {
-            seen.borrow_mut().push(Point {
+            let mut seen = points.lock().unwrap_or_else(PoisonError::into_inner);
+            seen.push(Point {
                 iteration: clock.1,
                 best: clock.2,
-                pace: clock.0.elapsed().as_secs_f64() / every as f64,
+                pace: (now() - clock.0).as_secs_f64() / every as f64,
             });
-            clock.0 = ThreadTime::now();
+            clock.0 = now();
         }
+        ControlFlow::Continue(())
     };
-    infer_observed(std::slice::from_ref(facade), &settings, observer).map_err(Error::method)?;
-    let mut points = points.borrow().clone();
-    let (since, made, best) = &*last.borrow();
+    infer(std::slice::from_ref(facade), &settings, &watch).map_err(Error::method)?;
+    let mut points = points.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let (since, made, best) = last.into_inner().unwrap_or_else(PoisonError::into_inner);
     if !made.is_multiple_of(every) {
         // A run that ended early, with the proof that nothing is cheaper.
         points.push(Point {
-            iteration: *made,
-            best: *best,
-            pace: since.elapsed().as_secs_f64() / (made % every) as f64,
+            iteration: made,
+            best,
+            pace: (now() - since).as_secs_f64() / (made % every) as f64,
         });
     }
     Ok(points)

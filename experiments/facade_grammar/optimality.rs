@@ -8,6 +8,7 @@ use super::data::{self, FIGURE_9, Instance};
 use super::runs::{Question, Solver, solve};
 use super::{BEST, iterations};
 use crate::{Budget, Context};
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
 use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
@@ -155,7 +156,8 @@ fn bound(
         ..Settings::default()
     };
     let start = ThreadTime::now();
-    let bound = lower_bound(&instance.facade, &settings, limits).map_err(Error::method)?;
+    let bound =
+        lower_bound(&instance.facade, &settings, limits, &unwatched).map_err(Error::method)?;
     Ok(Answer {
         terminals: found.terminals,
         cost: found.cost,

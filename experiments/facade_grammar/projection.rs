@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data;
 use crate::{Budget, Context};
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Settings, infer};
 use edifice_grammar::{Costs, evaluate};
@@ -148,7 +149,7 @@ fn effect(source: &Source, tolerance: f64) -> Result<Effect> {
 
 fn cost(facade: &Facade) -> Result<f64> {
     let one = std::slice::from_ref(facade);
-    let found = infer(one, &Settings::default()).map_err(Error::method)?;
+    let found = infer(one, &Settings::default(), &unwatched).map_err(Error::method)?;
     let evaluation = evaluate(&found.grammar, one, &Costs::default()).map_err(Error::method)?;
     Ok(evaluation.cost)
 }

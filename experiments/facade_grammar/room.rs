@@ -6,6 +6,7 @@ use super::compare::Comparison;
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{BoundLimits, Settings, lower_bound};
 use edifice_report::{Align, Row, Table};
@@ -66,7 +67,7 @@ pub fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
             format!("bound/{}/{}", instance.dataset, instance.facade.name)
         },
         |&i| {
-            let bound = lower_bound(&found.instances[i].facade, &settings, &LIMITS);
+            let bound = lower_bound(&found.instances[i].facade, &settings, &LIMITS, &unwatched);
             bound
                 .map(|b| Lower {
                     cost: b.lower,

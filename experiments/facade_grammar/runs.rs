@@ -5,6 +5,7 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use crate::peers;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Operations, Readings, Settings, infer};
 use edifice_grammar::{Costs, Grammar, evaluate};
@@ -121,7 +122,9 @@ pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer
                 readings: question.readings,
                 ..Settings::default()
             };
-            infer(facades, &settings).map_err(Error::method)?.grammar
+            infer(facades, &settings, &unwatched)
+                .map_err(Error::method)?
+                .grammar
         }
     };
     let seconds = start.elapsed().as_secs_f64();

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::made;
 use super::{BEST, PAPER};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Settings, infer};
 use edifice_grammar::derive;
@@ -54,7 +55,11 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             };
             let timed = |iterations| {
                 let start = ThreadTime::now();
-                let found = infer(std::slice::from_ref(&layout.facade), &settings(iterations));
+                let found = infer(
+                    std::slice::from_ref(&layout.facade),
+                    &settings(iterations),
+                    &unwatched,
+                );
                 found
                     .map(|outcome| (outcome.grammar, start.elapsed().as_secs_f64()))
                     .map_err(Error::method)

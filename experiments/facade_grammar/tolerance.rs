@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, unwatched};
 use edifice_facade_grammar::{Settings, infer};
 use edifice_io::{LabelMap, ReadOptions, read_label_grid};
 use edifice_layout::retile::retile;
@@ -157,7 +157,8 @@ fn curve(name: &str, path: &Path) -> Result<Vec<Point>> {
             if let Some((_, cost, _)) = known.iter().find(|(f, ..)| f == facade) {
                 return Ok(*cost);
             }
-            let found = infer(std::slice::from_ref(facade), &settings).map_err(Error::method)?;
+            let found = infer(std::slice::from_ref(facade), &settings, &unwatched)
+                .map_err(Error::method)?;
             let cost = settings.costs.grammar(&found.grammar);
             known.push((
                 facade.clone(),

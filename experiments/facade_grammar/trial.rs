@@ -3,17 +3,16 @@
 //! The question is a facade, the answer a grammar (JSON of the contract, or CGA). The judge derives the grammar, compares what it derives with the facade,
 //! terminal by terminal, looks that no operation is used that the sweep does not allow, and counts the cost itself.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::Mutex;
 
 use super::likeness::likeness;
 use super::study::{Infer, Operation, asked};
 use crate::sweep::Given;
 use crate::sweep::trial::{Answered, Posed, Trial};
-use edifice_base::{Error, Result};
-use edifice_facade_grammar::infer_observed;
+use edifice_base::{Error, Progress, Result, Watched};
+use edifice_facade_grammar::infer;
 use edifice_grammar::{Costs, Grammar, evaluate};
 use edifice_io::{ReadOptions, facade_json, grammar_cga, read_bytes, read_facade, read_grammar};
 use edifice_shape::Facade;
@@ -46,25 +45,32 @@ impl Trial for Inference {
         Ok((facade, reference(given.path)?))
     }
 
-    fn candidate(settings: &Infer, facade: &Facade, seed: u64) -> Result<Answered<Grammar>> {
+    fn candidate(
+        settings: &Infer,
+        facade: &Facade,
+        seed: u64,
+        watched: &Watched,
+    ) -> Result<Answered<Grammar>> {
         let costs = costs(settings);
         let restarts = settings.restarts.max(1);
         let mut best: Option<(f64, Grammar)> = None;
         let (mut bound, mut evaluations) = (None, 0.0);
         let mut steps_and_costs: Vec<[f64; 2]> = Vec::new();
         for restart in 0..restarts {
-            let trace: Rc<RefCell<Vec<[f64; 2]>>> = Rc::default();
-            let told = Rc::clone(&trace);
-            let observer = move |step: edifice_optim::Step| {
-                told.borrow_mut().push([step.iteration as f64, step.best])
+            let trace: Mutex<Vec<[f64; 2]>> = Mutex::default();
+            let watch = |progress: Progress| {
+                if let (Some(best), Ok(mut trace)) = (progress.best, trace.lock()) {
+                    trace.push([progress.done.saturating_sub(1) as f64, best]);
+                }
+                watched.tell(progress)
             };
             let seed = seed.wrapping_mul(restarts).wrapping_add(restart);
             let asked = asked(settings, costs, seed);
             let facades = std::slice::from_ref(facade);
-            let outcome = infer_observed(facades, &asked, observer).map_err(Error::method)?;
+            let outcome = infer(facades, &asked, &watch).map_err(Error::method)?;
             // The one evaluator, not the method, says what the grammar costs.
             let report = evaluate(&outcome.grammar, facades, &costs).map_err(Error::method)?;
-            for &[steps, value] in trace.borrow().iter() {
+            for &[steps, value] in trace.into_inner().unwrap_or_default().iter() {
                 if steps_and_costs.last().is_none_or(|last| value < last[1]) {
                     steps_and_costs.push([evaluations + steps, value]);
                 }

@@ -11,7 +11,7 @@ use super::density::{self, Question, Truth};
 use crate::sweep::trial::{Answered, Posed, Trial};
 use crate::sweep::{Better, Given, Study};
 use edifice_base::rng::stream;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watched};
 use edifice_model::gmm::{self, Criterion, Mixture, Points, select};
 
 /// The criterion that the number of components minimizes.
@@ -109,6 +109,7 @@ impl Trial for Density {
         settings: &Settings,
         question: &Question,
         seed: u64,
+        _: &Watched,
     ) -> Result<Answered<Vec<f64>>> {
         let d = question.header.len();
         let values: Vec<f64> = question.train.iter().flatten().copied().collect();

@@ -17,7 +17,7 @@ use super::study::{Retrieval, measure, parameters};
 use super::{outline, shipped};
 use crate::sweep::trial::{Answered, Posed, Trial};
 use crate::sweep::{Given, Shared};
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watched};
 use edifice_io::{ReadOptions, json, read_bytes, read_facade, read_label_grid, write_atomic};
 use edifice_procedural_logic::Model;
 use edifice_shape::LabelGrid;
@@ -107,6 +107,7 @@ impl Trial for Ranking {
         settings: &Retrieval,
         question: &Question,
         _: u64,
+        _: &Watched,
     ) -> Result<Answered<Vec<Vec<f64>>>> {
         /// All distances, and the number of rules.
         struct Ranked(DMatrix<f64>, usize);

@@ -4,6 +4,7 @@ use rand::seq::SliceRandom;
 
 use super::data::Item;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_structure_completion::best::learn::twins;
 use edifice_structure_completion::layout::Layout;
@@ -25,5 +26,6 @@ pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
 pub fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
     let kept = (0..items.len()).filter(|&i| keep(i));
     let layouts = kept.map(|i| items[i].layout.clone()).collect();
-    Model::train(layouts, seed).map_err(Error::method)
+    let trained = Model::train(layouts, seed, &unwatched).map_err(Error::method)?;
+    Ok(trained.model)
 }

@@ -4,6 +4,7 @@
 use rand::seq::SliceRandom;
 
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_model::boosting::{Boosting, BoostingError, Settings};
 use edifice_shape::{Axis, Rect};
 use edifice_structure_completion::layout::lines::lines;
@@ -90,7 +91,7 @@ pub fn auc(pairs: &[(Vec<f64>, Vec<f64>)], seed: u64) -> Result<f64, BoostingErr
             rows.extend([pairs[pair].0.clone(), pairs[pair].1.clone()]);
             targets.extend([0.0, 1.0]);
         }
-        let learnt = Boosting::learn(&rows, &targets, settings)?;
+        let learnt = Boosting::learn(&rows, &targets, settings, &unwatched)?;
         for (_, &pair) in order.iter().enumerate().filter(|(k, _)| k % FOLDS == fold) {
             truth.push(learnt.probability(&pairs[pair].0));
             made.push(learnt.probability(&pairs[pair].1));

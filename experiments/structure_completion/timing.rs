@@ -6,6 +6,7 @@ use super::published::Published;
 use super::{data, row};
 use crate::{Budget, Context};
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_report::{Align, Table};
 use edifice_structure_completion::layout::{Class, Layout};
@@ -66,14 +67,16 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let chosen: Vec<&Layout> = some.iter().collect();
     let start = Instant::now();
     let states = policy::weight_states(&chosen, seed);
-    PaperModel::unbiased_weights(&densities.score, &states, &WEIGHTS, seed)
+    PaperModel::unbiased_weights(&densities.score, &states, &WEIGHTS, seed, &unwatched)
         .map_err(Error::method)?;
     let seconds = start.elapsed().as_secs_f64();
     let done = format!("weights of the factor graph, {learnt} facades");
     lines.push(Line::one("weights", "paper", done, seconds));
 
     let start = Instant::now();
-    let model = Model::train(some, seed).map_err(Error::method)?;
+    let model = Model::train(some, seed, &unwatched)
+        .map_err(Error::method)?
+        .model;
     let seconds = start.elapsed().as_secs_f64();
     let done = format!("all that `facade train` learns, {learnt} facades");
     lines.push(Line::one("train", "best", done, seconds));
@@ -94,7 +97,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let (partial, _) = task.hide(layout, &mut rng);
             let start = Instant::now();
             let scene = Scene::new(&paper, &partial);
-            optimize(&scene, &budget, 1, seed).map_err(Error::method)?;
+            optimize(&scene, &budget, 1, seed, &unwatched).map_err(Error::method)?;
             seconds.push(start.elapsed().as_secs_f64());
         }
         lines.push(Line {

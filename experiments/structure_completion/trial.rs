@@ -14,7 +14,7 @@ use super::study::Complete;
 use crate::sweep::trial::{Answered, Posed, Trial};
 use crate::sweep::{Given, Shared};
 use edifice_base::rng::stream;
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Result, Watched};
 use edifice_io::{ReadOptions, facade_json, read_bytes, read_source, write_atomic};
 use edifice_shape::{AnnotatedFacade, Facade, Note, Region};
 use edifice_structure_completion::layout::{Class, Element, Layout, extract, scope};
@@ -64,6 +64,14 @@ enum Refused {
     TooMany(usize),
 }
 
+/// A model that is finished: one that is not serves no other task.
+fn whole<M>(model: M, ended: Ended) -> Result<M> {
+    match ended {
+        Ended::Finished => Ok(model),
+        Ended::Interrupted => Err(Error::Interrupted),
+    }
+}
+
 impl Trial for Completion {
     type Settings = Complete;
     type Question = Question;
@@ -97,13 +105,15 @@ impl Trial for Completion {
         settings: &Complete,
         question: &Question,
         seed: u64,
+        watched: &Watched,
     ) -> Result<Answered<Vec<Element>>> {
         let key = format!("{seed} {}", question.key);
         let partial = &question.partial;
         if settings.method == Method::Paper {
             static MODELS: Shared<PaperModel> = Shared::new();
             let model = MODELS.get(key, || {
-                PaperModel::train(&question.layouts, seed).map_err(Error::method)
+                let model = PaperModel::train(&question.layouts, seed, &watched.inner());
+                whole(model.map_err(Error::method)?, watched.ended())
             })?;
             let budget = Budget {
                 population: settings.population,
@@ -121,7 +131,9 @@ impl Trial for Completion {
         }
         static MODELS: Shared<Model> = Shared::new();
         let model = MODELS.get(key, || {
-            Model::train(question.layouts.to_vec(), seed).map_err(Error::method)
+            let trained = Model::train(question.layouts.to_vec(), seed, &watched.inner());
+            let trained = trained.map_err(Error::method)?;
+            whole(trained.model, trained.ended)
         })?;
         let rng = &mut stream(seed, "completion", 0);
         let found = method::complete(settings.method, partial, &model, 1, rng);

@@ -6,6 +6,7 @@ use super::published::Published;
 use super::row;
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_model::factor_graph::Settings;
 use edifice_report::{Align, BarGroup, Bars, Figure, Scale, Table};
@@ -60,7 +61,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
     let owned: Vec<Layout> = layouts.iter().map(|l| (*l).clone()).collect();
     let mut model = PaperModel::of_densities(&owned, seed).map_err(Error::method)?;
     let states = weight_states(&layouts, seed);
-    let truth = PaperModel::unbiased_weights(&model.score, &states, &WEIGHTS, seed);
+    let truth = PaperModel::unbiased_weights(&model.score, &states, &WEIGHTS, seed, &unwatched);
     let truth = truth.map_err(Error::method)?;
     model.score.weights = truth;
     let spread = truth.iter().copied().fold(f64::NEG_INFINITY, f64::max)
@@ -91,7 +92,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let drawn = (0..size).map(|i| draw(&model.score, &states, repeat, i, seed));
             let drawn: Vec<Sites> = drawn.collect();
             let weights = if sampler == 0 {
-                PaperModel::unbiased_weights(&model.score, &drawn, &settings, seed)
+                PaperModel::unbiased_weights(&model.score, &drawn, &settings, seed, &unwatched)
             } else {
                 let layouts = drawn
                     .iter()
@@ -99,7 +100,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                     .map(|(i, s)| s.layout(i.to_string()));
                 let layouts: Vec<Layout> = layouts.filter(|l| l.elements.len() > 1).collect();
                 let candidates = if sampler == 1 { CANDIDATES } else { 1 };
-                model.printed_weights(&layouts, candidates, &settings, seed)
+                model.printed_weights(&layouts, candidates, &settings, seed, &unwatched)
             };
             Ok(Learnt(weights.map_err(Error::method)?.to_vec()))
         },

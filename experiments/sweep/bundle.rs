@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 use zip::write::SimpleFileOptions;
@@ -16,7 +15,7 @@ use super::plan::{Head, PLAN, Plan, Task};
 use super::run::entry;
 use super::study::Study;
 use crate::frame::provenance::{self, Machine};
-use edifice_base::{Error, Result, file};
+use edifice_base::{Error, Result, Watched, file, unwatched};
 
 /// The contents of a bundle.
 #[derive(Debug, Serialize, Deserialize)]
@@ -214,13 +213,14 @@ fn rerun(
     let all: Vec<&Task> = plan.tasks.iter().filter(has_result).collect();
     let is_run = |task: &&Task| commands || plan.head.arms[task.arm].command.is_none();
     let tasks: Vec<&Task> = all.iter().copied().filter(is_run).collect();
-    let never = AtomicBool::new(false);
     let chosen = sample.min(tasks.len());
     let mut different = Vec::new();
     let journal = super::journal::Journal::open(&again, (0, 1))?;
     for k in 0..chosen {
         let task = tasks[k * tasks.len() / chosen];
-        journal.put(&entry(plan, folder, study, task, &never)?)?;
+        if let Some(entry) = entry(plan, folder, study, task, &Watched::new(&unwatched)) {
+            journal.put(&entry)?;
+        }
     }
     let known = read_all(&again, &plan.head.program, Keep::Presence)?;
     let sampled = Plan {

@@ -1,7 +1,7 @@
 //! Running a shard of a plan on this machine.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
@@ -11,9 +11,9 @@ use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task};
 use super::study::{Given, Study};
-use crate::frame::Progress;
+use crate::frame::Progress as Bar;
 use edifice_base::rng::stream;
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Progress, Result, Watch, Watched};
 
 /// The tasks of a shard that are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,6 +33,8 @@ pub struct Ran {
     pub failed: usize,
     /// Tasks of the shard that had a result before.
     pub before: usize,
+    /// The way in which the run ended.
+    pub ended: Ended,
 }
 
 /// A shard that there is not.
@@ -58,18 +60,19 @@ pub fn shard(text: &str) -> Result<(usize, usize)> {
     }
 }
 
-/// Runs the tasks of a shard on all threads; every `n`th task belongs to it, from the `i`th. Stops when `stop` is set; what is finished is kept.
+/// Runs the tasks of a shard on all threads; every `n`th task belongs to it, from the `i`th. `watch` is told of each task, and
+/// from inside long ones; when it stops the run, the tasks in hand are given up, and what is finished is kept.
 ///
 /// # Errors
-/// [`Error::Io`] when a result cannot be kept, [`Error::Content`] when an instance has changed since the plan was made,
-/// [`Error::Interrupted`]. A task that fails is a result.
+/// [`Error::Io`] when a result cannot be kept, [`Error::Content`] when an instance has changed since the plan was made. A task
+/// that fails is a result.
 pub fn run(
     plan: &Plan,
     out: &Path,
     study: &Study,
     shard: (usize, usize),
     wanted: Wanted,
-    stop: &AtomicBool,
+    watch: &Watch,
 ) -> Result<Ran> {
     let journal = Journal::open(out, shard)?;
     // Results are filed under what the files were when the plan was made.
@@ -90,13 +93,18 @@ pub fn run(
     };
     let tasks: Vec<&Task> = ours.iter().filter(open).copied().collect();
     let before = ours.len() - tasks.len();
-    let progress = Progress::new(&plan.head.study, ours.len() as u64, before as u64);
+    let bar = Bar::new(&plan.head.study, ours.len() as u64, before as u64);
+    let watched = Watched::new(watch);
     let (finished, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let outcome: Result<()> = tasks.par_iter().try_for_each(|task| {
-        if stop.load(Ordering::Relaxed) {
-            return Err(Error::Interrupted);
+        let done = finished.load(Ordering::Relaxed) + failed.load(Ordering::Relaxed);
+        let told = Progress::of("tasks", done as u64, tasks.len() as u64);
+        if !watched.goes_on(told) {
+            return Ok(());
         }
-        let entry = entry(plan, out, study, task, stop)?;
+        let Some(entry) = entry(plan, out, study, task, &watched) else {
+            return Ok(());
+        };
         journal.put(&entry)?;
         let counted = if entry.outcome.is_some() {
             &finished
@@ -104,7 +112,7 @@ pub fn run(
             &failed
         };
         counted.fetch_add(1, Ordering::Relaxed);
-        progress.step();
+        bar.step();
         Ok(())
     });
     outcome?;
@@ -112,20 +120,18 @@ pub fn run(
         finished: finished.into_inner(),
         failed: failed.into_inner(),
         before,
+        ended: watched.ended(),
     })
 }
 
-/// Runs one task.
-///
-/// # Errors
-/// [`Error::Interrupted`] when `stop` is set while a command runs; a task that fails is an entry.
+/// Runs one task; `None` if it was stopped before it was finished.
 pub fn entry(
     plan: &Plan,
     out: &Path,
     study: &Study,
     task: &Task,
-    stop: &AtomicBool,
-) -> Result<Entry> {
+    watched: &Watched,
+) -> Option<Entry> {
     let arm = &plan.head.arms[task.arm];
     let database = match study.learns {
         true => plan.database(out, task),
@@ -135,6 +141,7 @@ pub fn entry(
         path: &plan.path(out, task),
         database: &database,
         seed: chance(plan, task),
+        watched,
     };
     let (found, seconds) = match &arm.command {
         None => {
@@ -147,7 +154,7 @@ pub fn entry(
                 settings: &arm.settings,
                 seed: given.seed,
                 memory: &plan.head.task.mem,
-                stop,
+                watched,
             };
             let seconds = std::cell::Cell::new(0.0);
             let found = study.run_foreign(&arm.settings, &given, &|posed, output| {
@@ -159,14 +166,14 @@ pub fn entry(
             (found, seconds.get())
         }
     };
-    if matches!(found, Err(Error::Interrupted)) {
-        return Err(Error::Interrupted);
+    if watched.is_stopped() || matches!(found, Err(Error::Interrupted)) {
+        return None;
     }
     let (outcome, failure) = match found {
         Ok(outcome) => (Some(outcome), None),
         Err(error) => (None, Some(error.to_string())),
     };
-    Ok(Entry {
+    Some(Entry {
         key: task.key.clone(),
         program: plan.head.program.clone(),
         outcome,

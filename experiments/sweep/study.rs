@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use super::sources;
 use super::trial::{Answered, Posed, Trial};
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watched, unwatched};
 
 /// The values of a metric that are better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,6 +58,8 @@ pub struct Given<'a> {
     pub database: &'a [PathBuf],
     /// Seed of all chance.
     pub seed: u64,
+    /// Asked by long tasks whether to go on. The outcome of a task that was stopped is not kept.
+    pub watched: &'a Watched<'a>,
 }
 
 type Run = Box<dyn Fn(&Map<String, Value>, &Given) -> Result<Outcome> + Send + Sync>;
@@ -155,7 +157,7 @@ impl Study {
         }
         let run = |settings: &T::Settings, given: &Given| {
             let (question, truth) = T::prepare(settings, given)?;
-            let answered = T::candidate(settings, &question, given.seed)?;
+            let answered = T::candidate(settings, &question, given.seed, given.watched)?;
             judged::<T>(settings, &question, &truth, answered)
         };
         let foreign = |settings: &Settings, given: &Given, ask: &Ask| {
@@ -175,7 +177,7 @@ impl Study {
         let reply = |settings: &Settings, posed: &Posed, output: &Path, seed: u64| {
             let settings: T::Settings = typed(settings)?;
             let question = T::posed(posed)?;
-            let answered = T::candidate(&settings, &question, seed)?;
+            let answered = T::candidate(&settings, &question, seed, &Watched::new(&unwatched))?;
             T::write(&question, &answered.answer, output)?;
             Ok(answered.claims)
         };

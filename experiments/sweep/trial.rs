@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::study::Given;
-use edifice_base::Result;
+use edifice_base::{Result, Watched};
 
 /// An answer, and what its author says of it.
 #[derive(Debug, Clone)]
@@ -71,7 +71,7 @@ pub trait Trial: 'static {
     /// Where the instance cannot serve.
     fn prepare(settings: &Self::Settings, given: &Given) -> Result<(Self::Question, Self::Truth)>;
 
-    /// Answers by a built-in method.
+    /// Answers by a built-in method; once `watched` is stopped, what it answers is not judged.
     ///
     /// # Errors
     /// Those of the method.
@@ -79,6 +79,7 @@ pub trait Trial: 'static {
         settings: &Self::Settings,
         question: &Self::Question,
         seed: u64,
+        watched: &Watched,
     ) -> Result<Answered<Self::Answer>>;
 
     /// Measures an answer.

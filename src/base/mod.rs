@@ -1,7 +1,10 @@
-//! The parts that every crate of Edifice shares: errors with their place, seeded random streams, whole files.
+//! The parts that every crate of Edifice shares: errors with their place, seeded random streams, whole files, the
+//! progress of long calls.
 
 pub mod error;
 pub mod file;
+pub mod progress;
 pub mod rng;
 
 pub use error::{Error, Result};
+pub use progress::{Ended, Progress, Watch, Watched, unwatched};

@@ -32,25 +32,25 @@ each building: why it is no house, or intersection over union of the plans, volu
     Attributes(attributes::Args),
     /// Learn the hierarchical model from a database of buildings or a CSV with a schema.
     #[command(after_help = "Examples:
-  edifice building learn datasets/building_exteriors/houses.buildings.jsonl -o model.houses.json
+  edifice building learn datasets/building_exteriors/houses.buildings.jsonl -o made.houses.json
   edifice building learn datasets/building_exteriors/real.houses.csv --max-styles 3 --max-kinds 3 -o real.houses.json
   edifice building learn datasets/building_exteriors/delft.buildings.jsonl --groups bbox,bcr,arf,roof --max-styles 3 -o plain.houses.json
 A CSV of other columns needs a schema: --schema datasets/building_exteriors/h2k.schema.json.")]
     Learn(learn::Args),
     /// Show styles, cardinalities and lateral edges of a model, and draw its network.
     #[command(after_help = "Examples:
-  edifice building show model.houses.json --svg network.svg")]
+  edifice building show datasets/building_exteriors/default.houses.json --svg network.svg")]
     Show(show::Args),
     /// Sample houses, as attributes; prints CSV.
     #[command(after_help = "Examples:
-  edifice building sample model.houses.json -n 5
-  edifice building sample model.houses.json --given garage=none --given bbox.w=14 --given roof.hip=yes
-  edifice building sample model.houses.json --given wwr=0.2,0.2,0.1,0.1 --most-probable")]
+  edifice building sample datasets/building_exteriors/default.houses.json -n 5
+  edifice building sample datasets/building_exteriors/default.houses.json --given garage=none --given bbox.w=14 --given roof.hip=yes
+  edifice building sample datasets/building_exteriors/default.houses.json --given wwr=0.2,0.2,0.1,0.1 --most-probable")]
     Sample(draw::SampleArgs),
     /// Complete houses whose attributes are partly missing; prints CSV.
     #[command(after_help = "Examples:
-  edifice building complete model.houses.json village.buildings.jsonl -n 2 --most-probable
-  edifice building complete model.houses.json village.buildings.jsonl -n 1 -o completed --format json,glb
+  edifice building complete datasets/building_exteriors/default.houses.json village.buildings.jsonl -n 2 --most-probable
+  edifice building complete datasets/building_exteriors/default.houses.json village.buildings.jsonl -n 1 -o completed --format json,glb
 A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
     Complete(draw::CompleteArgs),
     /// Compare houses with the true ones: attributes, soundness, closed surfaces.
@@ -63,14 +63,14 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
     #[command(after_help = "Examples:
   edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv
   head -n 4 houses.csv > few.csv && edifice building build few.csv -o houses --format json,obj,glb,png
-  edifice building sample model.houses.json -n 5 > sampled.csv && edifice building build sampled.csv --repair -o sampled")]
+  edifice building sample datasets/building_exteriors/default.houses.json -n 5 > sampled.csv && edifice building build sampled.csv --repair -o sampled")]
     Build(build::BuildArgs),
     /// Sample attributes from a model and build the houses.
     #[command(after_help = "Examples:
   edifice building generate -n 3 -o generated --format json,obj,glb,svg,png
   edifice building generate -n 3 --given garage=none --given roof.hip=yes -o without_garage --json
   edifice building generate -n 4 --footprint datasets/building_exteriors/plot.geojson -o plot
-  edifice building generate model.houses.json -n 6 --most-probable -o made
+  edifice building generate datasets/building_exteriors/default.houses.json -n 6 --most-probable -o made
   edifice building generate -n 12 -o town --street
 Without a model houses are drawn from the one that ships.")]
     Generate(build::GenerateArgs),

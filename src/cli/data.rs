@@ -20,11 +20,13 @@ pub enum Command {
     List(List),
     /// Read every file of sets and say what is missing or cannot be read
     #[command(
-        after_help = "Examples:\n  edifice data check --data DATA\n  edifice data check ecp2011 cmp --data DATA --json\n  edifice data check mine/dataset.toml"
+        after_help = "Examples:\n  edifice data check\n  edifice data check ecp2011 cmp --data datasets --json"
     )]
     Check(Check),
     /// Describe a folder of files: writes dataset.toml where there is none, and croissant.json
-    #[command(after_help = "Example:\n  edifice data describe mine --files '*.png'")]
+    #[command(
+        after_help = "Example:\n  edifice data describe draws --files '*.facade.json'\n  edifice data check draws/dataset.toml"
+    )]
     Describe(Describe),
 }
 

@@ -21,9 +21,7 @@ pub struct Completions {
 
 /// Options of `man`.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  edifice man -o ~/.local/share/man/man1 && man edifice-grammar-infer"
-)]
+#[command(after_help = "Example:\n  edifice man -o ~/.local/share/man/man1")]
 pub struct Man {
     /// Folder for the pages, one a command; without it that of `edifice` is printed
     #[arg(short, long, value_name = "DIR")]

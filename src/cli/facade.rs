@@ -35,11 +35,11 @@ pub enum Command {
     /// Writes .facade.json, .svg, .png and .txt. Label images become tilings of rectangles that full
     /// lines can split; boxes become element layouts, which are drawn on a wall.
     #[command(after_help = "Examples:
-  edifice facade convert monge_42.png -o monge_42.facade.json --regularize 2
-  edifice facade convert segmented.png -o short.facade.json --tolerance 1%
-  edifice facade convert labels.txt.gz --label-map map.json -o labels.svg
-  edifice facade convert labels.jpg --nearest-colour -o labels.png
-  edifice facade convert instances.json --image house_7 -o house_7.facade.json
+  edifice facade convert datasets/examples/facade.png -o facade.facade.json --regularize 2
+  edifice facade convert datasets/examples/facade.png -o short.facade.json --tolerance 1%
+  edifice facade convert datasets/examples/labels.txt.gz --label-map datasets/examples/map.json -o labels.svg
+  edifice facade convert datasets/examples/facade.jpg --nearest-colour -o labels.png
+  edifice facade convert datasets/examples/instances.json --image house_7 -o house_7.facade.json
 
 A label map is a JSON file: {\"window\": [255, 0, 0], \"wall\": 2, \"unlabelled\": -1}
 Without one, the colours of the ECP and Graz databases and the numbers of the CMP database are known.
@@ -54,7 +54,7 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
     Edit(edit::Args),
     /// Hide a part of a whole facade, to see how it is completed.
     #[command(
-        after_help = "Example:\n  edifice facade hide monge_42.png --task side50 --seed 1 -o partial.facade.json"
+        after_help = "Example:\n  edifice facade hide datasets/facade_grammar/layouts/office_1.facade.json --task side50 --seed 1 -o partial.facade.json"
     )]
     Hide(hide::Args),
     /// Compare predicted layouts with the true one: agreement, areas, counts, regularity, probabilities.

@@ -30,32 +30,31 @@ pub use tables::TABLE_MODEL;
 pub enum Command {
     /// Print the schema that is guessed of a table, to edit.
     #[command(after_help = "Examples:
-  edifice model schema penguins.csv > penguins.schema.json")]
+  cut -d, -f1-4 datasets/building_exteriors/real.houses.csv > plans.csv && edifice model schema plans.csv > plans.schema.json")]
     Schema(data::TableInput),
     /// Learn a hierarchical model with hidden styles from any table.
     #[command(after_help = "Examples:
-  edifice model learn penguins.csv -o penguins.table-model.json
-  edifice model learn penguins.csv --schema penguins.schema.json --max-styles 8 -o penguins.table-model.json
-  edifice model learn large.csv -o large.table-model.json --time-limit 60
-  edifice model learn large.csv -o large.table-model.json --from large.table-model.json
-  edifice model learn large.csv -o large.table-model.json --fit-only --styles 8 --kinds 4")]
+  edifice model learn plans.csv --schema plans.schema.json --max-styles 3 -o plans.table-model.json
+  edifice model learn plans.csv -o plans.table-model.json --time-limit 2
+  edifice model learn plans.csv -o plans.table-model.json --from plans.table-model.json --time-limit 2
+  edifice model learn plans.csv -o plans.table-model.json --fit-only --styles 3 --kinds 2")]
     Learn(tables::LearnArgs),
-    /// Print the log-likelihood of every row of a table under a model.
+    /// Print the log probability mass of the categories of every row of a table under a model, and the log density of its numbers given these.
     #[command(after_help = "Examples:
-  edifice model score penguins.table-model.json others.csv")]
+  edifice model score plans.table-model.json plans.csv")]
     Score(tables::ScoreArgs),
     /// Sample rows from a model of a table or a Bayesian network; prints CSV.
     #[command(after_help = "Examples:
-  edifice model sample penguins.table-model.json -n 5 --given species=Adelie
+  edifice model sample plans.table-model.json -n 5 --given source=delft
   edifice model sample datasets/model/asia.bif -n 5 --given smoke=yes")]
     Sample(tables::SampleArgs),
     /// Complete rows whose cells are partly missing; prints CSV.
     #[command(after_help = "Examples:
-  edifice model complete penguins.table-model.json some.csv -n 3")]
+  edifice model complete plans.table-model.json plans.csv -n 3")]
     Complete(tables::CompleteArgs),
     /// Compare models by the negative log-likelihood of rows they have not seen.
     #[command(after_help = "Examples:
-  edifice model evaluate penguins.csv --splits 20 --models ours,model_1,model_2,model_3")]
+  edifice model evaluate datasets/model/mixture_1.csv --splits 2 --models model_1,gmm")]
     Evaluate(evaluate::Args),
     /// Ask a Bayesian network: posteriors given evidence, or the most probable explanations.
     #[command(after_help = "Examples:
@@ -66,7 +65,7 @@ pub enum Command {
     /// Show the variables of a Bayesian network, or the rules and facades of a logic model.
     #[command(after_help = "Examples:
   edifice model show datasets/model/asia.bif
-  edifice model show ecp.logic.json --json
+  edifice model show terraces.logic.json --json
 `edifice building show` shows models of houses.")]
     Show {
         /// The model (`*.bif`, a network as JSON, or `*.logic.json`).
@@ -77,14 +76,14 @@ pub enum Command {
     },
     /// Learn the structure of a Bayesian network from a table of categories.
     #[command(after_help = "Examples:
-  edifice model structure patients.csv -o patients.bif
-  edifice model structure patients.csv --score bic --forbid 'xray>smoke' --tier age,smoke --tier lung,xray -o patients.svg")]
+  edifice model sample datasets/model/asia.bif -n 500 > patients.csv && edifice model structure patients.csv -o patients.bif
+  edifice model structure patients.csv --score bic --forbid 'xray>smoke' --tier asia,smoke --tier lung,xray -o patients.svg")]
     Structure(structure::Args),
     /// Learn the parameters of a Bayesian network from a table, by expectation maximisation: variables without a column are hidden,
     /// cells may be missing.
     #[command(after_help = "Examples:
-  edifice model fit asia.bif patients.csv -o fitted.bif
-  edifice model fit asia.bif patients.csv --from -o fitted.json")]
+  edifice model fit datasets/model/asia.bif patients.csv -o fitted.bif
+  edifice model fit datasets/model/asia.bif patients.csv --from -o fitted.json")]
     Fit(fit::Args),
     /// Convert a Bayesian network between BIF, XMLBIF and JSON, or draw it.
     #[command(after_help = "Examples:

@@ -15,7 +15,7 @@ use super::print;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   edifice studio
-  edifice studio office.facade.json house_0001.building.json
+  edifice studio office_1.facade.json houses/house_0001.building.json
   edifice studio fig9.grammar.json --port 8080 --no-open --read-only
 
 The first line on standard output is the address, with the token that opens it; Ctrl-C ends the studio. It listens on this

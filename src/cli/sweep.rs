@@ -5,11 +5,12 @@ mod examples;
 mod studies;
 mod submit;
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Args, Subcommand};
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Progress, Result};
 use edifice_experiments::studies as all_studies;
 use edifice_experiments::sweep::collect::{ArmState, RESULTS, collect, state};
 use edifice_experiments::sweep::plan::{PLAN, Plan};
@@ -22,6 +23,7 @@ use super::print;
 #[derive(Subcommand)]
 pub enum Command {
     /// List the studies with every setting, its type, default and meaning
+    #[command(after_help = "Example: edifice sweep studies")]
     Studies(studies::Options),
     /// List the sweep files that ship with the program (the papers' ablations), or print one
     Examples(examples::Options),
@@ -29,23 +31,31 @@ pub enum Command {
     #[command(after_help = "Example: edifice sweep plan ablation.toml --out ablation")]
     Plan(Common),
     /// Run the tasks that have no result yet, here
-    #[command(after_help = "Example: edifice sweep run ablation.toml --out ablation --shard 0/3")]
+    #[command(after_help = "Example: edifice sweep run ablation.toml --out ablation --shard 0/30")]
     Run(Run),
     /// Run the tasks that failed or have no result, here
+    #[command(after_help = "Example: edifice sweep retry ablation.toml --out ablation")]
     Retry(Run),
     /// Write the scripts of a cluster, and submit them
     Submit(submit::Options),
     /// Answer one question by a study's built-in method, as a command of an arm does
     Candidate(candidate::Options),
     /// Say what is finished, failed and missing
+    #[command(after_help = "Example: edifice sweep status ablation.toml --out ablation")]
     Status(Common),
     /// Write results.csv
+    #[command(after_help = "Example: edifice sweep collect ablation.toml --out ablation")]
     Collect(Common),
     /// Write tables, tests and figures
+    #[command(after_help = "Example: edifice sweep report ablation.toml --out ablation")]
     Report(Report),
     /// Pack file, plan, instances and results into one zip
+    #[command(
+        after_help = "Example: edifice sweep bundle ablation.toml --out ablation -o ablation.zip"
+    )]
     Bundle(Bundle),
     /// Check a bundle: its digests, and a sample of its tasks run again
+    #[command(after_help = "Example: edifice sweep verify ablation.zip --sample 1")]
     Verify(Verify),
 }
 
@@ -209,12 +219,19 @@ fn tasks(options: &Run, studies: &[Study], wanted: Wanted) -> Result<()> {
     let study = plan.study(studies)?;
     static STOP: AtomicBool = AtomicBool::new(false);
     // A second handler is refused only where one is set already.
-    let _ = ctrlc::set_handler(|| STOP.store(true, std::sync::atomic::Ordering::Relaxed));
+    let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build();
     let pool = pool.map_err(Error::method)?;
-    let ran = pool.install(|| run_shard(&plan, &common.out, study, shard, wanted, &STOP))?;
+    let watch = |_: Progress| match STOP.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let ran = pool.install(|| run_shard(&plan, &common.out, study, shard, wanted, &watch))?;
+    if ran.ended == Ended::Interrupted {
+        return Err(Error::Interrupted);
+    }
     print::message(&format!(
         "{} tasks finished, {} failed, {} had a result before",
         ran.finished, ran.failed, ran.before

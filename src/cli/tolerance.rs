@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, unwatched};
 use edifice_facade_grammar::{InferError, Settings, infer};
 use edifice_io::Source;
 use edifice_layout::retile::{RetileError, retile};
@@ -31,7 +31,7 @@ pub fn retiled(source: Source, path: &Path, share: f64, settings: &Settings) -> 
     };
     let grid = source.label_grid(path)?;
     let price = |facade: &Facade| -> std::result::Result<f64, InferError> {
-        let found = infer(std::slice::from_ref(facade), settings)?;
+        let found = infer(std::slice::from_ref(facade), settings, &unwatched)?;
         Ok(settings.costs.grammar(&found.grammar))
     };
     let made = retile(&grid, own, share, price).map_err(|error| match error {

@@ -30,7 +30,7 @@ use edifice_datasets::shipped_bytes;
 use edifice_io::{building_json, gltf, scene_svg, surface_obj};
 use edifice_shape::Building;
 
-/// The name of the shipped houses in the program; that of the model learned from them follows.
+/// The name of the shipped houses in the program; those of real houses and of the model learnt from real ones follow.
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";
 /// Real houses of Delft, measured from the 3D BAG by `edifice building import`.
 const REAL: &str = "building_exteriors/delft.buildings.jsonl";
@@ -54,7 +54,7 @@ pub const EDITOR: Editor = Editor {
             id: "modern",
             kind: "house",
             title: "A modern house",
-            about: "Flat roofs on two floors: one of the two hundred houses that the model was learned from.",
+            about: "Flat roofs on two floors: one of the two hundred made houses that ship.",
             source: Source::Line(DATABASE, 62, "house_0063"),
         },
     ],
@@ -99,7 +99,7 @@ pub fn shipped_database() -> Result<&'static Database> {
     Ok(READ.get_or_init(|| database))
 }
 
-/// The model that ships with the project, learned from the made houses by `edifice building learn`.
+/// The model that ships with the project, learnt from attributes of real houses by `edifice building learn`.
 ///
 /// # Errors
 /// As [`shipped_database`].

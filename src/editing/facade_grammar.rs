@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use super::examples::{Example, Source};
 use super::script::{Shell, Word};
 use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit, glb};
-use super::work::{Work, stoppable};
+use super::work::Work;
 use super::{CommandError, Editor, Opened, State, Step, ends, parse};
 use edifice_base::{Error, Result};
 use edifice_grammar::{Costs, Grammar, Operation, Rule, Size, check, listing};
@@ -76,8 +76,7 @@ fn inferred(path: &Path, facade: &Facade, work: &Work) -> Result<(Grammar, Optio
     facade.check_tiling().map_err(|e| Error::content(path, e))?;
     edifice_shape::splittable(facade).map_err(|e| Error::content(path, e))?;
     work.tell("inferring the grammar", None)?;
-    let found = stoppable(|| merge::observed(std::slice::from_ref(facade), work))?;
-    let found = found.map_err(Error::method)?;
+    let found = merge::watched(std::slice::from_ref(facade), work)?;
     Ok((found.grammar, found.lower_bound))
 }
 

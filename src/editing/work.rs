@@ -1,8 +1,10 @@
 //! Long work: what it says of itself while it runs, and that it can be stopped.
 
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+
+use edifice_base::Ended;
 
 /// A piece of work, shared by the thread that does it and whoever watches.
 #[derive(Debug, Clone, Default)]
@@ -43,17 +45,22 @@ impl Work {
         }
     }
 
-    /// As [`Work::tell`] for an observer that can return nothing: when stopped, unwinds to [`stoppable`].
-    pub fn tell_or_unwind(&self, step: &str, part: Option<f64>) {
-        if let Err(Stopped) = self.tell(step, part) {
-            unwind();
+    /// The answer of a watch: [`ControlFlow::Break`] once somebody asked it to stop.
+    pub fn go_on(&self) -> ControlFlow<()> {
+        match self.is_stopped() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
     }
 
-    /// Inside a step of which there is nothing new to say: when stopped, unwinds to [`stoppable`].
-    pub fn go_on_or_unwind(&self) {
-        if self.is_stopped() {
-            unwind();
+    /// Checks that a method was not stopped.
+    ///
+    /// # Errors
+    /// [`Stopped`]: what a stopped method has found until then is no edit.
+    pub fn whole(&self, ended: Ended) -> Result<(), Stopped> {
+        match ended {
+            Ended::Finished => Ok(()),
+            Ended::Interrupted => Err(Stopped),
         }
     }
 
@@ -74,42 +81,26 @@ impl Work {
     }
 }
 
-/// Leaves the method.
-fn unwind() {
-    // No panic: its message is not printed, and no hook is called.
-    resume_unwind(Box::new(Stopped));
-}
-
-/// Runs a method whose observer is told by [`Work::tell_or_unwind`]. What the method owns is dropped when it is stopped.
-///
-/// # Errors
-/// [`Stopped`].
-pub fn stoppable<T>(method: impl FnOnce() -> T) -> Result<T, Stopped> {
-    catch_unwind(AssertUnwindSafe(method)).map_err(|thrown| match thrown.downcast::<Stopped>() {
-        Ok(stopped) => *stopped,
-        Err(other) => resume_unwind(other),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn stopped_work_leaves_its_method() {
+    fn stopped_work_is_told_of_no_more() {
         let work = Work::default();
         let mut steps = 0;
-        let done = stoppable(|| {
-            for k in 0..10 {
-                work.tell_or_unwind("counting", Some(f64::from(k) / 10.0));
-                steps += 1;
-                if k == 3 {
-                    work.clone().stop();
-                }
+        for k in 0..10 {
+            if work.tell("counting", Some(f64::from(k) / 10.0)).is_err() {
+                break;
             }
-        });
-        assert_eq!((done, steps), (Err(Stopped), 4));
+            steps += 1;
+            if k == 3 {
+                work.clone().stop();
+            }
+        }
+        assert_eq!((steps, work.go_on()), (4, ControlFlow::Break(())));
         assert_eq!(work.told().part, Some(0.4));
-        assert_eq!(stoppable(|| 7), Ok(7));
+        assert_eq!(work.whole(Ended::Interrupted), Err(Stopped));
+        assert_eq!(Work::default().go_on(), ControlFlow::Continue(()));
     }
 }

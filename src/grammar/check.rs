@@ -2,14 +2,11 @@
 
 use rustc_hash::FxHashSet;
 
-use super::derive::REGION_LIMIT;
+use super::limits::{REGION_LIMIT, TOLERANCE};
 use super::place::{Fit, place};
 use super::table::Table;
 use super::{Grammar, GrammarError, Operation, Rule, Size, Successor, Warning};
 use edifice_shape::Rect;
-
-/// Lengths are equal when they differ by at most this fraction of the facade's larger side.
-pub const TOLERANCE: f64 = 1e-6;
 
 /// Regions of different sizes tried per check; grammars whose relative sizes make more, or which
 /// split these into more than [`REGION_LIMIT`] parts, are checked further when they are derived.

@@ -2,16 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::check::{TOLERANCE, check_structure};
+use super::check::check_structure;
+use super::limits::{REGION_LIMIT, TOLERANCE};
 pub(super) use super::place::Fit;
 use super::place::place;
 use super::table::Table;
 use super::{Grammar, GrammarError};
 use edifice_shape::{Facade, Rect, Region};
-
-/// A derivation of more regions than this, terminals and non-terminals, is refused: a grammar of a
-/// few lines can describe more regions than there is memory.
-pub const REGION_LIMIT: usize = 5_000_000;
 
 /// A region split by a rule.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::check::TOLERANCE;
+use super::limits::TOLERANCE;
 use super::tiling::{Difference, tiling_difference};
 use super::{Costs, Grammar, GrammarError, derivation};
 use edifice_shape::Facade;

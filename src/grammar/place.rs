@@ -1,7 +1,6 @@
 //! The places of a rule's successors in its rectangle.
 
-use super::check::TOLERANCE;
-use super::derive::REGION_LIMIT;
+use super::limits::{REGION_LIMIT, TOLERANCE};
 use super::{Grammar, GrammarError, Operation, Rule, Size, summable};
 use edifice_shape::{Axis, Rect};
 

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::check::TOLERANCE;
+use super::limits::TOLERANCE;
 use edifice_shape::{Facade, Rect, Region};
 
 /// The first difference of two layouts.

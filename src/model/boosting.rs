@@ -8,6 +8,7 @@
 //!
 //! Features are cut at quantiles, at most [`BINS`] values each; O(features * (rows * levels + BINS * 2^levels)) a tree.
 
+use edifice_base::{Progress, Watch, Watched};
 use serde::{Deserialize, Serialize};
 
 /// Most values of a feature that are told apart in learning.
@@ -55,15 +56,16 @@ struct Tree {
 /// # Examples
 /// Exclusive or, which no sum of functions of one feature can represent:
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::boosting::{Boosting, BoostingError, Settings};
 /// let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]].repeat(50);
 /// let rows: Vec<Vec<f64>> = corners.into_iter().map(Vec::from).collect();
 /// let targets: Vec<f64> = rows.iter().map(|x| if x[0] == x[1] { 0.0 } else { 1.0 }).collect();
 /// // Unequal numbers: of balanced ones no first question gains anything.
 /// let (rows, targets) = (&rows[1..], &targets[1..]);
-/// let learnt = Boosting::learn(rows, targets, Settings { levels: 2, ..Settings::default() })?;
+/// let learnt = Boosting::learn(rows, targets, Settings { levels: 2, ..Settings::default() }, &unwatched)?;
 /// assert!(learnt.probability(&[0.0, 1.0]) > 0.9 && learnt.probability(&[1.0, 1.0]) < 0.1);
-/// assert!(matches!(Boosting::learn(&[], &[], Settings::default()), Err(BoostingError::Empty)));
+/// assert!(matches!(Boosting::learn(&[], &[], Settings::default(), &unwatched), Err(BoostingError::Empty)));
 /// # Ok::<(), BoostingError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -106,7 +108,8 @@ pub enum BoostingError {
 }
 
 impl Boosting {
-    /// Learns from rows of features and the probability of each (0 or 1 where it is known), one target for each row.
+    /// Learns from rows of features and the probability of each (0 or 1 where it is known), one target for each row. Stopped by
+    /// `watch`, it has the trees that were grown until then.
     ///
     /// # Errors
     /// [`BoostingError`] for no rows, rows of different length, and values that are not finite.
@@ -114,7 +117,9 @@ impl Boosting {
         rows: &[Vec<f64>],
         targets: &[f64],
         settings: Settings,
+        watch: &Watch,
     ) -> Result<Self, BoostingError> {
+        let watched = Watched::new(watch);
         let features = check(rows, targets)?;
         let cuts: Vec<Vec<f64>> = (0..features).map(|f| quantiles(rows, f)).collect();
         // Column by column, so that a level reads each feature in order.
@@ -128,7 +133,11 @@ impl Boosting {
         let prior = logit(mean.clamp(1e-4, 1.0 - 1e-4));
         let mut sums = vec![prior; rows.len()];
         let mut trees = Vec::with_capacity(settings.trees);
-        for _ in 0..settings.trees {
+        for tree in 0..settings.trees {
+            let told = Progress::of("trees", tree as u64, settings.trees as u64);
+            if !watched.goes_on(told) {
+                break;
+            }
             let steps: Vec<(f64, f64)> = sums
                 .iter()
                 .zip(targets)
@@ -303,6 +312,7 @@ mod tests {
 
     use super::*;
     use edifice_base::rng::stream;
+    use edifice_base::unwatched;
 
     #[test]
     fn recovers_the_probabilities_of_a_known_function() {
@@ -321,7 +331,7 @@ mod tests {
             truth.push(p);
             rows.push(row);
         }
-        let learnt = Boosting::learn(&rows, &targets, Settings::default()).unwrap();
+        let learnt = Boosting::learn(&rows, &targets, Settings::default(), &unwatched).unwrap();
         let errors = rows
             .iter()
             .zip(&truth)
@@ -336,16 +346,21 @@ mod tests {
     fn bad_rows_are_named() {
         let settings = Settings::default();
         assert_eq!(
-            Boosting::learn(&[], &[], settings),
+            Boosting::learn(&[], &[], settings, &unwatched),
             Err(BoostingError::Empty)
         );
         let rows = [vec![1.0], vec![1.0, 2.0]];
-        let length = Boosting::learn(&rows, &[0.0, 1.0], settings);
+        let length = Boosting::learn(&rows, &[0.0, 1.0], settings, &unwatched);
         assert!(matches!(length, Err(BoostingError::Length { row: 1, .. })));
-        let value = Boosting::learn(&[vec![f64::NAN]], &[0.0], settings);
+        let value = Boosting::learn(&[vec![f64::NAN]], &[0.0], settings, &unwatched);
         assert_eq!(value, Err(BoostingError::Value { row: 0 }));
         // One value only: the prior.
-        let constant = Boosting::learn(&vec![vec![1.0]; 10], &[0.0, 1.0].repeat(5), settings);
+        let constant = Boosting::learn(
+            &vec![vec![1.0]; 10],
+            &[0.0, 1.0].repeat(5),
+            settings,
+            &unwatched,
+        );
         assert!((constant.unwrap().probability(&[1.0]) - 0.5).abs() < 1e-9);
     }
 }

@@ -138,7 +138,7 @@ pub fn run<E: Em>(
     run_while(em, start, stopping, &|| true)
 }
 
-/// Runs EM from `start` as long as `goes_on`, which is asked before every round.
+/// Runs EM from `start` as long as `goes_on`, which is asked before every step.
 ///
 /// For limits of time, and for users who cancel: what has been reached is kept, with [`Outcome::Interrupted`].
 ///
@@ -150,6 +150,16 @@ pub fn run_while<E: Em>(
     stopping: &Stopping,
     goes_on: &dyn Fn() -> bool,
 ) -> Result<Fit<E::Model>, ModelError> {
+    Ok(run_kept(em, start, stopping, goes_on)?.0)
+}
+
+/// As [`run_while`], and the statistics at the parameters found.
+pub(crate) fn run_kept<E: Em>(
+    em: &E,
+    start: E::Model,
+    stopping: &Stopping,
+    goes_on: &dyn Fn() -> bool,
+) -> Result<(Fit<E::Model>, E::Stats), ModelError> {
     let (mut stats, mut log_likelihood) = em.expect(&start)?;
     let mut model = start;
     let mut log_posterior = log_likelihood + em.log_prior(&model);
@@ -161,6 +171,10 @@ pub fn run_while<E: Em>(
             break;
         }
         let next = em.maximize(&stats)?;
+        if !goes_on() {
+            outcome = Outcome::Interrupted;
+            break;
+        }
         let (next_stats, next_likelihood) = em.expect(&next)?;
         let next_posterior = next_likelihood + em.log_prior(&next);
         let gain = next_posterior - log_posterior;
@@ -181,13 +195,14 @@ pub fn run_while<E: Em>(
             break;
         }
     }
-    Ok(Fit {
+    let fit = Fit {
         model,
         log_likelihood,
         log_posterior,
         trace,
         outcome,
-    })
+    };
+    Ok((fit, stats))
 }
 
 /// Runs EM from every start and keeps the first of highest log posterior.

@@ -15,6 +15,7 @@
 
 use super::ModelError;
 use super::factor_graph::{Chain, Fitted, Settings, fit};
+use edifice_base::Watch;
 use edifice_base::rng::Stream;
 
 /// A model by its features and its negative sampler.
@@ -28,6 +29,7 @@ use edifice_base::rng::Stream;
 /// use edifice_model::factor_graph::Settings;
 /// use edifice_model::log_linear::LogLinear;
 /// use edifice_base::rng::Stream;
+/// use edifice_base::unwatched;
 /// use rand::RngExt;
 /// let model = LogLinear::new(
 ///     1,
@@ -35,7 +37,7 @@ use edifice_base::rng::Stream;
 ///     |x: &mut bool, weights: &[f64], rng: &mut Stream| *x = rng.random::<f64>() < 1.0 / (1.0 + (-100.0 * weights[0]).exp()),
 /// );
 /// let data = [true, true, true, false].repeat(250);
-/// let fitted = model.fit(&data, &Settings::default(), 1)?;
+/// let fitted = model.fit(&data, &Settings::default(), 1, &unwatched)?;
 /// assert!((100.0 * fitted.weights[0] - 3.0_f64.ln()).abs() < 0.1);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
@@ -68,14 +70,20 @@ where
     ///
     /// # Errors
     /// As [`fit`].
-    pub fn fit(mut self, data: &[X], settings: &Settings, seed: u64) -> Result<Fitted, ModelError> {
+    pub fn fit(
+        mut self,
+        data: &[X],
+        settings: &Settings,
+        seed: u64,
+        watch: &Watch,
+    ) -> Result<Fitted, ModelError> {
         let all: Vec<Vec<f64>> = data.iter().map(&self.features).collect();
         for (i, scale) in self.scales.iter_mut().enumerate() {
             let (_, deviation) = super::density::moments(all.iter().map(|f| f[i]));
             // A feature that never varies says nothing of its weight; its scale is arbitrary.
             *scale = if deviation > 0.0 { deviation } else { 1.0 };
         }
-        let scaled = fit(&self, data, settings, seed)?;
+        let scaled = fit(&self, data, settings, seed, watch)?;
         let gap = scaled.gap.iter().zip(&self.scales).map(|(g, s)| g * s);
         Ok(Fitted {
             gap: gap.collect(),

@@ -27,6 +27,18 @@
 //! | a probability of yes or no from features | [`boosting`] | CatBoost, scikit-learn |
 //! | a matrix with holes | [`low_rank`] | softImpute |
 //!
+//! # Which inference when
+//! | of | exactly | where that is too wide | how good that is |
+//! | --- | --- | --- | --- |
+//! | a network | [`network::Network::marginal`], `explain`, `log_probability`: elimination, exponential in the width of the graph | `likelihood_weighting` where evidence is probable, `gibbs` where tables have no zeros, `loopy` where loops are long | standard errors of [`network::Estimate`]; of `loopy` none: compare with one of the others |
+//! | a factor graph | [`factor_graph::Question`]: marginals, explanation, log Z | `loopy`; `annealed` for log Z | error bars of [`factor_graph::LogPartition`] |
+//! | a program of finite choices | [`program::exact`] up to a million ways, [`program::compile`] for choices that depend on few others | [`program::importance`], [`program::smc`], [`program::metropolis`] | effective sample size and Pareto's k, R-hat and Monte Carlo errors; [`program::Posterior::beside`] prints true errors beside them |
+//! | a program of real choices | – | `program::nuts` where each run makes the same ones, else [`program::metropolis`]; [`program::smc`] where data come in turn | R-hat below 1.01 of four chains, few divergences |
+//! | a model of a table | [`hierarchy::Hierarchy::complete`], `style_posterior`: exact up to 2048 assignments of hidden kinds in a row | the most probable assignments, by itself | – |
+//!
+//! Elimination first, always: it has no error to be estimated. Width is what counts, not the number of variables: a chain of a
+//! thousand is easy, a full grid of 20 x 20 is not.
+//!
 //! A hierarchy is a network ([`hierarchy::Hierarchy::to_network`]): learn it as the one, ask it as the other.
 //!
 //! One verb for one idea: *fit* estimates parameters of a given structure, *learn* structure and

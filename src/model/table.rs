@@ -250,6 +250,14 @@ impl Table {
         self.rows
     }
 
+    /// True if any cell is missing.
+    pub fn has_missing(&self) -> bool {
+        self.columns.iter().any(|column| match &column.values {
+            Values::Real(values) => values.iter().any(|v| v.is_nan()),
+            Values::Codes { codes, .. } => codes.contains(&MISSING),
+        })
+    }
+
     /// The columns, in order of declaration.
     pub fn columns(&self) -> &[Column] {
         &self.columns

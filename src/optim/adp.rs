@@ -270,7 +270,7 @@ impl<H, V> Adp<H, V> {
     pub fn run<P, A: Answer>(
         self,
         process: &mut P,
-        observer: impl FnMut(Step) -> A + 'static,
+        observer: impl FnMut(Step) -> A,
     ) -> Result<Run<Vec<P::Action>>, AdpError>
     where
         P: Process,

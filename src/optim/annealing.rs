@@ -185,7 +185,7 @@ impl Annealing {
     pub fn run<L: Landscape, A: Answer>(
         self,
         landscape: &mut L,
-        observer: impl FnMut(Step) -> A + 'static,
+        observer: impl FnMut(Step) -> A,
     ) -> Result<Run<L::Solution>, AnnealingError> {
         let (iterations, goal) = (self.iterations, self.goal);
         let (start, cost) = (landscape.solution(), landscape.cost());

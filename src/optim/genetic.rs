@@ -213,7 +213,7 @@ impl<G: Clone> Genetic<G> {
     pub fn run<B: Breed<Genome = G>, A: Answer>(
         self,
         breed: &mut B,
-        observer: impl FnMut(Step) -> A + 'static,
+        observer: impl FnMut(Step) -> A,
     ) -> Result<(Run<G>, Population<G>), GeneticError> {
         let settings = self.settings;
         let limits = |state: Search<G>| {

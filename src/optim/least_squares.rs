@@ -78,7 +78,7 @@ pub fn minimize<R: Residuals, A: Answer>(
     residuals: &R,
     start: Vec<f64>,
     limits: Limits,
-    observer: impl FnMut(Step) -> A + 'static,
+    observer: impl FnMut(Step) -> A,
 ) -> Result<Run<Vec<f64>>, LeastSquaresError> {
     let mut first = Vec::new();
     residuals.residuals(&start, &mut first);

@@ -29,4 +29,4 @@ mod run;
 pub mod tempering;
 
 pub use limits::{Answer, Limits};
-pub use run::{Outcome, Run, Step};
+pub use run::{Outcome, Run, Step, tell};

@@ -1,12 +1,12 @@
 //! The result of every optimizer, and the one way in which argmin runs them.
 
-use std::cell::{Cell, RefCell};
-use std::rc::Rc;
+use std::ops::ControlFlow;
 
-use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{
     Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus,
 };
+
+use edifice_base::{Progress, Watch};
 
 use super::limits::{Answer, EVALUATIONS};
 
@@ -113,6 +113,35 @@ impl Outcome {
     }
 }
 
+/// The observer of a run that tells the watch of a longer call of every step, of at most `most`.
+///
+/// # Examples
+/// ```
+/// use std::ops::ControlFlow;
+/// use edifice_base::Progress;
+/// use edifice_optim::{Step, tell};
+/// let second = |progress: Progress| match progress.done {
+///     2.. => ControlFlow::Break(()),
+///     _ => ControlFlow::Continue(()),
+/// };
+/// let mut observer = tell(&second, Some(10));
+/// assert!(observer(Step { iteration: 0, cost: 3.0, best: 3.0 }).is_continue());
+/// assert!(observer(Step { iteration: 1, cost: 4.0, best: 3.0 }).is_break());
+/// ```
+pub fn tell<'a>(
+    watch: &'a Watch<'a>,
+    most: Option<u64>,
+) -> impl FnMut(Step) -> ControlFlow<()> + 'a {
+    move |step| {
+        let done = Progress {
+            done: step.iteration + 1,
+            most,
+            ..Progress::stage("iterations")
+        };
+        watch(done.costs(step.cost, step.best))
+    }
+}
+
 /// argmin's state for solutions that have no gradient.
 pub(super) type Search<S> = IterState<S, (), (), (), (), f64>;
 
@@ -121,93 +150,90 @@ pub(super) type Search<S> = IterState<S, (), (), (), (), f64>;
 ///
 /// # Errors
 /// Those of the solver, and when it ends without a solution.
-pub(super) fn execute<O, M, S: Clone, A: Answer>(
+pub(super) fn execute<O, M, S: Clone, W: FnMut(Step) -> A, A: Answer>(
     problem: O,
     solver: M,
-    configure: impl FnOnce(Executor<O, Stoppable<M>, Search<S>>) -> Executor<O, Stoppable<M>, Search<S>>,
-    observer: impl FnMut(Step) -> A + 'static,
+    configure: impl FnOnce(
+        Executor<O, Watched<M, W>, Search<S>>,
+    ) -> Executor<O, Watched<M, W>, Search<S>>,
+    observer: W,
 ) -> Result<(Run<S>, M), Error>
 where
     M: Solver<O, Search<S>>,
 {
-    let trace = Rc::new(RefCell::new(Vec::new()));
-    let stop = Rc::new(Cell::new(false));
-    let steps = Steps {
-        trace: Rc::clone(&trace),
-        stop: Rc::clone(&stop),
-        observer,
-    };
-    let solver = Stoppable {
+    let watched = Watched {
         inner: solver,
-        stop,
+        observer,
+        trace: Vec::new(),
+        stopped: false,
     };
-    let result = configure(Executor::new(problem, solver))
+    let result = configure(Executor::new(problem, watched))
         .ctrlc(false)
-        .add_observer(steps, ObserverMode::Always)
         .run()?;
-    let state = result.state;
+    let (state, watched) = (result.state, result.solver);
     let run = Run {
         best: (state.best_param).ok_or_else(|| Error::msg("no solution was found"))?,
         cost: state.best_cost,
         outcome: Outcome::of(&state.termination_status),
-        trace: trace.take(),
+        trace: watched.trace,
     };
-    Ok((run, result.solver.inner))
+    Ok((run, watched.inner))
 }
 
 /// Name of the exit of argmin when the observer stops the run.
 const STOPPED: &str = "stopped";
 
-/// A solver that ends when its observer says so.
-pub(super) struct Stoppable<M> {
+/// A solver whose iterations are recorded and told of, and which ends when its observer says so. (The observers of argmin
+/// would have to outlive the run.)
+pub(super) struct Watched<M, W> {
     inner: M,
-    stop: Rc<Cell<bool>>,
+    observer: W,
+    trace: Vec<Step>,
+    stopped: bool,
 }
 
-impl<O, I: State, M: Solver<O, I>> Solver<O, I> for Stoppable<M> {
+impl<O, S, M, W, A> Solver<O, Search<S>> for Watched<M, W>
+where
+    S: Clone,
+    M: Solver<O, Search<S>>,
+    W: FnMut(Step) -> A,
+    A: Answer,
+{
     fn name(&self) -> &str {
         self.inner.name()
     }
 
-    fn init(&mut self, problem: &mut Problem<O>, state: I) -> Result<(I, Option<KV>), Error> {
+    fn init(
+        &mut self,
+        problem: &mut Problem<O>,
+        state: Search<S>,
+    ) -> Result<(Search<S>, Option<KV>), Error> {
         self.inner.init(problem, state)
     }
 
-    fn next_iter(&mut self, problem: &mut Problem<O>, state: I) -> Result<(I, Option<KV>), Error> {
-        self.inner.next_iter(problem, state)
-    }
-
-    fn terminate(&mut self, state: &I) -> TerminationStatus {
-        if self.stop.get() {
-            let reason = TerminationReason::SolverExit(STOPPED.to_owned());
-            return TerminationStatus::Terminated(reason);
-        }
-        self.inner.terminate(state)
-    }
-}
-
-/// Records every iteration and passes it on.
-struct Steps<F> {
-    trace: Rc<RefCell<Vec<Step>>>,
-    stop: Rc<Cell<bool>>,
-    observer: F,
-}
-
-impl<I, F, A: Answer> Observe<I> for Steps<F>
-where
-    I: State<Float = f64>,
-    F: FnMut(Step) -> A,
-{
-    fn observe_iter(&mut self, state: &I, _: &KV) -> Result<(), Error> {
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<O>,
+        state: Search<S>,
+    ) -> Result<(Search<S>, Option<KV>), Error> {
+        let (mut state, pairs) = self.inner.next_iter(problem, state)?;
+        // The executor does so once more afterwards, which changes nothing.
+        state.update();
         let step = Step {
             iteration: state.get_iter(),
             cost: state.get_cost(),
             best: state.get_best_cost(),
         };
-        self.trace.borrow_mut().push(step);
-        if (self.observer)(step).stops() {
-            self.stop.set(true);
+        self.trace.push(step);
+        self.stopped |= (self.observer)(step).stops();
+        Ok((state, pairs))
+    }
+
+    fn terminate(&mut self, state: &Search<S>) -> TerminationStatus {
+        if self.stopped {
+            let reason = TerminationReason::SolverExit(STOPPED.to_owned());
+            return TerminationStatus::Terminated(reason);
         }
-        Ok(())
+        self.inner.terminate(state)
     }
 }

@@ -109,7 +109,7 @@ pub fn temper<L, A: Answer>(
     landscape: &L,
     settings: &Settings,
     seed: u64,
-    observer: impl FnMut(Step) -> A + 'static,
+    observer: impl FnMut(Step) -> A,
 ) -> Result<Run<L::Solution>, TemperingError>
 where
     L: Landscape + Clone + Send,

@@ -1,10 +1,11 @@
 //! Grouped bars.
 
 use super::axis::Scale;
-use super::chart::Corner;
 use super::colour::{Colour, FRAME, INK, category};
-use super::drawing::{Anchor, Area, Drawing, Text, text_width};
+use super::drawing::{Anchor, Area, Drawing, Text};
+use super::frame::Corner;
 use super::frame::{self, Key, LABEL, SMALL};
+use super::render::text_width;
 
 /// Bars of one colour, one for each category.
 #[derive(Debug, Clone)]

@@ -3,25 +3,7 @@
 use super::axis::{Fitted, Scale};
 use super::colour::{Colour, MUTED, category};
 use super::drawing::{Anchor, Area, Drawing};
-use super::frame::{self, Key, SMALL};
-
-/// The corner of the chart in which the legend stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Corner {
-    /// Upper right.
-    #[default]
-    TopRight,
-    /// Upper left.
-    TopLeft,
-    /// Lower right.
-    BottomRight,
-    /// Lower left.
-    BottomLeft,
-    /// In rows above the plot, where it covers nothing.
-    Above,
-    /// No legend.
-    None,
-}
+use super::frame::{self, Corner, Key, SMALL};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {

@@ -2,8 +2,9 @@
 
 use super::axis::{Fitted, Scale};
 use super::colour::{INK, MUTED, category};
-use super::drawing::{Anchor, Area, Drawing, Text, text_width};
+use super::drawing::{Anchor, Area, Drawing, Text};
 use super::frame::{self, SMALL};
+use super::render::text_width;
 
 /// Room for the name of a leaf, across the direction of reading.
 const LINE: f64 = 14.0;

@@ -1,7 +1,6 @@
 //! A picture as a list of marks, in logical pixels with y down: drawn once, rendered to SVG and PNG.
 
 use super::colour::{Colour, INK};
-use super::render;
 
 /// The place of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -213,11 +212,6 @@ impl Drawing {
             self.marks.push(Mark::Text(text));
         }
     }
-}
-
-/// Width of a text in logical pixels.
-pub fn text_width(text: &str, size: f64) -> f64 {
-    render::text_width(text, size)
 }
 
 fn corners(area: Area) -> Vec<(f64, f64)> {

@@ -1,9 +1,27 @@
 //! The frame of a chart: grid, ticks, labels, title, legend.
 
 use super::axis::{Fitted, Scale};
-use super::chart::Corner;
 use super::colour::{Colour, FRAME, GRID, INK, MUTED, PAPER};
-use super::drawing::{Anchor, Area, Drawing, Text, text_width};
+use super::drawing::{Anchor, Area, Drawing, Text};
+use super::render::text_width;
+
+/// The corner of the chart in which the legend stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Corner {
+    /// Upper right.
+    #[default]
+    TopRight,
+    /// Upper left.
+    TopLeft,
+    /// Lower right.
+    BottomRight,
+    /// Lower left.
+    BottomLeft,
+    /// In rows above the plot, where it covers nothing.
+    Above,
+    /// No legend.
+    None,
+}
 
 /// Height of tick labels and legends.
 pub const SMALL: f64 = 11.5;

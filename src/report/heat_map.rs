@@ -2,8 +2,9 @@
 
 use super::axis::Scale;
 use super::colour::{FRAME, INK, ramp};
-use super::drawing::{Anchor, Area, Drawing, Text, text_width};
+use super::drawing::{Anchor, Area, Drawing, Text};
 use super::frame::{self, LABEL, SMALL};
+use super::render::text_width;
 
 /// A matrix as colours; row 0 on top.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@ use edifice::grammar::instance::{InstanceGrammar, Kept};
 use edifice::io::city::{add_textures, compact, glb, gltf, grammar_json, obj, paint_parts, read};
 use edifice::methods::city_proceduralization::{Budget, Settings, decompose, proceduralize};
 use edifice::shape::triangles::{City, SideView, Surface, VIEWS, grey};
+use edifice::unwatched;
 
 use super::textures::boxes;
 
@@ -15,7 +16,7 @@ fn textured(city: &City, budget: Budget) -> InstanceGrammar {
         budget,
         ..Settings::default()
     };
-    let mut made = proceduralize(city, &settings).unwrap();
+    let mut made = proceduralize(city, &settings, &unwatched).unwrap();
     let textures = made.box_textures(city, 256);
     add_textures(&mut made.grammar, &textures).unwrap();
     made.grammar
@@ -30,7 +31,7 @@ fn derived(grammar: &InstanceGrammar) -> City {
 /// Mean difference of greys between the views of the buildings of two cities, in the boxes of the first.
 fn difference(a: &City, b: &City) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for component in &decompose(a, true).components {
+    for component in &decompose(a, true, &unwatched).components {
         let building = &a.buildings[component.building];
         let like = b.buildings.iter().find(|other| other.id == building.id);
         let like = like.unwrap();

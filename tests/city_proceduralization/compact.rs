@@ -5,6 +5,7 @@ use edifice::io::city::{compact, grammar_json};
 use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings, proceduralize};
 use edifice::rng::{Stream, stream};
 use edifice::shape::triangles::TriangleMesh;
+use edifice::unwatched;
 use edifice_experiments::city_proceduralization::synthetic;
 use rand::RngExt;
 
@@ -47,7 +48,7 @@ fn made(mode: Mode, budget: Budget, precision: Option<Precision>) -> InstanceGra
         precision,
         ..Settings::default()
     };
-    proceduralize(&city, &settings).unwrap().grammar
+    proceduralize(&city, &settings, &unwatched).unwrap().grammar
 }
 
 #[test]

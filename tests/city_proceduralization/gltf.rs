@@ -7,6 +7,7 @@ use edifice::io::city::{glb, gltf, read};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
 use edifice::rng::stream;
 use edifice::shape::triangles::City;
+use edifice::unwatched;
 use edifice_experiments::city_proceduralization::synthetic;
 use rand::RngExt;
 use serde_json::json;
@@ -19,7 +20,7 @@ fn written(instancing: bool) -> (City, Vec<u8>) {
         budget: Budget::Templates(20),
         ..Settings::default()
     };
-    let grammar = proceduralize(&city, &settings).unwrap().grammar;
+    let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
     let derivation = grammar.derive().unwrap();
     let bytes = glb::to_bytes(&grammar, &derivation, instancing).unwrap();
     (derivation.city(&grammar), bytes)

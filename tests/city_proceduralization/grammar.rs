@@ -11,6 +11,7 @@ use edifice::methods::city_proceduralization::{
     Budget, Mode, Precision, Settings, Structure, decompose, proceduralize,
 };
 use edifice::shape::triangles::{City, CityBuilding, TriangleMesh, VolumeRaster};
+use edifice::unwatched;
 use edifice_experiments::city_proceduralization::synthetic;
 
 fn settings(mode: Mode, budget: Budget) -> Settings {
@@ -22,7 +23,7 @@ fn settings(mode: Mode, budget: Budget) -> Settings {
 }
 
 fn derived(city: &City, settings: &Settings) -> (City, InstanceGrammar) {
-    let made = proceduralize(city, settings).unwrap();
+    let made = proceduralize(city, settings, &unwatched).unwrap();
     (
         made.grammar.derive().unwrap().city(&made.grammar),
         made.grammar,
@@ -77,8 +78,9 @@ fn threads_do_not_matter() {
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            let made =
-                pool.install(|| proceduralize(&city, &settings(mode, Budget::Level(2))).unwrap());
+            let made = pool.install(|| {
+                proceduralize(&city, &settings(mode, Budget::Level(2)), &unwatched).unwrap()
+            });
             grammar_json::to_string(&made.grammar).unwrap()
         };
         let one = run(1);
@@ -127,7 +129,7 @@ fn inverted_opened_and_doubled_meshes_cost_little() {
 #[test]
 fn cuts_of_a_known_grammar_are_found() {
     let (city, truth) = synthetic::city(40, 0.0, 6);
-    let made = decompose(&city, true);
+    let made = decompose(&city, true, &unwatched);
     let mut wrong = 0;
     for (b, t) in truth.iter().enumerate() {
         let own = made.components.iter().filter(|c| c.building == b).skip(1);
@@ -143,7 +145,8 @@ fn cuts_of_a_known_grammar_are_found() {
 fn types_and_motifs_of_a_known_grammar_are_found() {
     for (noise, least) in [(0.0, 0.99), (0.03, 0.95)] {
         let (city, truth) = synthetic::city(160, noise, 9);
-        let made = proceduralize(&city, &settings(Mode::Best, Budget::Level(4))).unwrap();
+        let made =
+            proceduralize(&city, &settings(Mode::Best, Budget::Level(4)), &unwatched).unwrap();
         let Structure::Patterns {
             buildings,
             patterns,
@@ -424,7 +427,7 @@ fn parts_that_are_not_all_of_a_building_are_not_believed() {
     building.append_instance(&mesh, 0, Some(frame), None);
     assert!(building.stated_parts().is_none());
     assert_eq!(building.mesh.triangles, mesh.triangles);
-    let components = decompose(&derived, true).components;
+    let components = decompose(&derived, true, &unwatched).components;
     let stated = |b: usize| {
         let mut own = components.iter().filter(move |c| c.building == b);
         own.all(|c| c.stated.is_some())

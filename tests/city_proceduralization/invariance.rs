@@ -5,6 +5,7 @@ use edifice::io::city::{compact, grammar_json};
 use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings, proceduralize};
 use edifice::rng::stream;
 use edifice::shape::triangles::City;
+use edifice::unwatched;
 use edifice_experiments::city_proceduralization::synthetic;
 use rand::seq::SliceRandom;
 
@@ -17,7 +18,7 @@ fn settings(mode: Mode, budget: Budget) -> Settings {
 }
 
 fn grammar(city: &City, settings: &Settings) -> InstanceGrammar {
-    proceduralize(city, settings).unwrap().grammar
+    proceduralize(city, settings, &unwatched).unwrap().grammar
 }
 
 /// The bytes of a grammar, its buildings by identifier.

@@ -2,8 +2,10 @@
 
 mod box_textures;
 mod citygml;
+mod closed;
 mod commands;
 mod compact;
+mod far_away;
 mod gltf;
 mod grammar;
 mod interrupted;

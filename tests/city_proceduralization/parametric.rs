@@ -4,6 +4,7 @@ use edifice::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Templ
 use edifice::io::city::{compact, grammar_json};
 use edifice::methods::city_proceduralization::{Budget, Precision, Settings, proceduralize};
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster};
+use edifice::unwatched;
 use edifice_editing::city_proceduralization::edit;
 use edifice_experiments::city_proceduralization::synthetic;
 
@@ -12,7 +13,7 @@ fn made(city: &City, budget: Budget) -> InstanceGrammar {
         budget,
         ..Settings::default()
     };
-    proceduralize(city, &settings).unwrap().grammar
+    proceduralize(city, &settings, &unwatched).unwrap().grammar
 }
 
 fn derived(grammar: &InstanceGrammar) -> City {
@@ -139,7 +140,7 @@ fn residuals_stand_in_a_stream_of_their_own() {
         precision: Some(Precision::Decimetre),
         ..Settings::default()
     };
-    let grammar = proceduralize(&city, &settings).unwrap().grammar;
+    let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
     assert!(grammar.residuals() > 0);
     let bytes = compact::to_bytes(&grammar).unwrap();
     let again = compact::from_bytes(&bytes).unwrap();

@@ -9,6 +9,7 @@ use edifice::methods::city_proceduralization::{
 };
 use edifice::rng::stream;
 use edifice::shape::triangles::{City, Surface};
+use edifice::unwatched;
 use rand::RngExt;
 
 const MATERIALS: &str =
@@ -67,7 +68,7 @@ fn facades_tell_buildings_of_one_shape_apart() {
     let folder = tempfile::tempdir().unwrap();
     let (path, kinds) = boxes(folder.path(), 40);
     let city = read(&path).unwrap();
-    let components = decompose(&city, true).components;
+    let components = decompose(&city, true, &unwatched).components;
     assert_eq!(components.len(), 40);
     // Windows are as wide as the picture says: to a pixel of 0.1 m.
     for c in &components {
@@ -89,7 +90,7 @@ fn facades_tell_buildings_of_one_shape_apart() {
             weights,
             ..Settings::default()
         };
-        let made = proceduralize(city, &settings).unwrap();
+        let made = proceduralize(city, &settings, &unwatched).unwrap();
         let types: Vec<usize> = made.types.uses.iter().map(|u| u.kind).collect();
         let kinds: Vec<usize> = (made.decomposition.components.iter())
             .map(|c| kinds[c.building])

@@ -6,6 +6,7 @@ use edifice::grammar::Costs;
 use edifice::io::facade_json;
 use edifice::methods::facade_grammar::{BoundLimits, Operations, Settings, Weakness, lower_bound};
 use edifice::shape::{Facade, Rect, Region};
+use edifice::unwatched;
 use proptest::prelude::*;
 
 /// Labels of unit cells, row by row.
@@ -157,7 +158,7 @@ proptest! {
         let least = exhaustive(&rules(&cells, repeat));
         let few = BoundLimits { nodes: 1, root_steps: 40, ..BoundLimits::default() };
         for limits in [few, BoundLimits::default()] {
-            let bound = lower_bound(&facade(&cells), &settings(repeat), &limits).unwrap();
+            let bound = lower_bound(&facade(&cells), &settings(repeat), &limits, &unwatched).unwrap();
             prop_assert!(bound.lower <= least + 1e-6, "{bound:?} above {least}");
             prop_assert!(bound.upper >= least - 1e-6, "{bound:?} below {least}");
             if bound.proven {
@@ -173,14 +174,14 @@ proptest! {
     fn weak_bound_and_all_operations_stay_below(cells in tiny()) {
         let least = exhaustive(&rules(&cells, true));
         let limits = BoundLimits { items: 0, ..BoundLimits::default() };
-        let weak = lower_bound(&facade(&cells), &settings(true), &limits).unwrap();
+        let weak = lower_bound(&facade(&cells), &settings(true), &limits, &unwatched).unwrap();
         prop_assert!(weak.weak == Some(Weakness::Items) && weak.lower <= least + 1e-6);
         // More operations can only lower the optimum.
         let more = Settings {
             operations: Operations { repeat_aba: true, sym_split: true, ..Operations::default() },
             ..settings(true)
         };
-        let bound = lower_bound(&facade(&cells), &more, &BoundLimits::default()).unwrap();
+        let bound = lower_bound(&facade(&cells), &more, &BoundLimits::default(), &unwatched).unwrap();
         prop_assert!(bound.lower <= least + 1e-6 && bound.lower <= bound.upper + 1e-6);
     }
 }
@@ -191,6 +192,7 @@ fn a_facade_of_one_region_needs_no_rule() {
         &facade(&vec![vec![0]]),
         &settings(true),
         &BoundLimits::default(),
+        &unwatched,
     );
     let bound = bound.unwrap();
     assert!(bound.proven && bound.types == 0);
@@ -220,7 +222,7 @@ fn facade_i_is_solved() {
             operations,
             ..Settings::default()
         };
-        let bound = lower_bound(&facade, &settings, &BoundLimits::default()).unwrap();
+        let bound = lower_bound(&facade, &settings, &BoundLimits::default(), &unwatched).unwrap();
         assert!(bound.proven, "{operations:?}: {bound:?}");
         assert!(
             (bound.upper - least).abs() < 1e-6,

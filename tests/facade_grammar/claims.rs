@@ -6,6 +6,7 @@ use edifice::methods::facade_grammar::{
     BoundLimits, InferError, Operations, Settings, Weakness, infer, lower_bound,
 };
 use edifice::shape::{Facade, Rect, Region};
+use edifice::unwatched;
 
 fn shipped(name: &str) -> Facade {
     let root = env!("CARGO_MANIFEST_DIR");
@@ -46,7 +47,7 @@ fn with(ops: &str) -> Settings {
 /// The cost of the grammar found, and true if it is proven optimal.
 fn cost(facade: &Facade, settings: &Settings) -> (f64, bool) {
     let facades = std::slice::from_ref(facade);
-    let outcome = infer(facades, settings).unwrap();
+    let outcome = infer(facades, settings, &unwatched).unwrap();
     let cost = evaluate(&outcome.grammar, facades, &settings.costs)
         .unwrap()
         .cost;
@@ -106,7 +107,7 @@ fn costs_out_of_range_are_refused() {
             costs,
             ..Settings::default()
         };
-        let refused = infer(&[row("ab", 1.0)], &settings);
+        let refused = infer(&[row("ab", 1.0)], &settings, &unwatched);
         assert!(matches!(refused, Err(InferError::Cost(_))), "{split}");
     }
 }
@@ -126,7 +127,7 @@ fn no_work_proves_nothing() {
             nodes,
             ..BoundLimits::default()
         };
-        let bound = lower_bound(&facade, &settings, &limits).unwrap();
+        let bound = lower_bound(&facade, &settings, &limits, &unwatched).unwrap();
         assert!(bound.lower < 189.9 - 1e-6 && !bound.proven, "{bound:?}");
     }
 }
@@ -136,7 +137,7 @@ fn bounds_with_grids_say_why_they_are_weak() {
     let mut settings = with("split,repeat,grid_split");
     settings.iterations = 100;
     let facade = shipped("wu2014_fig9");
-    let bound = lower_bound(&facade, &settings, &BoundLimits::default()).unwrap();
+    let bound = lower_bound(&facade, &settings, &BoundLimits::default(), &unwatched).unwrap();
     assert_eq!(bound.weak, Some(Weakness::Grids));
     // Without grids 38.1; two by two cells cost 4.1 as a grid, 6.3 as splits.
     assert!((bound.lower - 38.1 * 4.1 / 6.3).abs() < 1e-6, "{bound:?}");
@@ -145,6 +146,6 @@ fn bounds_with_grids_say_why_they_are_weak() {
         operations: Operations::all(),
         ..settings
     };
-    let bound = lower_bound(&row("abcd", 1.0), &one, &BoundLimits::default()).unwrap();
+    let bound = lower_bound(&row("abcd", 1.0), &one, &BoundLimits::default(), &unwatched).unwrap();
     assert!(bound.lower <= 4.1 && bound.upper >= 4.1 - 1e-6, "{bound:?}");
 }

@@ -1,15 +1,16 @@
 //! Inference of facade grammars (Wu et al. 2014): the printed facade, made layouts, laws.
 
-use std::cell::RefCell;
-use std::rc::Rc;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
 
 use edifice::grammar::{Costs, derive, evaluate};
 use edifice::io::{ReadOptions, read_facade};
 use edifice::methods::facade_grammar::{
-    Exploit, InferError, Method, Operations, Protect, Readings, Settings, infer, infer_observed,
+    Exploit, InferError, Method, Operations, Protect, Readings, Settings, infer,
 };
 use edifice::rng::stream;
 use edifice::shape::{Facade, Rect, Region};
+use edifice::{Progress, unwatched};
 use proptest::prelude::*;
 use rand::RngExt;
 
@@ -32,7 +33,7 @@ fn facade_i() -> Facade {
 
 fn cost(facade: &Facade, settings: &Settings) -> f64 {
     let facades = std::slice::from_ref(facade);
-    let outcome = infer(facades, settings).unwrap();
+    let outcome = infer(facades, settings, &unwatched).unwrap();
     evaluate(&outcome.grammar, facades, &settings.costs)
         .unwrap()
         .cost
@@ -97,7 +98,7 @@ fn without_memory_the_text_is_importance_sampling() {
             readings,
             ..Settings::default()
         };
-        infer(&[facade_i()], &settings).unwrap().grammar
+        infer(&[facade_i()], &settings, &unwatched).unwrap().grammar
     };
     for seed in 0..3 {
         let importance = run(Method::Importance, seed, 64);
@@ -174,7 +175,7 @@ fn the_same_seed_gives_the_same_grammar() {
             seed: 5,
             ..Settings::default()
         };
-        let run = || infer(&[facade_i()], &settings).unwrap().grammar;
+        let run = || infer(&[facade_i()], &settings, &unwatched).unwrap().grammar;
         assert_eq!(run(), run(), "{method}");
     }
 }
@@ -233,6 +234,7 @@ fn a_facade_of_one_region_is_its_own_axiom() {
                 method,
                 ..Settings::default()
             },
+            &unwatched,
         )
         .unwrap();
         assert!(outcome.grammar.rules.is_empty());
@@ -246,9 +248,9 @@ fn two_equal_facades_need_no_more_rules_than_one() {
         iterations: 500,
         ..Settings::default()
     };
-    let one = infer(&[facade_i()], &settings).unwrap().grammar;
+    let one = infer(&[facade_i()], &settings, &unwatched).unwrap().grammar;
     let two = [facade_i(), facade_i()];
-    let joint = infer(&two, &settings).unwrap().grammar;
+    let joint = infer(&two, &settings, &unwatched).unwrap().grammar;
     let evaluation = evaluate(&joint, &two, &Costs::default()).unwrap();
     assert_eq!(joint.rules.len(), one.rules.len());
     assert!((evaluation.cost - Costs::default().grammar(&one)).abs() < 1e-9);
@@ -268,10 +270,10 @@ fn what_cannot_be_split_is_reported() {
         at("e", 1.0, 1.0, 1.0, 1.0),
     ];
     let facade = Facade::new("pinwheel", "m", 3.0, 3.0, pinwheel).unwrap();
-    let error = infer(&[facade], &Settings::default()).unwrap_err();
+    let error = infer(&[facade], &Settings::default(), &unwatched).unwrap_err();
     assert!(matches!(error, InferError::Unsplittable { .. }), "{error}");
     assert!(matches!(
-        infer(&[], &Settings::default()),
+        infer(&[], &Settings::default(), &unwatched),
         Err(InferError::NoFacade)
     ));
 }
@@ -323,13 +325,19 @@ fn observers_are_told_of_every_step_in_order() {
             iterations: 40,
             ..Settings::default()
         };
-        let steps = Rc::new(RefCell::new(Vec::new()));
-        let seen = Rc::clone(&steps);
-        infer_observed(std::slice::from_ref(&facade), &settings, move |step| {
-            seen.borrow_mut().push(step.iteration);
-        })
+        let steps = Mutex::new(Vec::new());
+        infer(
+            std::slice::from_ref(&facade),
+            &settings,
+            &|progress: Progress| {
+                if progress.cost.is_some() {
+                    steps.lock().unwrap().push(progress.done);
+                }
+                ControlFlow::Continue(())
+            },
+        )
         .unwrap();
-        let steps = steps.borrow();
+        let steps = steps.into_inner().unwrap();
         if method == Method::AdpBest {
             // It stops once its grammar is proven optimal.
             assert!((1..=settings.steps()).contains(&(steps.len() as u64)));
@@ -349,7 +357,7 @@ proptest! {
         let facade = random_layout(seed, depth);
         let operations = if all { Operations::all() } else { Operations::default() };
         let settings = Settings { method: METHODS[method], iterations: 60, seed, operations, ..Settings::default() };
-        let outcome = infer(std::slice::from_ref(&facade), &settings).unwrap();
+        let outcome = infer(std::slice::from_ref(&facade), &settings, &unwatched).unwrap();
         let evaluation = evaluate(&outcome.grammar, std::slice::from_ref(&facade), &settings.costs);
         prop_assert!(evaluation.is_ok(), "{:?}", evaluation);
         prop_assert_eq!(derive(&outcome.grammar, 0).unwrap().regions.len(), facade.regions.len());

@@ -8,6 +8,7 @@ use edifice::io::facade_json;
 use edifice::methods::facade_grammar::{Operations, Settings, infer};
 use edifice::rng::{Stream, stream};
 use edifice::shape::{Facade, Rect, Region};
+use edifice::unwatched;
 use rand::RngExt;
 
 /// Cost of the grammar that is found, and whether it is proven optimal; infinite when it is no grammar of them.
@@ -17,7 +18,7 @@ fn inferred(facades: &[Facade], operations: Operations, iterations: u64) -> (f64
         iterations,
         ..Settings::default()
     };
-    let found = infer(facades, &settings).unwrap();
+    let found = infer(facades, &settings, &unwatched).unwrap();
     let cost = evaluate(&found.grammar, facades, &settings.costs).map_or(f64::INFINITY, |e| e.cost);
     let proven = found.lower_bound.is_some_and(|bound| cost <= bound + 1e-6);
     (cost, proven)

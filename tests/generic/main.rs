@@ -4,3 +4,4 @@ mod cluster_hierarchy;
 mod optim_genetic;
 mod optim_projection;
 mod shape_triangles;
+mod stopping;

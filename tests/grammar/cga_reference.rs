@@ -13,6 +13,7 @@ use edifice::io::{facade_json, grammar_json};
 use edifice::methods::facade_grammar::{Settings, infer};
 use edifice::rng;
 use edifice::shape::{Axis, Facade};
+use edifice::unwatched;
 
 /// A grammar of one start of 100 x 100.
 fn grammar(rules: Vec<Rule>) -> Grammar {
@@ -255,7 +256,7 @@ fn shipped_grammars_come_back_and_fill_other_lots() {
             iterations: 20,
             ..Settings::default()
         };
-        let grammar = infer(std::slice::from_ref(&facade), &settings)
+        let grammar = infer(std::slice::from_ref(&facade), &settings, &unwatched)
             .unwrap()
             .grammar;
         let text = to_string(&grammar);

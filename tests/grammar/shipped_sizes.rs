@@ -8,6 +8,7 @@ use edifice::layout::resize::align;
 use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::rng::stream;
 use edifice::shape::{Facade, is_background};
+use edifice::unwatched;
 use rand::RngExt;
 
 fn files(ending: &str) -> Vec<PathBuf> {
@@ -32,7 +33,7 @@ fn grammars() -> Vec<(String, Grammar)> {
     let shipped = shipped.map(|file| (file.display().to_string(), read_grammar(&file).unwrap()));
     let inferred = files(".facade.json").into_iter().map(|file| {
         let facade = facade_json::read(&file).unwrap();
-        let found = infer(&[facade], &settings).unwrap();
+        let found = infer(&[facade], &settings, &unwatched).unwrap();
         (format!("inferred from {}", file.display()), found.grammar)
     });
     let all: Vec<(String, Grammar)> = shipped.chain(inferred).collect();

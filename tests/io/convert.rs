@@ -103,7 +103,7 @@ fn help_shows_an_example() {
     let assert = convert(Path::new("."), &["--help"]).success();
     let text = String::from_utf8(assert.get_output().stdout.clone()).unwrap();
     assert!(
-        text.contains("Examples:\n  edifice facade convert monge_42.png"),
+        text.contains("Examples:\n  edifice facade convert datasets/examples/facade.png"),
         "{text}"
     );
 }

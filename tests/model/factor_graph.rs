@@ -4,6 +4,7 @@ use edifice::model::factor_graph::{
     Chain, Factor, Gibbs, Metropolis, Propose, Settings, fit, gradient, sample,
 };
 use edifice::rng::{Stream, stream};
+use edifice::unwatched;
 use rand::RngExt;
 
 const SIDE: usize = 3;
@@ -153,7 +154,9 @@ fn shared_weights_are_recovered() {
         newton: false,
         ..Settings::default()
     };
-    let fitted = fit(&ising(), &data, &settings, 1).unwrap().weights;
+    let fitted = fit(&ising(), &data, &settings, 1, &unwatched)
+        .unwrap()
+        .weights;
     for (l, t) in fitted.iter().zip(truth) {
         assert!((l - t).abs() < 0.04, "{fitted:?}");
     }
@@ -167,7 +170,7 @@ fn shared_weights_are_recovered() {
 #[test]
 fn bad_input_is_named() {
     assert!(Gibbs::new(vec![2], Vec::new()).is_err());
-    assert!(fit(&ising(), &[], &Settings::default(), 1).is_err());
+    assert!(fit(&ising(), &[], &Settings::default(), 1, &unwatched).is_err());
     let wild = Gibbs::new(
         vec![2],
         vec![Factor {
@@ -177,7 +180,7 @@ fn bad_input_is_named() {
         }],
     )
     .unwrap();
-    assert!(fit(&wild, &[vec![0]], &Settings::default(), 1).is_err());
+    assert!(fit(&wild, &[vec![0]], &Settings::default(), 1, &unwatched).is_err());
 }
 
 #[test]

@@ -7,6 +7,7 @@ use edifice::methods::city_proceduralization::{
 };
 use edifice::rng::stream;
 use edifice::shape::triangles::{City, SideView, TriangleMesh, VolumeRaster, grey, repair};
+use edifice::unwatched;
 use rand::seq::SliceRandom;
 
 const MIDTOWN: &str = "city/nyc_midtown4500.npz";
@@ -18,7 +19,9 @@ fn midtown() -> Option<City> {
 
 /// The repaired city's volume against that of the grammar of another's level 4.
 fn iou(city: &City, other: &City) -> f64 {
-    let grammar = proceduralize(other, &Settings::default()).unwrap().grammar;
+    let grammar = proceduralize(other, &Settings::default(), &unwatched)
+        .unwrap()
+        .grammar;
     let derived = grammar.derive().unwrap().city(&grammar);
     let repaired: Vec<TriangleMesh> = city.buildings.iter().map(|b| repair(&b.mesh).0).collect();
     let first: Vec<&TriangleMesh> = repaired.iter().collect();
@@ -62,7 +65,7 @@ fn midtown_is_stored_in_few_bytes_whatever_the_order_of_its_buildings() {
         ..Settings::default()
     };
     let bytes = |city: &City| {
-        let grammar = proceduralize(city, &asked).unwrap().grammar;
+        let grammar = proceduralize(city, &asked, &unwatched).unwrap().grammar;
         compact::to_bytes(&grammar.keeping(Kept::Shape)).unwrap()
     };
     let whole = bytes(&city);
@@ -80,7 +83,9 @@ fn midtown_derived_becomes_the_same_grammar() {
     let mut last: Option<(City, Vec<u8>)> = None;
     for round in 0..2 {
         let city = last.as_ref().map_or(&city, |l| &l.0);
-        let grammar = proceduralize(city, &Settings::default()).unwrap().grammar;
+        let grammar = proceduralize(city, &Settings::default(), &unwatched)
+            .unwrap()
+            .grammar;
         let bytes = glb::to_bytes(&grammar, &grammar.derive().unwrap(), true).unwrap();
         std::fs::write(&path, &bytes).unwrap();
         if let Some((_, last)) = &last {
@@ -102,7 +107,7 @@ fn windows_of_chiba_are_found_on_its_photographs() {
         b.paint.iter().any(textured)
     };
     assert_eq!(city.buildings.iter().filter(painted).count(), 389);
-    let components = decompose(&city, true).components;
+    let components = decompose(&city, true, &unwatched).components;
     let windows: Vec<_> = components.iter().filter_map(|c| c.windows).collect();
     println!(
         "{} components, {} with windows",
@@ -131,7 +136,7 @@ fn derived_chiba_looks_like_chiba() {
         budget: Budget::All,
         ..Settings::default()
     };
-    let mut made = proceduralize(&city, &settings).unwrap();
+    let mut made = proceduralize(&city, &settings, &unwatched).unwrap();
     let textures = made.box_textures(&city, 128);
     add_textures(&mut made.grammar, &textures).unwrap();
     let mut derived = made.grammar.derive().unwrap().city(&made.grammar);

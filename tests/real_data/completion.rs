@@ -7,6 +7,7 @@ use edifice::methods::structure_completion::method::{Method, complete};
 use edifice::methods::structure_completion::model::Model;
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
+use edifice::unwatched;
 use edifice_experiments::layouts;
 
 #[test]
@@ -24,7 +25,7 @@ fn the_default_method_is_above_every_baseline_over_all_tasks_and_below_none_in_a
     let (known, test): (Vec<_>, Vec<_>) =
         all.into_iter().enumerate().partition(|(k, _)| k % 4 != 0);
     let known = known.into_iter().step_by(3).map(|(_, l)| l).collect();
-    let model = Model::train(known, 1).expect("learnt");
+    let model = Model::train(known, 1, &unwatched).expect("learnt").model;
     let methods = Method::ALL.into_iter().filter(|m| !m.is_slow());
     let methods: Vec<Method> = methods.collect();
     let mut overall = vec![0.0; methods.len()];

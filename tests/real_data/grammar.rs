@@ -8,6 +8,7 @@ use edifice::io::{facade_json, grammar_cga, read_label_grid};
 use edifice::layout::regularize::regularize_grid;
 use edifice::methods::facade_grammar::{BoundLimits, Settings, lower_bound};
 use edifice::shape::decompose;
+use edifice::unwatched;
 
 #[test]
 fn the_printed_grammar_derives_facade_i() {
@@ -52,7 +53,7 @@ fn most_grammars_of_real_facades_are_proven_optimal() {
                 ..BoundLimits::default()
             };
             let facade = decompose(&grid).unwrap().facade;
-            let bound = lower_bound(&facade, &settings, &limits).unwrap();
+            let bound = lower_bound(&facade, &settings, &limits, &unwatched).unwrap();
             assert!(bound.lower <= bound.upper + 1e-6, "{}", grid.name);
             gaps.push((bound.proven, 1.0 - bound.lower / bound.upper));
         }

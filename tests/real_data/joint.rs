@@ -6,6 +6,7 @@ use edifice::io::read_label_grid;
 use edifice::methods::facade_grammar::{Operations, Settings, infer};
 use edifice::rng::stream;
 use edifice::shape::{Facade, decompose, splittable};
+use edifice::unwatched;
 use rand::seq::SliceRandom;
 
 const FOLDER: &str = "facades/ecp2011/labels";
@@ -21,7 +22,7 @@ fn read(numbers: &[u32]) -> Option<Vec<Facade>> {
 }
 
 fn cost(facades: &[Facade], settings: &Settings) -> f64 {
-    let found = infer(facades, settings).unwrap();
+    let found = infer(facades, settings, &unwatched).unwrap();
     // No method marks its own work: this derives every facade and compares.
     let cost = evaluate(&found.grammar, facades, &Costs::default())
         .unwrap()

@@ -7,6 +7,7 @@ use edifice::grammar::{Costs, evaluate};
 use edifice::methods::facade_grammar::{BoundLimits, Operations, Settings, infer, lower_bound};
 use edifice::rng::stream;
 use edifice::shape::Facade;
+use edifice::unwatched;
 use rand::RngExt;
 
 use super::content::Content;
@@ -88,14 +89,14 @@ impl Case {
         };
         let layouts = self.layouts();
         let start = Instant::now();
-        let found = infer(&layouts, &settings).expect("random layouts are splittable");
+        let found = infer(&layouts, &settings, &unwatched).expect("random layouts are splittable");
         let inferred = start.elapsed().as_secs_f64();
         let cost = evaluate(&found.grammar, &layouts, &self.costs)
             .expect("an inferred grammar derives its layouts")
             .cost;
         let start = Instant::now();
         let bounds = (layouts.len() == 1).then(|| {
-            let bound = lower_bound(&layouts[0], &settings, &BoundLimits::default());
+            let bound = lower_bound(&layouts[0], &settings, &BoundLimits::default(), &unwatched);
             let bound = bound.expect("random layouts are splittable");
             (bound.lower, bound.upper)
         });

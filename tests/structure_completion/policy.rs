@@ -9,6 +9,7 @@ use edifice::methods::structure_completion::policy::{
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
 use edifice::shape::Rect;
+use edifice::unwatched;
 
 /// Windows in a regular lattice over a door.
 fn layout(columns: u32, rows: u32) -> Layout {
@@ -86,11 +87,11 @@ fn evolved_policies_beat_a_random_one_and_repeat() {
     let mut rng = stream(5, "side", 0);
     let (partial, _) = Task::Side50.hide(&layout(6, 4), &mut rng);
     let scene = Scene::new(&model, &partial);
-    let found = optimize(&scene, &FEW, 5, 3).unwrap();
+    let found = optimize(&scene, &FEW, 5, 3, &unwatched).unwrap();
     assert_eq!(found.made, FEW.candidates());
     assert_eq!(Budget::PAPER.candidates(), 10_000);
     assert!(found.candidates.windows(2).all(|w| w[0].score > w[1].score));
-    assert_eq!(found, optimize(&scene, &FEW, 5, 3).unwrap());
+    assert_eq!(found, optimize(&scene, &FEW, 5, 3, &unwatched).unwrap());
     let score = |elements: &[Element]| {
         let evaluation = model.score.evaluate(scene.facade, elements);
         model.score.score(&evaluation.features)
@@ -116,7 +117,7 @@ fn nothing_observed_adds_nothing() {
         forbidden: Vec::new(),
     };
     let scene = Scene::new(&model, &partial);
-    let found = optimize(&scene, &FEW, 3, 1).unwrap();
+    let found = optimize(&scene, &FEW, 3, 1, &unwatched).unwrap();
     assert!(found.candidates.iter().all(|c| c.added.is_empty()));
     // A model survives its file.
     let text = serde_json::to_string(&model).unwrap();

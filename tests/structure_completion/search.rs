@@ -8,6 +8,7 @@ use edifice::methods::structure_completion::partial::{PartialError, PartialLayou
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
 use edifice::shape::Rect;
+use edifice::unwatched;
 use rand::RngExt;
 
 /// The layouts that ship, as the shipped model holds them.
@@ -163,7 +164,9 @@ fn same_seed_same_completions_with_any_number_of_threads() {
             .build()
             .expect("threads");
         pool.install(|| {
-            let model = Model::train(layouts.clone(), 5).expect("learnt");
+            let model = Model::train(layouts.clone(), 5, &unwatched)
+                .expect("learnt")
+                .model;
             let (partial, _) = Task::Side50.hide(&layouts[0], &mut stream(5, "mask", 0));
             let done = complete(
                 Method::Best,
@@ -205,8 +208,13 @@ fn models_come_back_from_their_text_and_bad_ones_are_named() {
     for end in (0..text.len()).step_by(text.len() / 40) {
         assert!(Model::from_json(&text[..end]).is_err());
     }
-    assert_eq!(Model::train(Vec::new(), 0), Err(TrainError::Empty));
-    let one = Model::train(vec![grid(5, 4)], 0).expect("one facade");
+    assert_eq!(
+        Model::train(Vec::new(), 0, &unwatched),
+        Err(TrainError::Empty)
+    );
+    let one = Model::train(vec![grid(5, 4)], 0, &unwatched)
+        .expect("one facade")
+        .model;
     assert!(one.elements.is_none());
     let (partial, _) = Task::Side50.hide(&grid(5, 4), &mut stream(1, "mask", 0));
     check(&partial, Method::Best, &one, "one facade");
@@ -298,8 +306,9 @@ fn labels_are_told_by_their_beginning() {
 
 #[test]
 fn changed_model_files_are_errors_or_models_that_complete() {
-    let text = Model::train(vec![grid(4, 3)], 0)
+    let text = Model::train(vec![grid(4, 3)], 0, &unwatched)
         .expect("one facade")
+        .model
         .to_json();
     let (partial, _) = Task::R50.hide(&grid(4, 3), &mut stream(1, "mask", 0));
     let mut rng = stream(9, "changes", 0);

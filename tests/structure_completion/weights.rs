@@ -7,6 +7,7 @@ use edifice::methods::structure_completion::score::{ScoreModel, Sites, State, TE
 use edifice::model::factor_graph::Settings;
 use edifice::rng::stream;
 use edifice::shape::Rect;
+use edifice::unwatched;
 
 /// Windows in a lattice over doors.
 fn layout(columns: u32, rows: u32) -> Layout {
@@ -115,8 +116,10 @@ fn weights_come_back_by_the_unbiased_update_only() {
         let square = weights.iter().zip(truth).map(|(a, b)| (a - b).powi(2));
         (square.sum::<f64>() / TERMS as f64).sqrt()
     };
-    let weights = PaperModel::unbiased_weights(&model.score, &drawn, &settings, 1).unwrap();
-    let again = PaperModel::unbiased_weights(&model.score, &drawn, &settings, 1).unwrap();
+    let weights =
+        PaperModel::unbiased_weights(&model.score, &drawn, &settings, 1, &unwatched).unwrap();
+    let again =
+        PaperModel::unbiased_weights(&model.score, &drawn, &settings, 1, &unwatched).unwrap();
     assert_eq!(weights, again);
     let prior = rmse([1.0; TERMS]);
     let unbiased = rmse(weights);
@@ -126,6 +129,8 @@ fn weights_come_back_by_the_unbiased_update_only() {
         .into_iter()
         .filter(|l| l.elements.len() > 1)
         .collect();
-    let printed = model.printed_weights(&layouts, 3, &settings, 1).unwrap();
+    let printed = model
+        .printed_weights(&layouts, 3, &settings, 1, &unwatched)
+        .unwrap();
     assert!(rmse(printed) > 1.5 * unbiased, "{printed:?}");
 }

@@ -7,6 +7,7 @@ use edifice::io::{facade_json, read_grammar};
 use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::rng::stream;
 use edifice::shape::Axis;
+use edifice::unwatched;
 use edifice_editing::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
 use rand::{Rng, RngExt};
 
@@ -37,7 +38,7 @@ fn grammars() -> Vec<(String, Grammar)> {
     };
     let inferred = files(".facade.json").into_iter().map(|file| {
         let facade = facade_json::read(&file).expect("ships");
-        let found = infer(&[facade], &settings).expect("a grammar");
+        let found = infer(&[facade], &settings, &unwatched).expect("a grammar");
         (format!("inferred from {}", file.display()), found.grammar)
     });
     shipped.map(read).chain(inferred).collect()

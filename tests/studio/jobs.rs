@@ -1,19 +1,18 @@
 //! Long work: it tells how far it is, every tab sees it, it can be stopped, and then nothing was changed and nothing is computed any
 //! more.
 
-use std::cell::Cell;
 use std::path::Path;
-use std::rc::Rc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use edifice::io::{city, facade_json};
-use edifice::methods::city_proceduralization::decompose_watched;
-use edifice::methods::facade_grammar::{self, infer_watched};
+use edifice::methods::city_proceduralization::decompose;
+use edifice::methods::facade_grammar::{self, infer};
 use edifice::shape::Facade;
+use edifice::{Ended, Progress, unwatched};
 use edifice_editing::examples::example;
 use edifice_editing::open;
-use edifice_editing::work::{Stopped, Told, Work, stoppable};
+use edifice_editing::work::{Told, Work};
 use edifice_studio::Settings;
 use serde_json::{Value, json};
 
@@ -82,32 +81,34 @@ fn a_stopped_inference_takes_no_further_step() {
         facade_json::parse(facade.to_string().as_bytes(), path).expect("a facade")
     };
     let [one, two] = [read("one"), read("two")];
-    // Whether it was stopped at that pulse, how many there were, and how many steps were told of.
+    // The end of one that is stopped when its watch is asked so often, how often that was, and how many steps were told of.
     let run = |most: usize, facades: &[Facade]| {
         let settings = facade_grammar::Settings {
             iterations: 2_500,
             ..Default::default()
         };
-        let (pulses, steps) = (Rc::new(Cell::new(0)), Rc::new(Cell::new(0)));
-        let (counted, told) = (Rc::clone(&pulses), Rc::clone(&steps));
+        let (asked, told) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let work = Work::default();
-        let pulse = move || {
-            counted.set(counted.get() + 1);
-            if counted.get() == most {
+        let watch = |progress: Progress| {
+            told.fetch_add(usize::from(progress.cost.is_some()), Ordering::Relaxed);
+            if asked.fetch_add(1, Ordering::Relaxed) + 1 == most {
                 work.stop();
             }
-            work.go_on_or_unwind();
+            work.go_on()
         };
-        let observer = move |_| told.set(told.get() + 1);
-        let done = stoppable(|| infer_watched(facades, &settings, observer, Rc::new(pulse)));
-        (done.is_err(), pulses.get(), steps.get())
+        let done = infer(facades, &settings, &watch).expect("a grammar");
+        (done.ended, asked.into_inner(), told.into_inner())
     };
-    let (stopped, whole, steps) = run(usize::MAX, std::slice::from_ref(&one));
-    assert!(!stopped && whole > 20 && steps > 0, "{whole} {steps}");
-    assert_eq!(run(5, std::slice::from_ref(&one)), (true, 5, 0));
+    let (ended, whole, steps) = run(usize::MAX, std::slice::from_ref(&one));
+    assert!(
+        ended == Ended::Finished && whole > 20 && steps > 0,
+        "{whole} {steps}"
+    );
+    let stopped = Ended::Interrupted;
+    assert_eq!(run(5, std::slice::from_ref(&one)), (stopped, 5, 0));
     // Of several facades first the bound of each, then the joint one.
     let own = whole + 5;
-    assert_eq!(run(own, &[one, two]), (true, own, 0));
+    assert_eq!(run(own, &[one, two]), (stopped, own, 0));
 }
 
 #[test]
@@ -118,20 +119,19 @@ fn a_stopped_city_is_not_cut_any_further() {
     let (begun, work) = (AtomicUsize::new(0), Work::default());
     let count = city.buildings.len();
     assert!(count > 5);
-    let cut = stoppable(|| {
-        decompose_watched(&city, true, || {
-            work.go_on_or_unwind();
-            if begun.fetch_add(1, Ordering::SeqCst) == 2 {
-                work.stop();
-            }
-        })
+    let cut = decompose(&city, true, &|_: Progress| {
+        if begun.fetch_add(1, Ordering::SeqCst) == 2 {
+            work.stop();
+        }
+        work.go_on()
     });
-    assert_eq!(cut.err(), Some(Stopped));
-    // Each thread may have had one in hand.
+    assert_eq!(cut.ended, Ended::Interrupted);
+    // Each thread may have asked once more.
     let most = 3 + rayon::current_num_threads();
     assert!(begun.into_inner() <= most.min(count - 1));
-    let whole = stoppable(|| decompose_watched(&city, true, || Work::default().go_on_or_unwind()));
-    assert_eq!(whole.expect("not stopped").faults.len(), count);
+    let whole = decompose(&city, true, &unwatched);
+    assert_eq!((whole.ended, whole.faults.len()), (Ended::Finished, count));
+    assert!(cut.components.len() < whole.components.len());
 }
 
 #[test]

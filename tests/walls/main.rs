@@ -1,6 +1,7 @@
 //! The walls of the house. Crates keep them: a crate sees those that its manifest names. These tests hold what the manifests
 //! cannot say: which dependencies are meant, that models do not know each other, and that each method can be deleted.
 
+mod circles;
 mod crates;
 mod models;
 mod slugs;

@@ -7,6 +7,7 @@ use super::super::row;
 use super::facades;
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
 use edifice_structure_completion::layout::Layout;
@@ -46,7 +47,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             let mut some: Vec<&Layout> = layouts.iter().collect();
             some.shuffle(&mut stream(seed, "figure 16: subset", repeat));
             let states = weight_states(&some[..size], seed ^ repeat);
-            let weights = PaperModel::unbiased_weights(&score, &states, &WEIGHTS, seed ^ repeat);
+            let weights =
+                PaperModel::unbiased_weights(&score, &states, &WEIGHTS, seed ^ repeat, &unwatched);
             Ok(weights.map_err(Error::method)?.to_vec())
         },
     )?;

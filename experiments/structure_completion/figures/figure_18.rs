@@ -7,6 +7,7 @@ use super::super::row;
 use super::{Item, facades, mean_error, paper, plus_minus, split};
 use crate::Context;
 use edifice_base::rng::{Stream, stream};
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_report::{Align, Figure, Table, Tiles};
 use edifice_structure_completion::layout::{Element, Layout};
@@ -73,7 +74,7 @@ pub fn without(
             *weight = 0.0;
         }
     }
-    let found = optimize(&scene, budget, 1, seed).map_err(Error::method)?;
+    let found = optimize(&scene, budget, 1, seed, &unwatched).map_err(Error::method)?;
     let best = found.candidates.into_iter().next();
     Ok(best.map_or(Vec::new(), |c| c.added))
 }

@@ -7,6 +7,7 @@ use super::super::row;
 use super::{facades, mean_error, paper, plus_minus, split};
 use crate::Context;
 use edifice_base::rng::stream;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_report::{Align, Figure, Table};
 use edifice_structure_completion::layout::Element;
@@ -45,7 +46,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         |(k, item)| {
             let (partial, hidden) = hide(*k, item);
             let scene = Scene::new(&model, &partial);
-            let optimized = optimize(&scene, &budget, 1, seed).map_err(Error::method)?;
+            let optimized =
+                optimize(&scene, &budget, 1, seed, &unwatched).map_err(Error::method)?;
             let best = optimized.candidates.into_iter().next();
             let best = best.map_or((f64::NEG_INFINITY, Vec::new()), |c| (c.score, c.added));
             let mut rng = stream(seed, "figure 8: fixed", *k as u64);

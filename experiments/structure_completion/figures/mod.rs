@@ -14,6 +14,7 @@ pub use figure_18::{drawn, without};
 
 use super::data::{self, Item};
 use crate::Context;
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_structure_completion::completion::Completion;
 use edifice_structure_completion::layout::{Class, Element, Layout};
@@ -53,7 +54,7 @@ fn split(items: &[Item], count: usize) -> (Vec<&Item>, Vec<&Item>) {
 /// The paper's part of a model, learnt from some facades.
 fn paper(items: &[&Item], seed: u64) -> Result<PaperModel> {
     let layouts: Vec<Layout> = items.iter().map(|i| i.layout.clone()).collect();
-    PaperModel::train(&layouts, seed).map_err(Error::method)
+    PaperModel::train(&layouts, seed, &unwatched).map_err(Error::method)
 }
 
 /// The elements that the first completion adds.

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
@@ -12,7 +11,7 @@ use serde_json::{Map, Value};
 use super::Command;
 use super::limits::{bytes, bytes_below, resident};
 use crate::sweep::trial::Posed;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Progress, Result, Watched};
 
 /// Most bytes that a command may write, answer and messages together.
 const MOST: u64 = 64 << 20;
@@ -51,8 +50,8 @@ pub struct Circumstances<'a> {
     pub seed: u64,
     /// Most memory, as Slurm writes it.
     pub memory: &'a str,
-    /// Set when the run is to stop.
-    pub stop: &'a AtomicBool,
+    /// The run that the command belongs to: when it is stopped, so is the command.
+    pub watched: &'a Watched<'a>,
 }
 
 /// Runs a command on a question until its answer lies in `output`; returns the metrics that it states of itself.
@@ -156,7 +155,7 @@ fn wait(
         if let Some(status) = ended.map_err(|e| Error::io("command".as_ref(), "wait for", e))? {
             return Ok(status);
         }
-        if about.stop.load(Ordering::Relaxed) {
+        if !about.watched.goes_on(Progress::stage("command")) {
             return Err(Error::Interrupted);
         }
         if start.elapsed().as_secs_f64() > command.timeout {

@@ -24,6 +24,9 @@ use super::produce::{Order, Output, produce};
 use crate::model::given::evidence;
 use crate::print;
 
+/// Further samples for each house, where one would not believe the house of the first.
+const OTHERS: usize = 3;
+
 /// Options of `build`.
 #[derive(clap::Args)]
 pub struct BuildArgs {
@@ -130,6 +133,7 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
             name,
             wanted: std::array::from_fn(|c| row[c].unwrap_or(0.0)),
             given,
+            others: Vec::new(),
         })
         .collect())
 }
@@ -195,18 +199,26 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
                 Some(plan) => distance(row, &is_given, plan, deviations),
                 None => 0.0,
             };
-            let possible = possible_rows(args.count, &is_given, deviations, reach, whole)?;
-            tell(&possible, plan.is_some());
+            let wanted = args.count * (1 + OTHERS);
+            let possible = possible_rows(wanted, &is_given, deviations, reach, whole)?;
+            tell(&possible, args.count, plan.is_some());
             possible.rows
         }
     };
-    let orders: Vec<Order> = rows
+    let (first, others) = rows.split_at(args.count.min(rows.len()));
+    let orders: Vec<Order> = first
         .iter()
         .enumerate()
         .map(|(row, wanted)| Order {
             name: format!("house_{:04}", row + 1),
             wanted: *wanted,
             given: is_given,
+            others: others
+                .iter()
+                .skip(row)
+                .step_by(args.count)
+                .copied()
+                .collect(),
         })
         .collect();
     let options = Options {
@@ -217,8 +229,10 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
 }
 
 /// Says how many samples were passed over.
-fn tell(possible: &Possible, on_plan: bool) {
+fn tell(possible: &Possible, wanted: usize, on_plan: bool) {
     let houses = possible.rows.len();
+    let spare = houses.saturating_sub(wanted);
+    let impossible = possible.impossible.saturating_sub(spare);
     let what = match on_plan {
         true => "stands on the footprint",
         false => "can have them",
@@ -231,10 +245,10 @@ fn tell(possible: &Possible, on_plan: bool) {
             possible.drawn
         ));
     }
-    if possible.impossible > 0 {
+    if impossible > 0 {
         print::message(&format!(
-            "the last {} of {houses} rows were among them: nothing better was drawn; their reports say what is missed",
-            possible.impossible
+            "the last {impossible} of {wanted} houses are of such samples: nothing better was drawn; their reports say \
+             what is missed"
         ));
     }
 }

@@ -16,7 +16,7 @@ use crate::print;
 /// Options of `compare`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice building compare houses.buildings.jsonl answers.buildings.jsonl --json
+  edifice building compare village.buildings.jsonl village.buildings.jsonl --json
 
 Houses are paired in the order of the files. A difference is told in standard deviations of the attribute over TRUTH, in its own unit where
 TRUTH is one house or the attribute does not vary.")]

@@ -1,5 +1,7 @@
 //! `edifice building evaluate`.
 
+use std::time::Instant;
+
 use edifice_model::tables::compare::Contender;
 
 use super::data::Input;
@@ -16,8 +18,9 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
+    let begun = Instant::now();
     let data = args.input.known()?;
     // The rows are those of the model as published.
     args.splits
-        .evaluate(&data, &args.input.input, Contender::Ours)
+        .evaluate(&data, &args.input.input, Contender::Ours, begun)
 }

@@ -1,6 +1,7 @@
 //! `edifice building learn`.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use edifice_base::Error;
 use edifice_building_exteriors::coding::Coding;
@@ -31,6 +32,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
+    let begun = Instant::now();
     let (data, coding) = match args.as_published || args.input.schema.is_some() {
         true => (args.input.known()?, Coding::Published),
         false => (args.input.coded()?, Coding::Presence),
@@ -43,7 +45,7 @@ pub fn run(args: &Args) -> edifice_base::Result<()> {
         .transpose()?;
     let start = start.as_ref().map(|file| &file.model);
     let settings = args.learning.search.settings(0.0)?;
-    let found = (args.learning).learn(&data, &settings, start, &args.input.input)?;
+    let found = (args.learning).learn(&data, &settings, start, &args.input.input, begun)?;
     let model = found.model;
     let (styles, edges) = (model.styles(), model.lateral_edges().len());
     let cardinalities = model.cardinalities();

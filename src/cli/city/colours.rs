@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::ValueEnum;
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
 use edifice_io::city::picture::Legend;
@@ -9,7 +10,21 @@ use edifice_shape::triangles::{City, CityBuilding};
 use rustc_hash::FxHashMap;
 
 use super::data;
-use super::draw::Colour;
+
+/// A property of buildings that their colours tell.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// Nothing: buildings are light, textures are shown.
+    Plain,
+    /// The type of building, of a grammar: the most frequent ones have colours of their own.
+    Type,
+    /// The height above its own ground, in metres.
+    Height,
+    /// Levels of its rule, of a grammar.
+    Level,
+    /// By how much its volume differs from that in `--beside`, in per cent.
+    Error,
+}
 
 /// Colours of types; all further types share the last.
 const TYPES: [[u8; 3]; 12] = [

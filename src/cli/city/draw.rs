@@ -2,29 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use edifice_base::{Error, Result};
 use edifice_io::city::picture::{self, Drawing, Drawn};
 
-use super::colours::{Colouring, Read, colouring};
+use super::colours::{Colour, Colouring, Read, colouring};
 
 /// Most pixels along a side.
 const MOST: usize = 8192;
-
-/// A property of buildings that their colours tell.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
-    /// Nothing: buildings are light, textures are shown.
-    Plain,
-    /// The type of building, of a grammar: the most frequent ones have colours of their own.
-    Type,
-    /// The height above its own ground, in metres.
-    Height,
-    /// Levels of its rule, of a grammar.
-    Level,
-    /// By how much its volume differs from that in `--beside`, in per cent.
-    Error,
-}
 
 /// Options.
 #[derive(clap::Args)]

@@ -1,11 +1,13 @@
 //! `edifice city proceduralize`.
 
 use std::borrow::Cow;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Progress, Result, unwatched};
 use edifice_city_proceduralization as method;
 use edifice_city_proceduralization::{
     Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
@@ -134,7 +136,7 @@ pub fn run(args: &Args) -> Result<()> {
                 print::message(&format!("{} templates: {found} bytes", g.templates.len()));
                 Ok(found <= bytes)
             };
-            method::largest(&input, &settings, small).map_err(|e| failure(e, args))?
+            method::largest(&input, &settings, small, &unwatched).map_err(|e| failure(e, args))?
         }
         (_, Some(least)) => {
             let good = |g: &InstanceGrammar| {
@@ -142,10 +144,20 @@ pub fn run(args: &Args) -> Result<()> {
                 print::message(&format!("{} templates: IoU {found:.4}", g.templates.len()));
                 Ok(found >= least)
             };
-            method::smallest(&input, &settings, good).map_err(|e| failure(e, args))?
+            method::smallest(&input, &settings, good, &unwatched).map_err(|e| failure(e, args))?
         }
         _ => {
-            let made = method::proceduralize_watched(&input, &settings, &print::message);
+            // Each stage once; buildings are cut by many threads.
+            let stage = Mutex::new("");
+            let tell = |progress: Progress| {
+                let mut last = stage.lock().unwrap_or_else(PoisonError::into_inner);
+                if *last != progress.stage {
+                    *last = progress.stage;
+                    print::message(progress.stage);
+                }
+                ControlFlow::Continue(())
+            };
+            let made = method::proceduralize(&input, &settings, &tell);
             Some(made.map_err(|e| failure(e.into(), args))?)
         }
     };

@@ -14,8 +14,8 @@ use crate::reading::Reading;
 /// Options of `facade compare`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice facade compare truth.facade.json predicted.facade.json --json
-  edifice facade compare truth.png answers/*.facade.json
+  edifice facade compare datasets/facade_grammar/layouts/office_1.facade.json whole.facade.json --json
+  edifice facade compare datasets/facade_grammar/layouts/office_1.facade.json answers/*.facade.json
 
 Elements of one label are paired one to one by falling intersection over union (IoU). F1 is told at IoU 0.5, 0.75 and as the mean
 over 0.5, 0.55, ..., 0.95. Of predictions with the key \"unknown\" only elements are compared whose centre lies in it.")]

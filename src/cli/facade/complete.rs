@@ -17,9 +17,10 @@ use crate::reading::Reading;
 /// Options of `facade complete`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
+  edifice facade hide datasets/facade_grammar/layouts/office_1.facade.json --task side50 --seed 1 -o partial.facade.json
   edifice facade complete partial.facade.json -o whole.facade.json
   edifice facade complete partial.facade.json --unknown 0,0,200,150 --count 5 -o answers --svg answers.svg
-  edifice facade complete partial.facade.json --model paris.completion.json --method mirror -o mirrored.facade.json
+  edifice facade complete partial.facade.json --model mine.completion.json --method mirror -o mirrored.facade.json
 
 Everything that is not observed is unknown, unless the file (key \"unknown\"), --unknown or --mask says what is. Elements
 of an earlier completion (\"observed\": false) are dropped, but for those that --pin names.")]

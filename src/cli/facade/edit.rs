@@ -13,9 +13,9 @@ use crate::reading::Reading;
 /// Options of `facade edit`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice facade edit partial.facade.json 'add window@1.5,4,1.2,1.7' 'move added_3=6,0' -o edited.facade.json
-  edifice facade edit sketch.facade.json 'relabel #2=door' 'unknown 0,0,6,9' -o edited.facade.json
-  edifice facade edit sketch.facade.json --photograph straightened.jpg -o edited.facade.json
+  edifice facade edit partial.facade.json 'add window@1.5,4,1.2,1.7' 'move #2=6,0' -o edited.facade.json
+  edifice facade edit edited.facade.json 'relabel #2=door' 'unknown 0,0,6,9' -o edited.facade.json
+  edifice facade edit edited.facade.json --photograph datasets/examples/photo_1.jpg -o edited.facade.json
 
 Edits, made in turn: add LABEL@X,Y,W,H; move ID=X,Y; resize ID=W,H; relabel ID=LABEL; remove ID; unknown X,Y,W,H;
 known INDEX (of the unknown rectangles, from 0); outline W,H. ID is an element's id, or #K for the K-th in the file, from 0.

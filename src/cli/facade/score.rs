@@ -15,7 +15,7 @@ use crate::reading::Reading;
 /// Options of `facade score`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice facade score monge_42.png --model paris.completion.json
+  edifice facade score datasets/facade_grammar/layouts/office_1.facade.json --model mine.completion.json
 
 Each scoring function is at most 0, which is what at least half of the facades of the database reach or fall short of. The
 last column says which grid, pair of grids or side of the facade is the least typical.")]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_io::write_atomic;
 use edifice_structure_completion::layout::scope::in_scope;
@@ -15,7 +16,7 @@ use crate::reading::Reading;
 /// Options of `facade train`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice facade train layouts/ -o paris.completion.json\n  edifice facade train layouts/ --made 100 -o few.completion.json\n  edifice facade train a.facade.json b.facade.json cmp_b0001.xml -o mine.completion.json"
+    after_help = "Examples:\n  edifice facade train datasets/facade_grammar/layouts -o mine.completion.json\n  edifice facade train datasets/facade_grammar/layouts/terrace_*.facade.json --made 100 -o few.completion.json\n  edifice facade train datasets/examples/facade.png datasets/examples/facade_2.png datasets/examples/grid.txt -o two.completion.json"
 )]
 pub struct Args {
     /// Whole facades, and folders of them (.facade.json, .xml, .png)
@@ -44,7 +45,8 @@ pub fn run(args: &Args) -> Result<()> {
     layouts.extend(facades::several(args.made.into(), args.seed));
     let read = layouts.len();
     let regular = layouts.iter().filter(|l| in_scope(l)).count();
-    let model = Model::train(layouts, args.seed).map_err(Error::method)?;
+    let trained = Model::train(layouts, args.seed, &unwatched).map_err(Error::method)?;
+    let model = trained.model;
     let used = model.examples.len();
     write_atomic(&args.output, model.to_json().as_bytes())?;
     if used < read {

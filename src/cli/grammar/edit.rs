@@ -15,7 +15,7 @@ use crate::print;
 #[command(after_help = "Examples:
   edifice grammar edit fig9.grammar.json 'border 2.0=0.5' -o edited.grammar.json
   edifice grammar edit fig9.grammar.json 'symbol 3.1=Door' 'insert 0.2=Cornice:4' -o edited.grammar.json
-  edifice grammar edit grid.grammar.json 'border 0.c1=0.3' 'insert 0.r2=3' 'shrink 0.c0' -o edited.grammar.json
+  edifice grammar edit datasets/examples/grid.grammar.json 'border 0.c1=0.3' 'insert 0.r2=3' 'shrink 0.c0' -o edited.grammar.json
 
 Edits, made in turn: resize RULE.PART=SIZE; border RULE.PART=SHIFT (between this part and the next); symbol RULE.PART=NAME;
 insert RULE.PART=NAME:SIZE (before this part) or RULE.PART=SIZE (a copy of it); remove RULE.PART; grow RULE.PART (a copy of the part

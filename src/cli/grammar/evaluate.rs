@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, unwatched};
 use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
 use edifice_grammar::{Costs, Grammar, derive, evaluate};
 use edifice_io::read_grammar;
@@ -14,8 +14,7 @@ use crate::reading::{self, Reading};
 /// Options of `edifice grammar evaluate`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice grammar infer house.facade.json -o house.grammar.json
-  edifice grammar evaluate house.grammar.json house.facade.json --bound --json
+  edifice grammar evaluate fig9.grammar.json datasets/facade_grammar/wu2014_fig9.facade.json --bound --json
 
 Exit code 1 when the grammar does not derive exactly the facades; the cost and the pixel error are told first.")]
 pub struct Args {
@@ -113,7 +112,8 @@ fn bound(grammar: &Grammar, facade: &Facade, costs: Costs) -> Result<(f64, bool)
         },
         ..Settings::default()
     };
-    let found = lower_bound(facade, &settings, &BoundLimits::default()).map_err(Error::method)?;
+    let found = lower_bound(facade, &settings, &BoundLimits::default(), &unwatched)
+        .map_err(Error::method)?;
     Ok((found.lower, found.proven))
 }
 

@@ -1,12 +1,13 @@
 //! `edifice grammar infer`.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
-use edifice_base::{Error, Result};
+use edifice_base::{Ended, Error, Progress, Result};
 use edifice_experiments::peers;
-use edifice_facade_grammar::{Method, Operations, Outcome, Protect, Settings, infer_observed};
+use edifice_facade_grammar::{Method, Operations, Outcome, Protect, Settings, infer};
 use edifice_grammar::{Costs, Evaluation, evaluate, listing};
 use edifice_io as io;
 use edifice_shape::Facade;
@@ -20,12 +21,11 @@ use crate::tolerance;
 /// Options of `edifice grammar infer`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar infer house.facade.json -o house.grammar.json
-  edifice grammar infer monge_42.png --ops split --seed 7 -o monge_42.cga --json
-  edifice grammar infer a.facade.json b.facade.json c.facade.json -o joint.grammar.json
-
-  edifice grammar infer segmented.png --tolerance 1% -o short.grammar.json
-  edifice grammar infer street/*.png --sizes free -o street.library.json
+  edifice grammar infer datasets/facade_grammar/wu2014_fig9.facade.json -o fig9.grammar.json
+  edifice grammar infer datasets/examples/facade.png --ops split --seed 7 -o facade.cga --json
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_*.facade.json -o joint.grammar.json
+  edifice grammar infer datasets/examples/facade.png --tolerance 1% -o short.grammar.json
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_*.facade.json --sizes free -o street.library.json
 
 Several facades give one joint grammar, with the rules that they share written once. With --sizes free, sizes and the
 counts of repeats are parameters of the rules, so that different facades share them: a library, which draws new facades
@@ -178,13 +178,16 @@ fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<Outcome> {
         settings.readings.protection = Protect::Never;
     }
     let bar = progress_bar(settings.steps());
-    let ticker = bar.clone();
-    let outcome = infer_observed(facades, &settings, move |step| {
-        if step.iteration % 64 == 0 {
-            ticker.set_position(step.iteration);
-            ticker.set_message(format!("cost {:.1}", step.best));
+    let watch = |progress: Progress| {
+        if let Some(best) = progress.best
+            && progress.done % 64 == 1
+        {
+            bar.set_position(progress.done);
+            bar.set_message(format!("cost {best:.1}"));
         }
-    });
+        ControlFlow::Continue(())
+    };
+    let outcome = infer(facades, &settings, &watch);
     bar.finish_and_clear();
     outcome.map_err(Error::method)
 }
@@ -201,6 +204,7 @@ fn procedural_logic_grammar(facades: &[Facade]) -> Result<Outcome> {
         grammar,
         iterations: 1,
         lower_bound: None,
+        ended: Ended::Finished,
     })
 }
 

@@ -110,9 +110,9 @@ pub fn show(path: &Path, bytes: &[u8], costs: &Costs, json: bool) -> Result<()> 
 /// Options of `edifice grammar draw`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar infer a.png b.png c.png --sizes free -o street.library.json
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_*.facade.json --sizes free -o street.library.json
   edifice grammar draw street.library.json --seed 7 -o new.facade.json
-  edifice grammar draw street.library.json --count 12 -o draws/")]
+  edifice grammar draw street.library.json --count 12 -o draws")]
 pub struct Draw {
     /// Library to draw from: .library.json, also as .gz
     library: PathBuf,
@@ -155,7 +155,7 @@ pub fn draw(args: &Draw) -> Result<()> {
 /// Options of `edifice grammar score`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice grammar score street.library.json new.png old.png
+  edifice grammar score street.library.json new.facade.json draws/*.facade.json
 
 The bits that a facade costs given the library: the fewer, the more it is like the library's facades.")]
 pub struct Score {
@@ -191,7 +191,7 @@ pub fn score(args: &Score) -> Result<()> {
 /// Options of `edifice grammar encode`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice grammar encode street.library.json new.png -o new.encoded.json")]
+  edifice grammar encode street.library.json new.facade.json -o new.encoded.json")]
 pub struct Encode {
     /// Library: .library.json, also as .gz
     library: PathBuf,
@@ -258,8 +258,8 @@ pub fn decode(args: &Decode) -> Result<()> {
 /// Options of `edifice grammar combine`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar infer a.facade.json -o a.cga
-  edifice grammar infer b.facade.json -o b.cga
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_a.facade.json -o a.cga
+  edifice grammar infer datasets/facade_grammar/layouts/terrace_b.facade.json -o b.cga
   edifice grammar combine a.cga b.cga -o street.cga
   edifice grammar derive street.cga --seed 7 -o house.svg
 

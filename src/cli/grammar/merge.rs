@@ -14,7 +14,7 @@ use crate::print;
 /// Options of `edifice grammar merge`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar merge one.grammar.json two.facade.json three.facade.json -o joint.grammar.json
+  edifice grammar merge joint.grammar.json datasets/facade_grammar/layouts/cottage_1.facade.json -o more.grammar.json
 
 The facades of the grammar are derived at their own sizes; of them and the further ones one grammar is inferred, in which
 the rules that they share are written once. `grammar derive --facade NAME` derives one of them.")]

@@ -12,8 +12,8 @@ use crate::print;
 /// Options of `edifice grammar show`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice grammar show house.cga
-  edifice grammar show house.grammar.json --sizes --json
+  edifice grammar show facade.cga
+  edifice grammar show fig9.grammar.json --sizes --json
 
 The cost of a rule is that of its operation plus the number of symbols written in it; the cost of a
 grammar is the sum over its rules.")]

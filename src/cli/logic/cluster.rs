@@ -16,7 +16,7 @@ use crate::print;
 /// Options of `logic cluster`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic cluster paris/ graz/ --clusters 2\n  edifice logic cluster paris/ graz/ --clusters 2 -o styles.svg"
+    after_help = "Examples:\n  edifice logic cluster datasets/facade_grammar/layouts/terrace_*.facade.json datasets/facade_grammar/layouts/hotel_*.facade.json --clusters 2\n  edifice logic cluster datasets/facade_grammar/layouts --clusters 2 -o styles.svg"
 )]
 pub struct Args {
     #[command(flatten)]

@@ -14,7 +14,7 @@ use crate::print;
 /// Options of `logic compare`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic compare labels/ --query monge_42 --top 5\n  edifice logic compare --model paris.logic.json new.png --query new\n  edifice logic compare labels/ -o distances.csv\n\n'=' joins facades at equal distance; what stands first of them means nothing."
+    after_help = "Examples:\n  edifice logic compare datasets/facade_grammar/layouts --query office_1 --top 5\n  edifice logic compare --model terraces.logic.json datasets/examples/facade.png --query facade\n  edifice logic compare datasets/facade_grammar/layouts -o distances.csv\n\n'=' joins facades at equal distance; what stands first of them means nothing."
 )]
 pub struct Args {
     #[command(flatten)]

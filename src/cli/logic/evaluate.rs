@@ -11,7 +11,7 @@ use crate::print;
 /// Options of `logic evaluate`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  edifice logic evaluate ranking.csv labels/ --json
+  edifice logic evaluate datasets/examples/ranking.csv datasets/facade_grammar/layouts/cottage_*.facade.json datasets/facade_grammar/layouts/terrace_[ab].facade.json --json
 
 RANKING is a CSV file with the columns query, facade and distance: from every query to every other facade of the folder. Facades
 are called as their files up to the first dot. Found is any facade of the same architecture (floors, window columns, doors,

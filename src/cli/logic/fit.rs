@@ -17,7 +17,7 @@ const MANY_RULES: usize = 10;
 /// Options of `logic fit`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic fit labels/ -o paris.logic.json\n  edifice logic fit labels/ --search -o paris.logic.json\n  edifice logic fit segmented/ --clean -o paris.logic.json\n  edifice logic fit new.png --into paris.logic.json -o paris.logic.json"
+    after_help = "Examples:\n  edifice logic fit datasets/facade_grammar/layouts/terrace_*.facade.json -o terraces.logic.json\n  edifice logic fit datasets/facade_grammar/layouts/t*.facade.json --search -o found.logic.json\n  edifice logic fit datasets/examples/facade.png datasets/examples/facade_2.png --clean -o clean.logic.json\n  edifice logic fit datasets/examples/facade.png --into clean.logic.json -o more.logic.json"
 )]
 pub struct Args {
     #[command(flatten)]

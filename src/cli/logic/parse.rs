@@ -15,7 +15,7 @@ use crate::print;
 /// Options of `logic parse`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic parse monge_42.png -o monge_42.grammar.json\n  edifice logic parse monge_42.png --model paris.logic.json -o monge_42.cga\n  edifice logic parse labels/ -o grammars/"
+    after_help = "Examples:\n  edifice logic parse datasets/examples/facade.png -o parsed.grammar.json\n  edifice logic parse datasets/examples/facade.png --model terraces.logic.json -o parsed.cga\n  edifice logic parse datasets/facade_grammar/layouts -o grammars"
 )]
 pub struct Args {
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::print;
 /// Options of `logic synthesize`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  edifice logic synthesize paris.logic.json --count 10 --sigma 1 -o virtual/\n  edifice logic synthesize paris.logic.json --start 2 --format svg -o virtual/"
+    after_help = "Examples:\n  edifice logic synthesize terraces.logic.json --count 10 --sigma 1 -o virtual\n  edifice logic synthesize terraces.logic.json --start 2 --format svg -o virtual"
 )]
 pub struct Args {
     /// Model file.

@@ -1,15 +1,22 @@
 //! `edifice model evaluate`, and what `building evaluate` shares with it.
 
 use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
 
 use edifice_base::{Error, Result};
 use edifice_model::ModelError;
+use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split, summary};
 
 use super::data::TableInput;
+use super::learning::{heed_interrupts, interrupted, seconds};
 use super::search::Search;
 use crate::print;
+
+/// Time between two looks at the clock.
+const ASKED: Duration = Duration::from_millis(100);
 
 /// Options.
 #[derive(clap::Args)]
@@ -37,43 +44,79 @@ pub struct Splits {
     /// compared with those of densities.
     #[arg(long, value_delimiter = ',')]
     models: Vec<String>,
+    /// Seconds after which to end with the splits that are whole (as Ctrl-C does).
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
     #[command(flatten)]
     search: Search,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
+    let begun = Instant::now();
     let (data, _) = args.input.read()?;
     args.splits
-        .evaluate(&data, &args.input.table, Contender::Extended)
+        .evaluate(&data, &args.input.table, Contender::Extended, begun)
 }
 
 impl Splits {
     /// `learned` is the model that `ours` names. Prints the mean negative log-likelihood of unseen rows by model and split as CSV; means, standard errors and paired
-    /// differences go to standard error. `path` names the data in errors.
-    pub fn evaluate(&self, data: &Dataset, path: &Path, learned: Contender) -> Result<()> {
+    /// differences go to standard error. `path` names the data in errors; the limit of time counts from `begun`.
+    pub fn evaluate(
+        &self,
+        data: &Dataset,
+        path: &Path,
+        learned: Contender,
+        begun: Instant,
+    ) -> Result<()> {
         if !(self.share > 0.0 && self.share < 1.0) {
             return Err(Error::option("--share", "must lie between 0 and 1"));
         }
+        if let Some(limit) = self.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
+            let problem = format!("{limit} is not a positive number of seconds");
+            return Err(Error::option("--time-limit", problem));
+        }
         let settings = self.search.settings(BACKGROUND)?;
         let contenders = self.contenders(learned)?;
+        let (train, test) = split(data.table.rows(), self.share, self.search.seed, 0);
+        if train.is_empty() || test.is_empty() {
+            return Err(Error::option("--share", "leaves no row on one side"));
+        }
         print::line("model,split,nll")?;
         let mut losses = vec![Vec::new(); contenders.len()];
-        for index in 0..self.splits {
-            let (train, test) = split(data.table.rows(), self.share, self.search.seed, index);
-            if train.is_empty() || test.is_empty() {
-                return Err(Error::option("--share", "leaves no row on one side"));
-            }
-            let rows = (train.clone(), test.clone());
-            let (train, test) = (data.select(&train), data.select(&test));
-            for ((name, contender), losses) in contenders.iter().zip(&mut losses) {
-                let found = held_out(*contender, &train, &test, &settings, self.search.seed);
-                let found = found.map_err(|e| Error::content(path, within(&e, &rows, index)))?;
-                let mean = found.iter().sum::<f64>() / found.len() as f64;
-                print::line(&format!("{name},{},{mean:.4}", index + 1))?;
-                losses.push(mean);
-            }
+        heed_interrupts();
+        let limit = self.time_limit.map(seconds);
+        let told = self.judged(data, &contenders, settings);
+        loop {
+            let (index, which, found) = match told.recv_timeout(ASKED) {
+                Ok(one) => one,
+                Err(RecvTimeoutError::Disconnected) => break,
+                Err(RecvTimeoutError::Timeout) => {
+                    if interrupted() || limit.is_some_and(|limit| begun.elapsed() >= limit) {
+                        break;
+                    }
+                    continue;
+                }
+            };
+            let mean = found.map_err(|e| {
+                let rows = split(data.table.rows(), self.share, self.search.seed, index);
+                Error::content(path, within(&e, &rows, index))
+            })?;
+            print::line(&format!("{},{},{mean:.4}", contenders[which].0, index + 1))?;
+            losses[which].push(mean);
         }
+        let whole = losses.iter().map(Vec::len).min().unwrap_or(0);
+        if whole < self.splits as usize {
+            print::message(&format!(
+                "ended after {:.1} s: {whole} of {} splits are whole",
+                begun.elapsed().as_secs_f64(),
+                self.splits
+            ));
+        }
+        if whole == 0 {
+            return Ok(());
+        }
+        losses.iter_mut().for_each(|own| own.truncate(whole));
         let reference = &losses[0];
         for ((name, _), own) in contenders.iter().zip(&losses) {
             let s = summary(own, reference);
@@ -83,6 +126,33 @@ impl Splits {
             ));
         }
         Ok(())
+    }
+
+    /// The mean loss of every model on every split, as (split, place of the model, loss), in order, from a thread of its own: one that is in the midst of a
+    /// model when nobody waits any more ends with the process.
+    fn judged(
+        &self,
+        data: &Dataset,
+        contenders: &[(String, Contender)],
+        settings: Settings,
+    ) -> Receiver<(u64, usize, std::result::Result<f64, ModelError>)> {
+        let (tell, told) = channel();
+        let (data, splits, share, seed) = (data.clone(), self.splits, self.share, self.search.seed);
+        let contenders: Vec<Contender> = contenders.iter().map(|(_, c)| *c).collect();
+        std::thread::spawn(move || {
+            for index in 0..splits {
+                let (train, test) = split(data.table.rows(), share, seed, index);
+                let (train, test) = (data.select(&train), data.select(&test));
+                for (which, contender) in contenders.iter().enumerate() {
+                    let found = held_out(*contender, &train, &test, &settings, seed);
+                    let mean = found.map(|all| all.iter().sum::<f64>() / all.len() as f64);
+                    if tell.send((index, which, mean)).is_err() {
+                        return;
+                    }
+                }
+            }
+        });
+        told
     }
 
     /// The models by name.

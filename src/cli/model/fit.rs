@@ -6,6 +6,7 @@ use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_io::building_csv::TextTable;
 use edifice_model::network::{Evidence, FitSettings, Network};
+use edifice_model::tables::table_model::LogParts;
 use edifice_model::{ModelError, Table};
 
 use super::data::{csv_lines, read_table};
@@ -66,8 +67,9 @@ pub fn run(args: &Args) -> Result<()> {
     let mean = logs.iter().sum::<f64>() / logs.len() as f64;
     network::write(&fitted.network, &args.output)?;
     print::message(&format!(
-        "{} rows: log-likelihood {mean:.4} nats a row",
-        table.rows()
+        "{} rows: log-likelihood {mean:.4} nats a row: {}",
+        table.rows(),
+        means(&parts(&fitted.network, &table).map_err(|e| Error::content(&args.table, e))?)
     ));
     match args.json {
         true => print::line(
@@ -142,16 +144,46 @@ pub fn sample(network: &Network, given: &[String], count: usize, seed: u64) -> R
 pub fn score(network: &Network, path: &Path) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
-    let logs = network
-        .log_likelihood(&table(network, &text).map_err(at)?)
-        .map_err(at)?;
-    print::line("row,log_likelihood")?;
-    for (row, log) in logs.iter().enumerate() {
-        print::line(&format!("{},{log}", row + 1))?;
+    let parts = parts(network, &table(network, &text).map_err(at)?).map_err(at)?;
+    print_parts(&parts)
+}
+
+/// `log P(c)` of the categories c of every row, and `log p(x | c)` of its numbers.
+fn parts(network: &Network, table: &Table) -> std::result::Result<LogParts, ModelError> {
+    let all = network.log_likelihood(table)?;
+    let discrete = table.columns().iter().filter(|c| c.categories().is_some());
+    let discrete: Vec<&str> = discrete.map(|c| c.name()).collect();
+    let log_probability_mass = match discrete.len() {
+        0 => vec![0.0; table.rows()],
+        n if n == table.columns().len() => all.clone(),
+        _ => network.log_likelihood(&table.only(&discrete)?)?,
+    };
+    let rest = all.iter().zip(&log_probability_mass);
+    Ok(LogParts {
+        log_density: rest.map(|(all, mass)| all - mass).collect(),
+        log_probability_mass,
+    })
+}
+
+/// Prints the parts of every row as CSV, and their means.
+pub fn print_parts(parts: &LogParts) -> Result<()> {
+    print::line("row,log_probability_mass,log_density")?;
+    let both = parts.log_probability_mass.iter().zip(&parts.log_density);
+    for (row, (mass, density)) in both.enumerate() {
+        print::line(&format!("{},{mass},{density}", row + 1))?;
     }
-    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-    print::message(&format!("mean {mean:.4} nats a row"));
+    print::message(&format!("means, nats a row: {}", means(parts)));
     Ok(())
+}
+
+/// The means of both parts in words.
+fn means(parts: &LogParts) -> String {
+    let mean = |logs: &[f64]| logs.iter().sum::<f64>() / logs.len() as f64;
+    format!(
+        "log_probability_mass {:.4}, log_density {:.4}",
+        mean(&parts.log_probability_mass),
+        mean(&parts.log_density)
+    )
 }
 
 /// Runs `complete` of a network: other columns of the table pass through, before its own.

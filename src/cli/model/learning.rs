@@ -62,26 +62,23 @@ pub struct Found {
 }
 
 impl Learning {
-    /// Learns from `data`, going on from `start` if there is one. `path` names the table in errors.
+    /// Learns from `data`, going on from `start` if there is one. `path` names the table in errors; the limit of time
+    /// counts from `begun`.
     pub fn learn(
         &self,
         data: &Dataset,
         settings: &Settings,
         start: Option<&Hierarchy>,
         path: &Path,
+        begun: Instant,
     ) -> Result<Found> {
         if let Some(limit) = self.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
             let problem = format!("{limit} is not a positive number of seconds");
             return Err(Error::option("--time-limit", problem));
         }
-        // Set once per process; a second command in the same process keeps the first handler, which does the same.
-        let _ = ctrlc::set_handler(|| {
-            if STOP.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-            print::message("stopping with the best model so far; Ctrl-C again stops at once");
-        });
-        let watch = Watch::new(self.time_limit.map(seconds));
+        heed_interrupts();
+        let rows = data.table.rows().min(settings.searched);
+        let watch = Watch::new(begun, self.time_limit.map(seconds), rows);
         let found = self.found(data, start, settings, &watch);
         let mut found = found.map_err(|e| Error::content(path, e))?;
         found.seconds = watch.start.elapsed().as_secs_f64();
@@ -152,8 +149,24 @@ impl Learning {
     }
 }
 
+/// Ctrl-C ends what is running with the best so far; a second one ends the process.
+pub fn heed_interrupts() {
+    // Set once per process; a second command in the same process keeps the first handler, which does the same.
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        print::message("stopping with the best so far; Ctrl-C again stops at once");
+    });
+}
+
+/// True once Ctrl-C was pressed.
+pub fn interrupted() -> bool {
+    STOP.load(Ordering::Relaxed)
+}
+
 /// A time limit; one beyond what a clock counts is none.
-fn seconds(limit: f64) -> Duration {
+pub fn seconds(limit: f64) -> Duration {
     Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX)
 }
 
@@ -161,6 +174,8 @@ fn seconds(limit: f64) -> Duration {
 struct Watch {
     start: Instant,
     limit: Option<Duration>,
+    /// Rows that are searched on.
+    rows: usize,
     state: Mutex<State>,
 }
 
@@ -172,10 +187,11 @@ struct State {
 }
 
 impl Watch {
-    fn new(limit: Option<Duration>) -> Self {
+    fn new(start: Instant, limit: Option<Duration>, rows: usize) -> Self {
         Self {
-            start: Instant::now(),
+            start,
             limit,
+            rows,
             state: Mutex::default(),
         }
     }
@@ -186,10 +202,10 @@ impl Watch {
             state.accept(step);
             if elapsed >= state.told + TELL {
                 state.told = elapsed;
-                print::message(&state.line(elapsed));
+                print::message(&state.line(elapsed, self.rows));
             }
         }
-        match STOP.load(Ordering::Relaxed) || self.limit.is_some_and(|limit| elapsed >= limit) {
+        match interrupted() || self.limit.is_some_and(|limit| elapsed >= limit) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
@@ -205,13 +221,17 @@ impl State {
         }
     }
 
-    fn line(&self, elapsed: Duration) -> String {
+    fn line(&self, elapsed: Duration, rows: usize) -> String {
         let seconds = elapsed.as_secs();
         match &self.best {
             None => format!("{seconds} s: fitting"),
             Some(best) => format!(
-                "{seconds} s: {} configurations accepted, best so far {} styles, {} lateral edges, score {:.1}",
-                self.tried, best.styles, best.lateral_edges, best.score
+                "{seconds} s: {} configurations accepted, best so far {} styles, {} lateral edges, score {:.1} ({:.3} nats a row) on {rows} rows",
+                self.tried,
+                best.styles,
+                best.lateral_edges,
+                best.score,
+                best.score / rows as f64
             ),
         }
     }

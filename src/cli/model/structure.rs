@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use edifice_base::{Error, Result};
-use edifice_model::network::structure::{Score, Search, search};
+use edifice_model::network::structure::{Score, Search, search_incomplete};
+use edifice_model::tables::bins::binned;
 
 use super::data::TableInput;
+use super::learning::{heed_interrupts, interrupted, seconds};
 use crate::print;
 
 /// Options.
@@ -41,6 +43,9 @@ pub struct Args {
     /// Seed of all random streams.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Seconds after which to end with the best structure so far (as Ctrl-C does).
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
     /// Print a line of JSON.
     #[arg(long)]
     json: bool,
@@ -57,6 +62,14 @@ enum Kind {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
+    if let Some(limit) = args.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
+        let problem = format!("{limit} is not a positive number of seconds");
+        return Err(Error::option("--time-limit", problem));
+    }
+    let start = Instant::now();
+    heed_interrupts();
+    let limit = args.time_limit.map(seconds);
+    let goes_on = || !interrupted() && limit.is_none_or(|limit| start.elapsed() < limit);
     let (data, _) = args.input.read()?;
     let settings = Search {
         score: match args.score {
@@ -70,16 +83,34 @@ pub fn run(args: &Args) -> Result<()> {
         restarts: args.restarts,
         ..Search::default()
     };
-    let start = Instant::now();
-    let found = search(&data.table, &settings, args.seed);
-    let found = found.map_err(|e| Error::content(&args.input.table, e))?;
-    let seconds = start.elapsed().as_secs_f64();
+    let at = |e| Error::content(&args.input.table, e);
+    let (table, cut) = binned(&data.table).map_err(at)?;
+    for own in &cut {
+        print::message(&format!(
+            "{}: numbers as {} categories by description length: {}",
+            own.column,
+            own.cuts.len() + 1,
+            own.names().join(", ")
+        ));
+    }
+    let incomplete = table.has_missing();
+    if incomplete {
+        print::message("cells are missing: structural EM; the score is BIC of the known cells");
+    }
+    let found = search_incomplete(&table, &settings, args.seed, &goes_on);
+    let found = found.map_err(at)?;
+    let taken = start.elapsed().as_secs_f64();
     super::network::write(&found.network, &args.output)?;
+    if found.interrupted {
+        print::message(&format!(
+            "ended after {taken:.1} s: this is the best structure so far"
+        ));
+    }
     for (parent, child) in &found.edges {
         print::message(&format!("{parent} -> {child}"));
     }
     print::message(&format!(
-        "{} variables, {} rows: {} edges, score {:.2}, {} moves, {} families, {seconds:.2} s",
+        "{} variables, {} rows: {} edges, score {:.2}, {} moves, {} families, {taken:.2} s",
         data.table.columns().len(),
         data.table.rows(),
         found.edges.len(),
@@ -91,7 +122,7 @@ pub fn run(args: &Args) -> Result<()> {
         true => print::line(&summary(
             &found.edges,
             found.score,
-            seconds,
+            taken,
             args.seed,
             &args.output,
         )),

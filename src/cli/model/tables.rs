@@ -1,6 +1,7 @@
 //! `edifice model schema`, `learn`, `score`, `sample` and `complete`: hierarchical models of any table.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use edifice_base::file::write_atomic;
 use edifice_base::rng::stream;
@@ -83,6 +84,7 @@ pub fn schema(input: &TableInput) -> Result<()> {
 
 /// Runs `learn`.
 pub fn learn(args: &LearnArgs) -> Result<()> {
+    let begun = Instant::now();
     let (data, schema) = args.input.read()?;
     let start = args.learning.from.as_deref().map(read_model).transpose()?;
     let background = if args.as_published { 0.0 } else { BACKGROUND };
@@ -113,7 +115,7 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
     let start = start.as_ref().map(|file| &file.model);
     let found = args
         .learning
-        .learn(&encoded, &settings, start, &args.input.table)?;
+        .learn(&encoded, &settings, start, &args.input.table, begun)?;
     if args.input.schema.is_none() {
         let kinds = schema
             .groups
@@ -132,11 +134,16 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
         encoding,
         model: found.model,
     };
+    if let Some(warning) = mixed(&file) {
+        print::message(&format!("warning: {warning}"));
+    }
     let text = file.to_json().map_err(Error::method)?;
     write_atomic(&args.output, text.as_bytes())?;
     print::message(&format!(
-        "{rows} rows: {styles} styles, {edges} lateral edges, Cheeseman-Stutz score {:.1}, {:.1} s",
-        found.score, found.seconds
+        "{rows} rows: {styles} styles, {edges} lateral edges, Cheeseman-Stutz score {:.1} ({:.3} nats a row), {:.1} s",
+        found.score,
+        found.score / rows as f64,
+        found.seconds
     ));
     match args.json {
         true => print::line(
@@ -155,22 +162,30 @@ fn at(path: &Path) -> impl Fn(ModelError) -> Error + '_ {
     move |error| Error::content(path, error)
 }
 
-/// Runs `score`: the log-likelihood of every row, missing cells integrated out.
+/// The warning of a model whose numbers are partly probabilities, partly densities.
+fn mixed(model: &TableModel) -> Option<String> {
+    let columns = model.encoding.iter().flat_map(Encoding::columns);
+    let atoms: Vec<&str> = (columns.filter(|c| !c.atoms.is_empty()))
+        .map(|c| c.column.as_str())
+        .collect();
+    (!atoms.is_empty()).then(|| {
+        format!(
+            "values that many rows share have a probability, not a density (`model show` names them): log-likelihoods of this model are not to be \
+             compared with log densities of others; columns: {}",
+            atoms.join(", ")
+        )
+    })
+}
+
+/// Runs `score`: the log probability mass and the log density of every row, missing cells integrated out.
 pub fn score(args: &ScoreArgs) -> Result<()> {
     if let Some(network) = network_of(&args.model)? {
         return fit::score(&network, &args.table);
     }
     let model = read_model(&args.model)?;
     let data = read_rows(&model, &args.table)?;
-    let logs = model.log_likelihood(&data.table);
-    let logs = logs.map_err(|e| Error::content(&args.table, e))?;
-    print::line("row,log_likelihood")?;
-    for (row, log) in logs.iter().enumerate() {
-        print::line(&format!("{},{log}", row + 1))?;
-    }
-    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-    print::message(&format!("mean {mean:.4} nats a row"));
-    Ok(())
+    let parts = model.log_parts(&data.table);
+    fit::print_parts(&parts.map_err(|e| Error::content(&args.table, e))?)
 }
 
 /// Runs `sample`.

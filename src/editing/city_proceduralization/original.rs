@@ -5,11 +5,9 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::super::work::{Work, stoppable};
-use edifice_base::{Error, Result};
-use edifice_city_proceduralization::{
-    Budget, Decomposition, Settings, decompose_watched, from_components,
-};
+use super::super::work::Work;
+use edifice_base::{Error, Progress, Result};
+use edifice_city_proceduralization::{Budget, Decomposition, Settings, decompose, from_components};
 use edifice_grammar::instance::InstanceGrammar;
 use edifice_shape::triangles::{City, OrientedBox, TriangleMesh};
 
@@ -58,16 +56,23 @@ impl Original {
             &format!("cutting {count} buildings into components"),
             Some(0.05),
         )?;
-        let watch = || work.go_on_or_unwind();
-        let cut = || decompose_watched(&self.city, true, watch);
-        let cut = stoppable(|| self.cut.get_or_init(cut).clone())?;
+        let watch = |_: Progress| work.go_on();
+        let cut = match self.cut.get() {
+            Some(cut) => cut.clone(),
+            None => {
+                let cut = decompose(&self.city, true, &watch);
+                work.whole(cut.ended)?;
+                self.cut.get_or_init(|| cut).clone()
+            }
+        };
         let count = cut.components.len();
         work.tell(&format!("types and rules of {count} components"), Some(0.3))?;
         let settings = Settings {
             budget: Budget::Level(level),
             ..Settings::default()
         };
-        let made = from_components(&self.city, cut, &settings).map_err(Error::method)?;
+        let made = from_components(&self.city, cut, &settings, &watch).map_err(Error::method)?;
+        work.whole(made.ended)?;
         Ok(made.grammar)
     }
 

@@ -1,12 +1,11 @@
 //! Several facades explained by one joint grammar (Wu et al. 2014, Sec. 4.6): the rules that they share are written once.
 
 use std::path::Path;
-use std::rc::Rc;
 
 use super::super::split_grammar::{Wish, derived};
-use super::super::work::{Work, stoppable};
-use edifice_base::{Error, Result};
-use edifice_facade_grammar::{InferError, Outcome, Settings, infer_watched};
+use super::super::work::Work;
+use edifice_base::{Error, Progress, Result};
+use edifice_facade_grammar::{Outcome, Settings, infer};
 use edifice_grammar::{Grammar, check};
 use edifice_io::facade_json;
 use edifice_shape::Facade;
@@ -47,7 +46,7 @@ pub fn merge(grammar: &Grammar, further: &[Facade], work: &Work) -> Result<Outco
         all.push(facade);
     }
     work.tell("looking for a joint grammar", None)?;
-    let found = stoppable(|| observed(&all, work))?.map_err(Error::method)?;
+    let found = watched(&all, work)?;
     check(&found.grammar).map_err(Error::method)?;
     Ok(found)
 }
@@ -60,23 +59,19 @@ struct MergeError(String);
 /// The cheapest grammar of facades, telling of the steps.
 ///
 /// # Errors
-/// [`InferError`].
-pub fn observed(facades: &[Facade], work: &Work) -> std::result::Result<Outcome, InferError> {
-    let settings = Settings::default();
-    let steps = settings.steps().max(1) as f64;
-    let (told, watched) = (work.clone(), work.clone());
-    let pulse = Rc::new(move || watched.go_on_or_unwind());
-    let tell = move |iteration: u64, best: f64| {
-        let part = (iteration as f64 / steps).min(1.0);
-        let step = format!("inferring the grammar, cost {best:.1}");
-        told.tell_or_unwind(&step, Some(part));
+/// Those of [`infer`], and when the work is stopped.
+pub fn watched(facades: &[Facade], work: &Work) -> Result<Outcome> {
+    let watch = |progress: Progress| {
+        if let Some(best) = progress.best {
+            let step = format!("inferring the grammar, cost {best:.1}");
+            // That it is stopped, the next line says.
+            let _ = work.tell(&step, progress.share());
+        }
+        work.go_on()
     };
-    infer_watched(
-        facades,
-        &settings,
-        move |step| tell(step.iteration, step.best),
-        pulse,
-    )
+    let found = infer(facades, &Settings::default(), &watch).map_err(Error::method)?;
+    work.whole(found.ended)?;
+    Ok(found)
 }
 
 /// Facades from the texts of their files.

@@ -2,10 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
+use super::limits::DEEPEST;
 use super::{InstanceGrammar, InstanceGrammarError, InstanceRule, Placement};
-
-/// Deepest nesting of rules.
-pub(super) const DEEPEST: usize = 64;
 
 impl InstanceGrammar {
     /// Number of symbols with rules.

@@ -5,11 +5,9 @@ use std::borrow::Cow;
 use rustc_hash::FxHashMap;
 
 use super::check::Symbol;
+use super::limits::INSTANCE_LIMIT;
 use super::{InstanceGrammar, InstanceGrammarError, Placement};
 use edifice_shape::triangles::TriangleMesh;
-
-/// Most placed templates that a derivation may have.
-pub const INSTANCE_LIMIT: usize = 20_000_000;
 
 /// A template in its final place.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,6 @@
 //! Why an instance grammar cannot be derived.
 
-use super::check::DEEPEST;
-use super::derive::INSTANCE_LIMIT;
+use super::limits::{DEEPEST, INSTANCE_LIMIT};
 
 /// Why a grammar cannot be derived.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -13,12 +13,14 @@ mod check;
 mod derive;
 mod error;
 mod kept;
+mod limits;
 mod parametric;
 mod repeated;
 
-pub use derive::{INSTANCE_LIMIT, InstanceDerivation, TemplateInstance};
+pub use derive::{InstanceDerivation, TemplateInstance};
 pub use error::InstanceGrammarError;
 pub use kept::Kept;
+pub use limits::INSTANCE_LIMIT;
 pub use repeated::{Posed, Repeated, repeated};
 
 use std::sync::Arc;

@@ -23,7 +23,7 @@
 //! | `coder.rs` | counting, writing, reading and drawing as one walk |
 //! | `structure.rs`, `extents.rs`, `counts.rs`, `sizes.rs`, `codec.rs` | the model, part by part, and its walk |
 //! | `library.rs` | [`Library`]: learn, score, encode, decode |
-//! | `draw.rs` | new facades |
+//! | `draw.rs`, `recombine.rs`, `bands.rs` | new facades: sizes between two, floors of two, columns and floors more or less |
 //! | `fixed.rs` | what one facade costs alone, sizes included |
 //! | `written.rs`, `show.rs`, `names.rs` | a library as a split grammar, and as text |
 //!
@@ -34,6 +34,7 @@
 //! - A proof of the cost holds for this parse and collapse: not over all grammars with parameters.
 //! - All lengths are multiples of the library's step (a pixel). Facades off the step are refused, not rounded.
 
+mod bands;
 mod bodies;
 mod codec;
 mod coder;
@@ -47,6 +48,7 @@ mod library;
 mod names;
 mod phrases;
 mod program;
+mod recombine;
 mod rules;
 mod show;
 mod sizes;

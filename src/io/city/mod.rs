@@ -3,7 +3,7 @@
 //! | extension | read | written |
 //! | --- | --- | --- |
 //! | `.npz` | [`npz`]: NumPy archive of vertices, triangles and offsets | no |
-//! | `.obj` | [`obj`]: an object or group is a building; materials and textures of its `.mtl` | yes |
+//! | `.obj` | [`obj`]: an object or group is a building, without either a surface is; materials and textures of its `.mtl` | yes |
 //! | `.city.json`, `.city.jsonl` | [`cityjson`]: CityJSON 1.0 to 2.0, CityJSONSeq | yes |
 //! | `.gml`, `.citygml`, `.xml` (also `.xz`) | [`citygml`]: CityGML 2 and 3, as a stream | no |
 //! | `.glb`, `.gltf` | [`gltf`]: a node is a building | `.glb`, [`glb`]: a node with instances for each template |
@@ -33,6 +33,7 @@ pub mod obj;
 mod obj_write;
 pub mod picture;
 mod pictures;
+mod shells;
 pub mod tiles;
 pub mod view_json;
 

@@ -1,7 +1,9 @@
-//! Cities as Wavefront OBJ: each object (`o`), or group (`g`) in a file without objects, is a building; z up, metres.
+//! Cities as Wavefront OBJ: each object (`o`), or group (`g`) in a file without objects, is a building; z up, metres. The faces
+//! of a file with neither are split into buildings by the surfaces that they make up ([`super::shells`]).
 //! Faces of more than three corners are cut into fans. Materials (`.mtl`) and texture coordinates are read as what
 //! the surface looks like; [`write()`] writes them beside the file.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,9 +12,19 @@ use rustc_hash::FxHashMap;
 use super::CityError;
 use super::mtl::{self, Materials};
 pub use super::obj_write::{to_string, write};
+use super::shells;
 use crate::read_bytes;
 use edifice_base::{Error, Result};
 use edifice_shape::triangles::{City, CityBuilding, Painted, Surface, TriangleMesh};
+
+/// Elements without a surface, and their names in notes.
+const LEFT_OUT: [(&str, &str); 5] = [
+    ("l", "lines"),
+    ("p", "points"),
+    ("curv", "curves"),
+    ("curv2", "curves"),
+    ("surf", "free-form surfaces"),
+];
 
 /// Reads a file.
 ///
@@ -37,6 +49,9 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     let mut materials = Materials::default();
     let mut material: Option<Arc<Surface>> = None;
     let mut paint: Vec<Vec<Painted>> = Vec::new();
+    // Triangles of the paint of the first building, and lines that are left out, by what they are.
+    let mut painted: Vec<usize> = Vec::new();
+    let mut left: BTreeMap<&str, usize> = BTreeMap::new();
     for (number, line) in text.lines().enumerate() {
         let fail = |error: CityError| Error::input(path, format!("line {}", number + 1), error);
         let mut words = line.split_whitespace();
@@ -96,11 +111,15 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                 });
                 uv.resize(corners.len(), [0.0; 2]);
                 let fan = || (2..corners.len()).map(|k| [0, k - 1, k]);
+                let first = faces[building].1.len();
                 faces[building]
                     .1
                     .extend(fan().map(|t| t.map(|k| corners[k])));
                 if let Some(surface) = &material {
                     paint.resize(paint.len().max(building + 1), Vec::new());
+                    if building == 0 {
+                        painted.extend(first..faces[0].1.len());
+                    }
                     paint[building].extend(fan().map(|t| Painted {
                         corners: t.map(|k| positions[corners[k] as usize]),
                         uv: t.map(|k| uv[k]),
@@ -115,7 +134,37 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                     faces.len() - 1
                 }));
             }
-            _ => {}
+            Some(word) => {
+                if let Some(what) = LEFT_OUT.iter().find(|w| w.0 == word) {
+                    *left.entry(what.1).or_default() += 1;
+                }
+            }
+            None => {}
+        }
+    }
+    let mut notes: Vec<String> = left
+        .into_iter()
+        .map(|(what, n)| format!("{n} {what} left out: they have no surface"))
+        .collect();
+    if let ([(name, triangles)], true) = (&faces[..], names.is_empty()) {
+        let mesh = own(&positions, triangles);
+        let labels = shells::buildings(&mesh);
+        let count = labels.iter().max().map_or(0, |m| m + 1);
+        if count > 1 {
+            notes.push(format!(
+                "no objects or groups: split into {count} buildings by connected surfaces"
+            ));
+            let mut split: Vec<(String, Vec<[u32; 3]>)> = (1..=count)
+                .map(|k| (format!("{name}-{k}"), Vec::new()))
+                .collect();
+            for (t, &l) in triangles.iter().zip(&labels) {
+                split[l].1.push(*t);
+            }
+            let mut shown: Vec<Vec<Painted>> = vec![Vec::new(); count];
+            for (p, i) in paint.pop().into_iter().flatten().zip(painted) {
+                shown[labels[i]].push(p);
+            }
+            (faces, paint) = (split, shown);
         }
     }
     paint.resize(faces.len(), Vec::new());
@@ -125,7 +174,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         name: crate::file_stem(path),
         reference_system: None,
         origin: [0.0; 3],
-        notes: Vec::new(),
+        notes,
         buildings: buildings
             .map(|((id, triangles), paint)| CityBuilding {
                 id,

@@ -1,7 +1,12 @@
 //! Derivation at another size with aligned edges and equal terminals (Wu et al. 2014, Sec. 5, Fig. 12).
 
+mod bands;
+mod in_line;
 mod terminals;
+#[cfg(test)]
+mod tests;
 
+pub use bands::{Banded, resized};
 pub use terminals::terminal_classes;
 
 use std::collections::BTreeSet;

@@ -119,6 +119,12 @@ pub fn only(houses: &mut [Observation], groups: &[String]) -> Result<(), Observa
         if !keeps("arf") {
             house.floors = None;
         }
+        if !keeps("bcr") {
+            house.shape[0] = None;
+        }
+        if !keeps("bdry") {
+            house.shape[1] = None;
+        }
     }
     Ok(())
 }

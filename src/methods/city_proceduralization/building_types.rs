@@ -51,14 +51,7 @@ pub fn building_types(
     shape: &Points,
     buildings: usize,
 ) -> Result<BuildingTypes, ProceduralizeError> {
-    let mut parts: Vec<Vec<usize>> = vec![Vec::new(); buildings];
-    let mut order = Vec::new();
-    for (i, c) in components.iter().enumerate() {
-        if parts[c.building].is_empty() {
-            order.push(c.building);
-        }
-        parts[c.building].push(i);
-    }
+    let (parts, order) = stacks(components, buildings);
     let most = parts.iter().map(Vec::len).max().unwrap_or(0);
     let classes: Vec<Vec<usize>> = (1..=most)
         .map(|s| {
@@ -95,6 +88,37 @@ pub fn building_types(
     }
     out.symmetric = votes.into_iter().map(|v| v > 0).collect();
     Ok(out)
+}
+
+impl BuildingTypes {
+    /// A type for each building that has components.
+    pub(crate) fn apart(components: &[Component], buildings: usize) -> Self {
+        let (parts, order) = stacks(components, buildings);
+        let mut labels = vec![None; buildings];
+        for (label, &b) in order.iter().enumerate() {
+            labels[b] = Some(label);
+        }
+        Self {
+            labels,
+            parts,
+            count: order.len(),
+            symmetric: vec![false; order.len()],
+            order,
+        }
+    }
+}
+
+/// The components of each building, and the buildings that have any, in the order of those.
+fn stacks(components: &[Component], buildings: usize) -> (Vec<Vec<usize>>, Vec<usize>) {
+    let mut parts: Vec<Vec<usize>> = vec![Vec::new(); buildings];
+    let mut order = Vec::new();
+    for (i, c) in components.iter().enumerate() {
+        if parts[c.building].is_empty() {
+            order.push(c.building);
+        }
+        parts[c.building].push(i);
+    }
+    (parts, order)
 }
 
 /// The features of a stack.

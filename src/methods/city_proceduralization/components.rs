@@ -1,12 +1,14 @@
 //! Cut planes and components (Sec. IV.A and B).
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use super::order::canonical_order;
 use super::orientation::{half_turn, orient, upside_down};
 use super::windows::{WindowFeatures, window_features};
+use edifice_base::{Ended, Progress, Watch, Watched};
 use edifice_shape::triangles::{
     City, MeshFaults, OrientedBox, Painted, Part, SectionProfile, SideView, Surface, TriangleMesh,
     clip_to_slabs, closing_lid, grey, height_map, repair,
@@ -74,21 +76,26 @@ pub struct Decomposition {
     pub faults: Vec<MeshFaults>,
     /// Buildings without a component: no triangle has an area.
     pub empty: Vec<usize>,
+    /// The way in which the cutting ended.
+    pub ended: Ended,
 }
 
 /// Cuts every building of a city into components, on all threads. With `bottoms`, components are closed
 /// below, too: their templates may stand on smaller ones, and a solid without a bottom reaches down to the ground.
-pub fn decompose(city: &City, bottoms: bool) -> Decomposition {
-    decompose_watched(city, bottoms, || {})
-}
-
-/// As [`decompose`], calling `pulse` before each building, on any thread: whoever waits no longer may unwind from it.
-pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) -> Decomposition {
+///
+/// `watch` is told of each building; those that come after it has stopped the work have no component, no fault, and are not
+/// listed as empty.
+pub fn decompose(city: &City, bottoms: bool, watch: &Watch) -> Decomposition {
+    let watched = Watched::new(watch);
+    let (done, most) = (AtomicU64::new(0), city.buildings.len() as u64);
     let order = canonical_order(city);
-    let parts: Vec<(Vec<Component>, MeshFaults)> = order
+    let parts: Vec<Option<(Vec<Component>, MeshFaults)>> = order
         .par_iter()
         .map(|&b| {
-            pulse();
+            let done = done.fetch_add(1, Ordering::Relaxed);
+            if !watched.goes_on(Progress::of("buildings", done, most)) {
+                return None;
+            }
             let building = &city.buildings[b];
             let (mesh, faults) = repair(&building.mesh);
             let mut components = match building.stated_parts() {
@@ -98,14 +105,18 @@ pub fn decompose_watched(city: &City, bottoms: bool, pulse: impl Fn() + Sync) ->
             for component in &mut components {
                 component.look_at(&building.paint);
             }
-            (components, faults)
+            Some((components, faults))
         })
         .collect();
     let mut out = Decomposition {
         faults: vec![MeshFaults::default(); order.len()],
+        ended: watched.ended(),
         ..Decomposition::default()
     };
-    for (b, (components, faults)) in order.into_iter().zip(parts) {
+    for (b, part) in order.into_iter().zip(parts) {
+        let Some((components, faults)) = part else {
+            continue;
+        };
         if components.is_empty() {
             out.empty.push(b);
         }

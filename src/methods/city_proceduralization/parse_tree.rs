@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::type_graph::{
     DistanceWeights, NEIGHBOUR, NodeInstance, TypeEdge, neighbours, type_graph,
 };
+use edifice_base::{Progress, Watched};
 use edifice_cluster::{Communities, WeightedGraph, girvan_newman, louvain, weighted_graph};
 use edifice_grammar::instance::{InstanceRule, Placement};
 
@@ -60,23 +61,13 @@ struct Grown {
 }
 
 /// Grows the tree from placed leaves: `leaves` are symbols of terminals, `instances` their uses with
-/// midpoints.
+/// midpoints. Stopped, it has the levels that were grown until then.
 pub fn grow(
     leaves: usize,
     instances: Vec<(usize, [f64; 3], Placement)>,
     detection: Detection,
     weights: DistanceWeights,
-) -> ParseTree {
-    grow_watched(leaves, instances, detection, weights, &|_| {})
-}
-
-/// As [`grow`], telling each level before its communities are sought.
-pub fn grow_watched(
-    leaves: usize,
-    instances: Vec<(usize, [f64; 3], Placement)>,
-    detection: Detection,
-    weights: DistanceWeights,
-    tell: &dyn Fn(&str),
+    watched: &Watched,
 ) -> ParseTree {
     let mut tree = ParseTree {
         rules: Vec::new(),
@@ -96,7 +87,12 @@ pub fn grow_watched(
         let mut active: Vec<usize> = grown.iter().map(|g| g.node).collect();
         active.sort_unstable();
         active.dedup();
-        if active.len() < 2 {
+        let level = Progress::of(
+            "parse tree: levels of communities",
+            tree.levels.len() as u64,
+            MOST_LEVELS as u64,
+        );
+        if active.len() < 2 || !watched.goes_on(level) {
             break;
         }
         let number: BTreeMap<usize, usize> =
@@ -115,12 +111,6 @@ pub fn grow_watched(
             .map(|e| (e.nodes.0, e.nodes.1, 1.0 / e.distance))
             .collect();
         let graph = weighted_graph(active.len(), &near);
-        tell(&format!(
-            "parse tree, level {}: communities of {} nodes and {} edges",
-            tree.levels.len() + 1,
-            active.len(),
-            edges.len()
-        ));
         let communities = match detection {
             Detection::GirvanNewman => girvan_newman(&graph),
             Detection::Louvain => louvain(&graph),

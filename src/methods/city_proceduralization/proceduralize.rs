@@ -6,11 +6,12 @@ use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
-use super::parse_tree::{Detection, ParseTree, grow_watched};
+use super::parse_tree::{Detection, ParseTree, grow};
 use super::patterns::patterns;
 use super::rulebook::Stacks;
 use super::type_graph::DistanceWeights;
 use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
+use edifice_base::{Ended, Progress, Watch, Watched};
 use edifice_cluster::WardError;
 use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
 use edifice_shape::triangles::{BoxTexture, City};
@@ -98,6 +99,9 @@ pub enum ProceduralizeError {
     /// There is nothing to proceduralize.
     #[error("no building has a triangle with an area")]
     Empty,
+    /// It was stopped before anything was found.
+    #[error("stopped before the first building was cut")]
+    Stopped,
     /// Features cannot be clustered.
     #[error("features: {0}")]
     Ward(#[from] WardError),
@@ -117,6 +121,9 @@ pub struct Proceduralized {
     pub types: Types,
     /// The groups that stand together.
     pub structure: Structure,
+    /// The way in which it ended. Of an interrupted one, the grammar derives the buildings that were cut until then, and where
+    /// types and groups were not found yet, each distinct component has its own template.
+    pub ended: Ended,
 }
 
 impl Proceduralized {
@@ -147,35 +154,19 @@ pub enum Structure {
     },
 }
 
-/// Makes a grammar of a city.
+/// Makes a grammar of a city, telling `watch` of each building that is cut and of each stage after that.
 ///
 /// # Errors
 /// [`ProceduralizeError`].
 pub fn proceduralize(
     city: &City,
     settings: &Settings,
+    watch: &Watch,
 ) -> Result<Proceduralized, ProceduralizeError> {
-    proceduralize_watched(city, settings, &|_| {})
-}
-
-/// As [`proceduralize`], telling each stage before it begins.
-///
-/// # Errors
-/// [`ProceduralizeError`].
-pub fn proceduralize_watched(
-    city: &City,
-    settings: &Settings,
-    tell: &dyn Fn(&str),
-) -> Result<Proceduralized, ProceduralizeError> {
-    tell("cutting buildings into components");
-    let decomposition = decompose(city, settings.budget != Budget::All);
-    tell(&format!(
-        "types of {} components",
-        decomposition.components.len()
-    ));
-    let prepared = Prepared::new(city, &decomposition.components, settings)?;
-    let made = prepared.grammar(settings.budget, tell);
-    Ok(made.of(decomposition))
+    let watched = Watched::new(watch);
+    let bottoms = settings.budget != Budget::All;
+    let decomposition = decompose(city, bottoms, &watched.inner());
+    from_components(city, decomposition, settings, &watched.inner())
 }
 
 /// Makes a grammar of a city that is already cut.
@@ -186,10 +177,12 @@ pub fn from_components(
     city: &City,
     decomposition: Decomposition,
     settings: &Settings,
+    watch: &Watch,
 ) -> Result<Proceduralized, ProceduralizeError> {
-    let prepared = Prepared::new(city, &decomposition.components, settings)?;
-    let made = prepared.grammar(settings.budget, &|_| {});
-    Ok(made.of(decomposition))
+    let watched = &Watched::new(watch);
+    let prepared = Prepared::new(city, &decomposition, settings, watched)?;
+    let made = prepared.grammar(settings.budget);
+    Ok(made.of(decomposition, watched))
 }
 
 /// A city of which grammars of several budgets are made.
@@ -198,6 +191,7 @@ struct Prepared<'a> {
     components: &'a [Component],
     settings: &'a Settings,
     best: Option<Best<'a>>,
+    watched: &'a Watched<'a>,
 }
 
 /// The part of method `best` that is the same for all budgets.
@@ -205,7 +199,8 @@ struct Best<'a> {
     /// The templates that the input states: where there are no more of them than asked for, they are kept, so that
     /// a derived city becomes the grammar that it was derived from.
     stated: Option<Types>,
-    types: TypeTree<'a>,
+    /// `None` where it was stopped before.
+    types: Option<TypeTree<'a>>,
     buildings: BuildingTypes,
     stacks: Stacks<'a>,
     patterns: Vec<Repeated>,
@@ -219,8 +214,13 @@ struct Made {
 }
 
 impl Made {
-    fn of(self, decomposition: Decomposition) -> Proceduralized {
+    fn of(self, decomposition: Decomposition, watched: &Watched) -> Proceduralized {
+        let ended = match decomposition.ended {
+            Ended::Finished => watched.ended(),
+            Ended::Interrupted => Ended::Interrupted,
+        };
         Proceduralized {
+            ended,
             grammar: self.grammar,
             decomposition,
             types: self.types,
@@ -232,24 +232,41 @@ impl Made {
 impl<'a> Prepared<'a> {
     fn new(
         city: &'a City,
-        components: &'a [Component],
+        decomposition: &'a Decomposition,
         settings: &'a Settings,
+        watched: &'a Watched<'a>,
     ) -> Result<Self, ProceduralizeError> {
+        let components = &decomposition.components[..];
         if components.is_empty() {
-            return Err(ProceduralizeError::Empty);
+            return Err(match decomposition.ended {
+                Ended::Finished => ProceduralizeError::Empty,
+                Ended::Interrupted => ProceduralizeError::Stopped,
+            });
         }
         let best = match settings.mode {
             Mode::Paper => None,
             Mode::Best => {
+                let count = city.buildings.len();
+                let goes_on = |stage| watched.goes_on(Progress::stage(stage));
                 let shape = geometric_features(components);
-                let buildings = building_types(components, &shape, city.buildings.len())?;
-                Some(Best {
+                let buildings = match goes_on("types of buildings") {
+                    true => building_types(components, &shape, count)?,
+                    false => BuildingTypes::apart(components, count),
+                };
+                let mut best = Best {
                     stated: stated_types(components),
-                    types: TypeTree::new(components, &shape)?,
-                    patterns: patterns(components, &buildings),
+                    types: None,
                     stacks: Stacks::new(components, &buildings)?,
                     buildings,
-                })
+                    patterns: Vec::new(),
+                };
+                if goes_on("types of components") {
+                    best.types = Some(TypeTree::new(components, &shape)?);
+                }
+                if goes_on("patterns") {
+                    best.patterns = patterns(components, &best.buildings);
+                }
+                Some(best)
             }
         };
         Ok(Self {
@@ -257,10 +274,11 @@ impl<'a> Prepared<'a> {
             components,
             settings,
             best,
+            watched,
         })
     }
 
-    fn grammar(&self, budget: Budget, tell: &dyn Fn(&str)) -> Made {
+    fn grammar(&self, budget: Budget) -> Made {
         let (city, components, settings) = (self.city, self.components, self.settings);
         let n = components.len();
         let k = match budget {
@@ -270,12 +288,19 @@ impl<'a> Prepared<'a> {
         };
         let Some(best) = &self.best else {
             let (weights, representative) = (&settings.weights, settings.representative);
-            let types = paper_types(components, k, weights, representative, settings.seed);
+            let types = paper_types(
+                components,
+                k,
+                weights,
+                representative,
+                settings.seed,
+                self.watched,
+            );
             let placed = placed_components(city, components, &types);
             let leaves = types.representatives.len();
             let (detection, distance) = (settings.detection, settings.distance);
-            let tree = grow_watched(leaves, placed, detection, distance, tell);
-            tell("rules");
+            let tree = grow(leaves, placed, detection, distance, self.watched);
+            self.watched.goes_on(Progress::stage("rules"));
             return Made {
                 grammar: emit_tree(city, components, &types, &tree),
                 types,
@@ -288,7 +313,10 @@ impl<'a> Prepared<'a> {
             (Some(stated), Budget::All) => (stated.clone(), Detail::MILLIMETRE),
             (Some(stated), _) => (stated.clone(), Detail::CENTIMETRE),
             (None, Budget::All) => (distinct_types(components), Detail::MILLIMETRE),
-            (None, _) => (best.types.cut(k), Detail::CENTIMETRE),
+            (None, _) => match &best.types {
+                Some(types) => (types.cut(k), Detail::CENTIMETRE),
+                None => (distinct_types(components), Detail::CENTIMETRE),
+            },
         };
         let detail = match settings.precision {
             None => detail,
@@ -296,10 +324,7 @@ impl<'a> Prepared<'a> {
             Some(Precision::Centimetre) => Detail::CENTIMETRE,
             Some(Precision::Decimetre) => Detail::DECIMETRE,
         };
-        tell(&format!(
-            "rules of buildings over {} templates",
-            types.representatives.len()
-        ));
+        (self.watched).goes_on(Progress::stage("rules of buildings over templates"));
         // What is stated is kept as it is.
         let detail = match stated {
             Some(_) => detail.at_least_centimetre(),
@@ -331,7 +356,7 @@ impl<'a> Prepared<'a> {
 const SEARCH_STEPS: usize = 7;
 
 /// The grammar of the most templates that `fits`, on the assumption that fewer templates fit as well; `None`
-/// when one template does not fit.
+/// when one template does not fit. Stopped by `watch`, it is the most of those tried.
 ///
 /// # Errors
 /// [`ProceduralizeError`], or those of `fits`.
@@ -339,12 +364,13 @@ pub fn largest<E: From<ProceduralizeError>>(
     city: &City,
     settings: &Settings,
     fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
+    watch: &Watch,
 ) -> Result<Option<Proceduralized>, E> {
-    search(city, settings, fits, true)
+    search(city, settings, fits, true, watch)
 }
 
 /// The grammar of the fewest templates that `fits`, on the assumption that more templates fit as well; `None`
-/// when a template for each component does not fit.
+/// when a template for each component does not fit. Stopped by `watch`, it is the fewest of those tried.
 ///
 /// # Errors
 /// [`ProceduralizeError`], or those of `fits`.
@@ -352,8 +378,9 @@ pub fn smallest<E: From<ProceduralizeError>>(
     city: &City,
     settings: &Settings,
     fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
+    watch: &Watch,
 ) -> Result<Option<Proceduralized>, E> {
-    search(city, settings, fits, false)
+    search(city, settings, fits, false, watch)
 }
 
 /// Bisection over the logarithm of the number of templates.
@@ -362,29 +389,30 @@ fn search<E: From<ProceduralizeError>>(
     settings: &Settings,
     fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
     many: bool,
+    watch: &Watch,
 ) -> Result<Option<Proceduralized>, E> {
-    let decomposition = decompose(city, true);
-    let best = bisected(city, &decomposition.components, settings, fits, many)?;
-    Ok(best.map(|made| made.of(decomposition)))
+    let watched = &Watched::new(watch);
+    let decomposition = decompose(city, true, &watched.inner());
+    let prepared = Prepared::new(city, &decomposition, settings, watched)?;
+    let best = bisected(&prepared, fits, many)?;
+    Ok(best.map(|made| made.of(decomposition, watched)))
 }
 
 fn bisected<E: From<ProceduralizeError>>(
-    city: &City,
-    components: &[Component],
-    settings: &Settings,
+    prepared: &Prepared,
     fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
     many: bool,
 ) -> Result<Option<Made>, E> {
-    let prepared = Prepared::new(city, components, settings)?;
-    let (mut low, mut high) = (1, components.len());
-    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }), &|_| {});
+    let (mut low, mut high) = (1, prepared.components.len());
+    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }));
     let mut best = fits(&sure.grammar)?.then_some(sure);
     for _ in 0..SEARCH_STEPS {
         let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
-        if best.is_none() || middle == low || middle == high {
+        let goes_on = (prepared.watched).goes_on(Progress::stage("numbers of templates"));
+        if best.is_none() || middle == low || middle == high || !goes_on {
             break;
         }
-        let made = prepared.grammar(Budget::Templates(middle), &|_| {});
+        let made = prepared.grammar(Budget::Templates(middle));
         let fit = fits(&made.grammar)?;
         if fit {
             best = Some(made);

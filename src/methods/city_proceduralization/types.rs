@@ -8,7 +8,7 @@ use super::components::Component;
 use super::features::{Points, paper_features};
 use super::medoids::{Form, Table, square};
 use super::proceduralize::{ProceduralizeError, Representative};
-use edifice_base::rng;
+use edifice_base::{Progress, Watched, rng};
 use edifice_cluster::{WardTree, kmeans, lloyd, means, ward};
 
 /// A type's use for a component.
@@ -30,16 +30,17 @@ pub struct Types {
 }
 
 /// k-means, with k halved level by level until at most `k` clusters are left; each level groups the centres of
-/// the level before, weighted by their members.
+/// the level before, weighted by their members. Stopped, the types are those of the last level.
 pub fn paper_types(
     components: &[Component],
     k: usize,
     weights: &[f64; 11],
     representative: Representative,
     seed: u64,
+    watched: &Watched,
 ) -> Types {
     let points = paper_features(components, weights);
-    let labels = halving(&points, k, seed);
+    let labels = halving(&points, k, seed, watched);
     let count = labels.iter().max().map_or(0, |m| m + 1);
     let mut members = vec![Vec::new(); count];
     for (i, &l) in labels.iter().enumerate() {
@@ -72,13 +73,13 @@ pub fn paper_types(
 /// Steps of Lloyd at each level.
 const LLOYD_STEPS: usize = 10;
 
-fn halving(points: &Points, k: usize, seed: u64) -> Vec<usize> {
+fn halving(points: &Points, k: usize, seed: u64, watched: &Watched) -> Vec<usize> {
     let n = points.values.len() / points.dimension;
     let mut labels: Vec<usize> = (0..n).collect();
     let mut centres = points.values.clone();
     let mut weights = vec![1.0; n];
     let mut level = 0;
-    while weights.len() > k.max(1) {
+    while weights.len() > k.max(1) && watched.goes_on(Progress::stage("levels of k-means")) {
         // The levels are n/2, n/4, ...; the last one is the k asked for.
         let target = (n >> (level + 1)).max(k).max(1).min(weights.len() - 1);
         let mut stream = rng::stream(seed, "city halving", level as u64);

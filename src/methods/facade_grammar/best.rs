@@ -6,13 +6,14 @@ use super::adp::search::Search;
 use super::adp::walk::ShortestPathRules;
 use super::annealing::NonterminalSet;
 use super::bound::{few_rules, saved_by_grids};
-use super::infer::{InferError, Settings};
 use super::lagrangian::{BoundLimits, Incumbent, NOISE, Program, solve};
 use super::rules::RulePricer;
+use super::settings::{InferError, Settings, second_stage_steps};
 use crate::rules::AddRule;
-use edifice_optim::Step;
+use edifice_base::Progress;
 use edifice_optim::adp::Epsilon;
 use edifice_optim::annealing::{Annealing, Cooling};
+use edifice_optim::tell;
 use edifice_shape::Facade;
 
 /// Rules found, and a bound below which no grammar costs.
@@ -27,31 +28,30 @@ impl Search<'_> {
     /// 3. walks that exploit by shortest paths;
     /// 4. annealing over the set of non-terminal types, from the cheapest grammar so far.
     ///
-    /// Everything ends when a limit of memory is reached.
-    pub fn best(
-        &self,
-        facades: &[Facade],
-        mut observer: impl FnMut(Step) + Clone + 'static,
-    ) -> Result<Found, InferError> {
+    /// Everything ends when a limit of memory is reached, or when the search is stopped.
+    pub fn best(&self, facades: &[Facade]) -> Result<Found, InferError> {
+        if !self.watched.goes_on(Progress::stage("Lagrangian bound")) {
+            return Ok((self.cheapest(std::iter::empty()), self.few_rules(facades)));
+        }
         let union = match facades {
             [_] => None,
             _ => self.union(facades)?,
         };
         let Some(found) = self.bounded(facades, union.as_deref()) else {
-            return self.best_unbounded(facades, union, observer);
+            return self.best_unbounded(facades, union);
         };
         let Bounded { rules, cost, lower } = found;
-        observer(Step {
-            iteration: 0,
-            cost,
-            best: cost,
-        });
+        let first = Progress::of("Lagrangian bound", 1, self.settings.steps());
+        let goes_on = self.watched.goes_on(first.costs(cost, cost));
         if cost <= lower + NOISE {
             return Ok((rules, lower));
         }
-        let iterations = self.settings.iterations;
         let start = [rules].into_iter().chain(union);
-        self.second_stage(start, lower, Vec::new(), iterations, later(1, observer))
+        if !goes_on {
+            return Ok((self.cheapest(start), lower));
+        }
+        let iterations = self.settings.iterations;
+        self.second_stage(start, lower, Vec::new(), iterations, 1)
     }
 
     /// [`Search::best`] where there are too many items for the Lagrangian bound.
@@ -59,29 +59,36 @@ impl Search<'_> {
         &self,
         facades: &[Facade],
         union: Option<Vec<AddRule>>,
-        observer: impl FnMut(Step) + Clone + 'static,
     ) -> Result<Found, InferError> {
         let terminals: usize = facades.iter().map(|f| f.regions.len()).sum();
         let most = MOST_WALKED / terminals as u64;
         let iterations = self.settings.iterations.min(most).max(1);
         self.types.borrow_mut().limit = MOST_STRIPS;
-        let (walked, learnt) = self.paper(iterations, observer.clone())?;
+        if self.watched.is_stopped() {
+            return Ok((self.cheapest(union.into_iter()), self.few_rules(facades)));
+        }
+        let (walked, learnt) = self.paper(iterations)?;
         let start = [walked].into_iter().chain(union);
-        let observer = later(iterations, observer);
-        self.second_stage(start, self.few_rules(facades), learnt, iterations, observer)
+        self.second_stage(
+            start,
+            self.few_rules(facades),
+            learnt,
+            iterations,
+            iterations,
+        )
     }
 
-    /// Walks by shortest paths, then annealing. `learnt` estimates `V(R)` by type.
+    /// Walks by shortest paths, then annealing, before which so many steps were made. `learnt` estimates `V(R)` by type.
     fn second_stage(
         &self,
         found: impl Iterator<Item = Vec<AddRule>>,
         lower: f64,
         learnt: Vec<f64>,
         iterations: u64,
-        observer: impl FnMut(Step) + Clone + 'static,
+        before: u64,
     ) -> Result<Found, InferError> {
-        let full = || self.types.borrow().is_full();
-        if full() {
+        let over = || self.types.borrow().is_full() || self.watched.is_stopped();
+        if over() {
             return Ok((self.cheapest(found), lower));
         }
         let Settings { costs, seed, .. } = *self.settings;
@@ -92,13 +99,13 @@ impl Search<'_> {
             ShortestPathRules::new(pricer()),
             Epsilon::default(),
             rounds,
-            observer.clone(),
+            before,
         )?;
         // Of equally cheap grammars the first stays: those found before come first.
         let mut found: Vec<Vec<AddRule>> = found.collect();
         found.insert(found.len().min(1), walked);
         let start = self.cheapest(found.into_iter());
-        if full() {
+        if over() {
             return Ok((start, lower));
         }
         let mut values = paths.into_values();
@@ -114,7 +121,9 @@ impl Search<'_> {
         );
         let annealing =
             Annealing::new(COOLING, rounds, MOVES_PER_ROUND, seed)?.until(lower + NOISE);
-        let run = annealing.run(&mut set, later(rounds, observer))?;
+        let before = before + rounds;
+        let watch = self.watch("annealing", before);
+        let run = annealing.run(&mut set, tell(&watch, None))?;
         Ok((run.best, lower))
     }
 
@@ -134,6 +143,7 @@ impl Search<'_> {
             costs,
             operations.without_grids(),
             MOST_ITEMS.min(work / FEWEST_STEPS),
+            self.watched,
         )?;
         let limits = BoundLimits {
             items: program.items,
@@ -144,7 +154,7 @@ impl Search<'_> {
         };
         let cost = known.map_or(f64::INFINITY, |rules| self.cost(rules));
         let mut incumbent = Incumbent::new(cost, costs, operations.without_grids());
-        incumbent.pulse = Some(Rc::clone(&self.pulse));
+        incumbent.watched = Some(self.watched);
         let (lower, _) = solve(program, &mut incumbent, &limits);
         let rules = match known {
             Some(rules) if incumbent.cost >= cost => rules.to_vec(),
@@ -198,30 +208,6 @@ struct Bounded {
     lower: f64,
 }
 
-/// Walks by shortest paths, and as many rounds of annealing, in the second stage of `best`.
-fn second_stage_steps(iterations: u64) -> u64 {
-    (iterations / SECOND_STAGE_SHARE).max(1)
-}
-
-/// Maximum observer steps beyond `iterations`: the Lagrangian bound counts as one, then come the walks and rounds of the
-/// second stage.
-pub(super) fn further_steps(iterations: u64) -> u64 {
-    1 + 2 * second_stage_steps(iterations)
-}
-
-/// An observer of a stage before which so many steps were made.
-fn later(
-    before: u64,
-    mut observer: impl FnMut(Step) + Clone + 'static,
-) -> impl FnMut(Step) + Clone + 'static {
-    move |step| {
-        observer(Step {
-            iteration: before + step.iteration,
-            ..step
-        })
-    }
-}
-
 /// Items of rules that the Lagrangian bound may look at for each iteration and facade: a second or two for 10,000.
 const ITEMS_PER_ITERATION: usize = 9_000;
 /// Items of rules, some 30 bytes each, beyond which the Lagrangian bound is not tried.
@@ -238,8 +224,6 @@ const MOST_BRANCHES: u64 = 1_000;
 const MOST_STRIPS: usize = 8_000_000;
 /// Regions that the walks over layouts without a Lagrangian bound may derive, all walks together.
 const MOST_WALKED: u64 = 3_000_000;
-/// The second stage of `best` has one walk and one round of annealing for so many iterations.
-const SECOND_STAGE_SHARE: u64 = 8;
 /// Moves of a round of annealing.
 const MOVES_PER_ROUND: u32 = 100;
 /// Temperatures in units of cost: a move that adds a symbol is likely at first, unlikely at last.

@@ -4,10 +4,12 @@ use std::fmt;
 
 use rustc_hash::FxHashSet;
 
-use super::infer::{InferError, Method, Settings, infer};
+use super::infer::infer;
 use super::lagrangian::{BoundLimits, Incumbent, Program, solve};
 use super::operations::Operations;
 use super::regions::Types;
+use super::settings::{InferError, Method, Settings};
+use edifice_base::{Watch, Watched};
 use edifice_grammar::Costs;
 use edifice_shape::{Axis, Facade};
 
@@ -34,8 +36,8 @@ pub enum Weakness {
     /// Grid splits are allowed: their rules are no shortest paths. The bound is that of grammars without grids, times what
     /// a grid can save at most (see [`lower_bound`]).
     Grids,
-    /// The rules of the facade have more items than [`BoundLimits::items`]: every label is written once, and rules make
-    /// the regions that lie in a row.
+    /// The rules of the facade have more items than [`BoundLimits::items`], or the search was stopped before it had them all:
+    /// every label is written once, and rules make the regions that lie in a row.
     Items,
 }
 
@@ -52,7 +54,7 @@ impl fmt::Display for Weakness {
 
 /// Bounds the cost of the grammars of a facade from below, as [`infer`] does (see [`super`]), but with as much
 /// work as `limits` allow; the upper bound starts from what [`Method::AdpBest`] finds with the other `settings`.
-/// The same limits give the same bound.
+/// The same limits give the same bound, unless `watch` stops the search: then it is the greatest until then.
 ///
 /// Where the rules of a facade have more items than [`BoundLimits::items`], the bound is the weak one that every label is
 /// written once and that rules make the regions that lie in a row. Where grid splits are allowed, it comes from that without them: a grid of `m` by `n` cells can be
@@ -72,14 +74,16 @@ pub fn lower_bound(
     facade: &Facade,
     settings: &Settings,
     limits: &BoundLimits,
+    watch: &Watch,
 ) -> Result<Bound, InferError> {
+    let watched = &Watched::new(watch);
     let settings = Settings {
         method: Method::AdpBest,
         ..settings.clone()
     };
     let (costs, operations) = (&settings.costs, settings.operations);
     let facades = std::slice::from_ref(facade);
-    let upper = costs.grammar(&infer(facades, &settings)?.grammar);
+    let upper = costs.grammar(&infer(facades, &settings, &watched.inner())?.grammar);
     let known = |incumbent: &Incumbent, lower: f64, weak| Bound {
         lower: lower.min(incumbent.cost),
         upper: incumbent.cost,
@@ -89,6 +93,7 @@ pub fn lower_bound(
         weak,
     };
     let mut incumbent = Incumbent::new(upper, costs, operations);
+    incumbent.watched = Some(watched);
     if facade.regions.len() == 1 {
         return Ok(known(&incumbent, upper, None));
     }
@@ -99,7 +104,7 @@ pub fn lower_bound(
         source,
     })?;
     let lines = types.extents()[0];
-    let Some(program) = Program::new(types, costs, without_grids, limits.items) else {
+    let Some(program) = Program::new(types, costs, without_grids, limits.items, watched) else {
         return Ok(known(&incumbent, labels, Some(Weakness::Items)));
     };
     if !operations.grid_split {
@@ -112,6 +117,7 @@ pub fn lower_bound(
         });
     }
     let mut without = Incumbent::new(f64::INFINITY, costs, without_grids);
+    without.watched = Some(watched);
     let types = program.region_types.len();
     let (lower, nodes) = solve(program, &mut without, limits);
     let lower = without.round_up(lower) * saved_by_grids(costs, lines.0.max(lines.1));
@@ -243,6 +249,7 @@ pub(super) fn labels_once(costs: &Costs, operations: Operations, labels: usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use edifice_base::unwatched;
     use edifice_shape::{Rect, Region};
 
     /// `columns` by `rows` cells, whose labels follow one another in turn.
@@ -269,7 +276,7 @@ mod tests {
             (cells(60, 60, &["a"]), 3.0),
             (cells(40, 50, &["a"]), 3.0),
         ] {
-            let found = infer(std::slice::from_ref(&facade), &settings).unwrap();
+            let found = infer(std::slice::from_ref(&facade), &settings, &unwatched).unwrap();
             assert!((settings.costs.grammar(&found.grammar) - cost).abs() < 1e-9);
             assert!(found.proves(cost), "{:?}", found.lower_bound);
         }
@@ -290,7 +297,8 @@ mod tests {
             for columns in 1..7 {
                 for (rows, labels) in [(1, &["a", "b", "c"][..]), (2, &["a", "b"]), (3, &["a"])] {
                     let facade = cells(columns, rows, labels);
-                    let found = infer(std::slice::from_ref(&facade), &settings).unwrap();
+                    let found =
+                        infer(std::slice::from_ref(&facade), &settings, &unwatched).unwrap();
                     let bound =
                         few_rules(std::slice::from_ref(&facade), &settings.costs, operations);
                     assert!(bound <= settings.costs.grammar(&found.grammar) + 1e-9);

@@ -11,12 +11,13 @@ use std::rc::Rc;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::adp::search::Search;
-use crate::infer::InferError;
 use crate::regions::{LayoutIndex, Region, Strips, TypeId, Types};
 use crate::rules::AddRule;
 use crate::rules::RuleCandidate;
 use crate::rules::RulePricer;
 use crate::rules::grid;
+use crate::settings::InferError;
+use edifice_base::{Progress, Watched};
 use edifice_shape::{Axis, Facade};
 
 /// A rule and its cost.
@@ -30,10 +31,13 @@ impl Search<'_> {
         let mut known: FxHashMap<TypeId, Ruled> = FxHashMap::default();
         for (index, facade) in facades.iter().enumerate() {
             let alone = std::slice::from_ref(facade);
-            let mut search = Search::new(alone, self.settings)?;
-            search.pulse = Rc::clone(&self.pulse);
-            let pulse = Rc::clone(&self.pulse);
-            let (rules, _) = search.best(alone, move |_| pulse())?;
+            let one = |_| {
+                self.watched
+                    .tell(Progress::stage("a grammar of each facade"))
+            };
+            let watched = Watched::new(&one);
+            let search = Search::new(alone, self.settings, &watched)?;
+            let (rules, _) = search.best(alone)?;
             let (from, to) = (&mut search.types.borrow_mut(), &mut self.types.borrow_mut());
             for rule in rules {
                 let region = on_layout(from, rule.id, to, index);

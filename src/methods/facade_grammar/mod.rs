@@ -133,12 +133,11 @@ mod lagrangian;
 mod operations;
 mod regions;
 mod rules;
+mod settings;
 
 pub use adp::readings::{Exploit, Protect, Readings};
 pub use bound::{Bound, Weakness, lower_bound};
-pub use infer::{
-    InferError, Method, Outcome, Pulse, Settings, UnknownMethod, infer, infer_observed,
-    infer_watched,
-};
+pub use infer::{Outcome, infer};
 pub use lagrangian::BoundLimits;
 pub use operations::{Operations, UnknownOperation};
+pub use settings::{InferError, Method, Settings, UnknownMethod};

@@ -8,6 +8,7 @@ use super::layout::lines::{Line, lines, median};
 use super::layout::{Class, Layout};
 use super::model_file::ModelFileError;
 use super::policy::PaperModel;
+use edifice_base::{Ended, Progress, Watch, Watched};
 use edifice_model::ModelError;
 use edifice_model::boosting::{Boosting, BoostingError};
 use edifice_shape::{Axis, Rect};
@@ -62,6 +63,15 @@ pub struct Model {
     pub paper: Option<PaperModel>,
 }
 
+/// Result of [`Model::train`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trained {
+    /// The model.
+    pub model: Model,
+    /// The way in which the training ended.
+    pub ended: Ended,
+}
+
 /// Why nothing can be learnt.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrainError {
@@ -94,25 +104,37 @@ pub(super) struct Stored {
 }
 
 impl Model {
-    /// Learns everything from a database of whole layouts; those without windows are left out.
+    /// Learns everything from a database of whole layouts; those without windows are left out. A training that `watch` stops
+    /// returns the parts of the model that were learnt until then; spacings always are.
     ///
     /// # Errors
     /// [`TrainError`] without any window.
-    pub fn train(layouts: Vec<Layout>, seed: u64) -> Result<Self, TrainError> {
+    pub fn train(layouts: Vec<Layout>, seed: u64, watch: &Watch) -> Result<Trained, TrainError> {
+        let watched = Watched::new(watch);
         let mut model = Self::of_spacing(layouts);
         match model.examples.len() {
             0 => return Err(TrainError::Empty),
             // Nothing to learn from what the rest of the database says of one facade.
             1 => {}
-            _ => {
-                let learnt = learn(&model, seed)?;
-                model.elements = Some(learnt.loose);
-                model.tight = Some(learnt.tight);
-                model.doors = learnt.doors;
-            }
+            _ => match learn(&model, seed, &watched) {
+                Ok(learnt) => {
+                    model.elements = Some(learnt.loose);
+                    model.tight = Some(learnt.tight);
+                    model.doors = learnt.doors;
+                }
+                // No part was hidden yet.
+                Err(BoostingError::Empty) if watched.is_stopped() => {}
+                Err(error) => return Err(error.into()),
+            },
         }
-        model.paper = Some(PaperModel::train(&model.layouts(), seed)?);
-        Ok(model)
+        if watched.goes_on(Progress::stage("densities of the scoring functions")) {
+            let paper = PaperModel::train(&model.layouts(), seed, &watched.inner())?;
+            model.paper = Some(paper);
+        }
+        Ok(Trained {
+            model,
+            ended: watched.ended(),
+        })
     }
 
     /// Learns the spacing of lines; element probabilities are not learnt yet.

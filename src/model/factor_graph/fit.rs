@@ -6,6 +6,7 @@ use super::super::error::ModelError;
 use super::super::information::Information;
 use super::Chain;
 use edifice_base::rng::stream;
+use edifice_base::{Progress, Watch, Watched};
 
 /// Settings of [`fit`].
 ///
@@ -56,6 +57,8 @@ pub enum Outcome {
     Settled,
     /// The weights were still moving, or the chains do not mix: more rounds or more moves are needed.
     Moving,
+    /// The watch stopped it; the weights are those of the rounds until then.
+    Interrupted,
 }
 
 /// Result of [`fit`].
@@ -104,7 +107,8 @@ pub fn gradient<C: Chain>(
 ) -> Result<Vec<f64>, ModelError> {
     let examples = all_features(chain, data)?;
     let mut states = data.to_vec();
-    advance(chain, &mut states, weights, moves, seed, 0);
+    let watched = Watched::new(&edifice_base::unwatched);
+    advance(chain, &mut states, weights, moves, seed, 0, &watched);
     Ok(mean_difference(&examples, &all_features(chain, &states)?))
 }
 
@@ -123,12 +127,13 @@ pub fn gradient<C: Chain>(
 /// # Examples
 /// Two bits that are equal in 3 of 4 examples: the weight of "equal" is the log odds, `log 3`.
 /// ```
+/// use edifice_base::unwatched;
 /// use edifice_model::factor_graph::{Factor, Gibbs, Settings, fit};
 /// let equal = Factor { variables: vec![0, 1], weight: 0, feature: Box::new(|x| f64::from(u8::from(x[0] == x[1]))) };
 /// let gibbs = Gibbs::new(vec![2, 2], vec![equal])?;
 /// let examples = [[0, 0], [1, 1], [0, 0], [0, 1]].repeat(100);
 /// let data: Vec<Vec<usize>> = examples.into_iter().map(Vec::from).collect();
-/// let fitted = fit(&gibbs, &data, &Settings { moves: 3, ..Settings::default() }, 1)?;
+/// let fitted = fit(&gibbs, &data, &Settings { moves: 3, ..Settings::default() }, 1, &unwatched)?;
 /// assert!((fitted.weights[0] - 3.0_f64.ln()).abs() < 0.1);
 /// // The standard error of a log odds of 300 to 100 is the root of 1/300 + 1/100.
 /// assert!((fitted.standard_errors[0] - (1.0 / 300.0 + 1.0 / 100.0_f64).sqrt()).abs() < 0.03);
@@ -139,7 +144,9 @@ pub fn fit<C: Chain>(
     data: &[C::State],
     settings: &Settings,
     seed: u64,
+    watch: &Watch,
 ) -> Result<Fitted, ModelError> {
+    let watched = Watched::new(watch);
     let fine = settings.rate > 0.0 && settings.decay > 0.0 && settings.penalty >= 0.0;
     if !fine || settings.rounds == 0 || settings.moves == 0 {
         return Err(ModelError::parameter(
@@ -156,7 +163,17 @@ pub fn fit<C: Chain>(
     let mut states = data.to_vec();
     let mut trace = Vec::with_capacity(settings.rounds);
     let half = settings.rounds / 2;
+    // Rounds of the second half that were made.
+    let mut counted = 0;
     for round in 0..settings.rounds {
+        let told = Progress::of(
+            "rounds of contrastive divergence",
+            round as u64,
+            settings.rounds as u64,
+        );
+        if !watched.goes_on(told) {
+            break;
+        }
         if clamp(
             chain,
             &mut clamped,
@@ -177,7 +194,11 @@ pub fn fit<C: Chain>(
             settings.moves,
             seed,
             round as u64,
+            &watched,
         );
+        if watched.is_stopped() {
+            break;
+        }
         let negatives = all_features(chain, &states)?;
         let gap = mean_difference(&examples, &negatives);
         let ascent = weights.iter().zip(&gap);
@@ -194,12 +215,21 @@ pub fn fit<C: Chain>(
         }
         trace.push(gap.iter().map(|g| g * g).sum::<f64>().sqrt());
         if round >= half {
+            counted += 1;
             let share = 1.0 / (settings.rounds - half) as f64;
             let means = mean.iter_mut().zip(&mut mean_gap);
             for ((m, g), (w, now)) in means.zip(weights.iter().zip(&gap)) {
                 *m += w * share;
                 *g += now * share;
             }
+        }
+    }
+    if watched.is_stopped() {
+        // The mean of the rounds that count until now, or the last weights.
+        let scale = (settings.rounds - half) as f64 / f64::from(counted.max(1));
+        for (k, (m, g)) in mean.iter_mut().zip(&mut mean_gap).enumerate() {
+            *m = if counted > 0 { *m * scale } else { weights[k] };
+            *g *= scale;
         }
     }
     if let Some(i) = mean.iter().position(|w| !w.is_finite()) {
@@ -219,6 +249,7 @@ pub fn fit<C: Chain>(
         trace,
         gap: mean_gap,
         outcome: match shortfall <= SETTLED {
+            _ if watched.is_stopped() => Outcome::Interrupted,
             true => Outcome::Settled,
             false => Outcome::Moving,
         },
@@ -253,8 +284,16 @@ fn advance<C: Chain>(
     moves: usize,
     seed: u64,
     round: u64,
+    watched: &Watched,
 ) {
+    let told = Progress {
+        done: round,
+        ..Progress::stage("rounds of contrastive divergence")
+    };
     states.par_iter_mut().enumerate().for_each(|(i, state)| {
+        if !watched.goes_on(told) {
+            return;
+        }
         let mut rng = stream(seed ^ round.rotate_left(32), "chain", i as u64);
         for _ in 0..moves {
             chain.step(state, weights, &mut rng);

@@ -21,17 +21,19 @@ use super::wide::Wide;
 
 /// The structure with lateral edges of highest evidence that greedy moves reach: from no edges and
 /// from those of `scored`, an edge is added, taken out or turned round, whatever gains most, until
-/// nothing gains. All else is as in `scored`. Edges from categories are searched where `wide` has them.
+/// nothing gains or `goes_on` says no. All else is as in `scored`. Edges from categories are searched where `wide` has them.
 pub(crate) fn propose(
     problem: &Problem,
     scored: &Scored,
     wide: &Wide,
     settings: &Settings,
+    goes_on: &dyn Fn() -> bool,
 ) -> Structure {
     let max_parents = settings.most_parents;
     let mut families = Families {
         problem,
         wide,
+        goes_on,
         parents: parents(problem, settings.category_edges),
         evidence: FxHashMap::default(),
     };
@@ -50,6 +52,9 @@ pub(crate) fn propose(
         fresh
     }
 }
+
+/// Moves after which a climb asks again if it shall go on.
+const ASKED: usize = 256;
 
 /// Gains below this are rounding.
 const LEAST_GAIN: f64 = 1e-6;
@@ -142,6 +147,7 @@ impl Family {
 struct Families<'a> {
     problem: &'a Problem<'a>,
     wide: &'a Wide,
+    goes_on: &'a dyn Fn() -> bool,
     /// Real groups that may be parents.
     parents: Vec<bool>,
     evidence: FxHashMap<Family, f64>,
@@ -171,11 +177,17 @@ impl Families<'_> {
     /// Greedy moves until none gains; the structure and the evidence of all its families.
     fn climb(&mut self, mut structure: Structure, max_parents: usize) -> (Structure, f64) {
         loop {
-            let best = self
-                .moves(&structure, max_parents)
-                .into_iter()
-                .map(|m| (self.gain(&structure, m), m))
-                .max_by(|a, b| a.0.total_cmp(&b.0));
+            let mut best: Option<(f64, Move)> = None;
+            for (at, m) in self.moves(&structure, max_parents).into_iter().enumerate() {
+                if at % ASKED == 0 && !(self.goes_on)() {
+                    best = None;
+                    break;
+                }
+                let gain = self.gain(&structure, m);
+                if best.is_none_or(|(most, _)| gain.total_cmp(&most).is_ge()) {
+                    best = Some((gain, m));
+                }
+            }
             match best {
                 Some((gain, best)) if gain > LEAST_GAIN => apply(&mut structure, best),
                 _ => break,
@@ -188,6 +200,9 @@ impl Families<'_> {
             true => groups.chain(tables).collect(),
             false => groups.collect(),
         };
+        if !(self.goes_on)() {
+            return (structure, f64::NEG_INFINITY);
+        }
         let total = all.into_iter().map(|f| self.of(f)).sum();
         (structure, total)
     }

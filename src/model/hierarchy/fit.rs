@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use super::super::chunks;
-use super::super::em::{Em, Fit, Outcome, Stopping, run_while};
+use super::super::em::{Em, Fit, Outcome, Stopping, run_kept};
 use super::super::error::ModelError;
 use super::super::graph;
 use super::super::kmeans::kmeans;
@@ -153,13 +153,12 @@ impl<'a> Problem<'a> {
         stopping: &Stopping,
         goes_on: &dyn Fn() -> bool,
     ) -> Result<(Scored, Outcome), ModelError> {
-        let Fit { model, outcome, .. } = run_while(self, start, stopping, goes_on)?;
-        Ok((self.scored(model)?, outcome))
+        let (Fit { model, outcome, .. }, stats) = run_kept(self, start, stopping, goes_on)?;
+        Ok((self.with_score(model, stats)?, outcome))
     }
 
-    /// The score at given parameters.
-    pub fn scored(&self, params: Params) -> Result<Scored, ModelError> {
-        let (stats, _) = self.expect(&params)?;
+    /// The score at given parameters and their statistics.
+    fn with_score(&self, params: Params, stats: Stats) -> Result<Scored, ModelError> {
         let score = self
             .shape
             .score(&params, &stats, self.priors)

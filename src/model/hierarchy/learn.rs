@@ -123,12 +123,26 @@ pub fn learn_observed(
     seed: u64,
     observer: &Observer,
 ) -> Result<Learned, ModelError> {
+    learn_against(data, groups, settings, seed, None, observer)
+}
+
+/// As [`learn_observed`], beside a model of the same rows and columns in other groups, whose score on the rows searched is
+/// `rival`: a search that stays far behind is not gone on with to its end.
+pub(crate) fn learn_against(
+    data: &Table,
+    groups: &[Group],
+    settings: &Settings,
+    seed: u64,
+    rival: Option<f64>,
+    observer: &Observer,
+) -> Result<Learned, ModelError> {
     check(settings)?;
     let schema = Schema::learn(data, groups, settings.constant)?;
     let work = Work::new(&schema, data, settings, seed)?;
-    work.learn(observer, |search| {
+    work.learn(rival, observer, |search| {
         let mut found = search.run(seed)?;
-        if settings.category_edges && !search.large() {
+        let edges = settings.category_edges && !schema.codes.is_empty();
+        if edges && !search.large() && !search.watch.ended() {
             // Edges from categories compete with styles for the same dependencies: the search without them may end higher.
             let without = Search {
                 categories: false,
@@ -164,7 +178,7 @@ pub fn refine(
     }
     let work = Work::new(&model.schema, data, settings, seed)?;
     let structure = model.shape.structure.clone();
-    work.learn(observer, |search| {
+    work.learn(None, observer, |search| {
         search.improve(structure, model.params.clone(), seed)
     })
 }
@@ -229,6 +243,7 @@ impl<'a> Work<'a> {
     /// Searches, then fits what was found to all rows.
     fn learn(
         &self,
+        rival: Option<f64>,
         observer: &Observer,
         search: impl FnOnce(&Search) -> Result<(Scored, Vec<Step>), ModelError>,
     ) -> Result<Learned, ModelError> {
@@ -242,6 +257,7 @@ impl<'a> Work<'a> {
             rows,
             settings: &searching,
             categories: settings.category_edges,
+            rival,
             watch: &watch,
         })?;
         if self.sample.is_some() {

@@ -11,6 +11,7 @@ use super::fit::{Problem, Scored};
 use super::params::Params;
 use super::search::{Search, better};
 use super::structure::{Selector, Structure};
+use super::wide::Wide;
 use super::{Step, Variant};
 use edifice_base::rng::stream;
 use rand::Rng;
@@ -32,7 +33,7 @@ impl Search<'_> {
         let (settled, other) = rayon::join(
             || self.settle(best),
             || match self.settings.variant {
-                Variant::Full => self
+                Variant::Full if !self.watch.ended() => self
                     .kinds_first(s, &mut stream(seed, "kinds first", s as u64))
                     .map(Some),
                 _ => Ok(None),
@@ -62,6 +63,9 @@ impl Search<'_> {
         let mut best = self.restart(first, rng)?;
         for g in 0..groups {
             best = self.raise(best, g)?;
+        }
+        if self.watch.ended() {
+            return Ok(best);
         }
         let fresh = self.restyle(&best, styles, &self.settings.search, rng)?;
         if fresh.score > best.score {
@@ -109,12 +113,13 @@ impl Search<'_> {
     fn revise(&self, mut best: Scored) -> Result<Scored, ModelError> {
         loop {
             let before = best.score;
+            let mut kept = None;
             for g in 0..best.shape.groups() {
                 for p in best.shape.structure.parents[g].clone() {
                     if self.watch.ended() {
                         return Ok(best);
                     }
-                    best = self.without(best, p, g)?;
+                    best = self.without(best, p, g, &mut kept)?;
                 }
             }
             for g in 0..best.shape.groups() {
@@ -126,17 +131,30 @@ impl Search<'_> {
         }
     }
 
-    /// The better of `best` and a fit without the edge from `p` to `g`, values of `g` grown anew.
-    fn without(&self, best: Scored, p: usize, g: usize) -> Result<Scored, ModelError> {
-        let problem = self.problem(best.shape.structure.clone())?;
-        let wide = self.wide(&problem, &best)?;
+    /// The better of `best` and a fit without the edge from `p` to `g`, values of `g` grown anew. `kept` are the statistics of
+    /// `best` where they are known.
+    fn without(
+        &self,
+        best: Scored,
+        p: usize,
+        g: usize,
+        kept: &mut Option<Wide>,
+    ) -> Result<Scored, ModelError> {
+        if kept.is_none() {
+            let problem = self.problem(best.shape.structure.clone())?;
+            *kept = self.wide(&problem, &best)?;
+        }
+        let Some(wide) = kept.as_ref() else {
+            return Ok(best);
+        };
         let mut structure = best.shape.structure.clone();
         structure.parents[g].retain(|&parent| parent != p);
         let problem = self.problem(structure)?;
-        let start = problem.reparent(&best, &wide)?;
+        let start = problem.reparent(&best, wide)?;
         let fit = self.trial(&problem, start, best.score)?;
         let grown = self.raise(fit, g)?;
         Ok(if grown.score > best.score {
+            *kept = None;
             grown
         } else {
             best
@@ -147,21 +165,24 @@ impl Search<'_> {
     fn raise(&self, mut best: Scored, g: usize) -> Result<Scored, ModelError> {
         while best.shape.states(g) < self.settings.most_states && !self.watch.ended() {
             match self.raised(&best, g)? {
-                grown if grown.score > best.score => best = grown,
+                Some(grown) if grown.score > best.score => best = grown,
                 _ => break,
             }
         }
         Ok(best)
     }
 
-    /// A fit with one value more for the hidden variable of `g`.
-    pub(super) fn raised(&self, best: &Scored, g: usize) -> Result<Scored, ModelError> {
+    /// A fit with one value more for the hidden variable of `g`; `None` if the search was ended meanwhile.
+    pub(super) fn raised(&self, best: &Scored, g: usize) -> Result<Option<Scored>, ModelError> {
         let problem = self.problem(best.shape.structure.clone())?;
-        let start = super::split::start(&problem, best, g)?;
+        let goes_on = || self.watch.goes_on();
+        let Some(start) = super::split::start(&problem, best, g, &goes_on)? else {
+            return Ok(None);
+        };
         let mut structure = best.shape.structure.clone();
         structure.selectors[g] = Selector::Hidden(best.shape.states(g) + 1);
         let problem = self.problem(structure)?;
-        self.trial(&problem, start, best.score)
+        self.trial(&problem, start, best.score).map(Some)
     }
 
     /// Joins values of the hidden variable of `g` while the score rises.

@@ -6,27 +6,27 @@ use rayon::prelude::*;
 
 use super::super::em::Stopping;
 use super::super::error::ModelError;
-use super::super::kmeans::kmeans;
 use super::Priors;
 use super::component::{MOST, MOST_SEARCHED};
 use super::edges::propose;
 use super::fit::{Problem, Scored};
-use super::infer::Scratch;
 use super::params::Params;
 use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
-use super::wide::{Wide, states, wide};
+use super::wide::{Wide, wide};
 use super::{Settings, Step, Sweep, Variant};
 use edifice_base::rng::stream;
 
 /// Values of real columns up to which all |S| are searched from the start.
 const SMALL: usize = 10_000;
 
-/// Cardinalities of S that are fitted to the end on large tables, after short runs for all.
-const FINALISTS: usize = 3;
 /// Rounds of EM in a short run.
 const SHORT: usize = 10;
+/// Nats a row that a search may lie behind its rival when all |S| swept are done; one further behind is not gone on with.
+const BEHIND: f64 = 1.0;
+/// The same when an |S| has its first edges, before any cardinality is raised.
+const FAR_BEHIND: f64 = 2.0;
 
 /// The inputs that every part of a search needs.
 pub(crate) struct Search<'a> {
@@ -35,6 +35,8 @@ pub(crate) struct Search<'a> {
     pub settings: &'a Settings,
     /// True if edges from categories are searched.
     pub categories: bool,
+    /// Score of a model of the same rows that this one is to surpass.
+    pub rival: Option<f64>,
     pub watch: &'a Watch<'a>,
 }
 
@@ -67,18 +69,29 @@ impl<'a> Search<'a> {
             best = Some(better(best, scored));
         }
         // Whatever |S| found the best second level, every other |S| may have it as well.
-        if let Some(leader) = best.clone().filter(|_| self.layered()) {
+        let goes_on = self.layered() && !best.as_ref().is_some_and(|b| self.behind(b, BEHIND));
+        if let Some(leader) = best.clone().filter(|_| goes_on) {
             for scored in self.restyle_all(&leader, &styles, seed, "restyle")? {
                 self.accept(&scored, &mut trace);
                 best = Some(better(best, scored));
             }
         }
         let mut best = best.ok_or(ModelError::Empty { what: "styles" })?;
-        if self.layered() {
+        if goes_on && !self.watch.ended() {
             best = self.with_edges(self.grow(best, &mut trace)?)?;
             best = self.polish(best, &styles, seed, &mut trace)?;
         }
+        if self.behind(&best, BEHIND) {
+            return Ok((best, trace));
+        }
         Ok((self.settled(best)?, trace))
+    }
+
+    /// True if a fit lies further behind the rival than `most` nats a row.
+    fn behind(&self, scored: &Scored, most: f64) -> bool {
+        let rows = self.rows.rows as f64;
+        self.rival
+            .is_some_and(|rival| scored.score + most * rows < rival)
     }
 
     /// Goes on from a structure and its parameters.
@@ -146,45 +159,6 @@ impl<'a> Search<'a> {
         problem.fit_while(start, stopping, &|| self.watch.goes_on())
     }
 
-    /// [`Self::restyle`] for each |S|, as long as the search goes on; on large tables only the best few are fitted to the
-    /// end.
-    pub(super) fn restyle_all(
-        &self,
-        given: &Scored,
-        styles: &[usize],
-        seed: u64,
-        name: &str,
-    ) -> Result<Vec<Scored>, ModelError> {
-        let stopping = match self.few() {
-            true => self.short(),
-            false => self.settings.search,
-        };
-        let found: Result<Vec<Option<Scored>>, ModelError> = styles
-            .par_iter()
-            .map(|&s| {
-                if self.watch.ended() {
-                    return Ok(None);
-                }
-                let mut rng = stream(seed, name, s as u64);
-                self.restyle(given, s, &stopping, &mut rng).map(Some)
-            })
-            .collect();
-        let mut found: Vec<Scored> = found?.into_iter().flatten().collect();
-        if self.few() {
-            found.sort_by(|a, b| b.score.total_cmp(&a.score));
-            found.truncate(FINALISTS);
-            let fitted: Result<Vec<Scored>, ModelError> = found
-                .into_par_iter()
-                .map(|scored| {
-                    let problem = self.problem(scored.shape.structure.clone())?;
-                    self.fit(&problem, scored.params, &self.settings.search)
-                })
-                .collect();
-            found = fitted?;
-        }
-        Ok(found)
-    }
-
     /// When a short run of EM stops.
     pub(super) fn short(&self) -> Stopping {
         Stopping {
@@ -225,8 +199,11 @@ impl<'a> Search<'a> {
         best = self.with_edges(best)?;
         let mut trace = Vec::new();
         self.accept(&best, &mut trace);
-        if self.layered() && !self.watch.ended() {
+        if self.layered() && !self.watch.ended() && !self.behind(&best, FAR_BEHIND) {
             best = self.grow(best, &mut trace)?;
+            if self.watch.ended() {
+                return Ok((best, trace));
+            }
             let fresh = self.restyle(&best, styles, &self.settings.search, rng)?;
             if fresh.score > best.score {
                 best = self.grow(fresh, &mut trace)?;
@@ -245,10 +222,16 @@ impl<'a> Search<'a> {
         let short = self.short();
         let mut best: Option<Scored> = None;
         for _ in 0..self.settings.restarts.max(1) {
+            if best.is_some() && self.watch.ended() {
+                break;
+            }
             let scored = self.fit(&problem, problem.start(rng)?, &short)?;
             best = Some(better(best, scored));
         }
         let best = best.ok_or(ModelError::Empty { what: "starts" })?;
+        if self.watch.ended() {
+            return Ok(best);
+        }
         self.fit(&problem, best.params, &self.settings.search)
     }
 
@@ -261,9 +244,9 @@ impl<'a> Search<'a> {
         for g in 0..self.schema.groups.len() {
             while best.shape.states(g) < self.settings.most_states && !self.watch.ended() {
                 let grown = self.raised(&best, g)?;
-                if grown.score <= best.score {
+                let Some(grown) = grown.filter(|grown| grown.score > best.score) else {
                     break;
-                }
+                };
                 best = self.with_edges(grown)?;
                 self.accept(&best, trace);
             }
@@ -272,9 +255,15 @@ impl<'a> Search<'a> {
     }
 
     /// Expected statistics over all columns, of categories as well where edges from these are searched or there.
-    pub(super) fn wide(&self, problem: &Problem, scored: &Scored) -> Result<Wide, ModelError> {
+    /// `None` if the search was ended meanwhile.
+    pub(super) fn wide(
+        &self,
+        problem: &Problem,
+        scored: &Scored,
+    ) -> Result<Option<Wide>, ModelError> {
         let there = scored.shape.structure.shifts.iter().any(|l| !l.is_empty());
-        wide(problem, scored, self.categories || there)
+        let goes_on = || self.watch.goes_on();
+        wide(problem, scored, self.categories || there, &goes_on)
     }
 
     /// Searches lateral edges around a fit; the better of the fits with the old and the new ones.
@@ -287,9 +276,12 @@ impl<'a> Search<'a> {
                 break;
             }
             let problem = self.problem(best.shape.structure.clone())?;
-            let wide = self.wide(&problem, &best)?;
-            let structure = propose(&problem, &best, &wide, self.settings);
-            if structure == best.shape.structure {
+            let Some(wide) = self.wide(&problem, &best)? else {
+                break;
+            };
+            let goes_on = || self.watch.goes_on();
+            let structure = propose(&problem, &best, &wide, self.settings, &goes_on);
+            if self.watch.ended() || structure == best.shape.structure {
                 break;
             }
             let problem = self.problem(structure)?;
@@ -307,67 +299,6 @@ impl<'a> Search<'a> {
     /// True if the model has a second level of hidden variables.
     pub(super) fn layered(&self) -> bool {
         matches!(self.settings.variant, Variant::Full | Variant::NoLateral)
-    }
-
-    /// New starts for S alone, with `styles` values, above the second level of `given`: rows are
-    /// clustered by the posteriors of their hidden variables. The best of several.
-    pub(super) fn restyle<R: Rng>(
-        &self,
-        given: &Scored,
-        styles: usize,
-        stopping: &Stopping,
-        rng: &mut R,
-    ) -> Result<Scored, ModelError> {
-        let problem = self.problem(given.shape.structure.clone())?;
-        let shape = &given.shape;
-        let mut scratch = Scratch::new(shape);
-        let mut features: Vec<f64> = Vec::new();
-        let mut assigned = vec![Vec::with_capacity(self.rows.rows); shape.groups()];
-        let offsets: Vec<usize> = (0..=shape.groups())
-            .map(|g| (0..g).map(|g| shape.states(g)).sum())
-            .collect();
-        let real_width = offsets[shape.groups()];
-        let width = real_width + shape.sizes.iter().sum::<usize>();
-        for i in 0..self.rows.rows {
-            let mut point = vec![0.0; width];
-            let mut top = vec![0; shape.groups()];
-            problem.visit(&given.params, i, &mut scratch, |scratch, _, codes, _| {
-                for (g, r) in states(scratch, given) {
-                    point[offsets[g]..offsets[g] + r.len()].copy_from_slice(&r);
-                    top[g] = (0..r.len())
-                        .max_by(|&a, &b| r[a].total_cmp(&r[b]))
-                        .unwrap_or(0);
-                }
-                let mut at = real_width;
-                for (&code, &size) in codes.iter().zip(&shape.sizes) {
-                    if (code as usize) < size {
-                        point[at + code as usize] = 1.0;
-                    }
-                    at += size;
-                }
-            })?;
-            features.extend(point);
-            for (list, top) in assigned.iter_mut().zip(top) {
-                list.push(top);
-            }
-        }
-        let problem = self.problem(Structure {
-            styles,
-            ..shape.structure.clone()
-        })?;
-        let all: Vec<usize> = (0..self.rows.rows).collect();
-        let mut best = None;
-        for _ in 0..self.settings.restarts.max(1) {
-            let labels = kmeans(&features, width, styles, 12, rng);
-            let start = problem.assigned(&all, &labels, &assigned)?;
-            let start = Params {
-                linear: given.params.linear.clone(),
-                ..start
-            };
-            let scored = self.fit(&problem, start, stopping)?;
-            best = Some(better(best, scored));
-        }
-        best.ok_or(ModelError::Empty { what: "starts" })
     }
 
     /// Notes a configuration in the trace, and tells of it.

@@ -20,14 +20,22 @@ struct Member {
 
 /// Parameters of a start for `grown` (group `g` with one state more than in `scored`): the state
 /// whose cut in two by 2-means, in its own whitened residuals, gains most evidence is replaced by
-/// its halves.
-pub(crate) fn start(problem: &Problem, scored: &Scored, g: usize) -> Result<Params, ModelError> {
+/// its halves. `None` once `goes_on`, which is asked state by state, says no.
+pub(crate) fn start(
+    problem: &Problem,
+    scored: &Scored,
+    g: usize,
+    goes_on: &dyn Fn() -> bool,
+) -> Result<Option<Params>, ModelError> {
     let shape = &scored.shape;
     let styles = shape.structure.styles;
     let k = shape.states(g);
     let members = members(problem, scored, g)?;
     let mut best: Option<(f64, usize, Vec<bool>)> = None;
     for h in 0..k {
+        if !goes_on() {
+            return Ok(None);
+        }
         let linear = &scored.params.linear[g][h];
         let side = cut(linear, &members, h);
         let half = |which: bool| halves(&members, shape.columns[g].len(), &side, h, which);
@@ -69,7 +77,7 @@ pub(crate) fn start(problem: &Problem, scored: &Scored, g: usize) -> Result<Para
     stats.tables[g].extend(counts);
     let mut grown = shape.clone();
     grown.structure.selectors[g] = Selector::Hidden(k + 1);
-    grown.maximize(&stats, problem.priors)
+    grown.maximize(&stats, problem.priors).map(Some)
 }
 
 /// Rows in which the group is fully observed.

@@ -22,13 +22,14 @@ pub(crate) struct Wide {
     posteriors: Vec<f64>,
 }
 
-/// Rows with missing values enter with their posterior means; a missing category that is no parent, with the shares of
+/// `None` once `goes_on`, which is asked row by row, says no. Rows with missing values enter with their posterior means; a missing category that is no parent, with the shares of
 /// its column.
 pub(crate) fn wide(
     problem: &Problem,
     scored: &Scored,
     categories: bool,
-) -> Result<Wide, ModelError> {
+    goes_on: &dyn Fn() -> bool,
+) -> Result<Option<Wide>, ModelError> {
     let shape = &scored.shape;
     let params = &scored.params;
     let (d, styles) = (problem.rows.d, shape.structure.styles);
@@ -58,6 +59,9 @@ pub(crate) fn wide(
     let mut support: Vec<usize> = Vec::new();
     let mut v = vec![1.0; q];
     for i in 0..problem.rows.rows {
+        if !goes_on() {
+            return Ok(None);
+        }
         problem.visit(params, i, &mut scratch, |scratch, real, codes, weight| {
             let states = explained(scratch, scored);
             for (v, r) in v[1..].iter_mut().zip(&real[..d]) {
@@ -110,13 +114,13 @@ pub(crate) fn wide(
             }
         })?;
     }
-    Ok(Wide {
+    Ok(Some(Wide {
         categories,
         side: q,
         scatter,
         styles,
         posteriors,
-    })
+    }))
 }
 
 /// Share of every category among the rows that have one, column by column.

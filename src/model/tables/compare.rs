@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use super::Dataset;
 use super::encoding::Encoding;
-use super::joined::{learn_joined, one_group};
+use super::joined::{learn_joined, learn_one_group};
 use super::kernels::Kernels;
 use super::mixture::Baseline;
 use crate::ModelError;
@@ -106,13 +106,15 @@ pub fn held_out(
         let table = encoding.encode(&train.table)?;
         let settings = extended(settings);
         let groups = encoding.groups(&train.groups);
+        let go_on = |_: Option<&Step>| ControlFlow::Continue(());
         let model = match contender {
             Contender::OneGroup => {
-                let together = one_group(&table, &groups)?;
-                learn(&table, &together.unwrap_or(groups), &settings, seed)?.model
+                match learn_one_group(&table, &groups, &settings, seed, &go_on)? {
+                    Some((learned, _)) => learned.model,
+                    None => learn(&table, &groups, &settings, seed)?.model,
+                }
             }
             _ => {
-                let go_on = |_: Option<&Step>| ControlFlow::Continue(());
                 let found = learn_joined(&table, &groups, &settings, seed, &go_on)?;
                 found.learned.model
             }

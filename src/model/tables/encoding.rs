@@ -12,6 +12,7 @@
 //! so that models are to be compared by the mass of a small interval where atoms are. The transform z is
 //! [`super::transform`]'s, chosen for each column by its training values alone.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Dataset;
@@ -71,8 +72,10 @@ impl Encoding {
     /// ```
     pub fn learn(data: &Dataset, prior: &LinearPrior, seed: u64) -> Result<Self, ModelError> {
         let table = &data.table;
-        let mut columns = Vec::new();
-        for column in table.columns().iter().filter(|c| c.categories().is_none()) {
+        let reals: Vec<&Column> = (table.columns().iter())
+            .filter(|c| c.categories().is_none())
+            .collect();
+        let columns = reals.into_par_iter().map(|column| {
             let values: Vec<f64> = (0..table.rows()).filter_map(|r| real(column, r)).collect();
             let atoms = atoms(&values);
             let others: Vec<f64> = values.into_iter().filter(|v| !atoms.contains(v)).collect();
@@ -84,13 +87,14 @@ impl Encoding {
             while table.column(&category).is_ok() {
                 category.push('\'');
             }
-            columns.push(Encoded {
+            Ok(Encoded {
                 column: column.name().to_owned(),
                 atoms,
                 category,
                 transform,
-            });
-        }
+            })
+        });
+        let columns = columns.collect::<Result<Vec<Encoded>, ModelError>>()?;
         Ok(Self { columns })
     }
 

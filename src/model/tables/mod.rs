@@ -7,12 +7,14 @@
 //! | [`transform`] | monotone transforms of a real column |
 //! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
 //! | [`joined`] | real columns with one hidden variable together or one each, by the higher score |
+//! | [`bins`] | real columns as categories, by description length |
 //! | [`kernels`] | a kernel density over mixed columns, a peer |
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
 //! | [`compare`] | held-out likelihoods of models on the same splits |
 //!
 //! Texts become numbers and categories here; the models themselves are in [`crate`].
 
+pub mod bins;
 pub mod compare;
 pub mod encoding;
 mod guess;

@@ -26,6 +26,15 @@ pub struct TableModel {
     pub model: Hierarchy,
 }
 
+/// Result of [`TableModel::log_parts`], row by row, nats.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogParts {
+    /// `log P(c)`, of categories and atoms.
+    pub log_probability_mass: Vec<f64>,
+    /// `log p(x | c)`, of all other numbers, in the columns' own units.
+    pub log_density: Vec<f64>,
+}
+
 #[derive(Serialize, Deserialize)]
 struct Stored {
     format: String,
@@ -61,6 +70,32 @@ impl TableModel {
             }
         }
         Ok(logs)
+    }
+
+    /// The two parts of [`Self::log_likelihood`] of every row, nats, which add up to it.
+    ///
+    /// With c a row's categories and atoms, and x its other numbers, `log p(row) = log P(c) + log p(x | c)`: a probability mass, and a
+    /// density, which changes with the columns' units. A row without numbers besides atoms has a log density of 0, a table
+    /// without categories and atoms a log probability mass of 0; only numbers of one kind are to be compared.
+    ///
+    /// # Errors
+    /// As [`Self::log_likelihood`].
+    pub fn log_parts(&self, table: &Table) -> Result<LogParts, ModelError> {
+        let encoded = self.encode(table)?;
+        let discrete = encoded.columns().iter();
+        let discrete: Vec<&str> = (discrete.filter(|c| c.categories().is_some()))
+            .map(|c| c.name())
+            .collect();
+        let log_probability_mass = match discrete.is_empty() {
+            true => vec![0.0; table.rows()],
+            false => self.model.log_likelihood(&encoded.only(&discrete)?)?,
+        };
+        let all = self.log_likelihood(table)?;
+        let rest = all.iter().zip(&log_probability_mass);
+        Ok(LogParts {
+            log_density: rest.map(|(all, mass)| all - mass).collect(),
+            log_probability_mass,
+        })
     }
 
     /// Draws `count` rows.

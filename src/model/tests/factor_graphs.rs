@@ -1,6 +1,7 @@
 //! Questions to factor graphs and their fits against enumeration of all states.
 
 use edifice_base::rng::{Stream, stream};
+use edifice_base::unwatched;
 use edifice_model::factor_graph::{
     Annealing, Factor, Gibbs, Outcome, Settings, exact_gradient, fit, fit_exact, gradient, sample,
 };
@@ -201,7 +202,7 @@ fn defaults_reach_the_maximum_likelihood_of_random_machines() {
         let data = data(n, &truth, 1000, &mut rng);
         let best = fit_exact(&graph, &data, 1e-4).unwrap();
         assert!(best.gradient < 1e-6, "{}", best.gradient);
-        let fitted = fit(&graph, &data, &Settings::default(), round).unwrap();
+        let fitted = fit(&graph, &data, &Settings::default(), round, &unwatched).unwrap();
         let (log, _) = exact_gradient(&graph, &data, &fitted.weights).unwrap();
         let short = best.log_likelihood - log;
         worst = worst.max(short);
@@ -220,7 +221,7 @@ fn standard_errors_are_those_of_the_information() {
     let graph = machine(3);
     let mut rng = stream(3, "errors", 0);
     let data = data(3, &random(6, 0.5, &mut rng), 2000, &mut rng);
-    let fitted = fit(&graph, &data, &Settings::default(), 1).unwrap();
+    let fitted = fit(&graph, &data, &Settings::default(), 1, &unwatched).unwrap();
     // The covariance of the features under the fit, by enumeration; its inverse by Gauss-Jordan.
     let all = states(&[2; 3]);
     let p: Vec<f64> = all
@@ -332,6 +333,7 @@ fn the_gradient_of_a_restricted_machine_equals_enumeration() {
             ..Settings::default()
         },
         1,
+        &unwatched,
     )
     .unwrap();
     let best = fit_exact(&graph, &data, 1e-4).unwrap();
@@ -373,6 +375,7 @@ fn a_conditional_field_is_fitted_given_its_inputs() {
             ..Settings::default()
         },
         1,
+        &unwatched,
     )
     .unwrap();
     println!(

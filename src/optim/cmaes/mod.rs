@@ -107,7 +107,7 @@ pub fn minimize<F: FnMut(&[f64]) -> f64, A: Answer>(
     start: &[f64],
     settings: &Settings,
     seed: u64,
-    observer: impl FnMut(Step) -> A + 'static,
+    observer: impl FnMut(Step) -> A,
 ) -> Result<Run<Vec<f64>>, CmaError> {
     check(start, settings)?;
     let solver = Cma {

@@ -3,7 +3,7 @@
 //! The groups of the model are Gaussian, and independent but for their edges: a part of its rows has a porch outside
 //! the bounding box, a share of the windows below zero, two storeys in the height of one. The paper repairs them
 //! (Sec. 7: the attributes of a sample conflict). Here the model is truncated to rows that need next to no repair, by
-//! rejection, and with storeys of at most 4.5 m; its density is otherwise as it was learned.
+//! rejection, and with storeys of 2.3 to 4.5 m; its density is otherwise as it was learned.
 
 use super::observed::wanted_rows;
 use crate::mass::max_z;
@@ -15,6 +15,8 @@ use edifice_model::Table;
 pub const MOVED: f64 = 0.25;
 /// Highest storey of a dwelling (m): a sample of two storeys' height whose shares of the floors say one has none such.
 const MOST_STOREY: f64 = 4.5;
+/// Lowest storey in which a door stands (m).
+const LEAST_STOREY: f64 = 2.3;
 /// The 39 numbers.
 const NUMBERS: usize = 39;
 /// Batches of as many rows as are wanted before the search for possible rows ends.
@@ -56,8 +58,9 @@ pub fn possible_rows<E>(
             repair(&mut repaired, given, deviations);
             let moved = max_z(&repaired[..NUMBERS], &row[..NUMBERS], deviations);
             let moved = moved.max(reach(&row));
-            let low = row[2] <= MOST_STOREY * floors(&row) as f64;
-            match moved <= MOVED && low {
+            let storey = row[2] / floors(&row) as f64;
+            let usual = (LEAST_STOREY..=MOST_STOREY).contains(&storey);
+            match moved <= MOVED && usual {
                 true => rows.push(row),
                 false => others.push((moved, row)),
             }

@@ -68,7 +68,7 @@ pub fn breed(
         deviations,
         evaluations: 0,
     };
-    let (run, _) = Genetic::new(settings, Vec::new(), seed)?.run(&mut house, |_| ())?;
+    let (run, _) = Genetic::new(settings, Vec::new(), seed)?.run(&mut house, |_| {})?;
     let pieces = house.pieces(&run.best);
     let facades = Facades {
         max_z: house.max_z(&pieces),

@@ -12,6 +12,10 @@ const ROOMY: f64 = 2.4;
 /// Clear wall between a door that is put in later and windows beside it (m), and steps in which its place is sought.
 const BESIDE: f64 = 0.2;
 const STEP: f64 = 0.1;
+/// Clear wall beside a door that hardly has room, its width, and how far inside a porch its middle lies (m).
+const TIGHT: f64 = 0.02;
+const NARROW: f64 = 0.9;
+const INSIDE: f64 = 0.3;
 /// Largest height above the floor at which a door may begin (m): on a porch's floor.
 const SILL: f64 = 0.45;
 
@@ -86,7 +90,11 @@ fn fits(walls: &Walls, strip: &Strip) -> bool {
 
 fn is_free(walls: &Walls, room: &Room, at: f64) -> bool {
     let span = [at - DOOR[0] / 2.0, at + DOOR[0] / 2.0];
-    let free = walls.free(room, span);
+    is_bare(walls.free(room, span))
+}
+
+/// True if a door stands between two heights.
+fn is_bare(free: Option<[f64; 2]>) -> bool {
     // What is clear over a window may be the door's casing.
     free.is_some_and(|f| f[1] + CLEAR >= DOOR[1] + 0.02 && f[0] <= SILL)
 }
@@ -112,7 +120,8 @@ fn on_garage(building: &Building, room: &Room) -> bool {
 }
 
 /// Puts a door where a house has none, and one behind each porch that none leads to: on the first wall with room, in
-/// front before the sides and the back. Windows in its place are left out. Whether each asked for found a place.
+/// front before the sides and the back. Windows in its place are left out, and the front door elsewhere is that of the
+/// front porch. Whether each asked for found a place.
 pub(super) fn completed(building: &Building, walls: &Walls, pieces: &mut [FacadePiece]) -> bool {
     let mut all = true;
     for side in [Side::Front, Side::Back] {
@@ -120,9 +129,20 @@ pub(super) fn completed(building: &Building, walls: &Walls, pieces: &mut [Facade
             continue;
         };
         let span = [plan.x, plan.right()];
-        if !has_door(pieces, Some((side, span))) {
-            all &= put(building, walls, pieces, &[side], Some(span));
+        if has_door(pieces, Some((side, span))) {
+            continue;
         }
+        let found = put(building, walls, pieces, &[side], Some(span));
+        if found {
+            for piece in pieces.iter_mut().filter(|p| p.side == side) {
+                let inside = |e: &FacadeElement| {
+                    let middle = piece.start + e.x + e.width / 2.0;
+                    span[0] < middle && middle < span[1]
+                };
+                (piece.elements).retain(|e| e.style != ElementStyle::Door || inside(e));
+            }
+        }
+        all &= found;
     }
     if !has_door(pieces, None) {
         let sides = [Side::Front, Side::Left, Side::Right, Side::Back];
@@ -142,6 +162,7 @@ fn has_door(pieces: &[FacadePiece], within: Option<(Side, [f64; 2])>) -> bool {
     })
 }
 
+/// A door of usual width with clear wall beside it if there is room, else a narrow one that fills its wall.
 fn put(
     building: &Building,
     walls: &Walls,
@@ -149,32 +170,25 @@ fn put(
     sides: &[Side],
     within: Option<[f64; 2]>,
 ) -> bool {
-    let half = DOOR[0] / 2.0;
-    for garages in [false, true] {
-        for side in sides {
-            for strip in &walls.strips[place(*side)] {
-                let grounds = strip
-                    .rooms
-                    .iter()
-                    .filter(|r| r.piece.floor == 0 && r.fixed.is_none());
-                for room in grounds.filter(|r| on_garage(building, r) == garages) {
-                    let [low, high] = within.map_or([strip.start, strip.end], |w| {
-                        [w[0].max(strip.start), w[1].min(strip.end)]
-                    });
-                    let (low, high) = (low + half + CLEAR, high - half - CLEAR);
-                    let steps = ((high - low) / STEP).floor();
-                    if steps.is_nan() || steps < 0.0 {
-                        continue;
-                    }
-                    let mut places: Vec<f64> = (0..=steps as usize)
-                        .map(|k| low + k as f64 * STEP)
-                        .collect();
-                    let middle = (low + high) / 2.0;
-                    places.push(middle);
-                    places.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
-                    let place = places.into_iter().find(|at| is_free(walls, room, *at));
-                    if place.is_some_and(|at| hang(pieces, *side, at)) {
-                        return true;
+    for (width, clear) in [(DOOR[0], CLEAR), (DOOR[0], TIGHT), (NARROW, TIGHT)] {
+        for garages in [false, true] {
+            for side in sides {
+                for strip in &walls.strips[place(*side)] {
+                    let grounds = strip
+                        .rooms
+                        .iter()
+                        .filter(|r| r.piece.floor == 0 && r.fixed.is_none());
+                    for room in grounds.filter(|r| on_garage(building, r) == garages) {
+                        let reach = [strip.start + clear, strip.end - clear];
+                        let places = places(reach, within, width);
+                        let fits = |at: f64| {
+                            let span = [at - width / 2.0, at + width / 2.0];
+                            is_bare(walls.within(room, span, clear))
+                        };
+                        let mut fitting = places.into_iter().filter(|at| fits(*at));
+                        if fitting.any(|at| hang(pieces, *side, at, width, clear)) {
+                            return true;
+                        }
                     }
                 }
             }
@@ -183,12 +197,32 @@ fn put(
     false
 }
 
+/// Middles of a door of a width on a wall, from the middle of what is shared with the porch outwards; below a porch the
+/// middle of the door is.
+fn places(reach: [f64; 2], within: Option<[f64; 2]>, width: f64) -> Vec<f64> {
+    let half = width / 2.0;
+    let porch = within.map_or(reach, |w| [w[0] + INSIDE, w[1] - INSIDE]);
+    let low = (reach[0] + half).max(porch[0]);
+    let high = (reach[1] - half).min(porch[1]);
+    let steps = ((high - low) / STEP).floor();
+    if steps.is_nan() || steps < 0.0 {
+        return Vec::new();
+    }
+    let mut places: Vec<f64> = (0..=steps as usize)
+        .map(|k| low + k as f64 * STEP)
+        .collect();
+    let middle = (low + high) / 2.0;
+    places.push(middle);
+    places.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
+    places
+}
+
 /// Hangs a door on the one piece of the ground floor at a place; `false` where there are several, behind each other.
-fn hang(pieces: &mut [FacadePiece], side: Side, at: f64) -> bool {
-    let half = DOOR[0] / 2.0;
+fn hang(pieces: &mut [FacadePiece], side: Side, at: f64, width: f64, clear: f64) -> bool {
+    let half = width / 2.0;
+    let margin = half + clear / 2.0;
     let here = |p: &&mut FacadePiece| {
-        let reach =
-            p.start <= at - half - CLEAR / 2.0 && at + half + CLEAR / 2.0 <= p.start + p.width;
+        let reach = p.start <= at - margin && at + margin <= p.start + p.width;
         p.side == side && p.base < 1e-6 && reach && p.height >= DOOR[1]
     };
     let mut own: Vec<&mut FacadePiece> = pieces.iter_mut().filter(here).collect();
@@ -196,13 +230,13 @@ fn hang(pieces: &mut [FacadePiece], side: Side, at: f64) -> bool {
         return false;
     };
     let x = at - piece.start - half;
-    let clear = |e: &FacadeElement| e.x + e.width < x - BESIDE || e.x > x + DOOR[0] + BESIDE;
+    let clear = |e: &FacadeElement| e.x + e.width < x - BESIDE || e.x > x + width + BESIDE;
     piece.elements.retain(clear);
     piece.elements.push(FacadeElement {
         style: ElementStyle::Door,
         x: millimetres(x),
         y: 0.0,
-        width: DOOR[0],
+        width,
         height: DOOR[1],
     });
     true

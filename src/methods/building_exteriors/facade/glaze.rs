@@ -23,6 +23,7 @@ pub(super) struct Plan {
 
 /// A window whose size is open.
 struct Slot {
+    strip: usize,
     piece: usize,
     centre: f64,
     widest: f64,
@@ -31,17 +32,19 @@ struct Slot {
 }
 
 /// The pieces of a side with windows that cover `ratio` of it as nearly as the walls allow. `spacing` is the usual
-/// distance between windows.
+/// distance between windows. With `sparse`, symmetric strips without a door stay bare, the narrowest first, until windows of
+/// the usual size are as many as the ratio asks for.
 pub(super) fn glaze(
     walls: &Walls,
     strips: &[Strip],
     plans: &[Plan],
     ratio: f64,
     spacing: f64,
+    sparse: bool,
 ) -> Vec<FacadePiece> {
     let mut pieces = Vec::new();
     let mut slots: Vec<Slot> = Vec::new();
-    for (strip, plan) in strips.iter().zip(plans) {
+    for (s, (strip, plan)) in strips.iter().zip(plans).enumerate() {
         let mut has_door = false;
         for room in &strip.rooms {
             let index = pieces.len();
@@ -67,6 +70,7 @@ pub(super) fn glaze(
                 own[k].style = ElementStyle::Door;
             }
             slots.extend(own.into_iter().map(|slot| Slot {
+                strip: s,
                 piece: index,
                 ..slot
             }));
@@ -75,6 +79,12 @@ pub(super) fn glaze(
     let walls_area: f64 = pieces.iter().map(FacadePiece::area).sum();
     let fixed = pieces.iter().flat_map(|p| &p.elements);
     let fixed: f64 = fixed.map(|e| e.width * e.height).sum();
+    if sparse {
+        let doors = slots.iter().filter(|s| s.style == ElementStyle::Door);
+        let doors = doors.count() as f64 * DOOR[0] * DOOR[1];
+        let wanted = (ratio * walls_area - fixed - doors) / (WINDOW[0] * WINDOW[1]);
+        bare(&mut slots, strips, plans, wanted.round().max(0.0) as usize);
+    }
     let covered = |scale: f64| {
         let areas = slots.iter().map(|s| s.size(scale)).map(|[w, h]| w * h);
         (fixed + areas.sum::<f64>()) / walls_area
@@ -105,6 +115,24 @@ pub(super) fn glaze(
         });
     }
     pieces
+}
+
+/// Leaves symmetric strips without windows, the narrowest first, as long as `wanted` windows remain.
+fn bare(slots: &mut Vec<Slot>, strips: &[Strip], plans: &[Plan], wanted: usize) {
+    let windows = |slots: &[Slot]| {
+        let own = slots.iter().filter(|s| s.style != ElementStyle::Door);
+        own.count()
+    };
+    let mut order: Vec<usize> = (0..strips.len())
+        .filter(|&k| plans[k].symmetric && !plans[k].door)
+        .collect();
+    order.sort_by(|&a, &b| strips[a].width().total_cmp(&strips[b].width()));
+    for k in order {
+        let own = slots.iter().filter(|s| s.strip == k).count();
+        if own > 0 && windows(slots) >= wanted + own {
+            slots.retain(|s| s.strip != k);
+        }
+    }
 }
 
 /// Places for windows on a piece, all of one size: those that the wall has room for and, on a symmetric piece, whose
@@ -140,6 +168,7 @@ fn openings(walls: &Walls, strip: &Strip, room: &Room, plan: &Plan, spacing: f64
         });
         if all {
             let slot = |centre: &f64| Slot {
+                strip: 0,
                 piece: 0,
                 centre: *centre,
                 widest: width,

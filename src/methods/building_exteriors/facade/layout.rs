@@ -170,9 +170,12 @@ impl SideSearch<'_> {
             let choices = choices(&candidates, wanted, enough, self.cuts, CHOICES);
             for choice in &choices {
                 let (strips, plans) = self.plans(choice, door);
-                for plans in self.alignments(&strips, plans) {
+                let plans = self.alignments(&strips, plans);
+                // Bare strips first: real walls have few windows of the usual size, not many small ones.
+                let ways = plans.iter().flat_map(|p| [(p, true), (p, false)]);
+                for (plans, sparse) in ways {
                     let ratio = self.wanted[0];
-                    let pieces = glaze(self.walls, &strips, &plans, ratio, spacing);
+                    let pieces = glaze(self.walls, &strips, plans, ratio, spacing, sparse);
                     let (mut z, sum) = self.distance(&pieces);
                     let missing = door.is_some() && !is_entered(&pieces);
                     z += if missing { NO_DOOR } else { 0.0 };

@@ -9,7 +9,7 @@
 //!    all subsets of the ten largest free strips are tried;
 //! 2. alignment: the strips whose windows stand above each other, a subset of the strips with several floors that
 //!    has the wanted share of pairs;
-//! 3. numbers of windows from a list of spacings, sizes `(0.91 s, 1.22 s)` metres within what the wall has free, the
+//! 3. numbers of windows from a list of spacings, narrow symmetric strips bare where the ratio asks for fewer windows, sizes `(0.91 s, 1.22 s)` metres within what the wall has free, the
 //!    one scale `s` of the side by bisection for the window-to-wall ratio.
 //!
 //! Layouts for several spacings and orders of subsets are measured with the one code of attributes, and the nearest

@@ -90,11 +90,16 @@ impl<'a> Walls<'a> {
 
     /// Heights over the floor between which a stretch of a piece is bare around eye level.
     pub fn free(&self, room: &Room, span: [f64; 2]) -> Option<[f64; 2]> {
+        self.within(room, span, CLEAR)
+    }
+
+    /// The same with so much clear wall on both sides of the stretch.
+    pub fn within(&self, room: &Room, span: [f64; 2], clear: f64) -> Option<[f64; 2]> {
         if room.taken {
             return None;
         }
         let base = room.piece.floor as f64 * self.floor_height;
-        let span = [span[0] - CLEAR, span[1] + CLEAR];
+        let span = [span[0] - clear, span[1] + clear];
         let band = self.shell.free_band(&room.piece.wall(), span, base + EYE)?;
         let ends = [
             band[0].max(base) - base + CLEAR,

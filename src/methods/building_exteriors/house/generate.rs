@@ -4,6 +4,7 @@ use rand::{Rng, RngExt};
 use serde::Serialize;
 
 use super::Database;
+use super::inspect::implausible;
 use super::model::{Model, furnished};
 use super::roof_styles::roof;
 use super::roofs::Joining;
@@ -30,6 +31,8 @@ const APART: f64 = 0.02;
 const ROUNDS: usize = 2;
 /// Generations of the genetic algorithm; the paper prints none.
 const GENERATIONS: u64 = 200;
+/// Rank of a draft that is near enough and has nothing that one would not believe.
+const BELIEVED: (f64, usize) = (0.0, 0);
 
 /// The method of finding mass models and facades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -201,10 +204,10 @@ pub fn generate(
     let first = mass.building.clone();
     let mut best = draft(wish.clone(), mass, database, options, rng)?;
     let searched = options.footprint.is_none() && options.method == Method::Best;
-    if !searched || best.repaired_z() <= NEAR {
+    if !searched || best.rank() == BELIEVED {
         return best.build();
     }
-    // The walls have no room for the wanted facades: other plans may.
+    // The walls have no room for the wanted facades, or one would not believe the house: other plans may do.
     let few = Search {
         rounds: ROUNDS,
         ..options.search.clone()
@@ -213,11 +216,11 @@ pub fn generate(
     for mass in variations(&target, OTHERS, APART, &unlike, database, &few, rng) {
         let other = draft(wish.clone(), mass, database, options, rng)?;
         let spent = best.report.evaluations + other.report.evaluations;
-        if other.repaired_z() < best.repaired_z() {
+        if other.rank() < best.rank() {
             best = other;
         }
         best.report.evaluations = spent;
-        if best.repaired_z() <= NEAR {
+        if best.rank() == BELIEVED {
             break;
         }
     }
@@ -253,6 +256,15 @@ impl Draft {
     /// Largest distance from the repaired row in standard deviations.
     pub fn repaired_z(&self) -> f64 {
         self.report.repaired_z
+    }
+
+    /// The order of drafts: by how far they are from the row, near enough being 0, then by what one would not believe.
+    fn rank(&self) -> (f64, usize) {
+        let far = match self.report.repaired_z <= NEAR {
+            true => 0.0,
+            false => self.report.repaired_z,
+        };
+        (far, implausible(&self.building).len())
     }
 
     /// The house with its surface.

@@ -73,7 +73,7 @@ pub fn anneal(
         };
         let seed = seed.wrapping_add(restart);
         let annealing = Annealing::new(settings.cooling, settings.iterations, 1, seed)?;
-        let run = annealing.until(settings.goal).run(&mut model, |_| ())?;
+        let run = annealing.until(settings.goal).run(&mut model, |_| {})?;
         evaluations += model.evaluations;
         steps.push(run.trace);
         if best.as_ref().is_none_or(|(_, least)| run.cost < *least) {

@@ -62,6 +62,11 @@ const GLANCES: usize = 30;
 const SIMPLE: f64 = 3.0;
 /// Rounds of wholly random arrangements at first.
 const OPENING: usize = 8;
+/// So many times as many donors are tried for a plain house.
+const PLAINER: usize = 3;
+/// Narrowest room, and narrowest that is usual (m).
+const STUB: f64 = 1.2;
+const USUAL: f64 = 2.5;
 
 /// Finds boxes with the wanted attributes.
 ///
@@ -79,7 +84,16 @@ pub fn search(
         enough: options.enough,
         ..Found::default()
     };
-    for (index, mirrored) in nearest(target, database, options) {
+    let many = Search {
+        donors: PLAINER * options.donors,
+        ..options.clone()
+    };
+    let donors = nearest(target, database, &many).into_iter().enumerate();
+    for (k, (index, mirrored)) in donors {
+        // Those further away serve a plainer house, not a nearer one.
+        if k >= options.donors && (found.max_z() > options.enough || !frozen.is_empty()) {
+            break;
+        }
         let (mut blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         replace(&mut blocks, frozen);
         let scheme = Scheme::new(&blocks, roofs, target);
@@ -119,8 +133,8 @@ fn complexity(building: &Building) -> f64 {
     let general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
     general
         .map(|b| match b.width.min(b.depth) {
-            w if w < 1.2 => 9.0,
-            w if w < 2.4 => 3.0,
+            w if w < STUB => 9.0,
+            w if w < USUAL => 3.0,
             _ => 1.0,
         })
         .sum()

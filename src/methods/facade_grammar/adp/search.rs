@@ -1,6 +1,7 @@
 //! The methods of inference, as far as they share what they start from.
 
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use super::exploitation::{AllRules, Remembered};
@@ -9,13 +10,14 @@ use super::readings::{Exploit, Protect};
 use super::symmetry;
 use super::walk::{Explore, Inference, SharedTypes};
 use crate::baselines;
-use crate::infer::{InferError, Pulse, Settings};
 use crate::regions::Types;
 use crate::rules::AddRule;
 use crate::rules::extract;
+use crate::settings::{InferError, Settings};
+use edifice_base::{Progress, Watched};
 use edifice_grammar::Grammar;
-use edifice_optim::Step;
 use edifice_optim::adp::{Adp, Approximation, Epsilon};
+use edifice_optim::tell;
 use edifice_shape::Facade;
 
 /// The common start of all methods: settings, facades, region types and the splitting heuristic; each method is a function of it.
@@ -25,12 +27,16 @@ pub(crate) struct Search<'a> {
     pub fresh: Types,
     pub types: SharedTypes,
     pub exploration: Rc<RefCell<Exploration>>,
-    /// Called inside long steps.
-    pub pulse: Pulse,
+    /// Told of every step, and asked inside long ones whether to go on.
+    pub watched: &'a Watched<'a>,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(facades: &[Facade], settings: &'a Settings) -> Result<Self, InferError> {
+    pub fn new(
+        facades: &[Facade],
+        settings: &'a Settings,
+        watched: &'a Watched<'a>,
+    ) -> Result<Self, InferError> {
         let fresh = Types::new(facades).map_err(|(index, source)| InferError::NotATiling {
             name: facades[index].name.clone(),
             source,
@@ -53,7 +59,7 @@ impl<'a> Search<'a> {
             fresh,
             types: Rc::new(RefCell::new(types)),
             exploration: Rc::new(RefCell::new(exploration)),
-            pulse: Rc::new(|| {}),
+            watched,
         })
     }
 
@@ -73,11 +79,7 @@ impl<'a> Search<'a> {
     }
 
     /// The text's algorithm (Sec. 4.2), and the `V(R)` that it learnt, by type.
-    pub fn paper(
-        &self,
-        iterations: u64,
-        observer: impl FnMut(Step) + 'static,
-    ) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
+    pub fn paper(&self, iterations: u64) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
         let readings = self.settings.readings;
         let epsilon = Epsilon {
             end: readings.last_epsilon,
@@ -87,25 +89,25 @@ impl<'a> Search<'a> {
         Ok(match readings.exploitation {
             Exploit::AllRules => {
                 let values = AllRules::new(Rc::clone(&self.exploration));
-                let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
+                let (rules, known) = self.walks(explore, values, epsilon, iterations, 0)?;
                 (rules, known.into_values())
             }
             Exploit::Remembered(most) => {
                 let values = Remembered::new(most, Rc::clone(&self.exploration));
-                let (rules, known) = self.walks(explore, values, epsilon, iterations, observer)?;
+                let (rules, known) = self.walks(explore, values, epsilon, iterations, 0)?;
                 (rules, known.into_values())
             }
         })
     }
 
-    /// The cheapest of many walks, and what they taught.
+    /// The cheapest of many walks, before which so many steps were made, and what they taught.
     pub fn walks<V: Approximation<Inference>>(
         &self,
         explore: Explore,
         mut values: V,
         epsilon: Epsilon,
         iterations: u64,
-        observer: impl FnMut(Step) + 'static,
+        before: u64,
     ) -> Result<(Vec<AddRule>, V), InferError> {
         let adp = Adp::new(
             explore,
@@ -114,8 +116,27 @@ impl<'a> Search<'a> {
             iterations,
             self.settings.seed,
         );
-        let run = adp.run(&mut self.process(), observer)?;
+        let watch = self.watch("walks", before);
+        let run = adp.run(&mut self.process(), tell(&watch, None))?;
         Ok((run.best, values))
+    }
+
+    /// A watch of a stage before which so many steps were made.
+    pub fn watch(
+        &self,
+        stage: &'static str,
+        before: u64,
+    ) -> impl Fn(Progress) -> ControlFlow<()> + Sync + use<'a> {
+        let (watched, most) = (self.watched, Some(self.settings.steps()));
+        move |progress| {
+            let done = before + progress.done;
+            watched.tell(Progress {
+                stage,
+                done,
+                most,
+                ..progress
+            })
+        }
     }
 
     /// Always the best rule by the splitting heuristic.

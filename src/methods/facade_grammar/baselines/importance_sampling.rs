@@ -2,9 +2,8 @@
 
 use crate::adp::search::Search;
 use crate::adp::walk::{Derivation, Inference};
-use crate::infer::InferError;
 use crate::rules::AddRule;
-use edifice_optim::Step;
+use crate::settings::InferError;
 use edifice_optim::adp::{Approximation, Epsilon};
 
 /// The approximation of importance sampling: it learns nothing, so that every step explores.
@@ -20,14 +19,11 @@ impl Approximation<Inference> for NothingKnown {
 
 impl Search<'_> {
     /// The cheapest of many walks by the splitting heuristic.
-    pub fn importance(
-        &self,
-        observer: impl FnMut(Step) + 'static,
-    ) -> Result<Vec<AddRule>, InferError> {
+    pub fn importance(&self) -> Result<Vec<AddRule>, InferError> {
         let iterations = self.settings.iterations;
         let explore = self.explore(self.settings.readings.protection.anew());
         let always = Epsilon::ALWAYS_EXPLORE;
-        let (rules, _) = self.walks(explore, NothingKnown, always, iterations, observer)?;
+        let (rules, _) = self.walks(explore, NothingKnown, always, iterations, 0)?;
         Ok(rules)
     }
 }

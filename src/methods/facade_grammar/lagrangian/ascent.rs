@@ -32,7 +32,7 @@ type Direction = BTreeMap<Item, Vec<f64>>;
 
 impl Dual<'_> {
     /// Raises `L`, up to so many steps and so much work, one step at least, until it shows that the incumbent is
-    /// optimal; offers it the grammars on the way. Keeps the multipliers of the greatest `L`.
+    /// optimal or the search is stopped; offers it the grammars on the way. Keeps the multipliers of the greatest `L`.
     pub fn ascend(&mut self, incumbent: &mut Incumbent, steps: u64, work: &mut u64) -> Ascent {
         let mut found = Ascent {
             bound: f64::NEG_INFINITY,
@@ -47,8 +47,8 @@ impl Dual<'_> {
         // One step at least: a branch is closed only by what a derivation shows.
         for _ in 0..steps.max(1) {
             *work = work.saturating_sub(self.program.items as u64);
-            if let Some(pulse) = &incumbent.pulse {
-                pulse();
+            if !incumbent.goes_on() && found.bound > f64::NEG_INFINITY {
+                break;
             }
             let bound = self.bound();
             if bound > found.bound + 1e-6 {

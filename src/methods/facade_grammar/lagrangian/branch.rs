@@ -55,7 +55,8 @@ pub(crate) fn solve(
         if incumbent.is_optimal(branch.lower) {
             break;
         }
-        if nodes == limits.nodes || work < branch.parent.program.items as u64 {
+        let exhausted = nodes == limits.nodes || work < branch.parent.program.items as u64;
+        if exhausted || !incumbent.goes_on() {
             return (branch.lower, nodes);
         }
         nodes += 1;
@@ -101,7 +102,8 @@ fn ascend_root(
         made += round;
         round *= 2;
         let converged = best - before < WORTH_A_ROUND * (incumbent.cost - best);
-        if made >= steps || converged || *work < program.items as u64 {
+        let exhausted = made >= steps || *work < program.items as u64;
+        if exhausted || converged || !incumbent.goes_on() {
             return Some(Branch {
                 lower,
                 parent: Rc::new(Expanded {

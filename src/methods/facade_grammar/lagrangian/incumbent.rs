@@ -3,35 +3,41 @@
 use super::derivation::{Paths, Prices, Rule};
 use super::program::Program;
 use super::region_type::Written;
-use crate::infer::Pulse;
 use crate::operations::Operations;
 use crate::regions::Types;
 use crate::rules::AddRule;
+use edifice_base::{Progress, Watched};
 use edifice_grammar::Costs;
 
 /// Noise of sums of costs, which are 0 or between [`Costs::LEAST`] and [`Costs::GREATEST`].
 pub(crate) const NOISE: f64 = 1e-7;
 
 /// The cheapest grammar met, and when a bound shows that none is cheaper.
-pub(crate) struct Incumbent {
+pub(crate) struct Incumbent<'a> {
     pub cost: f64,
-    /// Called at every step of the search for a cheaper one.
-    pub pulse: Option<Pulse>,
+    /// Asked at every step of the search for a cheaper one whether it goes on.
+    pub watched: Option<&'a Watched<'a>>,
     /// Its rules; none when only the cost is known.
     rules: Vec<Written>,
     /// A number of which all costs of grammars are multiples; `None` where there is none.
     granularity: Option<f64>,
 }
 
-impl Incumbent {
+impl Incumbent<'_> {
     /// Knows that some grammar has a cost; infinite when none is known.
     pub fn new(cost: f64, costs: &Costs, operations: Operations) -> Self {
         Self {
             cost,
-            pulse: None,
+            watched: None,
             rules: Vec::new(),
             granularity: granularity(costs, operations),
         }
+    }
+
+    /// True if the search for a cheaper one shall go on.
+    pub fn goes_on(&self) -> bool {
+        let bound = Progress::stage("Lagrangian bound");
+        self.watched.is_none_or(|watched| watched.goes_on(bound))
     }
 
     /// The least cost not below a bound that a grammar can have.

@@ -7,6 +7,7 @@ use super::region_type::RegionType;
 use super::rules::region_type_of;
 use crate::operations::Operations;
 use crate::regions::{Region, TypeId, Types, part};
+use edifice_base::{Progress, Watched};
 use edifice_grammar::Costs;
 use edifice_shape::Axis;
 
@@ -50,12 +51,13 @@ pub(crate) struct Program {
 
 impl Program {
     /// Everything that full lines can make of the facades; `None` when there are more than `limit` items,
-    /// or when grids are allowed, whose rules are no paths.
+    /// when grids are allowed, whose rules are no paths, or when the search is stopped meanwhile.
     pub fn new(
         mut types: Types,
         costs: &Costs,
         operations: Operations,
         limit: usize,
+        watched: &Watched,
     ) -> Option<Self> {
         if operations.grid_split {
             return None;
@@ -95,7 +97,8 @@ impl Program {
             }
             program.add(types, &mut index_of, region, region_type);
             // An occurrence has two successors and an operation at least.
-            if program.items.max(3 * index_of.regions.len()) > limit {
+            let too_large = program.items.max(3 * index_of.regions.len()) > limit;
+            if too_large || !watched.goes_on(Progress::stage("rules of all regions")) {
                 return None;
             }
         }

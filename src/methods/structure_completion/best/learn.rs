@@ -1,5 +1,7 @@
 //! The probability of a candidate element, learnt from whole layouts with parts hidden.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use rayon::prelude::*;
 
 use super::candidates::{Candidate, Candidates};
@@ -11,6 +13,7 @@ use crate::measure::agreement;
 use crate::model::Model;
 use crate::task::Task;
 use edifice_base::rng::stream;
+use edifice_base::{Progress, Watched};
 use edifice_model::boosting::{Boosting, BoostingError, Settings};
 
 /// Most candidates that are learnt from; of more, every second, third, ... is.
@@ -121,19 +124,28 @@ fn thinned<T>(parts: Vec<(Vec<Vec<f64>>, Vec<T>)>, most: usize) -> (Vec<Vec<f64>
 const OVERLAPS: [f64; 2] = [0.5, 0.75];
 
 /// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed with each part hidden, from the rest of
-/// the database without its near-twins.
+/// the database without its near-twins. Stopped, from the parts that were hidden until then.
 ///
 /// # Errors
 /// [`BoostingError`] when no layout has a candidate.
-pub fn learn(model: &Model, seed: u64) -> Result<Learnt, BoostingError> {
+pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, BoostingError> {
     let layouts: Vec<Layout> = model.examples.iter().map(|e| e.layout.clone()).collect();
     let group = twins(&layouts);
     let units: Vec<(usize, Task)> = (0..layouts.len())
         .flat_map(|index| Task::ALL.map(|task| (index, task)))
         .collect();
+    let done = AtomicU64::new(0);
     let parts: Vec<(Rows, DoorRows)> = units
         .par_iter()
         .map(|&(index, task)| {
+            let told = Progress::of(
+                "facades with a part hidden",
+                done.fetch_add(1, Ordering::Relaxed),
+                units.len() as u64,
+            );
+            if !watched.goes_on(told) {
+                return Default::default();
+            }
             let twin = |other: &usize| group[*other] == group[index];
             let without: Vec<usize> = (0..layouts.len()).filter(twin).collect();
             rows(model, index, &without, task, seed)
@@ -150,7 +162,7 @@ pub fn learn(model: &Model, seed: u64) -> Result<Learnt, BoostingError> {
     };
     let at = |k: usize| {
         let targets: Vec<f64> = targets.iter().map(|t| t[k]).collect();
-        Boosting::learn(&features, &targets, settings)
+        Boosting::learn(&features, &targets, settings, &watched.inner())
     };
     let of_doors = Settings {
         trees: 80,
@@ -160,7 +172,12 @@ pub fn learn(model: &Model, seed: u64) -> Result<Learnt, BoostingError> {
     };
     let doors = match places.is_empty() {
         true => None,
-        false => Some(Boosting::learn(&places, &are_doors, of_doors)?),
+        false => Some(Boosting::learn(
+            &places,
+            &are_doors,
+            of_doors,
+            &watched.inner(),
+        )?),
     };
     Ok(Learnt {
         loose: at(0)?,

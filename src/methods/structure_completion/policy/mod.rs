@@ -51,6 +51,7 @@ use super::layout::Element;
 use super::model::Model;
 use super::partial::PartialLayout;
 use edifice_base::rng::Stream;
+use edifice_base::unwatched;
 
 /// Consecutive failed actions that end a candidate.
 pub const FAILURES: usize = 40;
@@ -153,7 +154,14 @@ pub fn complete(
 ) -> Vec<Completion> {
     let found = paper_model(model).and_then(|paper| {
         let scene = Scene::new(&paper, partial);
-        optimize(&scene, &Budget::PAPER, count.max(1), rng.random()).ok()
+        optimize(
+            &scene,
+            &Budget::PAPER,
+            count.max(1),
+            rng.random(),
+            &unwatched,
+        )
+        .ok()
     });
     let Some(found) = found else {
         return vec![added(Vec::new(), Reason::Policy, 0.0, 1.0)];

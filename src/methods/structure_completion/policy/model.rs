@@ -11,6 +11,7 @@ use crate::partial::PartialLayout;
 use crate::score::{ScoreModel, Sites, TERMS, Training, grids, learn_weights};
 use crate::task::Task;
 use edifice_base::rng::{Stream, stream};
+use edifice_base::{Progress, Watch, Watched};
 use edifice_model::ModelError;
 use edifice_model::factor_graph::Settings;
 
@@ -65,20 +66,26 @@ pub fn weight_states(layouts: &[&Layout], seed: u64) -> Vec<Sites> {
 }
 
 impl PaperModel {
-    /// Learns densities, weights and initial policies from whole layouts.
+    /// Learns densities, weights and initial policies from whole layouts. Stopped by `watch`, the weights are those so far, and
+    /// the policies those of the facades that were finished.
     ///
     /// # Errors
     /// As [`ScoreModel::train`] and [`learn_weights`].
-    pub fn train(layouts: &[Layout], seed: u64) -> Result<Self, ModelError> {
+    pub fn train(layouts: &[Layout], seed: u64, watch: &Watch) -> Result<Self, ModelError> {
+        let watched = Watched::new(watch);
         let mut model = Self::of_densities(layouts, seed)?;
+        if !watched.goes_on(Progress::stage("weights")) {
+            return Ok(model);
+        }
         let mut chosen: Vec<&Layout> = layouts.iter().filter(|l| !l.elements.is_empty()).collect();
         if chosen.iter().any(|l| l.elements.len() <= LARGEST) {
             chosen.retain(|l| l.elements.len() <= LARGEST);
         }
         chosen.shuffle(&mut stream(seed, "database", 0));
         let states = weight_states(&chosen[..chosen.len().min(WEIGHT_FACADES)], seed);
-        model.score.weights = Self::unbiased_weights(&model.score, &states, &WEIGHTS, seed)?;
-        model.learn_policies(&chosen, seed);
+        model.score.weights =
+            Self::unbiased_weights(&model.score, &states, &WEIGHTS, seed, &watched.inner())?;
+        model.learn_policies(&chosen, seed, &watched);
         Ok(model)
     }
 
@@ -91,11 +98,12 @@ impl PaperModel {
         data: &[Sites],
         settings: &Settings,
         seed: u64,
+        watch: &Watch,
     ) -> Result<[f64; TERMS], ModelError> {
         let sampler = |x: &mut Sites, weights: &[f64; TERMS], rng: &mut Stream| {
             x.resample_block(score, weights, SWEEPS, rng);
         };
-        learn_weights(score, data, sampler, settings, seed)
+        learn_weights(score, data, sampler, settings, seed, watch)
     }
 
     /// Weights by the update of Eq. 20: the negative is the completion of the layout without a tenth of its elements, the
@@ -110,6 +118,7 @@ impl PaperModel {
         candidates: usize,
         settings: &Settings,
         seed: u64,
+        watch: &Watch,
     ) -> Result<[f64; TERMS], ModelError> {
         let sampler = |x: &mut Layout, weights: &[f64; TERMS], rng: &mut Stream| {
             x.elements.shuffle(rng);
@@ -137,7 +146,7 @@ impl PaperModel {
                 x.elements = best;
             }
         };
-        learn_weights(&self.score, data, sampler, settings, seed)
+        learn_weights(&self.score, data, sampler, settings, seed, watch)
     }
 
     /// Densities only: weights of 1, and no initial policies.
@@ -186,14 +195,18 @@ impl PaperModel {
 
     /// Optimizes a policy for some facades of the database, parts of which are hidden, and keeps the most
     /// different ones (Sec. 5.2): the first, then always the one farthest from those kept.
-    fn learn_policies(&mut self, layouts: &[&Layout], seed: u64) {
+    fn learn_policies(&mut self, layouts: &[&Layout], seed: u64, watched: &Watched) {
         let mut learnt = Vec::new();
         for (i, layout) in layouts.iter().take(POLICY_FACADES).enumerate() {
+            let told = Progress::of("policies", i as u64, POLICY_FACADES as u64);
+            if !watched.goes_on(told) {
+                break;
+            }
             let mut rng = stream(seed, "policies", i as u64);
             let task = Task::ALL[rng.random_range(0..Task::ALL.len())];
             let (partial, _) = task.hide(layout, &mut rng);
             let scene = Scene::new(self, &partial);
-            let found = optimize(&scene, &Budget::SMALL, 1, rng.random());
+            let found = optimize(&scene, &Budget::SMALL, 1, rng.random(), &watched.inner());
             learnt.extend(found.map(|f| f.policy));
         }
         while self.policies.len() < POLICIES && !learnt.is_empty() {

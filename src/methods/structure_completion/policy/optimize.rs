@@ -4,8 +4,10 @@ use rand::Rng;
 
 use super::{Policy, Scene, grow};
 use crate::layout::Element;
+use edifice_base::Watch;
 use edifice_base::rng::{Stream, stream};
 use edifice_optim::genetic::{Breed, Genetic, GeneticError, Settings};
+use edifice_optim::tell;
 
 /// The number of candidates to make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,7 +126,7 @@ impl Breed for Search<'_> {
     }
 }
 
-/// Evolves policies from the model's and keeps the `keep` best candidates of different score.
+/// Evolves policies from the model's and keeps the `keep` best candidates of different score, until `watch` stops it.
 ///
 /// # Errors
 /// [`GeneticError`] for a budget out of range.
@@ -133,6 +135,7 @@ pub fn optimize(
     budget: &Budget,
     keep: usize,
     seed: u64,
+    watch: &Watch,
 ) -> Result<Found, GeneticError> {
     let settings = Settings {
         population: budget.population,
@@ -151,7 +154,7 @@ pub fn optimize(
         rng: stream(seed, "candidates", 0),
     };
     let genetic = Genetic::new(settings, scene.model.policies.clone(), seed)?;
-    let (run, _) = genetic.run(&mut search, |_| {})?;
+    let (run, _) = genetic.run(&mut search, tell(watch, None))?;
     Ok(Found {
         candidates: search.best,
         policy: run.best,

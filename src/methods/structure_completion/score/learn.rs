@@ -15,6 +15,7 @@ use rand::seq::SliceRandom;
 
 use super::{Change, ScoreModel, Scored, TERMS};
 use crate::layout::{Class, Element, Layout};
+use edifice_base::Watch;
 use edifice_base::rng::Stream;
 use edifice_model::ModelError;
 use edifice_model::factor_graph::Settings;
@@ -276,11 +277,12 @@ pub fn learn_weights<X: State>(
     sampler: impl Fn(&mut X, &[f64; TERMS], &mut Stream) + Sync,
     settings: &Settings,
     seed: u64,
+    watch: &Watch,
 ) -> Result<[f64; TERMS], ModelError> {
     let features = |x: &X| model.evaluate(x.facade(), &x.elements()).features.to_vec();
     let step = |x: &mut X, weights: &[f64], rng: &mut Stream| {
         sampler(x, &from_prior(weights), rng);
     };
-    let fitted = LogLinear::new(TERMS, features, step).fit(data, settings, seed)?;
+    let fitted = LogLinear::new(TERMS, features, step).fit(data, settings, seed, watch)?;
     Ok(from_prior(&fitted.weights))
 }

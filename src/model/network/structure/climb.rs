@@ -9,6 +9,8 @@ use super::Search;
 use super::constraints::Allowed;
 use super::families::Families;
 
+/// Families counted between two questions if the search shall go on.
+const FAMILIES: usize = 4096;
 /// Gains below this are rounding.
 const LEAST_GAIN: f64 = 1e-9;
 /// Covered edges turned round at a new start, for each variable.
@@ -39,6 +41,9 @@ pub(super) struct Climb<'a, 'd> {
     families: &'a mut Families<'d>,
     allowed: &'a Allowed,
     settings: &'a Search,
+    goes_on: &'a (dyn Fn() -> bool + Sync),
+    /// True once `goes_on` has said no.
+    ended: bool,
     /// Parents of every variable, ascending.
     parents: Vec<Vec<usize>>,
     score: f64,
@@ -56,12 +61,15 @@ impl<'a, 'd> Climb<'a, 'd> {
         families: &'a mut Families<'d>,
         allowed: &'a Allowed,
         settings: &'a Search,
+        goes_on: &'a (dyn Fn() -> bool + Sync),
     ) -> Result<Self, ModelError> {
         let n = families.variables();
         let mut climb = Self {
             families,
             allowed,
             settings,
+            goes_on,
+            ended: false,
             parents: Vec::new(),
             score: 0.0,
             gains: vec![vec![0.0; n]; n],
@@ -78,6 +86,9 @@ impl<'a, 'd> Climb<'a, 'd> {
     pub fn run<R: Rng>(&mut self, rng: &mut R) {
         self.climb();
         for restart in 0..self.settings.restarts {
+            if self.ended() {
+                return;
+            }
             self.start(self.best.0.clone());
             self.turn(rng);
             if restart % 2 == 1 {
@@ -85,6 +96,17 @@ impl<'a, 'd> Climb<'a, 'd> {
             }
             self.climb();
         }
+    }
+
+    /// True if the search was ended early.
+    pub fn ended(&self) -> bool {
+        self.ended
+    }
+
+    /// Asks if the search shall go on. Once false, it stays false.
+    fn asked(&mut self) -> bool {
+        self.ended = self.ended || !(self.goes_on)();
+        !self.ended
     }
 
     /// The structure of highest score, its score, and the moves made.
@@ -96,7 +118,7 @@ impl<'a, 'd> Climb<'a, 'd> {
     fn climb(&mut self) {
         let mut tabu: VecDeque<Move> = VecDeque::with_capacity(self.settings.tabu);
         let mut idle = 0;
-        while idle <= self.settings.patience {
+        while idle <= self.settings.patience && self.asked() {
             let Some((change, gain)) = self.choose(&tabu) else {
                 return;
             };
@@ -251,7 +273,11 @@ impl<'a, 'd> Climb<'a, 'd> {
                 }
             }
         }
-        self.families.prepare(wanted);
+        for part in wanted.chunks(FAMILIES) {
+            if self.asked() {
+                self.families.prepare(part.to_vec());
+            }
+        }
         for &c in children {
             let now = self.families.score(c, &self.parents[c]);
             for p in (0..n).filter(|&p| p != c) {
@@ -260,6 +286,8 @@ impl<'a, 'd> Climb<'a, 'd> {
                 let known = changed.len() <= most
                     && (self.allowed.may(p, c) || self.parents[c].contains(&p));
                 self.gains[c][p] = match known {
+                    // Once the search is ended, families that were not counted are no move.
+                    true if self.ended => f64::NEG_INFINITY,
                     true => self.families.score(c, &changed) - now,
                     false => f64::NEG_INFINITY,
                 };

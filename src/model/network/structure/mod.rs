@@ -1,4 +1,4 @@
-//! Structure search: the graph of a discrete network from complete rows.
+//! Structure search: the graph of a discrete network from rows, complete ([`search`]) or not ([`search_incomplete`]).
 //!
 //! A structure's score is a sum over families, a variable X_i with parents U_i, r_i categories and q_i configurations of
 //! the parents; `N_ijk` rows have category k in configuration j:
@@ -25,6 +25,7 @@
 mod climb;
 mod constraints;
 mod families;
+mod incomplete;
 
 use super::super::error::ModelError;
 use super::super::table::Table;
@@ -33,6 +34,7 @@ use climb::Climb;
 use constraints::Allowed;
 use edifice_base::rng::stream;
 use families::Families;
+pub use incomplete::search_incomplete;
 
 /// The score that is maximised: BIC or BDeu, as in [the module](self), both in nats and the greater the better.
 ///
@@ -128,6 +130,8 @@ pub struct Found {
     pub moves: usize,
     /// Families counted.
     pub families: usize,
+    /// True if the caller of [`search_while`] ended the search: the structure is the best so far.
+    pub interrupted: bool,
 }
 
 /// Searches the structure of highest score for the categorical columns of `data`.
@@ -151,10 +155,24 @@ pub struct Found {
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, ModelError> {
+    search_while(data, settings, seed, &|| true)
+}
+
+/// As [`search`], as long as `goes_on`, which is asked before every move and every few thousand families.
+///
+/// # Errors
+/// As [`search`].
+pub fn search_while(
+    data: &Table,
+    settings: &Search,
+    seed: u64,
+    goes_on: &(dyn Fn() -> bool + Sync),
+) -> Result<Found, ModelError> {
     let mut families = Families::new(data, settings.score)?;
     let allowed = Allowed::new(data, settings)?;
-    let mut climb = Climb::new(&mut families, &allowed, settings)?;
+    let mut climb = Climb::new(&mut families, &allowed, settings, goes_on)?;
     climb.run(&mut stream(seed, "network/structure", 0));
+    let interrupted = climb.ended();
     let (parents, score, moves) = climb.best();
     let columns = data.columns();
     let name = |i: usize| columns[i].name().to_owned();
@@ -165,19 +183,22 @@ pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, Model
         let names: Vec<&str> = parents.iter().map(|&p| columns[p].name()).collect();
         let categories = columns[child].categories().unwrap_or_default();
         let categories: Vec<&str> = categories.iter().map(String::as_str).collect();
-        variables.push(Variable::discrete(
+        // Complete rows: EM is one count.
+        let table = families.table(child, parents, FitSettings::default().priors.dirichlet);
+        variables.push(Variable::table(
             columns[child].name(),
             &categories,
             &names,
+            &table,
         ));
     }
-    let fitted = Network::new(variables)?.fit_from(data, &FitSettings::default())?;
     Ok(Found {
-        network: fitted.network,
+        network: Network::new(variables)?,
         edges,
         score,
         moves,
         families: families.counted(),
+        interrupted,
     })
 }
 

@@ -5,6 +5,5 @@ mod densities;
 mod diagnostics;
 #[cfg(feature = "nuts")]
 mod gym;
-#[cfg(feature = "nuts")]
-mod gym_data;
+mod houses;
 mod random;

@@ -4,6 +4,7 @@ use super::*;
 use crate::operations::Operations;
 use crate::regions::Types;
 use crate::rules::extract;
+use edifice_base::{Watched, unwatched};
 use edifice_grammar::{Costs, evaluate};
 use edifice_shape::{Facade, Rect, Region};
 
@@ -29,8 +30,14 @@ const EXTENSIONS: Operations = Operations {
 /// Bound and incumbent after some steps; the incumbent's rules must derive the facades at its cost.
 fn solved(facades: &[Facade], operations: Operations, nodes: u64) -> (f64, f64) {
     let costs = Costs::default();
-    let program =
-        Program::new(Types::new(facades).unwrap(), &costs, operations, usize::MAX).unwrap();
+    let program = Program::new(
+        Types::new(facades).unwrap(),
+        &costs,
+        operations,
+        usize::MAX,
+        &Watched::new(&unwatched),
+    )
+    .unwrap();
     let mut incumbent = Incumbent::new(f64::INFINITY, &costs, operations);
     let limits = BoundLimits {
         nodes,
@@ -89,6 +96,7 @@ fn steps_only_raise_the_bound() {
         &costs,
         Operations::default(),
         usize::MAX,
+        &Watched::new(&unwatched),
     )
     .unwrap();
     let bound_after = |steps| {
@@ -123,6 +131,7 @@ fn steps_climb_to_the_optimum_of_the_linear_program() {
             &costs,
             operations,
             usize::MAX,
+            &Watched::new(&unwatched),
         )
         .unwrap();
         let optimum = linear_program::optimum(&program);
@@ -145,7 +154,14 @@ fn overlapping_occurrences_share_a_clique() {
     // `ab` has three occurrences apart, `abab` two that overlap, `ba` two apart.
     let facades = [facade(&["ababab"])];
     let split = Operations::split_only();
-    let program = Program::new(Types::new(&facades).unwrap(), &costs, split, usize::MAX).unwrap();
+    let program = Program::new(
+        Types::new(&facades).unwrap(),
+        &costs,
+        split,
+        usize::MAX,
+        &Watched::new(&unwatched),
+    )
+    .unwrap();
     let mut cliques: Vec<(usize, usize)> = program
         .region_types
         .iter()
@@ -186,6 +202,7 @@ fn multipliers_of_an_item_sum_to_its_cost() {
         &costs,
         Operations::default(),
         usize::MAX,
+        &Watched::new(&unwatched),
     )
     .unwrap();
     let mut dual = Dual::new(&program);
@@ -212,7 +229,8 @@ fn too_many_items_and_grids_are_refused() {
             Types::new(&facades).unwrap(),
             &costs,
             Operations::default(),
-            3
+            3,
+            &Watched::new(&unwatched)
         )
         .is_none()
     );
@@ -221,7 +239,8 @@ fn too_many_items_and_grids_are_refused() {
             Types::new(&facades).unwrap(),
             &costs,
             Operations::all(),
-            usize::MAX
+            usize::MAX,
+            &Watched::new(&unwatched)
         )
         .is_none()
     );

@@ -1,0 +1,77 @@
+//! Facades of equal windows at other sizes.
+
+use super::resized;
+use edifice_shape::{Facade, Rect, Region};
+
+/// Windows of 10 x 15 in `columns` and `rows`, 20 and 30 apart.
+fn windows(columns: u32, rows: u32) -> Facade {
+    let mut regions = Vec::new();
+    let (width, height) = (
+        f64::from(columns) * 20.0 + 10.0,
+        f64::from(rows) * 30.0 + 15.0,
+    );
+    let mut put = |label: &str, x: f64, y: f64, w: f64, h: f64| {
+        regions.push(Region {
+            label: label.into(),
+            rect: Rect::new(x, y, w, h),
+        });
+    };
+    for row in 0..=rows {
+        let y = f64::from(row) * 30.0;
+        put("wall", 0.0, y, width, 15.0);
+        if row == rows {
+            break;
+        }
+        for column in 0..=columns {
+            let x = f64::from(column) * 20.0;
+            put("wall", x, y + 15.0, 10.0, 15.0);
+            if column < columns {
+                put("window", x + 10.0, y + 15.0, 10.0, 15.0);
+            }
+        }
+    }
+    Facade::new("windows", "cm", width, height, regions).unwrap()
+}
+
+#[test]
+fn a_grid_gets_columns_and_floors_and_its_windows_keep_their_size() {
+    let own = windows(4, 3);
+    for (columns, rows) in [(6, 3), (8, 5), (3, 2), (4, 4)] {
+        let want = windows(columns, rows);
+        let found = resized(&own, want.width, want.height).unwrap();
+        found.facade.check_tiling().unwrap();
+        let count = |f: &Facade| f.regions.iter().filter(|r| r.label == "window").count();
+        assert_eq!(count(&found.facade), count(&want));
+        assert!(found.scale.iter().all(|scale| (scale - 1.0).abs() < 1e-9));
+        assert!(found.cut.is_empty());
+    }
+}
+
+#[test]
+fn its_own_size_is_the_identity_and_one_window_is_stretched() {
+    let own = windows(4, 3);
+    assert_eq!(resized(&own, own.width, own.height).unwrap().facade, own);
+    let one = windows(1, 1);
+    let found = resized(&one, 2.0 * one.width, one.height).unwrap();
+    assert_eq!(found.facade.regions.len(), one.regions.len());
+    assert_eq!(found.scale, [2.0, 1.0]);
+    found.facade.check_tiling().unwrap();
+}
+
+#[test]
+fn the_unit_does_not_matter() {
+    let own = windows(5, 4);
+    let small = |f: &Facade, k: f64| {
+        let mut out = f.clone();
+        (out.width, out.height) = (k * f.width, k * f.height);
+        for region in &mut out.regions {
+            let r = region.rect;
+            region.rect = Rect::new(k * r.x, k * r.y, k * r.width, k * r.height);
+        }
+        out
+    };
+    let there = resized(&own, 170.0, 160.0).unwrap();
+    let back = resized(&small(&own, 0.01), 1.7, 1.6).unwrap();
+    assert_eq!(there.bands, back.bands);
+    assert_eq!(there.facade.regions.len(), back.facade.regions.len());
+}
