@@ -39,8 +39,8 @@ pub struct Open {
     journal: Option<Journal>,
     /// A warning of the document itself, not of its last edit.
     warning: Option<String>,
-    /// The view that was told last, and its revision.
-    told: Option<(u64, Value)>,
+    /// The last two views of a city, each with its revision: the one that a page shows, and the one that it asks for.
+    told: Vec<(u64, Value)>,
 }
 
 /// Why a document is not saved.
@@ -147,7 +147,7 @@ impl Open {
             source: None,
             journal: None,
             warning: None,
-            told: None,
+            told: Vec::new(),
         }
     }
 
@@ -316,16 +316,22 @@ impl Open {
         whole["warnings"] = json!(warnings);
         whole["log"] = json!(self.document.log());
         whole["milliseconds"] = self.milliseconds.into();
-        let view = state.view()?;
-        match &self.told {
-            Some((revision, told)) if shows == Some(*revision) => {
-                whole["difference"] = difference(told, &view);
-            }
-            _ => whole["view"] = view.clone(),
+        let revision = self.document.revision();
+        let of = |wanted: u64| self.told.iter().find(|(r, _)| *r == wanted);
+        let view = match of(revision) {
+            Some((_, view)) => view.clone(),
+            None => state.view()?,
+        };
+        match shows.and_then(of) {
+            Some((_, shown)) => whole["difference"] = difference(shown, &view),
+            None => whole["view"] = view.clone(),
         }
-        // Others are short.
-        if state.kind() == "city" {
-            self.told = Some((self.document.revision(), view));
+        // Views of others are short.
+        if state.kind() == "city" && of(revision).is_none() {
+            self.told.push((revision, view));
+            if self.told.len() > 2 {
+                self.told.remove(0);
+            }
         }
         Ok(whole)
     }
