@@ -2,7 +2,6 @@
 
 mod box_textures;
 mod citygml;
-mod closed;
 mod commands;
 mod compact;
 mod far_away;

@@ -172,7 +172,8 @@ fn sweep() {
     let at = |name: &str| folder.path().join(name);
     let facade = edifice::io::facade_json::to_string(&chequered());
     std::fs::write(at("chequered.facade.json"), facade).expect("a file");
-    let text = "study = \"facade_grammar/infer\"\ndata = [\"./chequered.facade.json\"]\nseeds = 2\n[base]\niterations = 100\n[[arm]]\nname = \"own\"\n";
+    let text = "study = \"facade_grammar/infer\"\ndata = [\"FILE\"]\nseeds = 2\n[base]\niterations = 100\n[[arm]]\nname = \"own\"\n";
+    let text = text.replace("FILE", &at("chequered.facade.json").to_string_lossy());
     std::fs::write(at("sweep.toml"), text).expect("a file");
     let studies = studies();
     let plan =

@@ -26,7 +26,7 @@ const SLOW: [&str; 14] = [
     "edifice model learn plans.csv --schema",
     "edifice building build sampled.csv",
 ];
-/// What slow lines make and later lines read, and what ships in its place.
+/// Files that slow lines make and later lines read, and the shipped files in their place.
 const MADE: [(&str, &str); 1] = [(
     "structure_completion/default.completion.json",
     "mine.completion.json",

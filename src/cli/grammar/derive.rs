@@ -17,11 +17,11 @@ use crate::print;
   edifice grammar derive fig9.grammar.json --width 800 --height 600 -o wide.svg
   edifice grammar derive joint.grammar.json --facade terrace_a --seed 7 -o terrace_a.png
 
-At its own size a grammar gives the facade that it was inferred from. At another size, columns that
-stand together are repeated or taken away together in all floors, floors likewise, and the rest is
-scaled. Where rules have relative sizes (~), these say what gives way: absolute sizes give way last
-and in proportion, with a warning; then edges are aligned, and terminals that are equal at the
-grammar's own size become equal again. --no-align derives each floor by its rules alone.
+At its own size a grammar gives the facade that it was inferred from. At another size, rules without
+a relative size (~) are made size-independent: their sizes become relative, but for thin structures
+such as window frames, and repeats fill the space. Absolute sizes give way last and in proportion,
+with a warning. Then edges are aligned, and terminals that are equal at the grammar's own size
+become equal again; --no-align leaves them where the rules put them.
 In a stochastic grammar the seed picks among the rules of each symbol.")]
 pub struct Args {
     /// Grammar to read: .grammar.json or .cga, also as .gz
@@ -38,7 +38,7 @@ pub struct Args {
     /// Facade of a joint grammar, by name or by number from 1 [default: the first]
     #[arg(long, value_name = "NAME")]
     facade: Option<String>,
-    /// At another size, derive each floor by its rules alone
+    /// At another size, leave edges where the rules put them
     #[arg(long)]
     no_align: bool,
     /// File to write: .facade.json, .svg, .png or .glb (in relief, metres)

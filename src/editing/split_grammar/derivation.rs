@@ -1,11 +1,9 @@
 //! A facade of a grammar, at its own or another size.
 
 use edifice_base::rng;
-use edifice_grammar::{
-    Derivation, Grammar, GrammarError, Operation, Size, derive_at, size_independent,
-};
-use edifice_layout::resize::{AlignError, align, resized};
-use edifice_shape::{Facade, LayoutError};
+use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
+use edifice_layout::resize::{AlignError, align};
+use edifice_shape::Facade;
 
 /// The wanted derivation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,13 +38,9 @@ pub enum DeriveError {
     /// Edges cannot be aligned.
     #[error(transparent)]
     Align(#[from] AlignError),
-    /// A derivation that is no tiling.
-    #[error(transparent)]
-    Layout(#[from] LayoutError),
 }
 
-/// Derives a start: as it is written at its own size; at another by whole columns and floors ([`resized`]) where its sizes
-/// are all absolute, else as its relative sizes say and with aligned edges.
+/// Derives a start: as it is written at its own size; at another, size-independent and with aligned edges.
 ///
 /// # Errors
 /// [`DeriveError`].
@@ -70,11 +64,6 @@ pub fn derived(grammar: &Grammar, wish: &Wish) -> Result<Derived, DeriveError> {
             unequal: Vec::new(),
         });
     }
-    // Where the author of the rules has not said what gives way, columns and floors repeat together.
-    let unsaid = !grammar
-        .rules
-        .iter()
-        .any(|rule| is_relative(&rule.operation));
     let grammar = size_independent(grammar);
     let derivation = at(&grammar, size)?;
     if !wish.align {
@@ -84,30 +73,10 @@ pub fn derived(grammar: &Grammar, wish: &Wish) -> Result<Derived, DeriveError> {
             unequal: Vec::new(),
         });
     }
-    if unsaid {
-        let banded = resized(&at(&grammar, own)?.facade, size.0, size.1)?;
-        return Ok(Derived {
-            facade: banded.facade,
-            derivation,
-            unequal: banded.cut,
-        });
-    }
     let aligned = align(&at(&grammar, own)?, &derivation)?;
     Ok(Derived {
         facade: aligned.facade,
         derivation,
         unequal: aligned.unequal,
     })
-}
-
-/// True if a size of a rule is relative.
-fn is_relative(operation: &Operation) -> bool {
-    let relative = |size: &Size| matches!(size, Size::Relative(_));
-    match operation {
-        Operation::Split { successors, .. }
-        | Operation::Repeat { successors, .. }
-        | Operation::SymSplit { successors, .. } => successors.iter().any(|s| relative(&s.size)),
-        Operation::RepeatAba { a, b, .. } => relative(&a.size) || relative(&b.size),
-        Operation::GridSplit { columns, rows, .. } => columns.iter().chain(rows).any(relative),
-    }
 }

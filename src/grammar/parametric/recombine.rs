@@ -3,8 +3,7 @@
 //! A facade is a sequence of strips (its floors, or its bays), each a symbol with counts. Where a strip `i` of one
 //! and a strip `j` of another agree in both, `a_1 ... a_i b_{j+1} ... b_m` is a sequence in which every strip
 //! stands beside a strip that it stands beside already. The sequence is neither that of the first nor that of the second; the number
-//! of strips stays between theirs. The second facade is drawn among the structures of the library, each as often as another, so that
-//! rare orders of floors take part as much as frequent ones: draws are more varied than the library. Across the strips the second facade is stretched so that the cuts of strip `j` fall on those of strip `i`,
+//! of strips stays between theirs. The second facade is drawn among those of the library. Across the strips the second facade is stretched so that the cuts of strip `j` fall on those of strip `i`,
 //! piecewise linearly: what is in line with them in the second facade is so in the result. Along them it is scaled so
 //! that both strips have one size.
 
@@ -86,12 +85,9 @@ impl Library {
         let Some((axis, own)) = strips(&first.parse, self.rules()) else {
             return Ok(None);
         };
-        let roots: Vec<Symbol> = self.tables().structure.roots().keys().copied().collect();
+        let members = self.members();
         for _ in 0..TRIES {
-            let root = roots[rng.random_range(0..roots.len())];
-            let alike = self.members().iter().filter(|m| m.parse.root == root);
-            let alike: Vec<&Member> = alike.collect();
-            let second = alike[rng.random_range(0..alike.len())];
+            let second = &members[rng.random_range(0..members.len())];
             let Some((other_axis, other)) = strips(&second.parse, self.rules()) else {
                 continue;
             };

@@ -4,7 +4,6 @@ use super::building_types::BuildingTypes;
 use super::components::Component;
 use super::parse_tree::ParseTree;
 use super::rulebook::{RuleUse, Rulebook};
-use super::simplify;
 use super::types::Types;
 use edifice_grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
@@ -142,7 +141,7 @@ pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGramm
         rulebook,
         patterns,
     } = *found;
-    let mut grammar = terminals(city, components, types, detail, exact);
+    let mut grammar = terminals(city, components, types, detail, true);
     let mut counts = vec![0usize; rulebook.rules.len()];
     for used in rulebook.uses.iter().flatten() {
         counts[used.rule] += 1;
@@ -206,12 +205,6 @@ pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGramm
         .push(InstanceRule::new(AXIOM, 1.0, successors));
     grammar.rules.extend(rules);
     grammar.rules.extend(patterns);
-    if !exact {
-        let most = city.triangles();
-        simplify::templates(&mut grammar, components, types, most, &|c, mesh| {
-            on_grid(c, mesh, detail)
-        });
-    }
     grammar
 }
 
@@ -372,18 +365,14 @@ fn part(
     )
 }
 
-/// A representative's mesh: coplanar triangles merged, coordinates in steps of the box.
+/// A representative's mesh: coplanar triangles merged, coordinates in steps of the box. Where it shows textures, its triangles
+/// follow each other side by side.
 fn template(component: &Component, detail: &Detail, merge: bool) -> TriangleMesh {
     // A stated template was merged when it was made.
-    let mesh = match merge && component.stated.is_none() {
+    let mut mesh = match merge && component.stated.is_none() {
         true => merge_coplanar(&component.mesh, detail.coplanar),
         false => component.mesh.clone(),
     };
-    on_grid(component, mesh, detail)
-}
-
-/// A mesh with its coordinates in steps of the box. Where it shows textures, its triangles follow each other side by side.
-fn on_grid(component: &Component, mut mesh: TriangleMesh, detail: &Detail) -> TriangleMesh {
     let grid = |v: f64| (v * detail.box_steps).round() / detail.box_steps;
     for p in &mut mesh.positions {
         *p = [grid(p[0] + 0.5) - 0.5, grid(p[1] + 0.5) - 0.5, grid(p[2])];

@@ -12,8 +12,6 @@ const ROUNDS: usize = 3;
 const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
-/// Price of a triangle of a representative in mismatched volume, in cubic metres: about a byte.
-const TRIANGLE: f64 = 3.0;
 
 /// The distinct components as a table of features.
 pub(super) struct Table<'a> {
@@ -30,7 +28,6 @@ pub(super) struct Table<'a> {
 pub(super) struct Form<'a> {
     heights: &'a [f32],
     looks: &'a [f32],
-    triangles: usize,
 }
 
 impl<'a> Form<'a> {
@@ -38,7 +35,6 @@ impl<'a> Form<'a> {
         Self {
             heights: &component.heights,
             looks: &component.looks,
-            triangles: component.mesh.triangles.len(),
         }
     }
 }
@@ -59,8 +55,7 @@ impl Table<'_> {
         (medoids, uses)
     }
 
-    /// The member of each type with the least mismatched volume to the others and price of its triangles, of those nearest to
-    /// the mean.
+    /// The member of each type with the least mismatched volume to the others, of those nearest to the mean.
     fn choose(&self, uses: &[Use], count: usize, before: &[usize]) -> Vec<usize> {
         let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (i, u) in uses.iter().enumerate() {
@@ -82,7 +77,7 @@ impl Table<'_> {
             near.extend(before.get(kind));
             let mut best = (f64::INFINITY, 0);
             for m in near {
-                let mut cost = TRIANGLE * self.forms[m].triangles as f64;
+                let mut cost = 0.0;
                 for &i in list {
                     let turned = uses[i].quarter;
                     cost += self.weights[i] * mismatch(self.forms[m], self.forms[i], turned);
@@ -132,15 +127,7 @@ fn mismatch(template: Form, component: Form, quarter: u8) -> f64 {
 /// As [`mismatch`]; infinite as soon as it is not below `limit`.
 fn mismatch_below(template: Form, component: Form, quarter: u8, limit: f64) -> f64 {
     let apart = looks_apart(template.looks, component.looks, quarter);
-    heights_apart_below(template.heights, component.heights, quarter, limit - apart) + apart
-}
-
-/// Mean difference of two height maps, the first one turned by quarters counterclockwise.
-pub(super) fn heights_apart(template: &[f32], component: &[f32], quarter: u8) -> f64 {
-    heights_apart_below(template, component, quarter, f64::INFINITY)
-}
-
-fn heights_apart_below(template: &[f32], component: &[f32], quarter: u8, limit: f64) -> f64 {
+    let (template, component, limit) = (template.heights, component.heights, limit - apart);
     let last = CELLS - 1;
     let cells = (CELLS * CELLS) as f64;
     let mut sum = 0.0f32;
@@ -159,7 +146,7 @@ fn heights_apart_below(template: &[f32], component: &[f32], quarter: u8, limit: 
             return f64::INFINITY;
         }
     }
-    f64::from(sum) / cells
+    f64::from(sum) / cells + apart
 }
 
 /// Weighted mean difference of looks: a template that is turned by a quarter shows on each side what it had on the one before.

@@ -16,7 +16,7 @@
 //! | --- | --- | --- |
 //! | features | vertex count of the simplified outline, width, height, depth, rotation, standardized and weighted | 16 x 16 height map in the box, turned to a canonical half turn; 12 principal components, weighted by volume |
 //! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, over the four quarter turns |
-//! | template | nearest to the mean, or of fewest triangles | medoid, gaps closed, simplified until the city has no more triangles than the input; 12 bits |
+//! | template | nearest to the mean, or of fewest triangles | medoid, coplanar triangles merged, 12 bits |
 //! | buildings | no types of their own | rules with parameters (`rulebook`): a type's building, put into the width, depth and heights of another |
 //! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for, and [`patterns`] of them that repeat |
 //!
@@ -60,7 +60,6 @@ pub mod parse_tree;
 pub mod patterns;
 pub mod proceduralize;
 mod rulebook;
-mod simplify;
 mod stacks;
 pub mod synthesis;
 pub mod type_graph;

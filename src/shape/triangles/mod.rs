@@ -9,7 +9,6 @@
 //! - [`SideView`], [`BoxTexture`]: what is seen of a box from its sides and from above; box mapping.
 //! - [`OrientedBox`]: the smallest rectangle around a plan, extruded.
 //! - [`merge_coplanar`]: the same surface with fewer triangles.
-//! - [`stitched`], [`filled`]: the same surface without gaps.
 //! - [`VolumeRaster`]: columns of solid material on a square grid; volumetric intersection over union.
 //! - [`SurfaceDistance`]: exact distances from points to triangles.
 
@@ -26,7 +25,6 @@ mod profile;
 mod raster;
 mod repair;
 mod side_view;
-mod stitch;
 mod triangulate;
 
 pub use box_texture::{BoxTexture, box_coordinates, box_view};
@@ -42,5 +40,4 @@ pub use profile::SectionProfile;
 pub use raster::{Overlap, VolumeRaster, height_map, solid_intervals};
 pub use repair::{MeshFaults, repair};
 pub use side_view::{SideView, TOP, VIEWS, view_size};
-pub use stitch::{filled, is_closed, stitched};
 pub use triangulate::polygon_triangles;
