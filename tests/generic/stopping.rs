@@ -13,6 +13,9 @@ use edifice::methods::city_proceduralization::{self, proceduralize};
 use edifice::methods::facade_grammar::{self, infer};
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
 use edifice::methods::structure_completion::model::Model;
+use edifice::model::Table;
+use edifice::model::network::structure::{Score, Search, score, search, search_while};
+use edifice::rng::stream;
 use edifice::shape::{Facade, Rect, Region};
 use edifice::{Ended, Progress, Watch, unwatched};
 use edifice_editing::examples::example;
@@ -20,6 +23,7 @@ use edifice_editing::work::Work;
 use edifice_experiments::studies;
 use edifice_experiments::sweep::Plan;
 use edifice_experiments::sweep::run::{Wanted, run};
+use rand::RngExt;
 
 /// Processor time from a stop to the return, at most.
 const PATIENCE: Duration = Duration::from_millis(200);
@@ -113,6 +117,44 @@ fn grammar_inference() {
     });
     assert_eq!(found.ended, Ended::Interrupted);
     evaluate(&found.grammar, &joint, &costs).expect("derives both");
+}
+
+/// Columns of two categories, each like the one before.
+fn chain(columns: usize, rows: usize) -> Table {
+    let mut rng = stream(1, "stopping", 0);
+    let mut table = Table::new();
+    let mut last: Vec<bool> = (0..rows).map(|_| rng.random()).collect();
+    for column in 0..columns {
+        for bit in &mut last {
+            *bit ^= rng.random_bool(0.2);
+        }
+        let bits = last.iter().copied().map(Some).collect::<Vec<_>>();
+        table = table.binary(format!("x{column}"), bits).expect("a column");
+    }
+    table
+}
+
+#[test]
+fn structure_search() {
+    let data = chain(30, 1_000);
+    let whole = search(&data, &Search::default(), 1).expect("a structure");
+    assert!(!whole.interrupted);
+    for after in [2, 10, 30] {
+        let found = stopped(after, |watch| {
+            let goes_on = || watch(Progress::stage("moves")).is_continue();
+            search_while(&data, &Search::default(), 1, &goes_on).expect("ends")
+        });
+        assert!(found.interrupted);
+        assert!(found.score <= whole.score && found.moves <= whole.moves);
+        // Its score is that of its edges.
+        let index = |name: &str| name[1..].parse::<usize>().expect("a number");
+        let mut parents = vec![Vec::new(); 30];
+        for (parent, child) in &found.edges {
+            parents[index(child)].push(index(parent));
+        }
+        let again = score(&data, &parents, Score::Bdeu(1.0)).expect("a score");
+        assert!((again - found.score).abs() < 1e-6);
+    }
 }
 
 /// A facade of windows in columns and rows.

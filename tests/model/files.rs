@@ -195,7 +195,7 @@ fn structures_are_learned_by_command() {
     std::fs::write(at("real.csv"), "w\n1.5\n2.25\n3.125\n4.5\n5.5\n6.5\n7.5\n").unwrap();
     assert!(!Path::new(&at("no.bif")).exists());
     // Numbers become categories, and the cuts are said.
-    let done = edifice(&["structure", &at("real.csv"), "-o", &at("real.bif")]);
+    let mut done = edifice(&["structure", &at("real.csv"), "-o", &at("real.bif")]);
     let done = done.assert().success();
     let text = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
     assert!(
