@@ -129,7 +129,7 @@ fn chain(columns: usize, rows: usize) -> Table {
             *bit ^= rng.random_bool(0.2);
         }
         let bits = last.iter().copied().map(Some).collect::<Vec<_>>();
-        table = table.binary(format!("x{column}"), bits).expect("a column");
+        table = table.binary(&format!("x{column}"), bits).expect("a column");
     }
     table
 }
