@@ -16,8 +16,8 @@ struct House(Option<f64>, Option<f64>, Option<usize>, Option<usize>);
 fn house(i: usize) -> House {
     let noise = |m: usize| ((i * 7919 + m * 104_729) % 1009) as f64 / 1009.0 - 0.5;
     let large = i % 5 < 2;
-    let width = [7.0, 14.0][usize::from(large)] + 3.0 * f64::from(u8::from(i % 3 == 0));
-    let garage = usize::from(large != (i % 11 == 0));
+    let width = [7.0, 14.0][usize::from(large)] + 3.0 * f64::from(u8::from(i.is_multiple_of(3)));
+    let garage = usize::from(large != (i.is_multiple_of(11)));
     let roof = if large { i % 2 } else { 1 + i % 7 / 5 };
     House(
         Some(width + noise(1)),
