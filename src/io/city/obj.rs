@@ -1,5 +1,5 @@
 //! Cities as Wavefront OBJ: each object (`o`), or group (`g`) in a file without objects, is a building; z up, metres. The faces
-//! of a file with neither are split into buildings by the surfaces that they make up ([`super::shells`]).
+//! of a file with neither are split into buildings by the surfaces that they make up (`shells`).
 //! Faces of more than three corners are cut into fans. Materials (`.mtl`) and texture coordinates are read as what
 //! the surface looks like; [`write()`] writes them beside the file.
 

@@ -31,7 +31,7 @@ pub enum Contender {
     /// The hierarchical model of an encoded table ([`Encoding`]), with lateral edges from categories as well: none of the
     /// paper's. At an atom its density is a probability.
     Extended,
-    /// The same with all real columns in one group, which share one hidden variable ([`one_group`]).
+    /// The same with all real columns in one group, which share one hidden variable (`one_group`).
     OneGroup,
     /// One Gaussian over all columns.
     Gaussian,

@@ -33,7 +33,7 @@ const SETTLED: f64 = 1e-4;
 const EM_ROUNDS: usize = 100;
 
 /// As [`search_while`](super::search_while), where cells may be missing at random; of complete rows the same. The score of what
-/// is found is then that of [the module](self), of the known cells alone.
+/// is found is then that of the module, of the known cells alone.
 ///
 /// Time: up to twenty searches, and as many runs of EM of an exact answer a row and round.
 ///
