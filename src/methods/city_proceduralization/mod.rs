@@ -46,6 +46,7 @@
 //! - The mean of Eq. 9 is taken over the pairs of neighbours of the two types.
 
 pub mod building_types;
+mod candidates;
 pub mod components;
 pub mod emission;
 pub mod facades;
@@ -59,7 +60,10 @@ mod orientation;
 pub mod parse_tree;
 pub mod patterns;
 pub mod proceduralize;
+mod pruning;
 mod rulebook;
+mod search;
+pub mod settings;
 mod stacks;
 pub mod synthesis;
 pub mod type_graph;
@@ -69,7 +73,6 @@ pub mod windows;
 pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
-pub use proceduralize::{
-    Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize, smallest,
-};
+pub use proceduralize::{Proceduralized, Structure, from_components, proceduralize};
+pub use search::{largest, smallest};
+pub use settings::{Budget, Mode, Precision, ProceduralizeError, Representative, Settings};
