@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::components::{CELLS, Component};
 use super::nearest::Nearest;
-use super::types::Use;
+use super::uses::Use;
 
 /// Number of rounds of finding medoids.
 const ROUNDS: usize = 3;

@@ -68,6 +68,7 @@ mod stacks;
 pub mod synthesis;
 pub mod type_graph;
 pub mod types;
+mod uses;
 pub mod windows;
 
 pub use components::{Component, Decomposition, decompose};

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::gain::Gain;
 use super::medoids::{CANDIDATES, Price, Table, mismatch};
 use super::nearest::Nearest;
-use super::types::Use;
+use super::uses::Use;
 
 /// A type near to a component: what it costs, in cubic metres, and how it is used.
 #[derive(Clone, Copy)]

@@ -9,19 +9,11 @@ use super::features::{Points, paper_features};
 use super::medoids::{Form, Price, Table, square};
 use super::pruning::pruned;
 use super::settings::{ProceduralizeError, Representative};
+pub use super::uses::Use;
 use edifice_base::{Progress, Watched, rng};
 use edifice_cluster::{WardTree, kmeans, lloyd, means, ward};
 use edifice_shape::triangles::merge_coplanar;
 use rayon::prelude::*;
-
-/// A type's use for a component.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Use {
-    /// Index of the type.
-    pub kind: usize,
-    /// Quarter turns of the template, counterclockwise.
-    pub quarter: u8,
-}
 
 /// The types of a city.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,11 +9,12 @@ mod place;
 
 use rustc_hash::FxHashMap;
 
+use super::error::CompactError;
 use super::identity::Identities;
 use super::integers::{BitTree, Natural, Whole, plain};
 use super::range_coder::{Bit, Coder};
 use super::rows::{Footprint, PLACES};
-use super::{CompactError, Steps};
+use super::unit::Steps;
 use edifice_grammar::instance::InstanceRule;
 
 /// Most placements of a file.

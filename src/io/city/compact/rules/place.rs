@@ -1,6 +1,7 @@
 //! One placement: its symbol, turn, place and size.
 
-use super::{CompactError, MOST_PLACEMENTS, Near, Pose, Rules};
+use super::{MOST_PLACEMENTS, Near, Pose, Rules};
+use crate::city::compact::error::CompactError;
 use crate::city::compact::integers::{bits_of, plain};
 use crate::city::compact::range_coder::Coder;
 use crate::city::compact::rows::Footprint;
