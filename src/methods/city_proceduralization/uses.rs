@@ -1,4 +1,4 @@
-//! How a type is used.
+//! The use of a type for a component.
 
 /// A type's use for a component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -102,7 +102,7 @@ impl Footprint {
         }
     }
 
-    /// Where a neighbour stands: the place beside this one that it is nearest to, and how far it is from there.
+    /// The place beside this one that a neighbour is nearest to, and how far it is from there.
     pub(super) fn told(&self, neighbour: &Footprint, full: i64) -> (usize, [i64; 2]) {
         let away = [0, 1].map(|k| neighbour.at[k].wrapping_sub(self.at[k]));
         let own = Turn::of(self.turn, full).undo(away);
@@ -116,7 +116,7 @@ impl Footprint {
         places.min_by_key(cost).unwrap_or((PLACES - 1, own))
     }
 
-    /// Where the neighbour is of which [`Footprint::told`] told this; its own place is not looked at.
+    /// The middle of the neighbour of which [`Footprint::told`] told this; its own place is not looked at.
     pub(super) fn found(
         &self,
         neighbour: &Footprint,

@@ -91,7 +91,7 @@ pub(super) struct Rules<'a, C> {
     parametric: bool,
     /// True if buildings follow each other in rows: from version 3 on.
     rows: bool,
-    /// Whether a rule is the axiom's, the place of a building beside the one before it, and the rest, by the place.
+    /// True for the axiom's rules; the place of a building beside the one before it, and the rest, by the place.
     is_top: Bit,
     beside: BitTree,
     rest: [[Whole; 2]; PLACES],
