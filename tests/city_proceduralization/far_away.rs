@@ -27,6 +27,11 @@ fn corners() -> Vec<[[f64; 3]; 8]> {
 }
 
 fn text(named: bool) -> String {
+    shifted(named, [0.0; 2])
+}
+
+/// The file with its buildings elsewhere.
+fn shifted(named: bool, [east, north]: [f64; 2]) -> String {
     let faces = [
         [1, 4, 3, 2],
         [5, 6, 7, 8],
@@ -41,6 +46,7 @@ fn text(named: bool) -> String {
             out += &format!("o house{b}\n");
         }
         for [x, y, z] in corners {
+            let (x, y) = (x + east, y + north);
             out += &format!("v {x:.6} {y:.6} {z:.6}\n");
         }
         for face in faces {
@@ -225,4 +231,72 @@ fn a_file_without_objects_is_split_into_buildings() {
         (alone.buildings.len(), alone.buildings[0].id.as_str()),
         (1, "alone")
     );
+}
+
+#[test]
+fn a_picture_is_the_same_wherever_the_city_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |shift: [f64; 2]| -> Vec<f64> {
+        std::fs::write(folder.path().join("c.obj"), shifted(true, shift)).unwrap();
+        Command::cargo_bin("edifice")
+            .unwrap()
+            .args(["city", "draw", "c.obj", "--size", "240x180", "-o", "c.png"])
+            .current_dir(folder.path())
+            .assert()
+            .success();
+        let picture = image::open(folder.path().join("c.png")).unwrap().to_luma8();
+        picture.into_raw().into_iter().map(f64::from).collect()
+    };
+    let spread = |grey: &[f64]| {
+        let n = grey.len() as f64;
+        let mean = grey.iter().sum::<f64>() / n;
+        (grey.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / n).sqrt()
+    };
+    let here = drawn([-391_234.0, -5_820_123.0]);
+    assert!(spread(&here) >= 10.0, "{}", spread(&here));
+    let there = drawn([1e7, 1e7]);
+    let apart: f64 = here.iter().zip(&there).map(|(a, b)| (a - b).abs()).sum();
+    let apart = apart / here.len() as f64;
+    assert!(apart < 0.5, "{apart}");
+    assert!((spread(&here) - spread(&there)).abs() < 0.5);
+}
+
+#[test]
+fn a_building_far_from_the_others_does_not_hold_up_a_synthesis() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("c.obj"), text(true)).unwrap();
+    let run = |args: &[&str]| {
+        let mut command = Command::cargo_bin("edifice").unwrap();
+        command.args(["city"]).args(args).current_dir(folder.path());
+        command.timeout(std::time::Duration::from_secs(60)).assert()
+    };
+    run(&["proceduralize", "c.obj", "-o", "g.city-grammar.json"]).success();
+    let read = || std::fs::read_to_string(folder.path().join("g.city-grammar.json")).unwrap();
+    let mut grammar: Value = serde_json::from_str(&read()).unwrap();
+    let polygon = "0,0,60,0,60,60,0,60";
+    for (far, done) in [(9e8, true), (-1e18, false), (1e308, false)] {
+        let rules = grammar["rules"].as_array_mut().unwrap();
+        let city = rules.iter_mut().find(|r| r["symbol"] == "City").unwrap();
+        city["successors"][1]["at"] = serde_json::json!([far, 0.0, 0.0]);
+        std::fs::write(
+            folder.path().join("far.city-grammar.json"),
+            grammar.to_string(),
+        )
+        .unwrap();
+        let asked = run(&[
+            "synthesize",
+            "far.city-grammar.json",
+            "--polygon",
+            polygon,
+            "-o",
+            "s.obj",
+        ]);
+        if done {
+            asked.success();
+        } else {
+            let asked = asked.failure();
+            let said = String::from_utf8_lossy(&asked.get_output().stderr);
+            assert!(said.contains("is to be copied"), "{said}");
+        }
+    }
 }

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::components::Component;
 use super::features::Points;
 use super::orientation::is_symmetric;
-use super::proceduralize::ProceduralizeError;
+use super::settings::ProceduralizeError;
 use edifice_cluster::{shortest_description, ward};
 
 /// Differences of features below this are no differences: half a per cent of a length.

@@ -294,6 +294,11 @@ impl Nearest {
         let far = |j: usize| (landmarks[j].at[0] - at[0]).hypot(landmarks[j].at[1] - at[1]);
         let mut near: Vec<(f64, usize)> = Vec::new();
         for ring in 0..=self.widest {
+            // Where one stands far from the others, looking at all is shorter than looking at all rings between.
+            if (2 * ring + 1).saturating_mul(2 * ring + 1) > 4 * landmarks.len() as i64 + 9 {
+                near = (0..landmarks.len()).map(|j| (far(j), j)).collect();
+                break;
+            }
             let edge = |d: i64| d.abs() == ring;
             let cells = (-ring..=ring).flat_map(|u| (-ring..=ring).map(move |v| (u, v)));
             for (u, v) in cells.filter(|&(u, v)| edge(u) || edge(v)) {

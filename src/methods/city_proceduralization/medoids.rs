@@ -1,17 +1,29 @@
-//! Representatives of types: medoids under the mismatched volume.
+//! Representatives of types: medoids under the mismatched volume, at the price of triangles.
+//!
+//! With D the mismatched volume of all components in their types, B the triangles of the templates and U those of all components'
+//! templates, types minimize D B U^a: few bytes and few derived triangles count beside what is mismatched, in proportion and without
+//! a unit. Around given types that is the sum D + p B + q U with the prices p = D / B and q = a D / U, in cubic metres for a triangle;
+//! prices are those of the round before.
 
 use rayon::prelude::*;
 
 use super::components::{CELLS, Component};
 use super::nearest::Nearest;
-use super::types::Use;
+use super::uses::Use;
 
 /// Number of rounds of finding medoids.
 const ROUNDS: usize = 3;
 /// Representatives that a component is compared with, nearest in features first.
-const CANDIDATES: usize = 12;
+pub(super) const CANDIDATES: usize = 12;
 /// Members that are tried as medoid, nearest to the mean first.
 const TRIED: usize = 12;
+/// Members that are tried as medoid beside them: of the nearest to the mean, those of fewest triangles.
+const SIMPLE: usize = 8;
+const AMONG: usize = 64;
+/// The power a of derived triangles.
+const DERIVED: f64 = 0.2;
+/// Cost of a template beside its triangles, in triangles.
+const TEMPLATE: f64 = 6.0;
 
 /// The distinct components as a table of features.
 pub(super) struct Table<'a> {
@@ -20,7 +32,20 @@ pub(super) struct Table<'a> {
     pub(super) d: usize,
     /// Volume of each, in cubic metres.
     pub(super) weights: Vec<f64>,
+    /// Components that are equal to each.
+    pub(super) counts: Vec<f64>,
+    /// Triangles of each as a template.
+    pub(super) triangles: Vec<f64>,
     pub(super) forms: Vec<Form<'a>>,
+}
+
+/// Prices of triangles, in cubic metres.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Price {
+    /// Of a triangle of a template.
+    pub(super) template: f64,
+    /// Of a derived triangle.
+    pub(super) derived: f64,
 }
 
 /// The form by which components are compared, up to quarter turns: height map and greys.
@@ -44,19 +69,55 @@ impl Table<'_> {
         &self.rows[i * self.d..(i + 1) * self.d]
     }
 
-    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component. Medoids and uses.
-    pub(super) fn medoids(&self, mut uses: Vec<Use>, count: usize) -> (Vec<usize>, Vec<Use>) {
-        let mut medoids = self.choose(&uses, count, &[]);
+    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component. Medoids, uses and prices.
+    pub(super) fn medoids(
+        &self,
+        mut uses: Vec<Use>,
+        count: usize,
+    ) -> (Vec<usize>, Vec<Use>, Price) {
+        let mut medoids = self.choose(&uses, count, &[], Price::default());
+        let mut price = Price::default();
         for _ in 0..ROUNDS {
-            uses = self.assign(&medoids, &uses);
-            medoids = self.choose(&uses, count, &medoids);
+            price = self.price(&medoids, &uses);
+            uses = self.assign(&medoids, &uses, price);
+            price = self.price(&medoids, &uses);
+            medoids = self.choose(&uses, count, &medoids, price);
         }
-        let uses = self.assign(&medoids, &uses);
-        (medoids, uses)
+        let uses = self.assign(&medoids, &uses, price);
+        (medoids, uses, price)
     }
 
-    /// The member of each type with the least mismatched volume to the others, of those nearest to the mean.
-    fn choose(&self, uses: &[Use], count: usize, before: &[usize]) -> Vec<usize> {
+    /// The prices around given types.
+    fn price(&self, medoids: &[usize], uses: &[Use]) -> Price {
+        let apart = |i: usize| {
+            let Use { kind, quarter } = uses[i];
+            self.weights[i] * mismatch(self.forms[medoids[kind]], self.forms[i], quarter)
+        };
+        let apart: Vec<f64> = (0..uses.len()).into_par_iter().map(apart).collect();
+        let apart: f64 = apart.iter().sum();
+        let mut used = vec![false; medoids.len()];
+        uses.iter().for_each(|u| used[u.kind] = true);
+        let templates: f64 = (medoids.iter().zip(&used))
+            .filter(|(_, used)| **used)
+            .map(|(&m, _)| self.cost(m))
+            .sum();
+        let derived: f64 = (uses.iter().zip(&self.counts))
+            .map(|(u, count)| count * self.triangles[medoids[u.kind]])
+            .sum();
+        Price {
+            template: apart / templates.max(1.0),
+            derived: DERIVED * apart / derived.max(1.0),
+        }
+    }
+
+    /// Cost of a template, in triangles.
+    pub(super) fn cost(&self, medoid: usize) -> f64 {
+        self.triangles[medoid] + TEMPLATE
+    }
+
+    /// The member of each type with the least mismatched volume to the others and price of triangles, of those nearest to the mean
+    /// and the simple ones near it.
+    fn choose(&self, uses: &[Use], count: usize, before: &[usize], price: Price) -> Vec<usize> {
         let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (i, u) in uses.iter().enumerate() {
             members[u.kind].push(i);
@@ -73,11 +134,18 @@ impl Table<'_> {
             let mut near = list.clone();
             let far = |i: usize| square(self.row(i), &mean);
             near.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-            near.truncate(TRIED);
+            near.truncate(AMONG);
+            if near.len() > TRIED {
+                let triangles = |i: &usize| self.triangles[*i];
+                near[TRIED..].sort_by(|a, b| triangles(a).total_cmp(&triangles(b)));
+                near.truncate(TRIED + SIMPLE);
+            }
             near.extend(before.get(kind));
+            let instances: f64 = list.iter().map(|&i| self.counts[i]).sum();
             let mut best = (f64::INFINITY, 0);
             for m in near {
-                let mut cost = 0.0;
+                let mut cost =
+                    price.template * self.cost(m) + price.derived * instances * self.triangles[m];
                 for &i in list {
                     let turned = uses[i].quarter;
                     cost += self.weights[i] * mismatch(self.forms[m], self.forms[i], turned);
@@ -95,15 +163,18 @@ impl Table<'_> {
     }
 
     /// The best of the present type and the types whose medoids are nearest in features.
-    fn assign(&self, medoids: &[usize], uses: &[Use]) -> Vec<Use> {
+    fn assign(&self, medoids: &[usize], uses: &[Use], price: Price) -> Vec<Use> {
         let nearest = Nearest::new(&self.rows, self.d, medoids);
         let best = |i: usize| {
             let mut best = (f64::INFINITY, uses[i]);
             let near = nearest.of(self.row(i), CANDIDATES).into_iter();
             for kind in near.chain([uses[i].kind]) {
+                let medoid = medoids[kind];
+                let triangles = self.counts[i] * self.triangles[medoid];
+                let price = price.derived * triangles / self.weights[i];
                 for quarter in 0..4 {
-                    let (medoid, own) = (self.forms[medoids[kind]], self.forms[i]);
-                    let cost = mismatch_below(medoid, own, quarter, best.0);
+                    let (form, own) = (self.forms[medoid], self.forms[i]);
+                    let cost = price + mismatch_below(form, own, quarter, best.0 - price);
                     if cost < best.0 {
                         best = (cost, Use { kind, quarter });
                     }
@@ -120,7 +191,7 @@ const LOOKS_WEIGHT: f64 = 0.25;
 
 /// Mean difference of two height maps, the first one turned by quarters counterclockwise: the mismatched
 /// share of the box; and that of looks.
-fn mismatch(template: Form, component: Form, quarter: u8) -> f64 {
+pub(super) fn mismatch(template: Form, component: Form, quarter: u8) -> f64 {
     mismatch_below(template, component, quarter, f64::INFINITY)
 }
 

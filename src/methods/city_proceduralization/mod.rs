@@ -15,7 +15,7 @@
 //! | | `paper` | `best` |
 //! | --- | --- | --- |
 //! | features | vertex count of the simplified outline, width, height, depth, rotation, standardized and weighted | 16 x 16 height map in the box, turned to a canonical half turn; 12 principal components, weighted by volume |
-//! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, over the four quarter turns |
+//! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume and the price of triangles, over the four quarter turns; of twice as many types those of most worth |
 //! | template | nearest to the mean, or of fewest triangles | medoid, coplanar triangles merged, 12 bits |
 //! | buildings | no types of their own | rules with parameters (`rulebook`): a type's building, put into the width, depth and heights of another |
 //! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for, and [`patterns`] of them that repeat |
@@ -46,6 +46,7 @@
 //! - The mean of Eq. 9 is taken over the pairs of neighbours of the two types.
 
 pub mod building_types;
+mod candidates;
 pub mod components;
 pub mod emission;
 pub mod facades;
@@ -59,17 +60,20 @@ mod orientation;
 pub mod parse_tree;
 pub mod patterns;
 pub mod proceduralize;
+mod pruning;
 mod rulebook;
+mod search;
+pub mod settings;
 mod stacks;
 pub mod synthesis;
 pub mod type_graph;
 pub mod types;
+mod uses;
 pub mod windows;
 
 pub use components::{Component, Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
-pub use proceduralize::{
-    Budget, Mode, Precision, ProceduralizeError, Proceduralized, Representative, Settings,
-    Structure, from_components, largest, proceduralize, smallest,
-};
+pub use proceduralize::{Proceduralized, Structure, from_components, proceduralize};
+pub use search::{largest, smallest};
+pub use settings::{Budget, Mode, Precision, ProceduralizeError, Representative, Settings};

@@ -6,109 +6,14 @@ use super::building_types::{BuildingTypes, building_types};
 use super::components::{Component, Decomposition, decompose};
 use super::emission::{Detail, Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
-use super::parse_tree::{Detection, ParseTree, grow};
+use super::parse_tree::{ParseTree, grow};
 use super::patterns::patterns;
 use super::rulebook::Stacks;
-use super::type_graph::DistanceWeights;
-use super::types::{TypeTree, Types, distinct_types, paper_types, stated_types};
+use super::settings::{Budget, Mode, Precision, ProceduralizeError, Settings};
+use super::types::{Priced, TypeTree, Types, distinct_types, paper_types, stated_types};
 use edifice_base::{Ended, Progress, Watch, Watched};
-use edifice_cluster::WardError;
-use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Repeated};
+use edifice_grammar::instance::{InstanceGrammar, Repeated};
 use edifice_shape::triangles::{BoxTexture, City};
-
-/// The method of finding types.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mode {
-    /// As the paper writes.
-    Paper,
-    /// Geometric features, Ward, medoids.
-    Best,
-}
-
-/// The number of templates that the grammar may have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Budget {
-    /// One for each distinct component.
-    All,
-    /// This number of templates.
-    Templates(usize),
-    /// The number of components, halved this many times.
-    Level(u32),
-}
-
-/// The precision in which a grammar is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// Millimetres, ten-thousandths of degrees, templates on 16 bits.
-    Millimetre,
-    /// Centimetres, hundredths of degrees, templates on 12 bits.
-    Centimetre,
-    /// Decimetres, half degrees, templates on 7 bits: for few bytes.
-    Decimetre,
-}
-
-/// The member that represents a type in `paper`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Representative {
-    /// The member nearest to the mean.
-    Nearest,
-    /// The member of fewest polygons ("-poly").
-    FewestPolygons,
-}
-
-/// Settings of the method.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// The method of finding types.
-    pub mode: Mode,
-    /// The number of templates that the grammar may have.
-    pub budget: Budget,
-    /// Weights W of the eleven features, in `paper`.
-    pub weights: [f64; 11],
-    /// The member that represents a type, in `paper`.
-    pub representative: Representative,
-    /// Weights of Eq. 11.
-    pub distance: DistanceWeights,
-    /// The method of finding communities, in `paper`.
-    pub detection: Detection,
-    /// Seed of k-means, in `paper`.
-    pub seed: u64,
-    /// The precision of numbers, in `best`. `None`: millimetres where each component has its own template,
-    /// centimetres otherwise.
-    pub precision: Option<Precision>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            mode: Mode::Best,
-            budget: Budget::Level(4),
-            weights: [1.0; 11],
-            representative: Representative::Nearest,
-            distance: DistanceWeights::default(),
-            detection: Detection::GirvanNewman,
-            seed: 1,
-            precision: None,
-        }
-    }
-}
-
-/// Why a city cannot be proceduralized.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ProceduralizeError {
-    /// There is nothing to proceduralize.
-    #[error("no building has a triangle with an area")]
-    Empty,
-    /// It was stopped before anything was found.
-    #[error("stopped before the first building was cut")]
-    Stopped,
-    /// Features cannot be clustered.
-    #[error("features: {0}")]
-    Ward(#[from] WardError),
-    /// The grammar made is not sound: an error of this program.
-    #[error("the grammar is not sound: {0}")]
-    Grammar(#[from] InstanceGrammarError),
-}
 
 /// A city as a grammar, and what it was made from.
 #[derive(Debug, Clone)]
@@ -186,12 +91,12 @@ pub fn from_components(
 }
 
 /// A city of which grammars of several budgets are made.
-struct Prepared<'a> {
+pub(super) struct Prepared<'a> {
     city: &'a City,
-    components: &'a [Component],
+    pub(super) components: &'a [Component],
     settings: &'a Settings,
     best: Option<Best<'a>>,
-    watched: &'a Watched<'a>,
+    pub(super) watched: &'a Watched<'a>,
 }
 
 /// The part of method `best` that is the same for all budgets.
@@ -207,14 +112,14 @@ struct Best<'a> {
 }
 
 /// A grammar without what it was made from.
-struct Made {
-    grammar: InstanceGrammar,
+pub(super) struct Made {
+    pub(super) grammar: InstanceGrammar,
     types: Types,
     structure: Structure,
 }
 
 impl Made {
-    fn of(self, decomposition: Decomposition, watched: &Watched) -> Proceduralized {
+    pub(super) fn of(self, decomposition: Decomposition, watched: &Watched) -> Proceduralized {
         let ended = match decomposition.ended {
             Ended::Finished => watched.ended(),
             Ended::Interrupted => Ended::Interrupted,
@@ -230,7 +135,7 @@ impl Made {
 }
 
 impl<'a> Prepared<'a> {
-    fn new(
+    pub(super) fn new(
         city: &'a City,
         decomposition: &'a Decomposition,
         settings: &'a Settings,
@@ -278,7 +183,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    fn grammar(&self, budget: Budget) -> Made {
+    pub(super) fn grammar(&self, budget: Budget) -> Made {
         let (city, components, settings) = (self.city, self.components, self.settings);
         let n = components.len();
         let k = match budget {
@@ -309,13 +214,14 @@ impl<'a> Prepared<'a> {
         };
         let stated = best.stated.as_ref();
         let stated = stated.filter(|s| s.representatives.len() <= k);
-        let (types, detail) = match (stated, budget) {
-            (Some(stated), Budget::All) => (stated.clone(), Detail::MILLIMETRE),
-            (Some(stated), _) => (stated.clone(), Detail::CENTIMETRE),
-            (None, Budget::All) => (distinct_types(components), Detail::MILLIMETRE),
+        let free = Priced::free;
+        let (priced, detail) = match (stated, budget) {
+            (Some(stated), Budget::All) => (free(stated.clone()), Detail::MILLIMETRE),
+            (Some(stated), _) => (free(stated.clone()), Detail::CENTIMETRE),
+            (None, Budget::All) => (free(distinct_types(components)), Detail::MILLIMETRE),
             (None, _) => match &best.types {
                 Some(types) => (types.cut(k), Detail::CENTIMETRE),
-                None => (distinct_types(components), Detail::CENTIMETRE),
+                None => (free(distinct_types(components)), Detail::CENTIMETRE),
             },
         };
         let detail = match settings.precision {
@@ -332,96 +238,22 @@ impl<'a> Prepared<'a> {
         };
         let exact = stated.is_some() || budget == Budget::All;
         let (buildings, patterns) = (&best.buildings, &best.patterns);
-        let rulebook = best.stacks.rulebook(&types, k);
+        let rulebook = best.stacks.rulebook(&priced, k);
         let found = Found {
             city,
             components,
-            types: &types,
+            types: &priced.types,
             buildings,
             rulebook: &rulebook,
             patterns,
         };
         Made {
             grammar: emit(&found, &detail, exact),
-            types,
+            types: priced.types,
             structure: Structure::Patterns {
                 buildings: buildings.clone(),
                 patterns: patterns.clone(),
             },
         }
     }
-}
-
-/// Steps of the search for a number of templates.
-const SEARCH_STEPS: usize = 7;
-
-/// The grammar of the most templates that `fits`, on the assumption that fewer templates fit as well; `None`
-/// when one template does not fit. Stopped by `watch`, it is the most of those tried.
-///
-/// # Errors
-/// [`ProceduralizeError`], or those of `fits`.
-pub fn largest<E: From<ProceduralizeError>>(
-    city: &City,
-    settings: &Settings,
-    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
-    watch: &Watch,
-) -> Result<Option<Proceduralized>, E> {
-    search(city, settings, fits, true, watch)
-}
-
-/// The grammar of the fewest templates that `fits`, on the assumption that more templates fit as well; `None`
-/// when a template for each component does not fit. Stopped by `watch`, it is the fewest of those tried.
-///
-/// # Errors
-/// [`ProceduralizeError`], or those of `fits`.
-pub fn smallest<E: From<ProceduralizeError>>(
-    city: &City,
-    settings: &Settings,
-    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
-    watch: &Watch,
-) -> Result<Option<Proceduralized>, E> {
-    search(city, settings, fits, false, watch)
-}
-
-/// Bisection over the logarithm of the number of templates.
-fn search<E: From<ProceduralizeError>>(
-    city: &City,
-    settings: &Settings,
-    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
-    many: bool,
-    watch: &Watch,
-) -> Result<Option<Proceduralized>, E> {
-    let watched = &Watched::new(watch);
-    let decomposition = decompose(city, true, &watched.inner());
-    let prepared = Prepared::new(city, &decomposition, settings, watched)?;
-    let best = bisected(&prepared, fits, many)?;
-    Ok(best.map(|made| made.of(decomposition, watched)))
-}
-
-fn bisected<E: From<ProceduralizeError>>(
-    prepared: &Prepared,
-    fits: impl Fn(&InstanceGrammar) -> Result<bool, E>,
-    many: bool,
-) -> Result<Option<Made>, E> {
-    let (mut low, mut high) = (1, prepared.components.len());
-    let sure = prepared.grammar(Budget::Templates(if many { low } else { high }));
-    let mut best = fits(&sure.grammar)?.then_some(sure);
-    for _ in 0..SEARCH_STEPS {
-        let middle = ((low as f64 * high as f64).sqrt() as usize).max(low);
-        let goes_on = (prepared.watched).goes_on(Progress::stage("numbers of templates"));
-        if best.is_none() || middle == low || middle == high || !goes_on {
-            break;
-        }
-        let made = prepared.grammar(Budget::Templates(middle));
-        let fit = fits(&made.grammar)?;
-        if fit {
-            best = Some(made);
-        }
-        if fit == many {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Ok(best)
 }

@@ -12,13 +12,14 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::building_types::{BuildingTypes, projected};
+use super::candidates::{Candidate, Near, best};
 use super::components::Component;
 use super::gain::Gain;
 use super::medoids::square;
 use super::nearest::Nearest;
-use super::proceduralize::ProceduralizeError;
+use super::settings::ProceduralizeError;
 use super::stacks::Stack;
-use super::types::Types;
+use super::types::Priced;
 use edifice_cluster::{WardTree, ward};
 
 /// Cells along a side of a level's features, in stacks of few levels and of more than [`FEW`].
@@ -30,8 +31,6 @@ const SURPLUS: f64 = 2.0;
 const LEAST: usize = 8;
 /// Candidates that a building is compared with.
 const NEAR: usize = 20;
-/// Bases at least as square as this may be turned by a quarter.
-const SQUARE: f64 = 0.75;
 /// Steps of features within which they are equal.
 const STEPS: f64 = 255.0;
 /// Cost of a rule beside that of each of its levels, in levels.
@@ -79,21 +78,6 @@ struct Class {
     weights: Vec<f64>,
     tree: WardTree,
     volume: f64,
-}
-
-/// A building that a rule may be made from: its class, and which of the distinct members it is.
-struct Candidate {
-    class: usize,
-    row: usize,
-    maps: Vec<f32>,
-}
-
-/// A candidate near a building: its number, the best quarter turn, the mismatched volume.
-#[derive(Clone, Copy)]
-struct Near {
-    candidate: usize,
-    quarter: u8,
-    cost: f64,
 }
 
 impl<'a> Stacks<'a> {
@@ -161,14 +145,14 @@ impl<'a> Stacks<'a> {
     }
 
     /// At most `count` rules, but one for each number of levels, over templates of these `types`.
-    pub(super) fn rulebook(&self, types: &Types, count: usize) -> Rulebook {
+    pub(super) fn rulebook(&self, types: &Priced, count: usize) -> Rulebook {
         let candidates = self.candidates(types, count);
         let near = self.near(&candidates);
         let chosen = self.choose(&candidates, &near, count);
         self.assigned(&candidates, &near, &chosen)
     }
 
-    fn candidates(&self, types: &Types, count: usize) -> Vec<Candidate> {
+    fn candidates(&self, priced: &Priced, count: usize) -> Vec<Candidate> {
         let all: usize = self.classes.iter().map(|c| c.members.len()).sum();
         let volume: f64 = self.classes.iter().map(|c| c.volume).sum();
         let mut out = Vec::new();
@@ -182,10 +166,13 @@ impl<'a> Stacks<'a> {
         let drawn = out.into_par_iter().map(|(class, row)| {
             let c = &self.classes[class];
             let parts = &c.parts[c.distinct[row]];
+            let types = &priced.types;
+            let triangles = parts.iter().map(|&i| priced.triangles[types.uses[i].kind]);
             Candidate {
                 class,
                 row,
                 maps: Stack::ruled(self.components, parts, types),
+                price: priced.price.derived * triangles.sum::<f64>(),
             }
         });
         drawn.collect()
@@ -340,30 +327,6 @@ impl<'a> Stacks<'a> {
             uses,
         }
     }
-}
-
-/// The best quarter turn of a candidate for a stack.
-fn best(stack: &Stack, candidate: usize, of: &Candidate) -> Near {
-    let quarters: &[u8] = match stack.aspect >= SQUARE {
-        true => &[0, 1, 2, 3],
-        false => &[0, 2],
-    };
-    let mut best = Near {
-        candidate,
-        quarter: 0,
-        cost: f64::INFINITY,
-    };
-    for &quarter in quarters {
-        let cost = stack.mismatch(&of.maps, quarter);
-        if cost < best.cost {
-            best = Near {
-                quarter,
-                cost,
-                ..best
-            };
-        }
-    }
-    best
 }
 
 impl Class {

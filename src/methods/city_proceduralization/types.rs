@@ -6,19 +6,14 @@ use rustc_hash::FxHashMap;
 
 use super::components::Component;
 use super::features::{Points, paper_features};
-use super::medoids::{Form, Table, square};
-use super::proceduralize::{ProceduralizeError, Representative};
+use super::medoids::{Form, Price, Table, square};
+use super::pruning::pruned;
+use super::settings::{ProceduralizeError, Representative};
+pub use super::uses::Use;
 use edifice_base::{Progress, Watched, rng};
 use edifice_cluster::{WardTree, kmeans, lloyd, means, ward};
-
-/// A type's use for a component.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Use {
-    /// Index of the type.
-    pub kind: usize,
-    /// Quarter turns of the template, counterclockwise.
-    pub quarter: u8,
-}
+use edifice_shape::triangles::merge_coplanar;
+use rayon::prelude::*;
 
 /// The types of a city.
 #[derive(Debug, Clone, PartialEq)]
@@ -197,6 +192,7 @@ impl<'a> TypeTree<'a> {
         let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
         let mut distinct: Vec<usize> = Vec::new();
         let mut weights: Vec<f64> = Vec::new();
+        let mut counts: Vec<f64> = Vec::new();
         let mut group = Vec::with_capacity(components.len());
         for (i, c) in components.iter().enumerate() {
             let key: Vec<u8> = c
@@ -209,9 +205,11 @@ impl<'a> TypeTree<'a> {
             let g = *known.entry(key).or_insert_with(|| {
                 distinct.push(i);
                 weights.push(0.0);
+                counts.push(0.0);
                 distinct.len() - 1
             });
             weights[g] += c.volume.max(1e-3);
+            counts[g] += 1.0;
             group.push(g);
         }
         let rows: Vec<f64> = distinct
@@ -220,10 +218,16 @@ impl<'a> TypeTree<'a> {
             .collect();
         let tree = ward(&rows, d, &weights)?;
         let forms = distinct.iter().map(|&i| Form::of(&components[i]));
+        let triangles = distinct.par_iter().map(|&i| {
+            let merged = merge_coplanar(&components[i].mesh, COPLANAR);
+            merged.triangles.len() as f64
+        });
         let table = Table {
             rows,
             d,
             weights,
+            counts,
+            triangles: triangles.collect(),
             forms: forms.collect(),
         };
         Ok(Self {
@@ -234,30 +238,74 @@ impl<'a> TypeTree<'a> {
         })
     }
 
-    /// The hierarchy cut at `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
-    /// quarter turns.
-    /// Types that stand for more components come first.
-    pub fn cut(&self, k: usize) -> Types {
+    /// The hierarchy cut at more than `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
+    /// quarter turns; then the `k` types of most worth, again with rounds of medoids.
+    /// Types that stand for more components come first. Also their prices.
+    pub(super) fn cut(&self, k: usize) -> Priced {
         let Table {
             rows, d, weights, ..
         } = &self.table;
-        let k = k.clamp(1, self.distinct.len());
-        let mut labels = self.tree.cut(k);
-        if k < self.distinct.len() {
-            let zero = vec![0.0; k * d];
+        let all = self.distinct.len();
+        let k = k.clamp(1, all);
+        let wide = ((SURPLUS * k as f64) as usize).clamp(k, all);
+        let mut labels = self.tree.cut(wide);
+        if wide < all {
+            let zero = vec![0.0; wide * d];
             let centres = means(rows, *d, weights, &labels, zero);
             labels = lloyd(rows, *d, weights, centres, LLOYD_STEPS).labels;
         }
         let (labels, count) = renumbered(&labels);
         let uses = labels.into_iter().map(|kind| Use { kind, quarter: 0 });
-        let (medoids, uses) = self.table.medoids(uses.collect(), count);
+        let (mut medoids, mut uses, mut price) = self.table.medoids(uses.collect(), count);
+        if medoids.len() > k {
+            (medoids, uses) = pruned(&self.table, &medoids, &uses, price, k);
+            (medoids, uses, price) = self.table.medoids(uses, medoids.len());
+        }
         let types = Types {
             representatives: medoids.iter().map(|&m| self.distinct[m]).collect(),
             uses: self.group.iter().map(|&g| uses[g]).collect(),
         };
-        types.by_use()
+        let types = types.by_use();
+        let mut triangles = vec![0.0; self.group.len()];
+        for (&i, &own) in self.distinct.iter().zip(&self.table.triangles) {
+            triangles[i] = own;
+        }
+        Priced {
+            triangles: types
+                .representatives
+                .iter()
+                .map(|&i| triangles[i])
+                .collect(),
+            types,
+            price,
+        }
     }
 }
+
+/// Types with what their triangles cost.
+#[derive(Debug, Clone)]
+pub(super) struct Priced {
+    pub(super) types: Types,
+    /// Triangles of each template.
+    pub(super) triangles: Vec<f64>,
+    pub(super) price: Price,
+}
+
+impl Priced {
+    /// Types whose triangles cost nothing.
+    pub(super) fn free(types: Types) -> Self {
+        Self {
+            triangles: vec![0.0; types.representatives.len()],
+            types,
+            price: Price::default(),
+        }
+    }
+}
+
+/// Types from which those that are asked for are chosen, for each of them.
+const SURPLUS: f64 = 2.0;
+/// Share of the box within which triangles are coplanar, as where centimetres are written.
+const COPLANAR: f64 = 1e-3;
 
 impl Types {
     /// The same types, those of most uses first; those of no use are left out.

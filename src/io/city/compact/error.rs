@@ -4,7 +4,7 @@ use super::unit::Steps;
 use edifice_grammar::instance::InstanceGrammarError;
 
 /// The version written.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 /// The oldest version that is read.
 pub(super) const FIRST: u16 = 1;

@@ -1,4 +1,4 @@
-//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 and 2.
+//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 to 3.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -7,16 +7,17 @@
 //! | 4 | CRC-32 of all that follows |
 //! | 4 | bytes of the next part |
 //! | | names, identifiers, attributes, steps and textures: JSON, deflated (RFC 1951) |
-//! | 4 | bytes of the next part (version 2) |
+//! | 4 | bytes of the next part (from version 2 on) |
 //! | | templates, then rules and the numbers of instances, by a range coder with learnt probabilities |
 //! | to the end | residuals: where parts of instances stand, by a coder of their own; empty where there are none |
 //!
-//! Whoever needs no residuals leaves the last part unread. In version 1, rules have no parameters, and residuals follow the
+//! Whoever needs no residuals leaves the last part unread. Until version 2, buildings follow Hilbert's curve; from version 3 on they go along
+//! rows, each told by its place beside the one before it ([`rows`]). In version 1, rules have no parameters, and residuals follow the
 //! rules in one part.
 //!
 //! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
 //! any of the steps that are tried; otherwise it is rounded to the finest. A file holds what the text
-//! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (along Hilbert's curve, so that neighbours
+//! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (so that neighbours
 //! follow each other), that of a template's corners and triangles, and corners without a triangle.
 
 mod error;
@@ -25,6 +26,7 @@ mod integers;
 mod mesh;
 mod order;
 mod range_coder;
+mod rows;
 mod rules;
 mod steps;
 mod unit;
@@ -116,7 +118,7 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     }
     let mut sorted = grammar.rules.clone();
     for rule in sorted.iter_mut().filter(|r| r.symbol == grammar.axiom) {
-        order::along_curve(&mut rule.successors, &steps);
+        order::along_rows(&mut rule.successors, &steps);
     }
     let mut rules = Rules::new(
         coder,
@@ -124,7 +126,7 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
         &symbols,
         templates,
         Identities::default(),
-        true,
+        VERSION,
     );
     let mut made = rules.rules(&sorted, axiom)?;
     let mut residuals = Vec::new();
@@ -229,7 +231,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
     }
     let axiom = symbols.get(texts.axiom).cloned();
     let identities = Identities::new(texts.ids, texts.attributes);
-    let mut rules = Rules::new(coder, steps, &symbols, count, identities, version > FIRST);
+    let mut rules = Rules::new(coder, steps, &symbols, count, identities, version);
     let mut made = rules.rules(&[], texts.axiom)?;
     if version > FIRST && !residuals.is_empty() {
         if rules.switch(Decoder::new(residuals)).exhausted() {

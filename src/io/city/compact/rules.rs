@@ -1,20 +1,21 @@
 //! Rules and placements.
 //!
-//! A placement is told by its difference from what is likely: a building stands near the one before it and is turned like it, a
+//! A placement is told by its difference from what is likely: a building stands beside the one before it and is turned like it, a
 //! part stands on the part below it, a part of an instance is where its rule puts it, and the numbers of an instance are near those of
 //! the instance of the same symbol before it.
 
 mod parts;
+mod place;
 
 use rustc_hash::FxHashMap;
 
 use super::error::CompactError;
 use super::identity::Identities;
-use super::integers::{BitTree, Natural, Whole, bits_of, plain};
+use super::integers::{BitTree, Natural, Whole, plain};
 use super::range_coder::{Bit, Coder};
-use super::steps::{SHARES, in_steps};
+use super::rows::{Footprint, PLACES};
 use super::unit::Steps;
-use edifice_grammar::instance::{InstanceRule, Placement};
+use edifice_grammar::instance::InstanceRule;
 
 /// Most placements of a file.
 const MOST_PLACEMENTS: u64 = 8_000_000;
@@ -29,6 +30,18 @@ struct Pose {
     at: [i64; 3],
     turn: i64,
     size: [i64; 3],
+    /// Width and depth of an instance of a rule with parameters; otherwise 0.
+    plan: [i64; 2],
+}
+
+impl Pose {
+    fn footprint(&self) -> Footprint {
+        Footprint {
+            at: [self.at[0], self.at[1]],
+            turn: self.turn,
+            size: self.plan,
+        }
+    }
 }
 
 /// The reference of a placement, from which its numbers are differences.
@@ -76,11 +89,22 @@ pub(super) struct Rules<'a, C> {
     flags: [Bit; 4],
     /// True if rules may have parameters and factors: not in version 1.
     parametric: bool,
+    /// True if buildings follow each other in rows: from version 3 on.
+    rows: bool,
+    /// True for the axiom's rules; the place of a building beside the one before it, and the rest, by the place.
+    is_top: Bit,
+    beside: BitTree,
+    rest: [[Whole; 2]; PLACES],
+    /// Levels of the first rule of each symbol, where they are needed to read the axiom's.
+    levels_of: FxHashMap<String, usize>,
     levels: Natural,
     again: Bit,
     /// The numbers of the instance of each symbol before, and what codes them: the first of a symbol, then others, by parameter.
     numbers_before: FxHashMap<usize, Vec<i64>>,
-    numbers_models: [[Whole; PARAMETERS]; 2],
+    numbers_models: Vec<[Whole; PARAMETERS]>,
+    /// The numbers of the instance before, of any symbol, and its symbol.
+    last_numbers: Vec<i64>,
+    last_symbol: Option<usize>,
 }
 
 /// Parameters with probabilities of their own.
@@ -103,7 +127,7 @@ impl<'a, C: Coder> Rules<'a, C> {
         symbols: &'a [String],
         templates: usize,
         identities: Identities,
-        parametric: bool,
+        version: u16,
     ) -> Self {
         let numbers = symbols.iter().enumerate().map(|(i, s)| (s.as_str(), i));
         let rules = symbols.len() - templates;
@@ -123,11 +147,18 @@ impl<'a, C: Coder> Rules<'a, C> {
             counts: Natural::default(),
             weight: Natural::default(),
             flags: [Bit::default(); 4],
-            parametric,
+            parametric: version > 1,
+            rows: version > 2,
+            is_top: Bit::default(),
+            beside: BitTree::below(PLACES),
+            rest: Default::default(),
+            levels_of: FxHashMap::default(),
             levels: Natural::default(),
             again: Bit::default(),
             numbers_before: FxHashMap::default(),
-            numbers_models: Default::default(),
+            numbers_models: vec![Default::default(); parts::NUMBER_CONTEXTS],
+            last_numbers: Vec::new(),
+            last_symbol: None,
         }
     }
 
@@ -148,16 +179,46 @@ impl<'a, C: Coder> Rules<'a, C> {
         axiom: usize,
     ) -> Result<Vec<InstanceRule>, CompactError> {
         let count = self.count(given.len())?;
-        let mut rules = Vec::new();
+        let mut rules: Vec<Option<InstanceRule>> = vec![None; count.min(given.len())];
+        let mut later = Vec::new();
         for i in 0..count {
-            rules.push(self.rule(given.get(i), axiom)?);
+            let own = given.get(i);
+            let top = own.is_some_and(|r| self.numbers.get(r.symbol.as_str()) == Some(&axiom));
+            // Who reads the axiom's buildings needs to know the rules' levels.
+            let rule = match self.rows && self.coder.bit(&mut self.is_top, top) {
+                true => {
+                    later.push(i);
+                    None
+                }
+                false => Some(self.rule(own, axiom)?),
+            };
+            match rules.get_mut(i) {
+                Some(place) => *place = rule,
+                None => rules.push(rule),
+            }
+            if self.coder.exhausted() {
+                return Err(CompactError::Truncated);
+            }
         }
+        for rule in rules.iter().flatten() {
+            let levels = self.levels_of.entry(rule.symbol.clone());
+            levels.or_insert(rule.levels);
+        }
+        for &i in &later {
+            rules[i] = Some(self.rule(given.get(i), axiom)?);
+        }
+        let mut rules: Vec<InstanceRule> = rules.into_iter().flatten().collect();
         let first = parts::first_rules(&rules);
-        for i in 0..rules.len() {
+        let mut told = vec![false; rules.len()];
+        later.iter().for_each(|&i| told[i] = true);
+        for i in (0..rules.len()).filter(|&i| !told[i]) {
             let mut successors = std::mem::take(&mut rules[i].successors);
             for (k, placed) in successors.iter_mut().enumerate() {
                 let given = given.get(i).map(|r| &r.successors[k]);
-                placed.numbers = self.numbers(&placed.symbol, given, &rules, &first)?;
+                let count = first
+                    .get(&placed.symbol)
+                    .map_or(0, |&r| rules[r].parameters());
+                placed.numbers = self.numbers(&placed.symbol, given, count)?;
             }
             rules[i].successors = successors;
         }
@@ -207,153 +268,6 @@ impl<'a, C: Coder> Rules<'a, C> {
             levels,
             scale,
             successors,
-        })
-    }
-
-    /// A placement without its parts and numbers; with `shares`, its lengths are shares and levels.
-    fn placement(
-        &mut self,
-        near: Near,
-        other: &Pose,
-        given: Option<&Placement>,
-        shares: bool,
-    ) -> Result<(Placement, Pose), CompactError> {
-        self.placements += 1;
-        if self.placements > MOST_PLACEMENTS {
-            return Err(CompactError::TooLarge("placements"));
-        }
-        if self.coder.exhausted() {
-            return Err(CompactError::Truncated);
-        }
-        let unit = if shares { SHARES } else { self.steps.length };
-        let own = match given {
-            Some(given) => self.pose(given, unit)?,
-            None => Pose::default(),
-        };
-        let usual = match near {
-            Near::Like => self
-                .coder
-                .bit(&mut self.as_usual, own.symbol == other.symbol),
-            // The next building often is of the same type.
-            Near::Before if self.parametric => {
-                self.coder.bit(&mut self.again, own.symbol == other.symbol)
-            }
-            _ => false,
-        };
-        let symbol = match usual {
-            true if other.symbol >= self.symbols.len() => {
-                return Err(CompactError::Index("symbol"));
-            }
-            true => other.symbol,
-            false => {
-                let is_rule = own.symbol >= self.templates;
-                let is_rule = self.coder.bit(&mut self.is_rule[near as usize], is_rule);
-                self.number(is_rule, own.symbol)?
-            }
-        };
-        let is_rule = symbol >= self.templates;
-        let context = near as usize * 2 + usize::from(is_rule);
-        let coder = &mut self.coder;
-        let models = &mut self.models[context];
-        let full = self.steps.turn * 360;
-        let quarter = full / 4;
-        // Quarter turns, then what is left, from -1/8 to 1/8 of a turn.
-        let away = (own.turn - other.turn + quarter / 2).rem_euclid(full);
-        let quarters = self.quarter[context].code(coder, (away / quarter) as usize) as i64;
-        let rest = models
-            .turn
-            .code(coder, away - quarters * quarter - quarter / 2);
-        let turn = (other
-            .turn
-            .wrapping_add(quarters * quarter)
-            .wrapping_add(rest))
-        .rem_euclid(full);
-        let mut like = if shares { [SHARES; 3] } else { other.size };
-        if quarters % 2 == 1 {
-            like.swap(0, 1);
-        }
-        let mut at = other.at;
-        if near == Near::Below {
-            at[2] = at[2].wrapping_add(other.size[2]);
-        }
-        for (axis, at) in at.iter_mut().enumerate() {
-            let away = own.at[axis].wrapping_sub(*at);
-            *at = at.wrapping_add(models.at[axis].code(coder, away));
-        }
-        let mut size = [0; 3];
-        let mut factor = 1.0;
-        let below = matches!(near, Near::Below | Near::Like) && other.symbol < self.templates;
-        let stands = below || shares;
-        if is_rule {
-            let given = given.map_or(1.0, |g| g.size[0]);
-            if !coder.bit(&mut models.factor, given == 1.0) {
-                factor = plain(coder, given);
-            }
-        } else if stands {
-            for axis in 0..3 {
-                // The height of what stands on a part says nothing of its own.
-                let like = if near == Near::Below && axis == 2 && !shares {
-                    0
-                } else {
-                    like[axis]
-                };
-                let change = models.change[axis].code(coder, own.size[axis].wrapping_sub(like));
-                size[axis] = like.wrapping_add(change);
-            }
-        } else {
-            size[0] = models.size[0].code(coder, own.size[0] as u64) as i64;
-            let depth = models.depth.entry(bits_of(size[0] as u64)).or_default();
-            size[1] = depth.code(coder, own.size[1] as u64) as i64;
-            size[2] = models.size[1].code(coder, own.size[2] as u64) as i64;
-        }
-        let pose = Pose {
-            symbol,
-            at,
-            turn,
-            size,
-        };
-        let id = given.and_then(|g| g.id.as_ref());
-        let id = self.identities.id(coder, id)?;
-        let attributes = given.map(|g| &g.attributes);
-        let attributes = self.identities.attributes(coder, attributes)?;
-        let length = |v: i64| v as f64 / unit as f64;
-        let placed = Placement {
-            symbol: self.symbols[symbol].clone(),
-            at: at.map(length),
-            turn: turn as f64 / self.steps.turn as f64,
-            size: if is_rule {
-                [factor; 3]
-            } else {
-                size.map(length)
-            },
-            id,
-            attributes,
-            parts: Vec::new(),
-            numbers: Vec::new(),
-        };
-        Ok((placed, pose))
-    }
-
-    /// A placement in steps, `unit` of them in a length of 1.
-    fn pose(&self, placed: &Placement, unit: i64) -> Result<Pose, CompactError> {
-        let symbol = self.numbers.get(placed.symbol.as_str()).copied();
-        let symbol = symbol.ok_or(CompactError::Index("symbol"))?;
-        let length = |v: f64| in_steps(v, unit);
-        let [x, y, z] = placed.at;
-        let [w, d, h] = match symbol < self.templates {
-            true => placed.size,
-            false => [0.0; 3],
-        };
-        let turn = in_steps(placed.turn, self.steps.turn)?;
-        let mut size = [length(w)?, length(d)?, length(h)?];
-        if symbol < self.templates {
-            size = size.map(|v| v.max(1));
-        }
-        Ok(Pose {
-            symbol,
-            at: [length(x)?, length(y)?, length(z)?],
-            turn: turn.rem_euclid(360 * self.steps.turn),
-            size,
         })
     }
 

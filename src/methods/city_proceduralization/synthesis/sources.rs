@@ -19,6 +19,9 @@ pub(super) const HEIGHTS: usize = 2;
 /// No building reaches farther in the plan, in metres.
 const LARGEST: f64 = 5000.0;
 
+/// No building stands farther from the origin, in metres: beyond, cells of the plan are not told apart any more.
+const FARTHEST: f64 = 1e9;
+
 /// A building of the grammar's city, to be copied.
 pub(super) struct Source {
     /// The placements under the axiom: one symbol, or the templates of a building.
@@ -72,6 +75,15 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
             });
         }
         if let Some((low, high)) = mesh.bounds() {
+            let far = (0..2).map(|k| low[k].abs().max(high[k].abs()));
+            let far = far.fold(0.0, f64::max);
+            if far > FARTHEST {
+                return Err(InstanceGrammarError::Number {
+                    place: format!("building {id:?}"),
+                    what: "coordinate of a building that is to be copied, in metres",
+                    value: far,
+                });
+            }
             let extent = (high[0] - low[0]).max(high[1] - low[1]);
             if extent > LARGEST {
                 return Err(InstanceGrammarError::Number {
