@@ -13,6 +13,7 @@ mod picture;
 mod plausibility;
 mod published;
 mod results;
+mod settings;
 pub mod study;
 mod timing;
 mod trial;
