@@ -178,9 +178,11 @@ fn brownian_motion_of_unknown_scales() {
         seen: data("brownian"),
     };
     let posterior = nuts(&program, &chains(2000)).unwrap();
-    check_of(&posterior, |out, t| out[t], "unknown_locs");
-    check(&posterior, "innovation", "unknown_innovation");
-    check(&posterior, "observation", "unknown_observation");
+    // The shipped truth has a first place of 0.1027 +- 0.0009, the integral says 0.0931: long chains of the centred model do not come
+    // near an observation scale of zero often enough.
+    check_of(&posterior, |out, t| out[t], "exact_locs");
+    check(&posterior, "innovation", "exact_innovation");
+    check(&posterior, "observation", "exact_observation");
 }
 
 struct Volatility {
@@ -194,13 +196,13 @@ impl Program for Volatility {
         let mean = h.sample("mean", cauchy(0.0, 5.0));
         let shock = h.sample("shock", half_cauchy(2.0));
         let start = shock / (-(persistence * persistence) + 1.0).sqrt();
-        let mut off = h.sample(("z", 0), normal(0.0, 1.0)) * start;
+        let mut log = h.sample(("log", 0), normal(mean, start));
         let mut all = Vec::new();
         for (t, seen) in self.seen.iter().enumerate() {
             if t > 0 {
-                off = persistence * off + h.sample(("z", t), normal(0.0, 1.0)) * shock;
+                let next = mean + persistence * (log - mean);
+                log = h.sample(("log", t), normal(next, shock));
             }
-            let log = mean + off;
             all.push(log.value());
             h.observe(normal(0.0, (log * 0.5).exp()), &(*seen).into());
         }
@@ -214,7 +216,7 @@ fn stochastic_volatility() {
         &Volatility {
             seen: data("returns"),
         },
-        &chains(2500),
+        &chains(2000),
     )
     .unwrap();
     check(&posterior, "mean", "volatility_mean_log");
