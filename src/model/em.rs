@@ -55,7 +55,8 @@ pub trait Em {
     /// E step: expected sufficient statistics under `model`, and `log P(O | Θ)`.
     ///
     /// # Errors
-    /// Parameters that the data contradict.
+    /// Parameters that the data contradict; [`ModelError::Interrupted`] where the model was told to end within the step: a run then ends
+    /// with what it has.
     fn expect(&self, model: &Self::Model) -> Result<(Self::Stats, f64), ModelError>;
 
     /// M step: the parameters of highest expected complete-data log posterior.
@@ -175,7 +176,13 @@ pub(crate) fn run_kept<E: Em>(
             outcome = Outcome::Interrupted;
             break;
         }
-        let (next_stats, next_likelihood) = em.expect(&next)?;
+        let (next_stats, next_likelihood) = match em.expect(&next) {
+            Err(ModelError::Interrupted) => {
+                outcome = Outcome::Interrupted;
+                break;
+            }
+            other => other?,
+        };
         let next_posterior = next_likelihood + em.log_prior(&next);
         let gain = next_posterior - log_posterior;
         if gain.is_nan() || gain < 0.0 {

@@ -20,6 +20,9 @@ pub enum ModelError {
         /// The things of which there are none: `rows`, `columns`, `groups`, ...
         what: &'static str,
     },
+    /// A watch ended the call before there was a result.
+    #[error("ended before there was a result")]
+    Interrupted,
     /// Two columns, variables or groups share a name.
     #[error("`{name}` is declared twice")]
     Duplicate {

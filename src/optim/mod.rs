@@ -27,6 +27,7 @@ pub mod qp;
 pub mod qp_problem;
 mod run;
 pub mod tempering;
+mod triplets;
 
 pub use limits::{Answer, Limits};
 pub use run::{Outcome, Run, Step, tell};

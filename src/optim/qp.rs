@@ -13,13 +13,13 @@
 use std::time::Duration;
 
 use argmin::core::{Error as ArgminError, Executor, KV, Problem, Solver, State, TerminationReason};
-use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
 pub use super::qp_problem::{QpError, QuadraticProgram, Row};
 use super::run::{Outcome, Search};
+use super::triplets::Triplets;
 
 /// Limits of a run of [`solve`], whose example uses the default: 200 iterations, no limit of time, tolerance 1e-9. A limit
 /// that is reached is an [`Outcome`], not an error.
@@ -163,34 +163,38 @@ fn outcome(status: SolverStatus) -> Outcome {
 /// Clarabel's form: equalities, then inequalities, then bounds as rows of one matrix.
 fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Solution, QpError> {
     let n = program.dimension();
-    let mut rows = Triplets::default();
-    for row in &program.equalities {
-        rows.push(row.terms.iter().copied(), row.right);
+    let terms = |rows: &[Row]| rows.iter().map(|row| row.terms.len()).sum::<usize>();
+    let size = terms(&program.equalities) + terms(&program.inequalities) + 2 * n;
+    let (mut rows, mut right) = (Triplets::with_capacity(size), Vec::new());
+    for row in program.equalities.iter().chain(&program.inequalities) {
+        for &(column, value) in &row.terms {
+            rows.entry(right.len(), column, value);
+        }
+        right.push(row.right);
     }
-    let equalities = rows.count();
-    for row in &program.inequalities {
-        rows.push(row.terms.iter().copied(), row.right);
-    }
+    let equalities = program.equalities.len();
     // The rows of the bounds.
     let (mut upper_at, mut lower_at) = (vec![None; n], vec![None; n]);
     for i in 0..n {
         if program.upper[i] < f64::INFINITY {
-            upper_at[i] = Some(rows.count());
-            rows.push([(i, 1.0)], program.upper[i]);
+            upper_at[i] = Some(right.len());
+            rows.entry(right.len(), i, 1.0);
+            right.push(program.upper[i]);
         }
         if program.lower[i] > f64::NEG_INFINITY {
-            lower_at[i] = Some(rows.count());
-            rows.push([(i, -1.0)], -program.lower[i]);
+            lower_at[i] = Some(right.len());
+            rows.entry(right.len(), i, -1.0);
+            right.push(-program.lower[i]);
         }
     }
     let mut cones = Vec::new();
     if equalities > 0 {
         cones.push(SupportedConeT::ZeroConeT(equalities));
     }
-    if rows.count() > equalities {
-        cones.push(SupportedConeT::NonnegativeConeT(rows.count() - equalities));
+    if right.len() > equalities {
+        cones.push(SupportedConeT::NonnegativeConeT(right.len() - equalities));
     }
-    let mut upper = Triplets::default();
+    let mut upper = Triplets::with_capacity(program.quadratic.len());
     for &(i, j, value) in &program.quadratic {
         upper.entry(i.min(j), i.max(j), value);
     }
@@ -208,7 +212,6 @@ fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Soluti
         .build()
         .map_err(|e| QpError::Solver(e.to_string()))?;
     let p = upper.matrix(n, n);
-    let right = std::mem::take(&mut rows.right);
     let a = rows.matrix(right.len(), n);
     let mut solver = DefaultSolver::new(&p, &program.linear, &a, &right, &cones, settings)
         .map_err(|e| QpError::Solver(e.to_string()))?;
@@ -240,39 +243,6 @@ fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Soluti
         iterations: found.iterations,
         best: point.then_some(found.x),
     })
-}
-
-/// A sparse matrix while it is written.
-#[derive(Default)]
-struct Triplets {
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    values: Vec<f64>,
-    right: Vec<f64>,
-}
-
-impl Triplets {
-    fn entry(&mut self, row: usize, column: usize, value: f64) {
-        self.rows.push(row);
-        self.columns.push(column);
-        self.values.push(value);
-    }
-
-    fn push(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
-        let row = self.right.len();
-        for (column, value) in terms {
-            self.entry(row, column, value);
-        }
-        self.right.push(right);
-    }
-
-    fn count(&self) -> usize {
-        self.right.len()
-    }
-
-    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
-        CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values)
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The statement of a quadratic program, checked at the door.
 
-use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
 use nalgebra::DMatrix;
+
+use super::triplets::Triplets;
 
 /// Eigenvalues below zero by less than this share of the largest are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -259,16 +260,12 @@ impl QuadraticProgram {
     /// True if `P + shift` has a sparse factor `L D L'` with D > 0.
     fn factors(&self, shift: f64) -> bool {
         let n = self.dimension();
-        let size = self.quadratic.len() + n;
-        let (mut rows, mut columns) = (Vec::with_capacity(size), Vec::with_capacity(size));
-        let mut values = Vec::with_capacity(size);
+        let mut upper = Triplets::with_capacity(self.quadratic.len() + n);
         let shifts = (0..n).map(|i| (i, i, shift));
         for (i, j, value) in self.quadratic.iter().copied().chain(shifts) {
-            rows.push(i.min(j));
-            columns.push(i.max(j));
-            values.push(value);
+            upper.entry(i.min(j), i.max(j), value);
         }
-        let upper = CscMatrix::new_from_triplets(n, n, rows, columns, values);
+        let upper = upper.matrix(n, n);
         let settings = QDLDLSettingsBuilder::default()
             .regularize_enable(false)
             .build();

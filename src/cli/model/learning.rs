@@ -53,6 +53,8 @@ pub struct Found {
     pub model: Hierarchy,
     /// Cheeseman-Stutz score, nats.
     pub score: f64,
+    /// Rows that the score is of.
+    pub rows: usize,
     /// BIC score, nats, where a structure was searched.
     pub bic: Option<f64>,
     /// True if a limit or Ctrl-C ended it.
@@ -83,13 +85,23 @@ impl Learning {
         let mut found = found.map_err(|e| Error::content(path, e))?;
         found.seconds = watch.start.elapsed().as_secs_f64();
         if found.interrupted {
+            let of = match found.rows < data.table.rows() {
+                true => format!(", fitted to {} of the rows", found.rows),
+                false => String::new(),
+            };
             print::message(&format!(
-                "ended after {:.1} s: this is the best model so far; `--from` goes on from it",
+                "ended after {:.1} s: this is the best model so far{of}; `--from` goes on from it",
                 found.seconds
             ));
         }
         self.warn(&data.table, &found.model);
         Ok(found)
+    }
+
+    /// True while there is time to prepare columns: half of the limit is left to the search.
+    pub fn prepares(&self, begun: Instant) -> bool {
+        let limit = self.time_limit.filter(|l| *l > 0.0).map(seconds);
+        !interrupted() && limit.is_none_or(|limit| begun.elapsed() < limit / 2)
     }
 
     fn found(
@@ -108,6 +120,7 @@ impl Learning {
             return Ok(Found {
                 model: fitted.model,
                 score: fitted.score,
+                rows: table.rows(),
                 bic: None,
                 interrupted: fitted.outcome == Outcome::Interrupted,
                 seconds: 0.0,
@@ -136,6 +149,7 @@ impl Learning {
         Ok(Found {
             model: learned.model,
             score: learned.score,
+            rows: learned.rows,
             bic: Some(learned.bic),
             interrupted: learned.interrupted,
             seconds: 0.0,

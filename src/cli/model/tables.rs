@@ -14,7 +14,7 @@ use edifice_model::tables::table_model::{FORMAT, TableModel};
 
 use super::data::{TableInput, csv_lines, read_model, read_rows, read_table, rows};
 use super::given::evidence;
-use super::learning::Learning;
+use super::learning::{Learning, heed_interrupts};
 use super::{Shown, fit, network_of};
 use crate::print;
 
@@ -85,6 +85,7 @@ pub fn schema(input: &TableInput) -> Result<()> {
 /// Runs `learn`.
 pub fn learn(args: &LearnArgs) -> Result<()> {
     let begun = Instant::now();
+    heed_interrupts();
     let (data, schema) = args.input.read()?;
     let start = args.learning.from.as_deref().map(read_model).transpose()?;
     let background = if args.as_published { 0.0 } else { BACKGROUND };
@@ -97,9 +98,17 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
         Some(file) => (file.encoding.clone(), published),
         None if args.as_published => (None, published),
         None => {
-            let encoding =
-                Encoding::learn(&data, &published.priors.linear, args.learning.search.seed);
-            (Some(encoding.map_err(at(&args.input.table))?), published)
+            let prior = &published.priors.linear;
+            let goes_on = || args.learning.prepares(begun);
+            let seed = args.learning.search.seed;
+            let encoding = Encoding::learn_while(&data, prior, seed, &goes_on);
+            let (encoding, left) = encoding.map_err(at(&args.input.table))?;
+            if left > 0 {
+                print::message(&format!(
+                    "the time is short: {left} columns enter without a transform"
+                ));
+            }
+            (Some(encoding), published)
         }
     };
     let (encoded, settings) = match &encoding {
@@ -142,7 +151,7 @@ pub fn learn(args: &LearnArgs) -> Result<()> {
     print::message(&format!(
         "{rows} rows: {styles} styles, {edges} lateral edges, Cheeseman-Stutz score {:.1} ({:.3} nats a row), {:.1} s",
         found.score,
-        found.score / rows as f64,
+        found.score / found.rows as f64,
         found.seconds
     ));
     match args.json {

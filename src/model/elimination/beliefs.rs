@@ -29,9 +29,16 @@ pub struct Beliefs<'t> {
     tables: Vec<Vec<f64>>,
 }
 
+impl BucketTree {
+    /// Marginals, after a sum; after a maximum they have no meaning.
+    pub fn beliefs(&self) -> Beliefs<'_> {
+        Beliefs::new(self)
+    }
+}
+
 impl<'t> Beliefs<'t> {
     /// From the last eliminated variable down: `P(scope) = P(var | rest) P(rest)`, where the rest is in the parent's scope.
-    pub(super) fn new(tree: &'t BucketTree) -> Self {
+    fn new(tree: &'t BucketTree) -> Self {
         let mut tables: Vec<Vec<f64>> = vec![Vec::new(); tree.buckets.len()];
         for (b, bucket) in tree.buckets.iter().enumerate().rev() {
             let mut table = bucket.table.clone();

@@ -6,7 +6,7 @@ use rand::Rng;
 
 use super::super::linalg::categorical;
 use super::factor::{add, index};
-use super::{Beliefs, Factor, Mode, Order, TooWide};
+use super::{Factor, Mode, Order, TooWide};
 
 /// A bucket after the forward pass.
 #[derive(Debug)]
@@ -132,11 +132,6 @@ impl BucketTree {
             place,
             total,
         }
-    }
-
-    /// Marginals, after a sum; after a maximum they have no meaning.
-    pub fn beliefs(&self) -> Beliefs<'_> {
-        Beliefs::new(self)
     }
 
     /// An exact draw of the eliminated variables after a sum, written into `assignment`: from the last bucket to the first,

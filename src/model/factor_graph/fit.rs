@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::super::error::ModelError;
 use super::super::information::Information;
 use super::Chain;
+use super::tempered::Ladder;
 use edifice_base::rng::stream;
 use edifice_base::{Progress, Watch, Watched};
 
@@ -29,6 +30,9 @@ pub struct Settings {
     /// True if steps are Newton's, with the information that the chains give of the weights; without, one rate serves all
     /// weights, which takes many times the rounds where features are correlated or of different size.
     pub newton: bool,
+    /// Temperatures of the chains of each example: 1 is plain contrastive divergence; of more, chains at `p(x; β w)` with β from 1 down in equal
+    /// steps exchange their states, which costs as many times the moves.
+    pub temperatures: usize,
 }
 
 impl Default for Settings {
@@ -41,6 +45,7 @@ impl Default for Settings {
             decay: 100.0,
             penalty: 1e-4,
             newton: true,
+            temperatures: 1,
         }
     }
 }
@@ -148,10 +153,11 @@ pub fn fit<C: Chain>(
 ) -> Result<Fitted, ModelError> {
     let watched = Watched::new(watch);
     let fine = settings.rate > 0.0 && settings.decay > 0.0 && settings.penalty >= 0.0;
-    if !fine || settings.rounds == 0 || settings.moves == 0 {
+    let counts = [settings.rounds, settings.moves, settings.temperatures];
+    if !fine || counts.contains(&0) {
         return Err(ModelError::parameter(
             "settings",
-            "rounds, moves, rate and decay must be positive",
+            "rounds, moves, temperatures, rate and decay must be positive",
         ));
     }
     let mut examples = all_features(chain, data)?;
@@ -161,6 +167,7 @@ pub fn fit<C: Chain>(
     let (mut mean, mut mean_gap) = (vec![0.0; k], vec![0.0; k]);
     let mut clamped = data.to_vec();
     let mut states = data.to_vec();
+    let mut ladder = Ladder::new(settings.temperatures, data);
     let mut trace = Vec::with_capacity(settings.rounds);
     let half = settings.rounds / 2;
     // Rounds of the second half that were made.
@@ -186,6 +193,7 @@ pub fn fit<C: Chain>(
         }
         if !settings.persistent {
             states.clone_from_slice(&clamped);
+            ladder = Ladder::new(settings.temperatures, &clamped);
         }
         advance(
             chain,
@@ -199,6 +207,8 @@ pub fn fit<C: Chain>(
         if watched.is_stopped() {
             break;
         }
+        let order = (seed, round as u64);
+        ladder.exchange(chain, &mut states, &weights, settings.moves, order);
         let negatives = all_features(chain, &states)?;
         let gap = mean_difference(&examples, &negatives);
         let ascent = weights.iter().zip(&gap);

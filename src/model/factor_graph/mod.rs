@@ -7,7 +7,8 @@
 //! Learning ([`fit`]) climbs `L(w) = mean_n log p(x_n; w) - λ/2 |w|²`. Its gradient is
 //! `mean f(x_n) - E_w f - λ w`; contrastive divergence (Hinton 2002) replaces `E_w f` by the mean
 //! over chains of a few moves: started at the data in every round, or kept from round to round
-//! when persistent (Tieleman 2008), which removes the bias as the step shrinks.
+//! when persistent (Tieleman 2008), which removes the bias as the step shrinks; with chains at several temperatures
+//! ([`Settings::temperatures`]) that exchange their states where single moves do not leave a mode.
 //!
 //! Metropolis-Hastings: from x, a proposal x' with `log q(x | x') - log q(x' | x)` is accepted with
 //! probability `min(1, exp(wᵀ(f(x') - f(x)) + log q ratio))`.
@@ -29,6 +30,7 @@ mod ask;
 mod exact;
 mod fit;
 mod gibbs;
+mod tempered;
 
 use rand::RngExt;
 

@@ -3,8 +3,9 @@
 use ndarray::linalg::general_mat_mul;
 use ndarray::{ArrayView2, ArrayViewMut2, Axis};
 
-use super::step::{Moments, Steps};
-use super::{Covariance, Mixture};
+use super::mixture::Mixture;
+use super::problem::{Moments, Steps};
+use super::settings::Covariance;
 
 /// Rows of one matrix product.
 pub(super) const BLOCK: usize = 256;

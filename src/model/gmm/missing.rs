@@ -12,8 +12,9 @@
 
 use super::super::linalg::{LN_2PI, cholesky, lower_inverse};
 use super::block::NEGLIGIBLE;
-use super::step::{Moments, Steps, add_row};
-use super::{Covariance, Mixture};
+use super::mixture::Mixture;
+use super::problem::{Moments, Steps, add_row};
+use super::settings::Covariance;
 
 /// The coordinates of a row that are observed, and those that are missing.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

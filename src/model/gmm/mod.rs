@@ -23,121 +23,27 @@
 //!   [`Settings::restarts`]; the first of highest log posterior wins.
 
 mod block;
+mod densities;
 #[cfg(feature = "linfa")]
 pub mod linfa;
 mod missing;
 mod mixture;
 mod points;
+mod problem;
 mod select;
+mod settings;
 mod step;
 
 use rand::Rng;
 
-use super::conjugate::LinearPrior;
-use super::em::{self, Stopping};
+use super::em;
 use super::error::ModelError;
 pub use mixture::Mixture;
 pub use points::Points;
+pub use problem::Fitted;
+use problem::Steps;
 pub use select::{Criterion, Selected, select};
-use step::Steps;
-
-/// Shape of the covariances.
-///
-/// Free parameters of the covariances of K components of d values: `K d (d + 1) / 2`, `K d` and `d (d + 1) / 2`. The
-/// [module](self)'s M step is that of full matrices; a diagonal one keeps the diagonal of Σ_k, a tied one is the sum of
-/// all components' scatters over the sum of their weights. All are stored as d x d matrices.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Covariance {
-    /// One full matrix per component.
-    #[default]
-    Full,
-    /// One diagonal matrix per component.
-    Diagonal,
-    /// One full matrix for all components.
-    Tied,
-}
-
-/// Normal-inverse-Wishart prior of every component, in units of the overall standard deviations.
-///
-/// In the [module](self)'s M step it adds κ rows at the overall mean, and ψ and ν to numerator and denominator of the
-/// covariance. [`Prior::default`] is negligible unless a component is empty or singular; a larger ψ bounds variances away from 0.
-/// Source: Murphy, *Machine Learning* (2012), Sec. 4.6.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Prior {
-    /// κ: how many rows at the overall mean each component has seen.
-    pub mean: f64,
-    /// ψ: scatter (times the overall variance) that each coordinate of each component has seen.
-    pub scatter: f64,
-    /// ν: how many rows that scatter is worth.
-    pub freedom: f64,
-}
-
-impl Default for Prior {
-    /// As good as none: it only keeps a component without rows, or on one point, defined.
-    fn default() -> Self {
-        Self {
-            mean: 1e-9,
-            scatter: 1e-6,
-            freedom: 1e-6,
-        }
-    }
-}
-
-impl Prior {
-    /// The same prior as [`LinearPrior`] is for a group of `d` columns.
-    pub fn of_linear(prior: &LinearPrior, d: usize) -> Self {
-        Self {
-            mean: prior.intercept,
-            scatter: prior.scatter,
-            freedom: prior.freedom + (2 * d + 1) as f64,
-        }
-    }
-}
-
-/// Settings of [`fit`].
-///
-/// The example of [`fit`] uses the default, that of [`fit_from`] other covariances.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Shape of the covariances.
-    pub covariance: Covariance,
-    /// Number of k-means++ starts.
-    pub restarts: usize,
-    /// Prior of every component.
-    pub prior: Prior,
-    /// When EM stops, besides [`Settings::gain`].
-    pub stopping: Stopping,
-    /// Stop as well when a round gains less log posterior than this, nats a row (0: never for this reason).
-    pub gain: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            covariance: Covariance::Full,
-            restarts: 5,
-            prior: Prior::default(),
-            stopping: Stopping::default(),
-            gain: 1e-7,
-        }
-    }
-}
-
-/// Result of [`fit`].
-///
-/// The trace has the posterior of the best start only; it never falls. Log densities are of data in their own unit: in
-/// another unit c times as fine, `log_likelihood` is `N d log c` less. The example of [`fit_from`] reads one.
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// The mixture of highest log posterior.
-    pub mixture: Mixture,
-    /// `Σ weight log p(x)`, nats.
-    pub log_likelihood: f64,
-    /// Log posterior (up to a constant of the prior) before each round and after the last.
-    pub trace: Vec<f64>,
-    /// Why EM stopped.
-    pub outcome: em::Outcome,
-}
+pub use settings::{Covariance, Prior, Settings};
 
 /// Fits `k` components from [`Settings::restarts`] starts.
 ///
@@ -206,4 +112,34 @@ pub fn fit_from(
     let steps = Steps::new(points, start.components(), settings)?;
     let start = steps.centred(start);
     Ok(steps.result(em::run(&steps, start, &steps.stopping())?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_base::rng::stream;
+
+    #[test]
+    fn extreme_units_are_refused_by_name_and_wide_ones_do_not_matter() {
+        let values = |unit: f64| -> Vec<f64> {
+            (0..60)
+                .map(|i| unit * (f64::from(i % 2) * 9.0 + f64::from(i % 5) / 10.0))
+                .collect()
+        };
+        let fitted = |unit: f64| {
+            let values = values(unit);
+            let points = Points::new(1, &values).unwrap();
+            fit(&points, 2, &Settings::default(), &mut stream(1, "units", 0))
+        };
+        let plain = fitted(1.0).unwrap();
+        for unit in [1e-130, 1e130] {
+            let other = fitted(unit).unwrap();
+            let shift = 60.0 * unit.ln();
+            assert!((other.log_likelihood + shift - plain.log_likelihood).abs() < 1e-6);
+        }
+        for unit in [1e-300, 1e300] {
+            let error = fitted(unit).unwrap_err().to_string();
+            assert!(error.contains("another unit"), "{error}");
+        }
+    }
 }

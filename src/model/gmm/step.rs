@@ -4,128 +4,20 @@ use rand::Rng;
 use rustc_hash::FxHashMap;
 
 use super::super::chunks;
-use super::super::em::{Em, Fit, Stopping};
+use super::super::em::Em;
 use super::super::error::ModelError;
 use super::super::kmeans::kmeans;
 use super::super::linalg::log_sum_exp;
 use super::block::{BLOCK, Work};
 use super::missing::Pattern;
-use super::{Covariance, Fitted, Mixture, Points, Settings};
+use super::mixture::Mixture;
+use super::problem::{Moments, Steps, add_row};
+use super::settings::Covariance;
 
 /// Rows of one parallel piece of work.
 const CHUNK: usize = 2048;
 
-/// Points relative to their mean, and what to fit to them.
-pub(crate) struct Steps<'a> {
-    pub points: &'a Points<'a>,
-    settings: &'a Settings,
-    pub k: usize,
-    pub centre: Vec<f64>,
-    /// Standard deviation of each coordinate: prior and convergence are in these units.
-    scale: Vec<f64>,
-}
-
-/// Expected sufficient statistics.
-pub(crate) struct Moments {
-    /// Per component, lower triangle of `Σ r u uᵀ`, u = (1, x - centre), (d + 1)² values; with
-    /// diagonal covariances `Σ r`, `Σ r x`, `Σ r x²`, 2d + 1 values.
-    pub sums: Vec<Vec<f64>>,
-    pub log_likelihood: f64,
-}
-
-impl<'a> Steps<'a> {
-    pub fn new(
-        points: &'a Points<'a>,
-        k: usize,
-        settings: &'a Settings,
-    ) -> Result<Self, ModelError> {
-        if k == 0 {
-            return Err(ModelError::Empty { what: "components" });
-        }
-        if points.len() < k {
-            return Err(ModelError::TooFewRows {
-                rows: points.len(),
-                parameters: k,
-                variable: "components of the mixture".to_owned(),
-            });
-        }
-        let p = &settings.prior;
-        for (name, v) in [
-            ("mean", p.mean),
-            ("scatter", p.scatter),
-            ("freedom", p.freedom),
-        ] {
-            if !(v > 0.0 && v.is_finite()) {
-                return Err(ModelError::parameter(name, "must be positive and finite"));
-            }
-        }
-        let d = points.dimension();
-        let mut totals = vec![0.0; d];
-        for (i, x) in points.rows().enumerate() {
-            for (t, _) in totals.iter_mut().zip(x).filter(|(_, v)| !v.is_nan()) {
-                *t += points.weight(i);
-            }
-        }
-        if let Some(i) = totals.iter().position(|t| *t <= 0.0) {
-            return Err(ModelError::AllMissing {
-                column: i.to_string(),
-            });
-        }
-        let mut centre = vec![0.0; d];
-        for (i, x) in points.rows().enumerate() {
-            let seen = centre
-                .iter_mut()
-                .zip(&totals)
-                .zip(x)
-                .filter(|(_, v)| !v.is_nan());
-            for ((c, total), v) in seen {
-                *c += points.weight(i) / total * v;
-            }
-        }
-        let scale = scale(points, &centre, &totals);
-        Ok(Self {
-            points,
-            settings,
-            k,
-            centre,
-            scale,
-        })
-    }
-
-    /// When EM stops: the gain a row is one of all rows.
-    pub fn stopping(&self) -> Stopping {
-        let stopping = self.settings.stopping;
-        Stopping {
-            gain: stopping.gain.max(self.settings.gain * self.points.total()),
-            ..stopping
-        }
-    }
-
-    /// The mixture relative to the centre.
-    pub fn centred(&self, mixture: &Mixture) -> Mixture {
-        self.moved(mixture, -1.0)
-    }
-
-    fn moved(&self, mixture: &Mixture, sign: f64) -> Mixture {
-        let mut moved = mixture.clone();
-        for mean in moved.means.chunks_mut(moved.d) {
-            for (m, c) in mean.iter_mut().zip(&self.centre) {
-                *m += sign * c;
-            }
-        }
-        moved
-    }
-
-    /// The fit in the points' own origin.
-    pub fn result(&self, fit: Fit<Mixture>) -> Fitted {
-        Fitted {
-            mixture: self.moved(&fit.model, 1.0),
-            log_likelihood: fit.log_likelihood,
-            trace: fit.trace,
-            outcome: fit.outcome,
-        }
-    }
-
+impl Steps<'_> {
     /// One k-means++ start.
     pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Mixture, ModelError> {
         let d = self.points.dimension();
@@ -181,18 +73,6 @@ impl<'a> Steps<'a> {
             groups[at].push(i);
         }
         groups
-    }
-
-    fn empty(&self) -> Moments {
-        let d = self.points.dimension();
-        let size = match self.settings.covariance {
-            Covariance::Diagonal => 2 * d + 1,
-            _ => (d + 1) * (d + 1),
-        };
-        Moments {
-            sums: vec![vec![0.0; size]; self.k],
-            log_likelihood: 0.0,
-        }
     }
 }
 
@@ -328,55 +208,5 @@ impl Em for Steps<'_> {
             .max(far(&before.covariances, &after.covariances, &|i| {
                 s[i / d % d] * s[i % d]
             }))
-    }
-}
-
-/// Standard deviation of each coordinate; where it is constant, its size, so that units never matter, or 1 for 0.
-/// `totals` are the weights of each coordinate's observed values.
-fn scale(points: &Points, centre: &[f64], totals: &[f64]) -> Vec<f64> {
-    let mut squares = vec![0.0; centre.len()];
-    for (i, x) in points.rows().enumerate() {
-        let seen = squares
-            .iter_mut()
-            .zip(x)
-            .zip(centre)
-            .filter(|((_, v), _)| !v.is_nan());
-        for ((s, v), c) in seen {
-            *s += points.weight(i) * (v - c).powi(2);
-        }
-    }
-    let each = squares
-        .iter()
-        .zip(centre)
-        .zip(totals)
-        .map(|((square, c), total)| {
-            let deviation = (square / total).sqrt();
-            match deviation > 1e-12 * c.abs() {
-                true => deviation,
-                false if *c != 0.0 => c.abs(),
-                false => 1.0,
-            }
-        });
-    each.collect()
-}
-
-/// Adds `weight u uᵀ`, or its diagonal.
-pub(super) fn add_row(sums: &mut [f64], u: &[f64], weight: f64, kind: Covariance) {
-    let q = u.len();
-    match kind {
-        Covariance::Diagonal => {
-            sums[0] += weight;
-            for i in 1..q {
-                sums[i] += weight * u[i];
-                sums[q - 1 + i] += weight * u[i] * u[i];
-            }
-        }
-        _ => {
-            for i in 0..q {
-                for j in 0..=i {
-                    sums[i * q + j] += weight * u[i] * u[j];
-                }
-            }
-        }
     }
 }

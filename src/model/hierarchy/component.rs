@@ -5,19 +5,15 @@
 //! order, each new group extends the Gaussian over the missing values seen so far and is then
 //! conditioned on its own observed values. An assignment with its Gaussian is a [`Particle`]; all of them lie in one piece of memory.
 //! An assignment is given up as soon as a bound says that it ends [`NEGLIGIBLE`] nats below one that is known. The walk is
-//! exact (to 1e-10) while no more than [`MOST`] assignments are alive; beyond, the least probable are dropped. While structures are
-//! searched no more than [`MOST_SEARCHED`] are kept; the structure that is found is fitted with all.
+//! exact (to 1e-10) while no more than [`MOST`](super::params::MOST) assignments are alive; beyond, the least probable are dropped. While structures are
+//! searched no more than [`MOST_SEARCHED`](super::params::MOST_SEARCHED) are kept; the structure that is found is fitted with all.
 
 use super::super::conjugate::Linear;
 use super::super::gaussian::{Extension, Particle, Particles, Workspace};
 use super::params::{Params, Shape};
 use super::structure::{Selector, configuration};
 
-/// Assignments alive at once.
-pub(crate) const MOST: usize = 2048;
-/// The same while structures are searched: their scores differ by far more than what the least probable ones add.
-pub(crate) const MOST_SEARCHED: usize = 64;
-/// Assignments this much below a known one (nats) are left out: with [`MOST`] of them, less than 1e-10 of the density.
+/// Assignments this much below a known one (nats) are left out: with [`MOST`](super::params::MOST) of them, less than 1e-10 of the density.
 const NEGLIGIBLE: f64 = 32.0;
 
 /// Groups of one row that missing values link, with their assignments.

@@ -8,11 +8,9 @@
 use super::super::conjugate::dirichlet_evidence;
 use super::super::graph::reaches;
 use super::super::table::MISSING;
-use super::search::Search;
-use super::structure::{Selector, Structure, configuration};
-
-/// Most configurations of the categorical parents of one family.
-pub(super) const MOST_CONFIGURATIONS: usize = 16;
+use super::Settings;
+use super::schema::{Rows, Schema};
+use super::structure::{MOST_CONFIGURATIONS, Selector, Structure, configuration};
 
 /// An edge that may be added.
 #[derive(Clone, Copy)]
@@ -25,8 +23,24 @@ enum Edge {
     Table(usize, usize),
 }
 
+/// What families are scored by.
+struct Search<'a> {
+    schema: &'a Schema,
+    rows: &'a Rows,
+    settings: &'a Settings,
+}
+
 /// The structure with edges added to `structure`.
-pub(crate) fn propose(search: &Search, mut structure: Structure) -> Structure {
+pub(crate) fn propose(
+    (schema, rows): (&Schema, &Rows),
+    settings: &Settings,
+    mut structure: Structure,
+) -> Structure {
+    let search = &Search {
+        schema,
+        rows,
+        settings,
+    };
     let (groups, codes) = (search.schema.groups.len(), search.schema.codes.len());
     let sizes = search.schema.sizes();
     let mut candidates = Vec::new();

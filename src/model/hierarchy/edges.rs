@@ -13,10 +13,9 @@ use rustc_hash::FxHashMap;
 use super::super::conjugate::dirichlet_evidence;
 use super::super::graph::reaches;
 use super::Settings;
-use super::directed::MOST_CONFIGURATIONS;
 use super::fit::{Problem, Scored};
 use super::infer::MOST_ASSIGNMENTS;
-use super::structure::Structure;
+use super::structure::{MOST_CONFIGURATIONS, Structure};
 use super::wide::Wide;
 
 /// The structure with lateral edges of highest evidence that greedy moves reach: from no edges and

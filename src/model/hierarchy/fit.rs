@@ -25,6 +25,8 @@ pub(crate) struct Problem<'a> {
     pub rows: &'a Rows,
     pub priors: &'a Priors,
     pub shape: Shape,
+    /// Asked within an E step, which ends where it says no; never asked unless set.
+    pub within: Option<&'a (dyn Fn() -> bool + Sync)>,
 }
 
 /// A fitted structure and its score.
@@ -48,6 +50,7 @@ impl<'a> Problem<'a> {
             rows,
             priors,
             shape: Shape::new(schema, structure)?,
+            within: None,
         })
     }
 
@@ -276,6 +279,9 @@ impl Em for Problem<'_> {
             self.rows.rows,
             CHUNK,
             |range| {
+                if self.within.is_some_and(|goes_on| !goes_on()) {
+                    return Err(ModelError::Interrupted);
+                }
                 let mut stats = self.shape.stats();
                 let mut scratch = Scratch::new(&self.shape);
                 for i in range {

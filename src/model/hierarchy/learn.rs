@@ -10,6 +10,7 @@ use super::super::table::Table;
 use super::fit::{Problem, Scored};
 use super::schema::{Rows, Schema};
 use super::search::Search;
+use super::step::Step;
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::{Group, Hierarchy, Observer, Priors, Settings, Variant};
@@ -19,19 +20,6 @@ use edifice_base::rng::stream;
 /// where the parameters of all rows are settled.
 const SETTLED: f64 = 1e-4;
 
-/// One accepted configuration of the search, for [`Learned::trace`] and [`Observer`]s.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Step {
-    /// |S|.
-    pub styles: usize,
-    /// |H_g| of every real group, in order.
-    pub cardinalities: Vec<usize>,
-    /// Number of lateral edges.
-    pub lateral_edges: usize,
-    /// Cheeseman-Stutz score, nats, on standardised columns of the rows searched.
-    pub score: f64,
-}
-
 /// Result of [`learn`], [`learn_observed`] and [`refine`]; the example of [`learn`] reads one.
 ///
 /// Scores are comparable, whatever the [`Variant`], between models of the same rows and groups that standardise columns alike,
@@ -40,14 +28,16 @@ pub struct Step {
 pub struct Learned {
     /// The model of highest score.
     pub model: Hierarchy,
-    /// Its Cheeseman-Stutz score, nats, on standardised columns of all rows.
+    /// Its Cheeseman-Stutz score, nats, on standardised columns of [`Learned::rows`] rows.
     pub score: f64,
-    /// Its BIC score `log P(O | Θ) - k/2 log n`, nats, on standardised columns of all rows.
+    /// Its BIC score `log P(O | Θ) - k/2 log n`, nats, on standardised columns of the same rows.
     pub bic: f64,
     /// Every accepted configuration, by |S|, then those of the searches above and around the best ones.
     pub trace: Vec<Step>,
     /// True if the observer ended the search: the model is the best so far.
     pub interrupted: bool,
+    /// Rows that the parameters were fitted to and the scores are of: all, unless the observer ended a search on some of them.
+    pub rows: usize,
 }
 
 /// Learns structure and parameters from `data`, whose columns `groups` assign to attributes.
@@ -260,21 +250,32 @@ impl<'a> Work<'a> {
             rival,
             watch: &watch,
         })?;
-        if self.sample.is_some() {
+        let mut fitted = rows.rows;
+        if self.sample.is_some() && !watch.ended() {
             let structure = scored.shape.structure.clone();
-            let problem = Problem::new(schema, &self.rows, &settings.priors, structure)?;
+            let goes_on = || watch.goes_on();
+            let mut problem = Problem::new(schema, &self.rows, &settings.priors, structure)?;
+            problem.within = Some(&goes_on);
             let stopping = Stopping {
                 gain: settings.stopping.gain.max(SETTLED * self.rows.rows as f64),
                 ..settings.stopping
             };
-            scored = problem.fit_while(scored.params, &stopping, &|| watch.goes_on())?;
+            // Ended within the first step, the parameters are those of the rows searched.
+            match problem.fit_while(scored.params.clone(), &stopping, &goes_on) {
+                Err(ModelError::Interrupted) => {}
+                found => {
+                    scored = found?;
+                    fitted = self.rows.rows;
+                }
+            }
         }
-        let penalty = 0.5 * scored.shape.free_parameters() as f64 * (self.rows.rows as f64).ln();
+        let penalty = 0.5 * scored.shape.free_parameters() as f64 * (fitted as f64).ln();
         Ok(Learned {
             score: scored.score,
             bic: scored.stats.log_likelihood - penalty,
             trace,
             interrupted: watch.ended(),
+            rows: fitted,
             model: Hierarchy::new(
                 schema.clone(),
                 scored.shape,

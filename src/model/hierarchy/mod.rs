@@ -86,6 +86,7 @@ mod revise;
 mod schema;
 mod search;
 mod split;
+mod step;
 mod store;
 pub(crate) mod structure;
 mod watch;
@@ -98,9 +99,10 @@ use super::em::Stopping;
 pub use super::standardize::Constant;
 pub use draw::Draws;
 pub(crate) use learn::learn_against;
-pub use learn::{Fitted, Learned, Step, fit, fit_observed, learn, learn_observed, refine};
+pub use learn::{Fitted, Learned, fit, fit_observed, learn, learn_observed, refine};
 pub use query::Hierarchy;
 pub use schema::Group;
+pub use step::Step;
 pub use watch::Observer;
 
 /// Which of the paper's models to learn: the table in [the module](self).

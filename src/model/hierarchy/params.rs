@@ -7,9 +7,13 @@ use super::super::error::ModelError;
 use super::super::graph;
 use super::super::table::MISSING;
 use super::background::Background;
-use super::component::MOST;
 use super::schema::Schema;
 use super::structure::{Selector, Structure};
+
+/// Assignments alive at once.
+pub(crate) const MOST: usize = 2048;
+/// The same while structures are searched: their scores differ by far more than what the least probable ones add.
+pub(crate) const MOST_SEARCHED: usize = 64;
 
 /// Θ of a hierarchical model.
 #[derive(Clone, Debug, PartialEq)]

@@ -173,6 +173,7 @@ impl Hierarchy {
             rows,
             priors,
             shape: self.shape.clone(),
+            within: None,
         }
     }
 

@@ -7,15 +7,15 @@ use rayon::prelude::*;
 use super::super::em::Stopping;
 use super::super::error::ModelError;
 use super::Priors;
-use super::component::{MOST, MOST_SEARCHED};
 use super::edges::propose;
 use super::fit::{Problem, Scored};
-use super::params::Params;
+use super::params::{MOST, MOST_SEARCHED, Params};
 use super::schema::{Rows, Schema};
+use super::step::Step;
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::wide::{Wide, wide};
-use super::{Settings, Step, Sweep, Variant};
+use super::{Settings, Sweep, Variant};
 use edifice_base::rng::stream;
 
 /// Values of real columns up to which all |S| are searched from the start.
@@ -142,8 +142,12 @@ impl<'a> Search<'a> {
         vec![at(0.25), at(0.75)]
     }
 
-    /// EM run to its end.
-    fn settled(&self, best: Scored) -> Result<Scored, ModelError> {
+    /// EM run to its end; where the search was ended, what there is.
+    fn settled(&self, mut best: Scored) -> Result<Scored, ModelError> {
+        if self.watch.ended() {
+            best.shape.alive = MOST;
+            return Ok(best);
+        }
         let mut problem = self.problem(best.shape.structure.clone())?;
         problem.shape.alive = MOST;
         self.fit(&problem, best.params, &self.settings.stopping)
@@ -189,7 +193,8 @@ impl<'a> Search<'a> {
         let (groups, codes) = (self.schema.groups.len(), self.schema.codes.len());
         let first = Structure::new(styles, &selector, groups, codes);
         if self.settings.variant == Variant::Directed {
-            let structure = super::directed::propose(self, first);
+            let structure =
+                super::directed::propose((self.schema, self.rows), self.settings, first);
             let best = self.restart(structure, rng)?;
             let mut trace = Vec::new();
             self.accept(&best, &mut trace);

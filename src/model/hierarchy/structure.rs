@@ -3,6 +3,9 @@
 use super::super::error::ModelError;
 use super::super::graph::{order, reaches};
 
+/// Most configurations of the categorical parents of one family.
+pub(crate) const MOST_CONFIGURATIONS: usize = 16;
+
 /// The variable that selects one of the linear Gaussians of a group of real columns.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Selector {

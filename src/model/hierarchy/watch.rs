@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::Step;
+use super::step::Step;
 
 /// Called with every accepted configuration, and with `None` before every round of EM, from any thread.
 /// [`ControlFlow::Break`] ends the search with the best configuration so far; the observer is not called again.

@@ -2,7 +2,7 @@
 
 use super::super::conjugate::Linear;
 use super::super::error::ModelError;
-use super::{Cpd, Stated, Variable};
+use super::variable::{Cpd, Stated, Variable};
 
 /// The stated distribution of `v`, given the number of configurations of its discrete parents and `p` = 1 +
 /// continuous coordinates, `None` beyond the range of numbers. Nothing is allocated for sizes that

@@ -1,10 +1,10 @@
 //! Every way through a program whose choices are finite.
 
 use super::address::Address;
-use super::dist::{Dist, Support};
+use super::dist::Dist;
 use super::error::ProgramError;
 use super::posterior::{Draw, Evidence, Kind, Posterior};
-use super::trace::{Choice, Trace, Value};
+use super::trace::{Choice, Support, Trace, Value};
 use super::{Handler, Program};
 use crate::linalg::log_sum_exp;
 use edifice_base::rng::stream;

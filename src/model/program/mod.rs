@@ -76,7 +76,7 @@ mod trace;
 pub use address::Address;
 pub use compile::{Compiled, compile};
 pub use condition::{Given, given};
-pub use dist::{Dist, Support};
+pub use dist::Dist;
 pub use error::ProgramError;
 pub use exact::exact;
 pub use importance::importance;
@@ -88,7 +88,7 @@ pub use posterior::{Beside, Draw, Evidence, Posterior, Summary};
 pub use real::Real;
 pub use run::{prior, replay};
 pub use smc::smc;
-pub use trace::{Choice, Trace, Value};
+pub use trace::{Choice, Support, Trace, Value};
 
 /// A model as code: choices, and what data say of them. [The module](self) has an example.
 pub trait Program {

@@ -5,9 +5,9 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::address::Address;
-use super::dist::{Dist, Support};
+use super::dist::Dist;
 use super::error::ProgramError;
-use super::trace::{Choice, Trace, Value};
+use super::trace::{Choice, Support, Trace, Value};
 use super::{Handler, Program};
 
 /// The earlier run from which a run starts.

@@ -3,7 +3,17 @@
 use rustc_hash::FxHashMap;
 
 use super::address::Address;
-use super::dist::Support;
+
+/// The set of values of a distribution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// The whole numbers below this one (`false` is 0, `true` is 1).
+    Finite(usize),
+    /// All whole numbers from 0.
+    Counts,
+    /// Real values of so many free coordinates.
+    Real(usize),
+}
 
 /// The value of a choice as plain data.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,6 +12,8 @@
 //! so that models are to be compared by the mass of a small interval where atoms are. The transform z is
 //! [`super::transform`]'s, chosen for each column by its training values alone.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -71,6 +73,21 @@ impl Encoding {
     /// # Ok::<(), edifice_model::ModelError>(())
     /// ```
     pub fn learn(data: &Dataset, prior: &LinearPrior, seed: u64) -> Result<Self, ModelError> {
+        Ok(Self::learn_while(data, prior, seed, &|| true)?.0)
+    }
+
+    /// As [`Encoding::learn`], as long as `goes_on`, which is asked before each column: the number of columns that come later is
+    /// returned besides; they have their atoms, and no transform.
+    ///
+    /// # Errors
+    /// As [`Encoding::learn`].
+    pub fn learn_while(
+        data: &Dataset,
+        prior: &LinearPrior,
+        seed: u64,
+        goes_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(Self, usize), ModelError> {
+        let left = AtomicUsize::new(0);
         let table = &data.table;
         let reals: Vec<&Column> = (table.columns().iter())
             .filter(|c| c.categories().is_none())
@@ -81,7 +98,11 @@ impl Encoding {
             let others: Vec<f64> = values.into_iter().filter(|v| !atoms.contains(v)).collect();
             let transform = match others.is_empty() {
                 true => Transform::IDENTITY,
-                false => choose(&others, prior, seed)?,
+                false if goes_on() => choose(&others, prior, seed)?,
+                false => {
+                    left.fetch_add(1, Ordering::Relaxed);
+                    Transform::IDENTITY
+                }
             };
             let mut category = format!("{} value", column.name());
             while table.column(&category).is_ok() {
@@ -95,7 +116,7 @@ impl Encoding {
             })
         });
         let columns = columns.collect::<Result<Vec<Encoded>, ModelError>>()?;
-        Ok(Self { columns })
+        Ok((Self { columns }, left.into_inner()))
     }
 
     /// The columns, in the order of the table that was learned from.

@@ -143,7 +143,9 @@ pub fn learn_joined(
         return Ok(first);
     }
     let second = apart(Some(first.learned.score), rival)?;
-    Ok(match second.learned.score > first.learned.score {
+    // One that was ended may be of fewer rows.
+    let of_a_row = |learned: &Learned| learned.score / learned.rows as f64;
+    Ok(match of_a_row(&second.learned) > of_a_row(&first.learned) {
         true => second,
         false => Joined {
             other_score: Some(second.learned.score),

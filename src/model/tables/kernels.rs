@@ -10,6 +10,7 @@
 use rayon::prelude::*;
 
 use crate::linalg::{LN_2PI, log_sum_exp};
+use crate::standardize::{Constant, moments};
 use crate::{Cell, ModelError, Table};
 
 /// Deviations of kernels tried, in deviations of the columns.
@@ -54,15 +55,12 @@ impl Kernels {
                 let column = column.name().to_owned();
                 return Err(ModelError::AllMissing { column });
             }
-            let n = values.len() as f64;
-            let mean = values.iter().sum::<f64>() / n;
-            let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
+            let (mean, scale) = moments(column.name(), &values, Constant::Keep)?;
             let categories = column.categories().map(<[String]>::len);
-            let plain = categories.is_some() || deviation <= 1e-12 * mean.abs();
             columns.push(Column {
                 name: column.name().to_owned(),
                 mean: if categories.is_some() { 0.0 } else { mean },
-                scale: if plain { 1.0 } else { deviation },
+                scale: if categories.is_some() { 1.0 } else { scale },
                 categories,
             });
         }

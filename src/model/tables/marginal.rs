@@ -3,7 +3,7 @@
 use super::transform::{Bounds, Tails, Transform};
 use crate::ModelError;
 use crate::conjugate::LinearPrior;
-use crate::gmm::{Criterion, Points, Prior, Settings, select};
+use crate::gmm::{Covariance, Criterion, Points, Prior, Settings, select};
 
 /// Most values that a choice is made on; of more, this number is taken, spread over the ranks.
 const LOOKED_AT: usize = 400;
@@ -112,6 +112,8 @@ fn length(
     let points: Vec<f64> = images.iter().map(|(z, _)| (z - mean) / scale).collect();
     let settings = Settings {
         prior: Prior::of_linear(prior, 1),
+        // Of one coordinate the same as full ones, without products of matrices.
+        covariance: Covariance::Diagonal,
         restarts: 1,
         gain: 1e-4,
         ..Settings::default()

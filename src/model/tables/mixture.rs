@@ -12,6 +12,7 @@ use rand::{Rng, RngExt};
 use crate::conjugate::LinearPrior;
 use crate::gmm::{Criterion, Mixture, Points, Prior, Settings, select};
 use crate::linalg::LN_2PI;
+use crate::standardize::{Constant, moments};
 use crate::{Cell, ModelError, Table};
 use edifice_base::rng::stream;
 
@@ -58,17 +59,14 @@ impl Baseline {
                 let column = column.name().to_owned();
                 return Err(ModelError::AllMissing { column });
             }
-            let n = values.len().max(1) as f64;
-            let mean = values.iter().sum::<f64>() / n;
-            let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
             // A category code keeps its own scale, a constant column unit scale, as in the
             // hierarchical model.
-            let plain = categories.is_some() || variance <= 1e-24 * mean * mean;
+            let (mean, scale) = moments(column.name(), &values, Constant::Keep)?;
             columns.push(Column {
                 name: column.name().to_owned(),
                 categories,
                 mean,
-                scale: if plain { 1.0 } else { variance.sqrt() },
+                scale: if categories.is_some() { 1.0 } else { scale },
             });
         }
         let mut rng = stream(seed, "building_exteriors/dequantize", 0);

@@ -34,6 +34,7 @@ pub const WEIGHTS: Settings = Settings {
     decay: 30.0,
     penalty: 1e-3,
     newton: false,
+    temperatures: 1,
 };
 /// Labels with sizes, and ratios of spacing to size, that are kept.
 const EXEMPLARS: usize = 400;

@@ -5,9 +5,9 @@ use std::collections::VecDeque;
 use rand::{Rng, RngExt};
 
 use super::super::super::error::ModelError;
-use super::Search;
 use super::constraints::Allowed;
 use super::families::Families;
+use super::settings::Search;
 
 /// Families counted between two questions if the search shall go on.
 const FAMILIES: usize = 4096;

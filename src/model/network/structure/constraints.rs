@@ -3,7 +3,7 @@
 use super::super::super::error::ModelError;
 use super::super::super::graph::order;
 use super::super::super::table::Table;
-use super::Search;
+use super::settings::Search;
 
 /// Constraints by column.
 pub(super) struct Allowed {

@@ -7,7 +7,7 @@ use statrs::function::gamma::ln_gamma;
 use super::super::super::conjugate::dirichlet_mode;
 use super::super::super::error::ModelError;
 use super::super::super::table::{MISSING, Table, Values};
-use super::Score;
+use super::settings::Score;
 
 /// Cells of a table of counts up to which it is dense.
 const DENSE: usize = 1 << 16;

@@ -26,7 +26,7 @@ mod simplex;
 use rand::Rng;
 
 use super::real::Real;
-use super::trace::Value;
+use super::trace::{Support, Value};
 pub use continuous::{Bounds, Continuous, Scalar};
 pub use discrete::{
     Bernoulli, Binomial, Categorical, Poisson, bernoulli, bernoulli_logit, binomial, categorical,
@@ -40,17 +40,6 @@ pub use shaped::{
     Beta, Gamma, InverseGamma, Uniform, beta, exponential, gamma, inverse_gamma, uniform,
 };
 pub use simplex::{Dirichlet, dirichlet};
-
-/// The set of values of a distribution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
-    /// The whole numbers below this one (`false` is 0, `true` is 1).
-    Finite(usize),
-    /// All whole numbers from 0.
-    Counts,
-    /// Real values of so many free coordinates.
-    Real(usize),
-}
 
 /// A distribution over values of one type, with parameters that are numbers of the kind R.
 ///

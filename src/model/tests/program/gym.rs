@@ -97,29 +97,67 @@ fn eight_schools() {
     check_of(&posterior, |out, i| out[i], "schools_effects");
 }
 
-/// Uncentred: steps follow from standard normal choices, so that their scale may come near zero.
+/// Uncentred: steps follow from standard normal choices.
 struct Brownian {
-    scales: Option<[f64; 2]>,
     seen: Vec<f64>,
 }
 impl Program for Brownian {
     type Out = Vec<f64>;
     fn run<H: Handler>(&self, h: &mut H) -> Vec<f64> {
-        let [innovation, observation] = match self.scales {
-            Some(known) => known.map(H::Real::from),
-            None => [
-                h.sample("innovation", log_normal(0.0, 2.0)),
-                h.sample("observation", log_normal(0.0, 2.0)),
-            ],
-        };
         let mut at = H::Real::from(0.0);
         let mut all = Vec::new();
         for (t, seen) in self.seen.iter().enumerate() {
-            at = at + innovation * h.sample(("z", t), normal(0.0, 1.0));
+            at = at + h.sample(("z", t), normal(0.0, 1.0)) * 0.1;
             all.push(at.value());
             if !seen.is_nan() {
-                h.observe(normal(at, observation), &(*seen).into());
+                h.observe(normal(at, 0.15), &(*seen).into());
             }
+        }
+        all
+    }
+}
+
+/// The same with unknown scales, which may come near zero: given them the motion is filtered forwards, which weighs the run by what the data say
+/// of the scales alone, and drawn backwards from standard normal choices.
+struct Filtered {
+    seen: Vec<f64>,
+}
+impl Program for Filtered {
+    type Out = Vec<f64>;
+    fn run<H: Handler>(&self, h: &mut H) -> Vec<f64> {
+        let innovation = h.sample("innovation", log_normal(0.0, 2.0));
+        let observation = h.sample("observation", log_normal(0.0, 2.0));
+        let (step, noise) = (innovation * innovation, observation * observation);
+        // Mean and variance of each place given what was seen until then.
+        let mut now = (H::Real::from(0.0), H::Real::from(0.0));
+        let mut filtered = Vec::new();
+        for seen in &self.seen {
+            let (mean, variance) = (now.0, now.1 + step);
+            now = (mean, variance);
+            if !seen.is_nan() {
+                let total = variance + noise;
+                h.observe(normal(mean, total.sqrt()), &(*seen).into());
+                let gain = variance / total;
+                now = (
+                    mean + gain * (H::Real::from(*seen) - mean),
+                    variance * (noise / total),
+                );
+            }
+            filtered.push(now);
+        }
+        let mut all = vec![0.0; filtered.len()];
+        let mut next: Option<H::Real> = None;
+        for (t, (mean, variance)) in filtered.into_iter().enumerate().rev() {
+            let (mean, variance) = match next {
+                None => (mean, variance),
+                Some(next) => {
+                    let gain = variance / (variance + step);
+                    (mean + gain * (next - mean), step * gain)
+                }
+            };
+            let at = mean + variance.sqrt() * h.sample(("z", t), normal(0.0, 1.0));
+            all[t] = at.value();
+            next = Some(at);
         }
         all
     }
@@ -128,7 +166,6 @@ impl Program for Brownian {
 #[test]
 fn brownian_motion() {
     let program = Brownian {
-        scales: Some([0.1, 0.15]),
         seen: data("brownian"),
     };
     let posterior = nuts(&program, &chains(2000)).unwrap();
@@ -137,14 +174,15 @@ fn brownian_motion() {
 
 #[test]
 fn brownian_motion_of_unknown_scales() {
-    let program = Brownian {
-        scales: None,
+    let program = Filtered {
         seen: data("brownian"),
     };
-    let posterior = nuts(&program, &chains(4000)).unwrap();
-    check_of(&posterior, |out, t| out[t], "unknown_locs");
-    check(&posterior, "innovation", "unknown_innovation");
-    check(&posterior, "observation", "unknown_observation");
+    let posterior = nuts(&program, &chains(2000)).unwrap();
+    // The shipped truth has a first place of 0.1027 +- 0.0009, the integral says 0.0931: long chains of the centred model do not come
+    // near an observation scale of zero often enough.
+    check_of(&posterior, |out, t| out[t], "exact_locs");
+    check(&posterior, "innovation", "exact_innovation");
+    check(&posterior, "observation", "exact_observation");
 }
 
 struct Volatility {
@@ -158,13 +196,13 @@ impl Program for Volatility {
         let mean = h.sample("mean", cauchy(0.0, 5.0));
         let shock = h.sample("shock", half_cauchy(2.0));
         let start = shock / (-(persistence * persistence) + 1.0).sqrt();
-        let mut off = h.sample(("z", 0), normal(0.0, 1.0)) * start;
+        let mut log = h.sample(("log", 0), normal(mean, start));
         let mut all = Vec::new();
         for (t, seen) in self.seen.iter().enumerate() {
             if t > 0 {
-                off = persistence * off + h.sample(("z", t), normal(0.0, 1.0)) * shock;
+                let next = mean + persistence * (log - mean);
+                log = h.sample(("log", t), normal(next, shock));
             }
-            let log = mean + off;
             all.push(log.value());
             h.observe(normal(0.0, (log * 0.5).exp()), &(*seen).into());
         }
@@ -178,7 +216,7 @@ fn stochastic_volatility() {
         &Volatility {
             seen: data("returns"),
         },
-        &chains(1000),
+        &chains(2000),
     )
     .unwrap();
     check(&posterior, "mean", "volatility_mean_log");

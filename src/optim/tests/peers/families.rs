@@ -228,10 +228,11 @@ fn families_are_solved_as_fast_as_by_clarabel_itself() {
         ("Huber", huber(40, &mut rng)),
         ("SVM", svm(40, &mut rng)),
         ("control", control(12, &mut rng)),
+        ("smoothing", super::programs::smoothing(4000)),
     ];
     for (name, program) in &programs {
         let (mut ours, mut theirs) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..3 {
+        for _ in 0..5 {
             let start = Instant::now();
             let found = solve(program, QpOptions::default()).unwrap();
             ours = ours.min(start.elapsed().as_secs_f64());
