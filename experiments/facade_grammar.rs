@@ -26,6 +26,7 @@ mod references;
 mod regularization;
 mod room;
 mod runs;
+mod settings;
 mod speed;
 pub mod study;
 mod table_1;

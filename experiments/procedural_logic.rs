@@ -16,6 +16,7 @@ pub mod outline;
 mod readings;
 mod retrieval_search;
 mod segmentation;
+mod settings;
 pub mod shipped;
 pub mod study;
 pub mod trial;

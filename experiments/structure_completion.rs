@@ -15,6 +15,7 @@ mod picture;
 mod plausibility;
 mod published;
 mod results;
+mod settings;
 pub mod study;
 mod timing;
 mod trial;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use super::likeness::likeness;
-use super::study::{Infer, Operation, asked};
+use super::settings::{Infer, Operation, asked};
 use crate::sweep::Given;
 use crate::sweep::trial::{Answered, Posed, Trial};
 use edifice_base::{Error, Progress, Result, Watched};

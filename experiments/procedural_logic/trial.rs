@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::figure_4::retrieve;
 use super::gold::{Architecture, Doors};
-use super::study::{Retrieval, measure, parameters};
+use super::settings::{Retrieval, measure, parameters};
 use super::{outline, shipped};
 use crate::sweep::trial::{Answered, Posed, Trial};
 use crate::sweep::{Given, Shared};

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::data::Item;
 use super::figures::{drawn, in_size, without};
-use super::study::Complete;
+use super::settings::Complete;
 use crate::sweep::trial::{Answered, Posed, Trial};
 use crate::sweep::{Given, Shared};
 use edifice_base::rng::stream;

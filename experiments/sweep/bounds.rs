@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::collect::Record;
 use super::plan::Plan;
+use super::record::Record;
 use super::study::Better;
 
 /// Share by which a value may pass a bound: rounding of sums.

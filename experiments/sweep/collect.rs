@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::bounds;
 use super::journal::{Damaged, Entry, Keep, Known, read_all};
 use super::plan::Plan;
-use super::study::Outcome;
+use super::record::Record;
 use edifice_base::{Error, Result, file};
 
 /// Name of the table of results in a sweep's folder.
@@ -87,23 +87,6 @@ pub fn state(plan: &Plan, out: &Path) -> Result<State> {
         damaged,
         foreign,
     })
-}
-
-/// The result of a task.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Record {
-    /// Index of the arm.
-    pub arm: usize,
-    /// Index of the instance.
-    pub instance: usize,
-    /// Seed as the file counts it.
-    pub seed: u64,
-    /// Its outcome; `None` if it failed or is missing.
-    pub outcome: Option<Outcome>,
-    /// Why there is none.
-    pub failure: Option<String>,
-    /// Processor seconds.
-    pub seconds: f64,
 }
 
 /// The results of all tasks, in the plan's order.

@@ -7,10 +7,11 @@ use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
 use super::command;
+use super::given::Given;
 use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task};
-use super::study::{Given, Study};
+use super::study::Study;
 use crate::frame::Progress as Bar;
 use edifice_base::rng::stream;
 use edifice_base::{Ended, Error, Progress, Result, Watch, Watched};

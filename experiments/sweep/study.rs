@@ -1,13 +1,14 @@
 //! Studies: methods with typed settings, which a sweep can vary.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use schemars::{JsonSchema, schema_for};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::given::Given;
 use super::sources;
 use super::trial::{Answered, Posed, Trial};
 use edifice_base::{Error, Result, Watched, unwatched};
@@ -46,20 +47,6 @@ pub struct Setting {
     pub default: Value,
     /// Its meaning.
     pub meaning: String,
-}
-
-/// The input of a task beside its settings.
-#[derive(Debug, Clone, Copy)]
-pub struct Given<'a> {
-    /// File of the instance. Files beside it that have its name up to the first dot belong to it.
-    pub path: &'a Path,
-    /// Files to learn from, in order of name, of studies that [learn](Study::learning): those that the sweep names, or else its
-    /// other instances. The instance is not among them.
-    pub database: &'a [PathBuf],
-    /// Seed of all chance.
-    pub seed: u64,
-    /// Asked by long tasks whether to go on. The outcome of a task that was stopped is not kept.
-    pub watched: &'a Watched<'a>,
 }
 
 type Run = Box<dyn Fn(&Map<String, Value>, &Given) -> Result<Outcome> + Send + Sync>;

@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::study::Given;
+use super::given::Given;
 use edifice_base::{Result, Watched};
 
 /// An answer, and what its author says of it.

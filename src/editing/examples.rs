@@ -3,37 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+pub use super::example::{Example, Source};
 use super::work::Work;
 use super::{EDITORS, State, open};
 use edifice_base::{Error, Result};
 use edifice_datasets::shipped_bytes;
-
-/// A document to begin with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-pub struct Example {
-    /// The name that it is asked for by.
-    pub id: &'static str,
-    /// Kind of document.
-    pub kind: &'static str,
-    /// A few words.
-    pub title: &'static str,
-    /// A sentence.
-    pub about: &'static str,
-    /// Its source.
-    #[serde(skip)]
-    pub source: Source,
-}
-
-/// The source of an example.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
-    /// A file that ships.
-    File(&'static str),
-    /// A line of a file that ships, from 0, under a name of its own.
-    Line(&'static str, usize, &'static str),
-    /// A text under a name.
-    Text(&'static str, &'static str),
-}
 
 /// All of them, those of one editor after those of another.
 pub fn examples() -> impl Iterator<Item = &'static Example> {

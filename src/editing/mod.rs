@@ -26,6 +26,7 @@
 
 pub mod building_exteriors;
 pub mod city_proceduralization;
+mod example;
 pub mod examples;
 pub mod facade_grammar;
 pub mod history;
@@ -40,7 +41,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use edifice_base::{Error, Result};
-use examples::Example;
+use example::Example;
 use script::Shell;
 use work::{Stopped, Work};
 

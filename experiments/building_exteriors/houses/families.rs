@@ -6,7 +6,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::plan::Site;
+use super::site::Site;
 use edifice_shape::{Rect, Side};
 
 /// The form of a plan, seen from above.

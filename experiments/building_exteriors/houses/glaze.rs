@@ -1,6 +1,6 @@
 //! Windows and doors of a side, sized for its window-to-wall ratio.
 
-use super::storeys::millimetres;
+use super::lengths::millimetres;
 use super::strips::{NARROWEST, Strip, Use};
 use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 

@@ -17,9 +17,11 @@ use rand::{Rng, RngExt};
 
 use super::draw::{Numbers, Part};
 use super::families::Family;
-use super::storeys::{self, millimetres};
+use super::lengths::millimetres;
+use super::site::Site;
+use super::storeys;
 use super::styles::{Kinds, Place};
-use edifice_shape::{BoxStyle, MassBox, PlanUnion, Rect};
+use edifice_shape::{MassBox, PlanUnion, Rect};
 
 pub(super) struct Plan {
     pub floor_height: f64,
@@ -36,21 +38,6 @@ const THINNEST: f64 = 1.5;
 const NARROWEST: f64 = 1.2;
 /// Least width of the room in front beside the parts (m).
 const ROOM: f64 = 2.0;
-
-/// The rectangle around the house with what garage and porches take from its main body.
-pub(super) struct Site {
-    pub width: f64,
-    pub depth: f64,
-    /// Taken from the main body.
-    pub taken: Vec<Rect>,
-    pub garage: Option<Rect>,
-    pub front: Option<Rect>,
-    pub rear: Option<Rect>,
-    /// Free stretches of the walls on the outermost lines: front, back, left, right.
-    pub free: [[f64; 2]; 4],
-    /// Deepest cuts of the corners back left, back right, front left, front right.
-    pub deepest: [f64; 4],
-}
 
 /// A plan of a family drawn at random, or `None` when the numbers do not fit together or into the family.
 pub(super) fn build(n: &Numbers, kinds: &Kinds, rng: &mut impl Rng) -> Option<Plan> {
@@ -212,6 +199,3 @@ fn place(part: &Part, width: f64, depth: f64) -> Rect {
         part.depth,
     )
 }
-
-/// Styles of the parts in the order of [`Site`].
-pub(super) const PARTS: [BoxStyle; 3] = [BoxStyle::Garage, BoxStyle::Porch, BoxStyle::Porch];

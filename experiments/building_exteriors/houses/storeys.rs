@@ -3,7 +3,8 @@
 use rand::{Rng, RngExt};
 
 use super::draw::Numbers;
-use super::plan::{PARTS, Site};
+use super::lengths::millimetres;
+use super::site::{PARTS, Site};
 use super::styles::Kinds;
 use edifice_building_exteriors::house::roofs::largest_rectangles;
 use edifice_shape::{BoxStyle, MassBox, PlanUnion, Rect, Ridge, Roof, RoofStyle};
@@ -187,11 +188,6 @@ fn mass_box(style: BoxStyle, plan: &Rect, height: f64, pitch: f64) -> MassBox {
             },
         },
     }
-}
-
-/// Rounds to millimetres.
-pub(super) fn millimetres(metres: f64) -> f64 {
-    (metres * 1e3).round() / 1e3
 }
 
 /// Rounds to tenths of a millimetre, where centres of boxes lie.

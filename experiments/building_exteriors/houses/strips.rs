@@ -1,7 +1,7 @@
 //! Each side of a house as vertical strips.
 
+use super::lengths::millimetres;
 use super::plan::Plan;
-use super::storeys::millimetres;
 use edifice_shape::{BoxStyle, ElementStyle, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// Narrowest strip with windows, and narrowest that can be seen to be asymmetric (m).

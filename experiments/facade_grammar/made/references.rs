@@ -24,6 +24,7 @@
 //!
 //! Nothing here looks at a method or a cost.
 
+mod kind;
 mod plan;
 mod write;
 
@@ -31,44 +32,8 @@ use edifice_base::rng::stream;
 use edifice_grammar::{Grammar, GrammarError, derive};
 use edifice_shape::Facade;
 
+pub use kind::Kind;
 use plan::Plan;
-
-/// The way in which a reference splits a facade, and the form of its own layouts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// Floors, then tiles.
-    FloorsFirst,
-    /// Bays, then tiles.
-    ColumnsFirst,
-    /// Directions alternate: zones, sections, storeys, tiles.
-    Interleaved,
-    /// Wing, centre, wing; then floors, then tiles.
-    Symmetric,
-    /// Groups within groups: base, main part and top; storeys; sections; tiles.
-    Nested,
-}
-
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Kind; 5] = [
-        Kind::FloorsFirst,
-        Kind::ColumnsFirst,
-        Kind::Interleaved,
-        Kind::Symmetric,
-        Kind::Nested,
-    ];
-
-    /// Its name in tables and files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::FloorsFirst => "floors_first",
-            Kind::ColumnsFirst => "columns_first",
-            Kind::Interleaved => "interleaved",
-            Kind::Symmetric => "symmetric",
-            Kind::Nested => "nested",
-        }
-    }
-}
 
 /// A made layout with a grammar of each kind.
 #[derive(Debug, Clone)]

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::sweep::collect::Record;
 use crate::sweep::plan::Plan;
+use crate::sweep::record::Record;
 use crate::sweep::statistics::{Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank};
 use crate::sweep::study::{Better, Study};
 use edifice_base::rng::stream;

@@ -1,8 +1,8 @@
 //! Figures of a sweep's report.
 
 use super::compare::Comparison;
-use crate::sweep::collect::Record;
 use crate::sweep::plan::Plan;
+use crate::sweep::record::Record;
 use crate::sweep::statistics::{profile, reached};
 use crate::sweep::study::{Better, Study};
 use edifice_report::{Chart, Corner, Figure, Ranking, Scale, Series};

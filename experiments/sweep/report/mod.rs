@@ -9,9 +9,10 @@ pub use publish::publish;
 
 use std::path::Path;
 
-use super::collect::{Record, records};
+use super::collect::records;
 use super::journal::Keep;
 use super::plan::Plan;
+use super::record::Record;
 use super::study::Study;
 use edifice_base::{Error, Result, file};
 use edifice_report::{Align, Figure, Page, Section, Table, index, write_figure};

@@ -7,10 +7,10 @@
 //! that, so that what is put in and taken out again leaves the outline as it was; and the facade, unless a repeat had to get other sizes
 //! for its number of periods ([`settle`]), which may be another one in another region of its rule.
 
-use super::edits::GrammarEditError;
+use super::error::GrammarEditError;
 use super::line::{Line, along_mut, repeats, totals};
+use super::place::Place;
 use super::reach::{LEAST_GROWTH, Laid, Reach, periods, reach};
-use super::text::Place;
 use edifice_grammar::{Grammar, GrammarError, Size};
 use edifice_shape::Axis;
 

@@ -1,7 +1,7 @@
 //! The sizes that a rule writes along one axis: those of its parts, or of the columns or rows of a grid.
 
-use super::edits::GrammarEditError;
-use super::text::Place;
+use super::error::GrammarEditError;
+use super::place::Place;
 use edifice_grammar::{Grammar, Operation, Size, Successor};
 use edifice_shape::Axis;
 
@@ -117,7 +117,7 @@ impl<'g> Line<'g> {
         rule: usize,
         place: Place,
     ) -> Result<Self, GrammarEditError> {
-        super::edits::known(grammar, rule)?;
+        super::error::known(grammar, rule)?;
         let operation = &mut grammar.rules[rule].operation;
         let axis = match (&*operation, place) {
             (Operation::GridSplit { .. }, Place::Column(_)) => Ok(Axis::X),

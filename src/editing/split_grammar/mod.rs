@@ -3,13 +3,16 @@
 
 mod derivation;
 mod edits;
+mod error;
 mod floors;
 mod line;
+mod place;
 mod reach;
 mod relief;
 mod text;
 
 pub use derivation::{DeriveError, Derived, Wish, derived};
-pub use edits::{GrammarEdit, GrammarEditError, edit};
+pub use edits::{GrammarEdit, edit};
+pub use error::GrammarEditError;
+pub use place::Place;
 pub use relief::glb;
-pub use text::Place;

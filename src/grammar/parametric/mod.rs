@@ -55,6 +55,7 @@ mod sizes;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod texts;
 mod tree;
 mod written;
 

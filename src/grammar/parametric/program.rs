@@ -14,7 +14,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
-use super::phrases::Texts;
+use super::texts::Texts;
 
 /// Nodes of branch and bound.
 const NODES: usize = 2000;

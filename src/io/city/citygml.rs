@@ -11,6 +11,7 @@
 
 mod building;
 mod element;
+mod error;
 pub mod system;
 
 use std::fs::File;
@@ -24,45 +25,17 @@ use quick_xml::events::Event;
 
 use self::building::Draft;
 use self::element::Element;
+pub use self::error::CityGmlError;
+use self::error::{DEEPEST, Dropped};
 use self::system::System;
 use crate::file_stem;
 use edifice_base::{Error, Result};
 use edifice_shape::triangles::City;
 
-/// Deepest nesting of elements.
-const DEEPEST: usize = 256;
 /// Most bytes of a text between two tags: a ring of ten million corners.
 const MOST_TEXT: usize = 1 << 30;
 /// Bytes that the stream reads at once.
 const BUFFER: usize = 1 << 16;
-
-/// Why a file is no CityGML.
-#[derive(Debug, thiserror::Error)]
-pub enum CityGmlError {
-    /// Malformed XML.
-    #[error(transparent)]
-    Xml(#[from] quick_xml::Error),
-    /// The file ends inside an element.
-    #[error("the file ends inside <{0}>")]
-    Truncated(String),
-    /// Elements nest too deeply.
-    #[error("elements nest more than {DEEPEST} deep")]
-    TooDeep,
-    /// The outermost element is another.
-    #[error("<{0}>, expected <CityModel>")]
-    NoModel(String),
-    /// Coordinates that are none.
-    #[error("{0:?} is no coordinate")]
-    Coordinate(String),
-    /// Coordinates that do not come in twos or threes.
-    #[error("{count} numbers are no corners of {dimension} coordinates")]
-    Dimension {
-        /// Number of the coordinates.
-        count: usize,
-        /// Of each corner.
-        dimension: usize,
-    },
-}
 
 /// Reads a file, gzipped, xz-packed or plain.
 ///
@@ -130,17 +103,6 @@ struct Model {
     depth: usize,
     dropped: Dropped,
     seen: bool,
-}
-
-/// Numbers of elements that were left out, by cause.
-#[derive(Default)]
-pub(super) struct Dropped {
-    others: usize,
-    empty: usize,
-    pub(super) implicit: usize,
-    pub(super) rooms: usize,
-    pub(super) references: usize,
-    pub(super) degenerate: usize,
 }
 
 impl Model {

@@ -1,6 +1,7 @@
 //! Pictures of cities, one beside the other, from one place: from the south-west, or from above. What is drawn is moved to the middle
 //! of the first city in double precision, wherever in its reference system it lies.
 
+mod drawing;
 mod glyphs;
 mod legend;
 mod scene;
@@ -10,6 +11,8 @@ use edifice_scene::render::{Picture, render};
 use edifice_scene::trace::framing_at;
 use edifice_shape::triangles::City;
 
+use self::drawing::seen;
+pub use self::drawing::{Drawing, Drawn};
 use self::scene::scene;
 
 /// Space between pictures, in pixels.
@@ -18,28 +21,6 @@ const GAP: usize = 8;
 const OBLIQUE: ([f32; 3], f32) = ([0.35, -0.55, -0.75], 30.0);
 /// From above, north at the top, from so far that walls are hardly seen.
 const PLAN: ([f32; 3], f32) = ([0.0, -1.0, -1e-4], 4.0);
-
-/// Settings of drawing cities.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drawing {
-    /// Width of each city's picture, in pixels.
-    pub width: usize,
-    /// Height, in pixels.
-    pub height: usize,
-    /// From above instead of from the south-west.
-    pub plan: bool,
-    /// Only buildings whose middle lies within so many metres of a point, in the coordinates of the reference system.
-    pub around: Option<([f64; 2], f64)>,
-}
-
-/// A city to draw.
-#[derive(Debug, Clone, Copy)]
-pub struct Drawn<'a> {
-    /// The city.
-    pub city: &'a City,
-    /// A colour (sRGB) for each building; without them buildings are light, and textures are shown.
-    pub colours: Option<&'a [[u8; 3]]>,
-}
 
 /// Colours, red, green and blue from 0 to 255, each with what it stands for.
 pub type Legend = Vec<([u8; 3], String)>;
@@ -136,13 +117,4 @@ fn middle_of(city: &City, drawing: &Drawing) -> [f64; 3] {
         true => [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0 + city.origin[k]),
         false => city.origin,
     }
-}
-
-/// True if a building of these bounds is drawn.
-fn seen((low, high): &([f64; 3], [f64; 3]), city: &City, drawing: &Drawing) -> bool {
-    let Some((at, radius)) = drawing.around else {
-        return true;
-    };
-    let away = |k: usize| (low[k] + high[k]) / 2.0 + city.origin[k] - at[k];
-    away(0).hypot(away(1)) <= radius
 }

@@ -1,6 +1,7 @@
 //! From statements to a grammar.
 
 mod chance;
+mod draw;
 mod natural;
 mod operation;
 mod value;
@@ -13,10 +14,10 @@ use super::error::Fault;
 use super::note::Note;
 use super::reserved::is_leaf_operation;
 use super::syntax::{At, CgaRule, Chance, Item, Target};
+use draw::{DRAWS, Draw};
 use edifice_grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
 use edifice_shape::Axis;
 use natural::natural_extent;
-use value::{DRAWS, Draw};
 
 /// The unit of text that names none: CityEngine's metre.
 const UNIT: &str = "m";

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::RegularizeError;
 use super::axis::Axis;
 use super::classes::{Extent, classes};
+use super::error::RegularizeError;
 use super::lattice::Lattice;
 use super::projection::Limits;
 use super::resized;

@@ -1,11 +1,10 @@
 //! Regularization along one axis: which lines and sizes become equal, and where the lines go.
 
-use super::RegularizeError;
 use super::classes::Class;
 use super::differences::{Differences, SharedSize};
-use super::equal::Cluster;
+use super::error::RegularizeError;
+use super::groups::{Cluster, Groups};
 use super::lattice::Lattice;
-use super::meeting::Groups;
 use super::strips::Strips;
 use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 

@@ -2,28 +2,10 @@
 
 use super::axis::Axis;
 use super::classes::Class;
-use super::meeting::Groups;
+use super::groups::{Cluster, Groups};
 
 /// Most sizes that may turn out not to fit before no more are tried, for time on large layouts.
 const MAX_REFUSALS: usize = 60;
-
-/// Classes of sizes that have become one.
-#[derive(Debug, Clone)]
-pub struct Cluster {
-    /// Their numbers.
-    pub classes: Vec<usize>,
-    /// Size that they should have.
-    pub wanted: f64,
-    /// Size that they have.
-    pub value: f64,
-}
-
-impl Cluster {
-    /// The class that it began with.
-    pub fn lead(&self) -> usize {
-        self.classes[0]
-    }
-}
 
 impl Axis<'_> {
     /// Makes nearly equal sizes of one label equal. Leaders, those with most others within reach, keep

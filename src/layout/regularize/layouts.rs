@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::RegularizeError;
 use super::areas::Areas;
 use super::counts;
+use super::error::RegularizeError;
 use super::projection::{Layout, Limits, Step};
 use super::square::square;
 use edifice_shape::{

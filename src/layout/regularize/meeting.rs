@@ -1,23 +1,7 @@
 //! The choice of the lines along one axis that become one.
 
 use super::axis::Axis;
-use super::equal::Cluster;
-
-/// Cut lines, merged into groups that share a position.
-pub struct Groups {
-    /// Group of each line.
-    pub of_line: Vec<usize>,
-    /// The wanted position of the lines of each group.
-    pub center: Vec<f64>,
-    /// Sum of the weights of the lines.
-    pub weight: Vec<f64>,
-    /// Bounds of the position.
-    pub lower: Vec<f64>,
-    /// Bounds of the position.
-    pub upper: Vec<f64>,
-    /// Least distance of each group to the next.
-    pub gap: Vec<f64>,
-}
+use super::groups::{Cluster, Groups};
 
 impl Axis<'_> {
     /// Merges lines that can meet. Leaders, those with most edge within reach, stay where they are as far

@@ -15,7 +15,7 @@
 //! that it is deterministic. A tenth is left because steps are heuristics: from where one ends, another that
 //! measures anew nearly always finds a little more.
 
-use super::RegularizeError;
+use super::error::RegularizeError;
 
 /// Reaches of the steps that are tried, as parts of the tolerance.
 const REACHES: [f64; 8] = [1.0, 0.9, 0.75, 0.6, 0.5, 0.4, 0.3, 0.15];

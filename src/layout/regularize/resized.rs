@@ -15,7 +15,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::RegularizeError;
+use super::error::RegularizeError;
 use super::strips::Run;
 use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::Kind;
+use super::kind::Kind;
 use crate::facade_grammar::made::elements::{Break, Glazing, Style};
 use crate::facade_grammar::made::theme::Rhythm;
 use edifice_base::rng::Stream;

@@ -1,6 +1,6 @@
 //! A plan as a grammar of one kind.
 
-use super::Kind;
+use super::kind::Kind;
 use super::plan::{Plan, Tile};
 use crate::facade_grammar::made::composition::run;
 use crate::facade_grammar::made::draft::{Draft, Part, leaf};

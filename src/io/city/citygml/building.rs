@@ -4,8 +4,8 @@ use rustc_hash::FxHashMap;
 use serde_json::{Map, Value};
 
 use super::element::Element;
+use super::error::{CityGmlError, Dropped};
 use super::system::System;
-use super::{CityGmlError, Dropped};
 use edifice_shape::triangles::{CityBuilding, TriangleMesh, polygon_triangles};
 
 /// The levels of detail that are read.

@@ -5,7 +5,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::CompactError;
+use super::error::CompactError;
 use super::integers::{Natural, Whole};
 use super::range_coder::{Bit, Coder};
 

@@ -7,7 +7,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::CompactError;
+use super::error::CompactError;
 use super::integers::{BitTree, Natural, Whole};
 use super::range_coder::{Bit, Coder};
 

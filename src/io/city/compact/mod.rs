@@ -19,6 +19,7 @@
 //! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (along Hilbert's curve, so that neighbours
 //! follow each other), that of a template's corners and triangles, and corners without a triangle.
 
+mod error;
 mod identity;
 mod integers;
 mod mesh;
@@ -26,68 +27,32 @@ mod order;
 mod range_coder;
 mod rules;
 mod steps;
+mod unit;
 
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use self::error::FIRST;
+pub use self::error::{CompactError, VERSION};
 use self::identity::{Attributes, Identities};
 use self::mesh::{MeshModels, StepMesh};
 use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
-pub use self::steps::Steps;
+pub use self::unit::Steps;
 use super::pictures;
 use crate::write_atomic;
 use edifice_base::file::read_bytes;
 use edifice_base::{Error, Result};
-use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, Template};
+use edifice_grammar::instance::{InstanceGrammar, Template};
 use edifice_shape::triangles::TriangleMesh;
 
 /// The first bytes of a file.
 const MAGIC: [u8; 4] = *b"EdCG";
-/// The version written.
-pub const VERSION: u16 = 2;
-/// The oldest version that is read.
-const FIRST: u16 = 1;
 /// Bytes before the checked part.
 const START: usize = 10;
 /// Most bytes of names, identifiers and attributes, unpacked.
 const MOST_TEXT: u64 = 1 << 28;
-
-/// Why bytes are no grammar, or a grammar cannot be written.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CompactError {
-    /// The file is of another kind.
-    #[error("not a compact grammar: it does not begin with \"EdCG\"")]
-    Magic,
-    /// A version that is not known.
-    #[error("version {0}, expected {FIRST} to {VERSION}")]
-    Version(u16),
-    /// The bytes are not those that were written.
-    #[error("damaged: the checksum does not fit")]
-    Checksum,
-    /// The file ends too early.
-    #[error("truncated")]
-    Truncated,
-    /// The number of things is larger than is read or written.
-    #[error("too many {0}")]
-    TooLarge(&'static str),
-    /// A number leads nowhere.
-    #[error("a number of a {0} leads nowhere")]
-    Index(&'static str),
-    /// A number has too many digits for whole steps.
-    #[error("{0} is too large to be written in steps")]
-    Number(f64),
-    /// The numbers of steps are not from 1 to 65,535.
-    #[error("steps {0:?} are not whole numbers from 1 to 65,535")]
-    Steps(Steps),
-    /// The text part.
-    #[error("text part: {0}")]
-    Text(String),
-    /// The grammar is not sound.
-    #[error(transparent)]
-    Grammar(#[from] InstanceGrammarError),
-}
 
 /// Reads a grammar and checks that it derives.
 ///

@@ -8,11 +8,12 @@ mod parts;
 
 use rustc_hash::FxHashMap;
 
+use super::error::CompactError;
 use super::identity::Identities;
 use super::integers::{BitTree, Natural, Whole, bits_of, plain};
 use super::range_coder::{Bit, Coder};
 use super::steps::{SHARES, in_steps};
-use super::{CompactError, Steps};
+use super::unit::Steps;
 use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Most placements of a file.

@@ -1,20 +1,8 @@
 //! Steps in which numbers are whole.
 
-use serde::{Deserialize, Serialize};
-
-use super::CompactError;
+use super::error::CompactError;
+use super::unit::Steps;
 use edifice_grammar::instance::{InstanceGrammar, Placement};
-
-/// Numbers of steps in a unit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Steps {
-    /// Steps of a metre.
-    pub length: i64,
-    /// Steps of a degree.
-    pub turn: i64,
-    /// Steps of a side of a template's box.
-    pub shape: i64,
-}
 
 /// Steps of a share, or of a level, in a rule with parameters.
 pub(super) const SHARES: i64 = 1024;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::drawing::{Drawing, Drawn, seen};
 use super::terrain::Terrain;
-use super::{Drawing, Drawn, seen};
 use edifice_scene::{Group, Instance, Material, Mesh, Scene};
 use edifice_shape::triangles::{City, CityBuilding, Painted, corner_bits};
 

@@ -6,6 +6,7 @@
 
 use rand::Rng;
 
+use super::error::CompleteError;
 use super::observed::wanted_rows;
 use super::reconcile::{SAME, origins, reconciled};
 use crate::attributes::{AttributeRow, mass_attributes};
@@ -19,66 +20,7 @@ use crate::mass::target::{PARTS, part_of};
 use crate::mass::{Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search};
 use crate::model_file::ModelFile;
 use edifice_base::rng::stream;
-use edifice_model::ModelError;
 use edifice_shape::{BoxStyle, Building, MassBox};
-
-/// Why observed parts cannot be completed.
-#[derive(Debug, thiserror::Error)]
-pub enum CompleteError {
-    /// An observed box does not fit into the given bounding box.
-    #[error(
-        "boxes[{index}] of the partial house reaches from {low:.3} to {high:.3} m, outside 0 to {bound} m ({column})"
-    )]
-    Outside {
-        /// Index of the box.
-        index: usize,
-        /// Its lower end, in metres.
-        low: f64,
-        /// Its upper end, in metres.
-        high: f64,
-        /// Column of the bounding box.
-        column: &'static str,
-        /// Value of that column, in metres.
-        bound: f64,
-    },
-    /// An observed box has more floors than the house is to have.
-    #[error(
-        "boxes[{index}] of the partial house has {floors} floors, the shares of the floors (arf) ask for {wanted}"
-    )]
-    Floors {
-        /// Index of the box.
-        index: usize,
-        /// Number of its floors.
-        floors: usize,
-        /// Number of floors of the house.
-        wanted: usize,
-    },
-    /// An observed facade piece stands on no wall of the observed boxes.
-    #[error("facades[{index}] of the partial house stands on no wall of its boxes")]
-    NoWall {
-        /// Index of the facade piece.
-        index: usize,
-    },
-    /// No arrangement of further boxes leaves the observed facades free.
-    #[error(
-        "every arrangement of boxes found hides an observed facade piece or cuts the house apart"
-    )]
-    Hidden,
-    /// No answer of the model could be built.
-    #[error("none of {tried} answers of the model fits the observed parts; the first: {first}")]
-    NoAnswer {
-        /// Number of answers tried.
-        tried: usize,
-        /// The reason why the first one fails.
-        first: Box<CompleteError>,
-    },
-    /// The model refuses the evidence.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// No house was found.
-    #[error(transparent)]
-    Generate(#[from] GenerateError),
-}
 
 /// Mass models within this distance (standard deviations) are near enough not to try another place.
 const NEAR: f64 = 0.05;

@@ -2,7 +2,8 @@
 
 use rand::Rng;
 
-use super::complete::{CompleteError, around};
+use super::complete::around;
+use super::error::CompleteError;
 use super::observed::wanted_rows;
 use crate::attributes::{AttributeRow, COLUMNS, attributes};
 use crate::data::table;

@@ -4,13 +4,15 @@
 
 mod complete;
 mod edit;
+mod error;
 mod observed;
 mod possible;
 mod reconcile;
 mod variants;
 
-pub use complete::{CompleteError, around, completions};
+pub use complete::{around, completions};
 pub use edit::{Edit, EditError, edited, suggested};
+pub use error::CompleteError;
 pub use observed::{observed, wanted_rows};
 pub use possible::{MOVED, Possible, possible_rows};
 pub use variants::variants;

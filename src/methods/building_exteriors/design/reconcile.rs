@@ -1,6 +1,6 @@
 //! Wanted columns and observed boxes made to agree.
 
-use super::complete::CompleteError;
+use super::error::CompleteError;
 use crate::attributes::COLUMNS;
 use crate::mass::target::bounds;
 use edifice_shape::{Building, ElementStyle, MassBox, PlanUnion, RoofStyle, Special};

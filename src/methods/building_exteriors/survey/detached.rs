@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::walls::{is_wall, norm, normal, plan_area};
+use super::surfaces::{is_wall, norm, normal, plan_area};
 use edifice_shape::triangles::TriangleMesh;
 
 /// Walls nearer than this touch (m); neighbours of a smaller plan (square metres) are sheds, which do not count.

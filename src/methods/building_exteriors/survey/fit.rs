@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::heights::HeightMap;
-use super::walls::{ground, norm, normal, roof};
+use super::surfaces::{ground, norm, normal, roof};
 use edifice_shape::triangles::{Corners, TriangleMesh, plan_area};
 use edifice_shape::{MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 

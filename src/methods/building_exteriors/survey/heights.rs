@@ -1,7 +1,7 @@
 //! The height of a building over its plan, on a raster.
 
 use super::planes::Planes;
-use super::walls::{ground, is_wall, norm, normal};
+use super::surfaces::{ground, is_wall, norm, normal};
 use edifice_shape::triangles::{Corners, TriangleMesh};
 
 /// Largest side of a sample (m).

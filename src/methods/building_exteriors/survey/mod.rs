@@ -43,6 +43,7 @@ mod heights;
 mod known;
 mod planes;
 mod roofs;
+mod surfaces;
 mod walls;
 
 use rayon::prelude::*;
@@ -171,7 +172,7 @@ const HALL: (f64, f64) = (4.0, 220.0);
 /// Plan area (square metres) and height (m) of a building's triangles at a glance; `None` without a roof.
 pub fn size(mesh: &TriangleMesh) -> Option<[f64; 2]> {
     let (low, high) = mesh.bounds()?;
-    let area = walls::plan_area(mesh);
+    let area = surfaces::plan_area(mesh);
     let all = [area, high[2] - low[2]];
     (area > 0.0 && all.iter().all(|v| v.is_finite())).then_some(all)
 }

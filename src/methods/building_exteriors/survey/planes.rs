@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::walls::{is_wall, norm, normal};
+use super::surfaces::{is_wall, norm, normal};
 use edifice_shape::triangles::TriangleMesh;
 
 /// Least cosine between the normals of one plane's triangles.

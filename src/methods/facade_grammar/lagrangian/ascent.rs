@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::derivation::Rule;
-use super::{Dual, Incumbent};
+use super::dual::Dual;
+use super::incumbent::Incumbent;
 
 /// An item of a region type.
 pub(crate) type Item = (u32, usize);

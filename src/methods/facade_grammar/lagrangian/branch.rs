@@ -8,8 +8,11 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::ascent::{Ascent, Item};
+use super::dual::Dual;
 use super::fixing::Live;
-use super::{Ascent, Dual, Incumbent, Item, Program};
+use super::incumbent::Incumbent;
+use super::program::Program;
 
 /// Limits on the work that a bound may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

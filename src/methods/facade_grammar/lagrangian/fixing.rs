@@ -6,9 +6,10 @@
 //! `p` consists of the rest, the cheapest path to its arc, the arc, and the cheapest path from it.
 
 use super::derivation::Prices;
+use super::dual::{Dual, prices};
+use super::incumbent::Incumbent;
 use super::program::{Occurrence, Program};
 use super::region_type::{Operator, RegionType};
-use super::{Dual, Incumbent, prices};
 
 /// The occurrences and items that a grammar cheaper than the incumbent can use.
 #[derive(Clone)]

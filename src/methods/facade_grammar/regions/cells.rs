@@ -1,7 +1,7 @@
 //! Everything that full lines along both axes can cut out of a region.
 
-use super::types::part;
-use super::{Region, TypeId, Types};
+use super::region::{Region, TypeId, part};
+use super::strips::Strips;
 use edifice_shape::Axis;
 
 /// Rectangles that a region may have between its full lines for grids of it to be looked for: about
@@ -23,31 +23,34 @@ fn place((a, b): (u16, u16)) -> usize {
 }
 
 impl Cells {
-    /// Interns the rectangles of a region; `None` when there are too many.
-    pub fn new(types: &mut Types, id: TypeId) -> Option<Self> {
-        let [xs, ys] = Axis::BOTH.map(|axis| types.strips(id, axis));
+    /// The rectangles between the full lines of a region along x and y; `None` when there are too many. `intern` gives a
+    /// rectangle's type.
+    pub fn new(
+        region: Region,
+        [xs, ys]: [&Strips; 2],
+        mut intern: impl FnMut(Region) -> TypeId,
+    ) -> Option<Self> {
         let count = |n: usize| n * (n + 1) / 2;
         if count(xs.intervals()) * count(ys.intervals()) > MAX_RECTANGLES {
             return None;
         }
-        let region = types.region(id);
         let intervals = |cuts: &[u16]| -> Vec<(u16, u16)> {
             (1..cuts.len())
                 .flat_map(|b| (0..b).map(move |a| (a, b)))
                 .map(|(a, b)| (cuts[a], cuts[b]))
                 .collect()
         };
-        let mut interned = Vec::new();
+        let mut types = Vec::new();
         for (x0, x1) in intervals(&xs.cuts) {
             let column: Region = part(region, Axis::X, x0, x1);
             for (y0, y1) in intervals(&ys.cuts) {
-                interned.push(types.intern(part(column, Axis::Y, y0, y1)));
+                types.push(intern(part(column, Axis::Y, y0, y1)));
             }
         }
         Some(Self {
             across: xs.intervals() as u16,
             up: ys.intervals() as u16,
-            types: interned,
+            types,
         })
     }
 

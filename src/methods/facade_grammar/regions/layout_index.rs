@@ -9,6 +9,7 @@
 //!   `sum_t h(label, w, h) P^(x_t - x_0) Q^(y_t - y_0) mod 2^61 - 1`.
 
 use super::lengths::{Lines, minus};
+use super::region::Region;
 use edifice_shape::{Axis, Facade};
 
 /// Modulus of the content hash, the Mersenne prime `2^61 - 1`.
@@ -16,16 +17,6 @@ const MODULUS: u64 = (1 << 61) - 1;
 /// Bases of the content hash for x and y: fixed, so that runs repeat.
 const BASE_X: u64 = 1_481_765_933_223_374_113;
 const BASE_Y: u64 = 982_451_653_118_811_007;
-
-/// A rectangle of grid cells of one layout.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Region {
-    pub layout: u16,
-    pub x0: u16,
-    pub x1: u16,
-    pub y0: u16,
-    pub y1: u16,
-}
 
 /// A facade prepared for search.
 #[derive(Debug)]

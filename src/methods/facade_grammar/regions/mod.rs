@@ -7,10 +7,12 @@
 mod cells;
 mod layout_index;
 mod lengths;
+mod region;
 mod strips;
 mod types;
 
 pub(crate) use cells::Cells;
-pub(crate) use layout_index::{LayoutIndex, Region};
+pub(crate) use layout_index::LayoutIndex;
+pub(crate) use region::{Region, TypeId, ends, part};
 pub(crate) use strips::{Offsets, Strips};
-pub(crate) use types::{TypeId, Types, ends, part};
+pub(crate) use types::Types;

@@ -1,7 +1,7 @@
 //! The structure of a region along one axis, as full lines can cut it: strips, periods, alternations, mirrored pairs.
 
-use super::TypeId;
 use super::lengths::{minus, times};
+use super::region::TypeId;
 
 /// Distances of some cuts from the first of them: increasing lengths, and their residues, by which lengths are compared.
 #[derive(Debug)]

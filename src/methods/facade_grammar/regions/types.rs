@@ -4,12 +4,12 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
+use super::cells::Cells;
+use super::layout_index::LayoutIndex;
 use super::lengths::{lines, minus};
-use super::{Cells, LayoutIndex, Offsets, Region, Strips};
+use super::region::{Region, TypeId, ends, part};
+use super::strips::{Offsets, Strips};
 use edifice_shape::{Axis, Facade, LayoutError};
-
-/// Index of a region type. Types below [`Types::label_count`] are the terminal labels.
-pub(crate) type TypeId = u32;
 
 /// A type and the first region found with it.
 #[derive(Debug, Clone, Copy)]
@@ -163,7 +163,9 @@ impl Types {
     /// The rectangles between the full lines of a non-terminal type; `None` when there are too many.
     pub fn cells(&mut self, id: TypeId) -> Option<Rc<Cells>> {
         if !self.cells.contains_key(&id) {
-            let cells = Cells::new(self, id).map(Rc::new);
+            let [xs, ys] = Axis::BOTH.map(|axis| self.strips(id, axis));
+            let region = self.region(id);
+            let cells = Cells::new(region, [&xs, &ys], |part| self.intern(part)).map(Rc::new);
             self.cells.insert(id, cells);
         }
         self.cells[&id].clone()
@@ -227,29 +229,5 @@ impl Types {
             at: cuts.iter().map(offset).collect(),
             residues: cuts.iter().map(residue).collect(),
         }
-    }
-}
-
-/// Grid indices of a region's ends along an axis.
-pub(crate) fn ends(r: Region, axis: Axis) -> (u16, u16) {
-    match axis {
-        Axis::X => (r.x0, r.x1),
-        Axis::Y => (r.y0, r.y1),
-    }
-}
-
-/// The strip of a region between two grid indices.
-pub(crate) fn part(r: Region, axis: Axis, from: u16, to: u16) -> Region {
-    match axis {
-        Axis::X => Region {
-            x0: from,
-            x1: to,
-            ..r
-        },
-        Axis::Y => Region {
-            y0: from,
-            y1: to,
-            ..r
-        },
     }
 }

@@ -6,7 +6,7 @@
 //! are single shortest paths.
 
 use super::candidate::{Arrangement, RuleCandidate};
-use super::pricer::trace;
+use super::trace::trace;
 use crate::regions::{Cells, TypeId};
 use edifice_grammar::Costs;
 

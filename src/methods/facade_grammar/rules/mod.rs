@@ -4,6 +4,7 @@ mod candidate;
 pub(super) mod extract;
 pub(super) mod grid;
 mod pricer;
+mod trace;
 
 pub(super) use candidate::{AddRule, Arrangement, RuleCandidate, operation_cost};
 pub(super) use pricer::RulePricer;

@@ -18,6 +18,7 @@ use edifice_shape::Axis;
 
 use super::candidate::{Arrangement, RuleCandidate};
 use super::grid;
+use super::trace::trace;
 
 /// Finds cheapest rules; keeps its tables between calls.
 #[derive(Debug)]
@@ -204,16 +205,4 @@ impl RulePricer {
         }
         lines
     }
-}
-
-/// Follows predecessors back from `end` to 0.
-pub(crate) fn trace(previous: &[u16], end: usize) -> Vec<u16> {
-    let mut lines = vec![end as u16];
-    let mut at = end;
-    while at > 0 {
-        at = usize::from(previous[at]);
-        lines.push(at as u16);
-    }
-    lines.reverse();
-    lines
 }

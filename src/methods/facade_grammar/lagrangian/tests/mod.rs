@@ -1,5 +1,6 @@
 mod linear_program;
 
+use super::dual::Dual;
 use super::*;
 use crate::operations::Operations;
 use crate::regions::Types;

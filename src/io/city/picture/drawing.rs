@@ -1,0 +1,34 @@
+//! Cities to draw, and how.
+
+use edifice_shape::triangles::City;
+
+/// Settings of drawing cities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawing {
+    /// Width of each city's picture, in pixels.
+    pub width: usize,
+    /// Height, in pixels.
+    pub height: usize,
+    /// From above instead of from the south-west.
+    pub plan: bool,
+    /// Only buildings whose middle lies within so many metres of a point, in the coordinates of the reference system.
+    pub around: Option<([f64; 2], f64)>,
+}
+
+/// A city to draw.
+#[derive(Debug, Clone, Copy)]
+pub struct Drawn<'a> {
+    /// The city.
+    pub city: &'a City,
+    /// A colour (sRGB) for each building; without them buildings are light, and textures are shown.
+    pub colours: Option<&'a [[u8; 3]]>,
+}
+
+/// True if a building of these bounds is drawn.
+pub(super) fn seen((low, high): &([f64; 3], [f64; 3]), city: &City, drawing: &Drawing) -> bool {
+    let Some((at, radius)) = drawing.around else {
+        return true;
+    };
+    let away = |k: usize| (low[k] + high[k]) / 2.0 + city.origin[k] - at[k];
+    away(0).hypot(away(1)) <= radius
+}
