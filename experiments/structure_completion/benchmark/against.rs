@@ -6,10 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use super::columns::{BASELINES, COLUMNS, text};
 use super::measures::Measured;
 use super::models::MADE;
-use super::tables::text;
-use super::{BASELINES, COLUMNS};
 use crate::Context;
 use crate::sweep::statistics::{holm, signed_rank};
 use edifice_report::{Align, Table};

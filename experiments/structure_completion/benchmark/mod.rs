@@ -25,6 +25,7 @@
 //! - A facade that has nothing to hide in a part is left out of it.
 
 mod against;
+mod columns;
 mod measures;
 mod models;
 mod sanity;
@@ -32,6 +33,7 @@ mod sheet;
 mod sights;
 mod tables;
 
+use self::columns::BASELINES;
 use self::measures::{Measured, measured};
 use self::models::Tested;
 use self::sights::Sight;
@@ -41,19 +43,6 @@ use crate::{Budget, Context};
 use edifice_base::Result;
 use edifice_base::rng::stream;
 use edifice_structure_completion::method::Method;
-
-/// The columns of the default method.
-const COLUMNS: [&str; 3] = ["default", "other_sets", "same_set"];
-/// What it is compared with.
-const BASELINES: [Method; 7] = [
-    Method::Lattice,
-    Method::LatticeOpen,
-    Method::Mirror,
-    Method::Nearest,
-    Method::LowRank,
-    Method::Paper,
-    Method::Annealing,
-];
 
 /// One facade with one part hidden.
 struct Unit<'a> {

@@ -1,9 +1,9 @@
 //! Made grids first: what has to come back perfectly.
 
 use super::super::row;
+use super::columns::{BASELINES, COLUMNS};
 use super::measures::{added, perfect};
 use super::models::Models;
-use super::{BASELINES, COLUMNS};
 use crate::Context;
 use edifice_base::Result;
 use edifice_base::rng::stream;

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use super::super::plausibility::auc;
 use super::against::Margins;
+use super::columns::{BASELINES, COLUMNS, number, text};
 use super::measures::{Measured, calibration_error, ratio};
 use super::models::MADE;
 use super::sights::Sight;
-use super::{BASELINES, COLUMNS};
 use crate::Context;
 use edifice_base::{Error, Result};
 use edifice_report::{Align, Table};
@@ -194,17 +194,5 @@ impl Cases<'_> {
         self.draws(ctx)?;
         self.by_set(ctx);
         Ok(())
-    }
-}
-
-/// A number with so many decimals; a dash where there is none.
-pub fn text(value: Option<f64>, decimals: usize) -> String {
-    number(value.unwrap_or(f64::NAN), decimals)
-}
-
-fn number(value: f64, decimals: usize) -> String {
-    match value.is_finite() {
-        true => format!("{value:.decimals$}"),
-        false => "–".into(),
     }
 }

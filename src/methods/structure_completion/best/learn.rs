@@ -7,8 +7,7 @@ use rayon::prelude::*;
 use super::candidates::{Candidate, Candidates};
 use super::doors;
 use super::masses;
-use super::modes;
-use super::pool::pool;
+use super::pool::{pool, weights};
 use super::scene::Scene;
 use crate::layout::{Class, Element, Layout};
 use crate::measure::agreement;
@@ -133,7 +132,7 @@ fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorR
     let of_doors = places.iter().map(is_door).collect();
     let rows = candidates.all.into_iter().map(|c| c.features).collect();
     let of_places = places.into_iter().map(|p| p.features).collect();
-    let shares = masses::shares(&draws, &modes::weights(&draws));
+    let shares = masses::shares(&draws, &weights(&draws));
     let example = &model.examples[index];
     let own = (example.columns.len(), example.rows.len());
     let numbers = masses::features(&scene, &shares).into_iter();

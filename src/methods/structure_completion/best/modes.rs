@@ -12,7 +12,7 @@ use super::doors;
 use super::exact;
 use super::judge::{Judge, Layout};
 use super::masses;
-use super::pool::{Draw, pool};
+use super::pool::{Draw, SHARES, pool, weights};
 use super::regular::regular;
 use super::scene::{Scene, of};
 use crate::completion::{Completed, Completion, Reason};
@@ -21,8 +21,6 @@ use crate::model::Model;
 use crate::partial::PartialLayout;
 use edifice_base::rng::Stream;
 
-/// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`](super::pool::Origin::ALL).
-const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];
 /// Shares of the origins in the distribution of the number of windows, where the unknown part is known; set so that true
 /// numbers lie within its 10 to 90 % interval about as often as they should.
 const COUNTED: [f64; 7] = [0.0, 0.35, 0.15, 0.45, 0.05, 0.0, 0.0];
@@ -176,13 +174,6 @@ fn windows(partial: &PartialLayout, draws: &[Draw]) -> Vec<(usize, f64)> {
         .iter()
         .map(|d| (count(d), d.weight * shares[d.origin as usize]));
     each.collect()
-}
-
-/// Weight of each layout in the whole pool.
-pub(super) fn weights(draws: &[Draw]) -> Vec<f64> {
-    let own = draws.iter().map(|d| d.weight * SHARES[d.origin as usize]);
-    let total: f64 = own.clone().sum();
-    own.map(|w| w / total.max(1e-12)).collect()
 }
 
 /// Mean number of added elements.
