@@ -31,7 +31,7 @@ const SETS: [(&str, &str); 2] = [
     ("graz", "facades/hensel_lattices/graz.npz"),
     ("cmp", "facades/hensel_lattices/cmp.npz"),
 ];
-/// What is compared.
+/// The methods that are compared.
 const COLUMNS: [&str; 6] = ["given", "closure", "vote", "lattice", "low_rank", "default"];
 
 /// Completes the lattices of both sets.

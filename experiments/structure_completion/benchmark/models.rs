@@ -46,7 +46,7 @@ fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
     all.into_iter().step_by(every).collect()
 }
 
-/// What a model is to be learnt from.
+/// The layouts that one model is learnt from.
 struct Lesson {
     name: String,
     layouts: Vec<Layout>,
