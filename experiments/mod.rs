@@ -45,7 +45,7 @@ use std::process::ExitCode;
 use sweep::Study;
 
 pub use frame::{
-    Args, Artefact, Budget, Context, Experiment, Options, Own, Report, run, run_to_end,
+    Args, Artefact, Budget, Context, Experiment, Options, Own, Report, run, run_to_end, silence,
 };
 
 /// Every paper's experiment, in the order of the report.

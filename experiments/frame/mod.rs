@@ -15,7 +15,7 @@ mod verify;
 pub use context::Context;
 pub use options::{Args, Budget, Options};
 pub use own::Own;
-pub use progress::Progress;
+pub use progress::{Progress, silence};
 pub use run::{Report, main, run, run_to_end};
 pub(super) use run::{SWEEPS, write_index};
 

@@ -1,10 +1,22 @@
 //! Progress on standard error: bars on a terminal, plain lines elsewhere.
 
 use std::io::{IsTerminal, Write};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
+
+/// True once only warnings are told.
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// From now on no progress is told by this process, but warnings are.
+pub fn silence() {
+    SILENT.store(true, Ordering::Relaxed);
+}
+
+fn is_silent() -> bool {
+    SILENT.load(Ordering::Relaxed)
+}
 
 /// Progress of one batch of units.
 pub struct Progress {
@@ -18,7 +30,8 @@ pub struct Progress {
 impl Progress {
     /// Starts at `done` of `total` units.
     pub fn new(name: &str, total: u64, done: u64) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
+        let shown = std::io::stderr().is_terminal() && !is_silent();
+        let bar = shown.then(|| {
             let bar = ProgressBar::new(total).with_position(done);
             let style = ProgressStyle::with_template(
                 "{prefix:32!} {bar:30.cyan/blue} {pos}/{len} {elapsed} (left {eta}) {msg}",
@@ -69,7 +82,10 @@ impl Drop for Progress {
     }
 }
 
-/// A message to standard error; nobody is left to tell when that is closed.
+/// A message to standard error; nobody is left to tell when that is closed. After [`silence`], only warnings.
 pub fn line(text: &str) {
+    if is_silent() && !text.starts_with("warning") {
+        return;
+    }
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }

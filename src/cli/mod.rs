@@ -26,6 +26,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 #[derive(Parser)]
 #[command(name = "edifice", version, arg_required_else_help = true)]
 struct Cli {
+    /// No progress and no notes on standard error: only results, warnings and errors.
+    #[arg(long, short, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -75,7 +78,11 @@ const MODELS: &[model::Shown] = &[
 
 /// Parses the arguments and runs the command.
 pub fn run() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let asked = Cli::parse();
+    if asked.quiet {
+        print::quiet();
+    }
+    let outcome = match asked.command {
         Command::Grammar(command) => grammar::run(command),
         Command::Facade(command) => facade::run(command),
         Command::Logic(command) => logic::run(command),

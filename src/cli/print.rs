@@ -1,6 +1,21 @@
 //! Printing that survives a closed pipe.
 
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// True once only results, warnings and errors are printed.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on messages are not printed, but results, warnings and errors are.
+pub fn quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+    edifice_experiments::silence();
+}
+
+/// True after [`quiet`].
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
 
 /// Prints one line of result to standard output; a reader that has gone away is not an error.
 pub fn line(text: &str) -> edifice_base::Result<()> {
@@ -13,13 +28,20 @@ pub fn line(text: &str) -> edifice_base::Result<()> {
     }
 }
 
-/// Prints a message to standard error.
+/// Prints a message to standard error; after [`quiet`], only a warning.
 pub fn message(text: &str) {
+    if is_quiet() && !text.starts_with("warning") {
+        return;
+    }
+    say(text);
+}
+
+fn say(text: &str) {
     // Nobody is left to tell when standard error itself is closed.
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Prints an error.
 pub fn error(error: &edifice_base::Error) {
-    message(&format!("error: {error}"));
+    say(&format!("error: {error}"));
 }

@@ -208,8 +208,11 @@ fn procedural_logic_grammar(facades: &[Facade]) -> Result<Outcome> {
     })
 }
 
-/// A bar on standard error; hidden when that is no terminal.
+/// A bar on standard error; hidden when that is no terminal or nothing is to be told.
 fn progress_bar(iterations: u64) -> ProgressBar {
+    if print::is_quiet() {
+        return ProgressBar::hidden();
+    }
     let bar = ProgressBar::new(iterations);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg} {eta}") {
         bar.set_style(style);

@@ -20,6 +20,7 @@ pub mod encoding;
 mod guess;
 pub mod joined;
 pub mod kernels;
+pub mod learn;
 mod marginal;
 pub mod mixture;
 pub mod schema;

@@ -1,0 +1,40 @@
+//! The native part of the Python package `edifice`: values in, values out, errors as exceptions with the words of the command line.
+//!
+//! Long calls run in a thread of their own while the calling thread asks Python for signals ([`worker`]), so that Ctrl-C is answered at once.
+
+mod arrays;
+mod city;
+mod errors;
+mod facade;
+mod grammar;
+mod house;
+mod logic;
+mod mixture;
+mod network;
+mod table;
+mod worker;
+
+use pyo3::prelude::*;
+
+/// The native part of `edifice`.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::city::{City, CityGrammar};
+    #[pymodule_export]
+    use super::errors::EdificeError;
+    #[pymodule_export]
+    use super::facade::Facade;
+    #[pymodule_export]
+    use super::grammar::Grammar;
+    #[pymodule_export]
+    use super::house::House;
+    #[pymodule_export]
+    use super::logic::Logic;
+    #[pymodule_export]
+    use super::mixture::MixtureModel;
+    #[pymodule_export]
+    use super::network::Network;
+    #[pymodule_export]
+    use super::table::FittedTable;
+}

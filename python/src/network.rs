@@ -1,0 +1,112 @@
+//! `edifice.Network`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use edifice_model::network::{self, Evidence};
+use pyo3::prelude::*;
+
+use super::errors::failed;
+
+/// A Bayesian network of discrete variables.
+#[pyclass(module = "edifice", frozen)]
+pub struct Network {
+    inner: network::Network,
+}
+
+fn evidence(given: Option<BTreeMap<String, String>>) -> Evidence {
+    let given = given.unwrap_or_default();
+    let mut evidence = Evidence::new();
+    for (name, category) in &given {
+        evidence = evidence.is(name, category);
+    }
+    evidence
+}
+
+#[pymethods]
+impl Network {
+    /// Reads a network in the interchange format (BIF).
+    #[staticmethod]
+    fn from_bif(text: &str) -> PyResult<Self> {
+        let inner = network::Network::from_bif(text).map_err(failed)?;
+        Ok(Self { inner })
+    }
+
+    /// Reads a BIF file.
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Self> {
+        let bytes = edifice_io::read_bytes(&path).map_err(failed)?;
+        let text = String::from_utf8(bytes).map_err(failed)?;
+        let inner = network::Network::from_bif(&text)
+            .map_err(|e| failed(format!("{}: {e}", path.display())))?;
+        Ok(Self { inner })
+    }
+
+    /// The network in BIF.
+    fn to_bif(&self) -> PyResult<String> {
+        self.inner.to_bif().map_err(failed)
+    }
+
+    /// Names of the variables.
+    #[getter]
+    fn variables(&self) -> Vec<String> {
+        self.inner.names().map(str::to_owned).collect()
+    }
+
+    /// Categories of a variable.
+    fn categories(&self, name: &str) -> PyResult<Vec<String>> {
+        let found = self.inner.categories(name).map_err(failed)?;
+        Ok(found.to_vec())
+    }
+
+    /// Parents of a variable.
+    fn parents(&self, name: &str) -> PyResult<Vec<String>> {
+        let found = self.inner.parents(name).map_err(failed)?;
+        Ok(found.into_iter().map(str::to_owned).collect())
+    }
+
+    /// Probability of each category of a variable, given the categories of others.
+    #[pyo3(signature = (name, given = None))]
+    fn query(
+        &self,
+        name: &str,
+        given: Option<BTreeMap<String, String>>,
+    ) -> PyResult<BTreeMap<String, f64>> {
+        let found = self
+            .inner
+            .marginal(&evidence(given), name)
+            .map_err(failed)?;
+        let categories = self.inner.categories(name).map_err(failed)?;
+        Ok(categories.iter().cloned().zip(found).collect())
+    }
+
+    /// Log probability of what is given, nats.
+    fn log_probability(&self, given: BTreeMap<String, String>) -> PyResult<f64> {
+        self.inner
+            .log_probability(&evidence(Some(given)))
+            .map_err(failed)
+    }
+
+    /// The most probable category of all variables together, given those of some.
+    #[pyo3(signature = (given = None))]
+    fn explain(
+        &self,
+        given: Option<BTreeMap<String, String>>,
+    ) -> PyResult<BTreeMap<String, String>> {
+        let found = self.inner.explain(&evidence(given)).map_err(failed)?;
+        Ok(found.values.into_iter().collect())
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.names().count()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Network of {} variables>", self.inner.names().count())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let read = py.get_type::<Self>().getattr("from_bif")?;
+        Ok((read, (self.to_bif()?,)))
+    }
+}
