@@ -4,8 +4,19 @@ use std::path::{Path, PathBuf};
 
 use super::Context;
 use edifice_base::{Error, Result};
-use edifice_io::facade_json;
+use edifice_io::{LabelMap, facade_json};
 use edifice_shape::Facade;
+
+/// Labels of the matrices of the Paris Art Deco Facades Dataset.
+const ART_DECO: &str = r#"{"door": 0, "shop": 1, "balcony": 2, "window": 3, "wall": 4, "sky": 5, "roof": 6, "unlabelled": -1}"#;
+
+/// The label map of the Paris Art Deco Facades Dataset.
+///
+/// # Errors
+/// None, as a test reads it.
+pub fn art_deco() -> Result<LabelMap> {
+    LabelMap::parse(ART_DECO.as_bytes(), Path::new("Art Deco"))
+}
 
 /// Name of the facade of Wu et al. 2014, Fig. 9: facade (i) of their Table 1.
 pub const FIGURE_9: &str = "wu2014_fig9";

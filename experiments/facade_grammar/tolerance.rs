@@ -12,13 +12,10 @@ use serde::{Deserialize, Serialize};
 
 use super::data::{files, stem};
 use super::runs::mean;
-use crate::Context;
+use crate::{Context, layouts};
 
 /// The tolerances, in per cent of the area.
 const TOLERANCES: [f64; 6] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0];
-
-/// The labels of the numbers of the Art Deco set (its README).
-const ART_DECO: &str = r#"{"door": 0, "shop": 1, "balcony": 2, "window": 3, "wall": 4, "sky": 5, "roof": 6, "unlabelled": -1}"#;
 
 /// Sets of label pictures: name, place, ending.
 const SETS: [(&str, &str, &str); 5] = [
@@ -136,7 +133,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
 /// Cost and bound of one picture at every tolerance.
 fn curve(name: &str, path: &Path) -> Result<Vec<Point>> {
     let label_map = match name {
-        "paris_art_deco" => Some(LabelMap::parse(ART_DECO.as_bytes(), Path::new("Art Deco"))?),
+        "paris_art_deco" => Some(layouts::art_deco()?),
         "cmp" => Some(LabelMap::cmp()),
         _ => None,
     };

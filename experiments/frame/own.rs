@@ -17,13 +17,15 @@ pub struct Own {
 }
 
 /// Names of sets that experiments know.
-const TAKEN: [&str; 12] = [
+const TAKEN: [&str; 14] = [
     "shipped",
     "shipped_houses",
     "shipped_blocks",
     "ecp2011",
     "graz50",
     "cmp",
+    "paris_art_deco",
+    "made",
     "h2k",
     "ames",
     "wild",

@@ -11,7 +11,7 @@ use edifice_base::{Error, Result};
 /// A facade of a data set.
 #[derive(Debug, Clone)]
 pub struct Item {
-    /// `shipped`, `ecp2011`, `graz50`, `cmp`, or the name of a set of one's own.
+    /// `shipped`, `ecp2011`, `graz50`, `cmp`, `paris_art_deco`, or the name of a set of one's own.
     pub dataset: &'static str,
     /// Its elements.
     pub layout: Layout,
@@ -19,7 +19,7 @@ pub struct Item {
     pub in_scope: bool,
 }
 
-/// The real facades of ECP, Graz and CMP that the user has; without them the shipped layouts. Fewer at the smoke
+/// The real facades of ECP, Graz, CMP and Art Deco that the user has; without them the shipped layouts. Fewer at the smoke
 /// budget.
 pub fn items(ctx: &mut Context) -> Result<Vec<Item>> {
     let mut items = Vec::new();
@@ -35,6 +35,14 @@ pub fn items(ctx: &mut Context) -> Result<Vec<Item>> {
                 &ReadOptions::default(),
             )?);
         }
+    }
+    if let Some(folder) = ctx.real("facades/paris_art_deco")? {
+        let options = ReadOptions {
+            label_map: Some(layouts::art_deco()?),
+            ..ReadOptions::default()
+        };
+        let files = layouts::files(&folder, ".txt.gz")?;
+        items.extend(read("paris_art_deco", &files, &options)?);
     }
     for set in ctx.own()? {
         items.extend(read(set.name, &set.files, &set.options)?);

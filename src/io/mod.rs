@@ -25,6 +25,7 @@ pub mod label_image;
 pub mod label_map;
 pub mod label_text;
 pub mod labelme;
+pub mod lattice_npz;
 pub mod nearest_colour;
 mod packed;
 pub mod palette;

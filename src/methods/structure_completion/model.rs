@@ -59,6 +59,9 @@ pub struct Model {
     pub tight: Option<Boosting>,
     /// Probability that a place holds the door, given its features; `None` before it is learnt, and in files of before.
     pub doors: Option<Boosting>,
+    /// Probability that a facade has so many columns and rows, given its features; `None` before it is learnt, and in files of
+    /// before.
+    pub masses: Option<Boosting>,
     /// The model of the paper's own method; `None` before it is learnt.
     pub paper: Option<PaperModel>,
 }
@@ -99,6 +102,8 @@ pub(super) struct Stored {
     pub tight: Option<Boosting>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub doors: Option<Boosting>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub masses: Option<Boosting>,
     #[serde(default)]
     pub paper: Option<PaperModel>,
 }
@@ -121,6 +126,7 @@ impl Model {
                     model.elements = Some(learnt.loose);
                     model.tight = Some(learnt.tight);
                     model.doors = learnt.doors;
+                    model.masses = Some(learnt.masses);
                 }
                 // No part was hidden yet.
                 Err(BoostingError::Empty) if watched.is_stopped() => {}
@@ -157,6 +163,7 @@ impl Model {
             elements: None,
             tight: None,
             doors: None,
+            masses: None,
             paper: None,
             examples,
         }

@@ -1,7 +1,7 @@
 //! A learnt model as JSON text: `*.completion.json`.
 
 use super::best::candidates::{FEATURES, FEATURES_BEFORE};
-use super::best::doors;
+use super::best::{doors, masses};
 use super::model::{Example, Model, Stored};
 
 /// The value of the key `format`.
@@ -65,6 +65,7 @@ impl Model {
             elements: self.elements.clone(),
             tight: self.tight.clone(),
             doors: self.doors.clone(),
+            masses: self.masses.clone(),
             paper: self.paper.clone(),
         };
         // All numbers are finite and all keys are text.
@@ -117,6 +118,9 @@ impl Model {
         if let Some(trees) = &stored.doors {
             trees.check(doors::FEATURES)?;
         }
+        if let Some(trees) = &stored.masses {
+            trees.check(masses::FEATURES)?;
+        }
         if let Some(paper) = &stored.paper {
             paper.check()?;
         }
@@ -135,6 +139,7 @@ impl Model {
             elements: stored.elements,
             tight: stored.tight,
             doors: stored.doors,
+            masses: stored.masses,
             paper: stored.paper,
         })
     }

@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::candidates::{Candidate, Candidates};
 use super::doors;
-use super::pool::pool;
+use super::masses;
+use super::pool::{pool, weights};
 use super::scene::Scene;
 use crate::layout::{Class, Element, Layout};
 use crate::measure::agreement;
@@ -18,7 +19,7 @@ use edifice_model::boosting::{Boosting, BoostingError, Settings};
 
 /// Most candidates that are learnt from; of more, every second, third, ... is.
 const MOST_ROWS: usize = 120_000;
-/// The same of places of a door.
+/// The same of places of a door, and of numbers of columns and rows.
 const MOST_PLACES: usize = 60_000;
 /// Layouts that agree this well, scaled to one outline, show one building.
 const TWINS: f64 = 0.7;
@@ -71,6 +72,9 @@ type Rows = (Vec<Vec<f64>>, Vec<[f64; 2]>);
 /// Places of a door: the features of each, and whether a hidden door is there.
 type DoorRows = (Vec<Vec<f64>>, Vec<f64>);
 
+/// Numbers of columns and rows: the features of each pair, and whether the layout has them.
+type MassRows = (Vec<Vec<f64>>, Vec<f64>);
+
 /// A layout with a part hidden; without a mask all that is not seen is unknown.
 #[derive(Clone, Copy)]
 struct Unit {
@@ -95,7 +99,7 @@ impl Unit {
 }
 
 /// Features and truth of all candidates of one layout with a part hidden.
-fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorRows) {
+fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorRows, MassRows) {
     let Unit {
         index,
         task,
@@ -128,7 +132,14 @@ fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorR
     let of_doors = places.iter().map(is_door).collect();
     let rows = candidates.all.into_iter().map(|c| c.features).collect();
     let of_places = places.into_iter().map(|p| p.features).collect();
-    ((rows, targets), (of_places, of_doors))
+    let shares = masses::shares(&draws, &weights(&draws));
+    let example = &model.examples[index];
+    let own = (example.columns.len(), example.rows.len());
+    let numbers = masses::features(&scene, &shares).into_iter();
+    let of_numbers = numbers
+        .map(|(lattice, features)| (features, f64::from(u8::from(lattice == own))))
+        .unzip();
+    ((rows, targets), (of_places, of_doors), of_numbers)
 }
 
 /// The learnt probabilities of elements.
@@ -139,6 +150,8 @@ pub struct Learnt {
     pub tight: Boosting,
     /// Probability of a place of a door; `None` where every layout shows one whatever is hidden.
     pub doors: Option<Boosting>,
+    /// Probability of numbers of columns and rows.
+    pub masses: Boosting,
 }
 
 /// At most `most` of all rows: every second, third, ... of them.
@@ -165,7 +178,7 @@ pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, Boos
     let group = twins(&layouts);
     let units: Vec<Unit> = (0..layouts.len()).flat_map(Unit::of).collect();
     let done = AtomicU64::new(0);
-    let parts: Vec<(Rows, DoorRows)> = units
+    let parts: Vec<(Rows, DoorRows, MassRows)> = units
         .par_iter()
         .map(|&unit| {
             let told = Progress::of(
@@ -181,9 +194,15 @@ pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, Boos
             rows(model, unit, &without, seed)
         })
         .collect();
-    let (parts, places): (Vec<Rows>, Vec<DoorRows>) = parts.into_iter().unzip();
-    let (features, targets): Rows = thinned(parts, MOST_ROWS);
+    let (mut all, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    for (own, of_doors, of_numbers) in parts {
+        all.push(own);
+        places.push(of_doors);
+        numbers.push(of_numbers);
+    }
+    let (features, targets): Rows = thinned(all, MOST_ROWS);
     let (places, are_doors): DoorRows = thinned(places, MOST_PLACES);
+    let (numbers, are_right): MassRows = thinned(numbers, MOST_PLACES);
     let settings = Settings {
         trees: 100,
         levels: 6,
@@ -209,9 +228,16 @@ pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, Boos
             &watched.inner(),
         )?),
     };
+    let of_masses = Settings {
+        trees: 80,
+        levels: 4,
+        rate: 0.1,
+        ..Settings::default()
+    };
     Ok(Learnt {
         loose: at(0)?,
         tight: at(1)?,
         doors,
+        masses: Boosting::learn(&numbers, &are_right, of_masses, &watched.inner())?,
     })
 }

@@ -17,6 +17,7 @@ mod exact;
 pub mod fill;
 pub mod judge;
 pub mod learn;
+pub mod masses;
 pub mod modes;
 pub mod pool;
 mod regular;

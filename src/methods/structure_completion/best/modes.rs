@@ -1,24 +1,26 @@
 //! Completions from a pool: the best coherent layout, and the best one of each mode.
 //!
-//! A mode is a number of columns and rows. Its mass is the share of the draws that have it; it depends on the pool
+//! A mode is a number of columns and rows. Its mass is the learnt probability that the facade has these numbers
+//! ([`masses`]); a model that has not learnt it takes the share of the draws that have them. It depends on the pool
 //! alone, so that an answer has the same mass however many answers are asked for.
 
 use std::collections::BTreeMap;
 
 use super::candidates::{Candidate, Candidates};
+use super::categorical;
 use super::doors;
 use super::exact;
 use super::judge::{Judge, Layout};
-use super::pool::{Draw, pool};
+use super::masses;
+use super::pool::{Draw, SHARES, pool, weights};
+use super::regular::regular;
 use super::scene::{Scene, of};
 use crate::completion::{Completed, Completion, Reason};
-use crate::layout::Class;
+use crate::layout::{Class, Element};
 use crate::model::Model;
 use crate::partial::PartialLayout;
 use edifice_base::rng::Stream;
 
-/// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`](super::pool::Origin::ALL).
-const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];
 /// Shares of the origins in the distribution of the number of windows, where the unknown part is known; set so that true
 /// numbers lie within its 10 to 90 % interval about as often as they should.
 const COUNTED: [f64; 7] = [0.0, 0.35, 0.15, 0.45, 0.05, 0.0, 0.0];
@@ -37,6 +39,8 @@ pub struct Answer {
     pub completions: Vec<Completion>,
     /// Number of added windows of each layout of the pool, with its weight.
     pub windows: Vec<(usize, f64)>,
+    /// One layout of the pool, drawn by its weight: what it adds.
+    pub drawn: Vec<Element>,
 }
 
 /// Completes a partial layout in up to `count` ways.
@@ -73,7 +77,11 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     let lattice = freely.lattice;
     modes.add(freely, 0.0, lattice);
     let probability = |c: usize| loose[c].clamp(0.0, 1.0);
-    let mut completions = modes.completions(probability);
+    let learnt = model.masses.as_ref().map(|learnt| {
+        let shares = masses::shares(&draws, &weights);
+        masses::probabilities(learnt, &scene, &shares)
+    });
+    let mut completions = modes.completions(probability, learnt.as_ref());
     if let Some(hidden) = exact::hidden(&scene) {
         completions.iter_mut().for_each(|c| c.mass *= 1.0 - EXACT);
         let added = hidden.into_iter().map(|element| Completed {
@@ -90,10 +98,24 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         completions.insert(0, first);
     }
     completions.truncate(count.max(1));
+    let drawn = &draws[categorical(&weights, rng)].added;
     Answer {
         completions,
         windows,
+        drawn: drawn.iter().map(|(e, _)| *e).collect(),
     }
+}
+
+/// Elements put on lines that they share with the observed ones and among themselves, as every layout of the pool is.
+pub fn on_lines(partial: &PartialLayout, model: &Model, elements: &[Element]) -> Vec<Element> {
+    let fallback = model.window_size(partial.width, partial.height);
+    let scene = Scene::new(partial, partial.observed.clone(), fallback);
+    let given: Vec<(Element, Reason)> = elements.iter().map(|e| (*e, Reason::Lattice)).collect();
+    regular(&scene, &given)
+        .added
+        .into_iter()
+        .map(|a| a.0)
+        .collect()
 }
 
 /// Probability of each candidate within an intersection over union of a half.
@@ -154,13 +176,6 @@ fn windows(partial: &PartialLayout, draws: &[Draw]) -> Vec<(usize, f64)> {
     each.collect()
 }
 
-/// Weight of each layout in the whole pool.
-fn weights(draws: &[Draw]) -> Vec<f64> {
-    let own = draws.iter().map(|d| d.weight * SHARES[d.origin as usize]);
-    let total: f64 = own.clone().sum();
-    own.map(|w| w / total.max(1e-12)).collect()
-}
-
 /// Mean number of added elements.
 fn expected(draws: &[Draw], weights: &[f64]) -> f64 {
     let terms = draws.iter().zip(weights);
@@ -181,9 +196,13 @@ impl Modes {
         }
     }
 
-    /// The best layout first, then those of the other modes by falling mass. The mass of modes without a layout of
-    /// their own belongs to the nearest mode with one.
-    fn completions(self, probability: impl Fn(usize) -> f64) -> Vec<Completion> {
+    /// The best layout first, then those of the other modes by falling mass, which is `learnt` where that is given. A share of the
+    /// draws that belongs to a mode without a layout of its own goes to the nearest mode with one.
+    fn completions(
+        self,
+        probability: impl Fn(usize) -> f64,
+        learnt: Option<&BTreeMap<masses::Lattice, f64>>,
+    ) -> Vec<Completion> {
         let (mut kept, mut lost) = (Vec::new(), Vec::new());
         for (lattice, (layout, mass)) in self.0 {
             match layout {
@@ -196,6 +215,11 @@ impl Modes {
                 |other: &(usize, usize)| lattice.0.abs_diff(other.0) + lattice.1.abs_diff(other.1);
             if let Some(nearest) = kept.iter_mut().min_by_key(|k| distance(&k.0)) {
                 nearest.2 += mass;
+            }
+        }
+        if let Some(learnt) = learnt {
+            for (lattice, _, mass) in &mut kept {
+                *mass = learnt.get(lattice).copied().unwrap_or(0.0);
             }
         }
         kept.sort_by(|a, b| b.1.score.total_cmp(&a.1.score).then(a.0.cmp(&b.0)));

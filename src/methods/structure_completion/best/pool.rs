@@ -63,6 +63,8 @@ impl Origin {
     }
 }
 
+/// Share of each origin in the pool as a whole, in the order of [`Origin::ALL`].
+pub(super) const SHARES: [f64; 7] = [0.15, 0.25, 0.2, 0.3, 0.1, 0.0, 0.0];
 /// A layout of the pool.
 #[derive(Debug, Clone)]
 pub struct Draw {
@@ -185,6 +187,13 @@ pub fn pool(
         }
     }
     draws
+}
+
+/// Weight of each layout in the whole pool.
+pub(super) fn weights(draws: &[Draw]) -> Vec<f64> {
+    let own = draws.iter().map(|d| d.weight * SHARES[d.origin as usize]);
+    let total: f64 = own.clone().sum();
+    own.map(|w| w / total.max(1e-12)).collect()
 }
 
 /// Axes with the number of draws for each.
