@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use edifice::grammar::{Costs, Grammar, Operation, Rule, Start, Successor, evaluate, listing};
 use edifice::model::program::dist::categorical;
-use edifice::model::program::{Handler, Program, Real, exact, importance};
+use edifice::model::program::{Handler, Program, exact, importance};
 use edifice::shape::{Axis, Facade, Rect, Region};
 
 /// Cells of a facade, row by row from below, and their widths and heights in metres.

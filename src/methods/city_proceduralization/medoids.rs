@@ -21,7 +21,7 @@ const TRIED: usize = 12;
 const SIMPLE: usize = 8;
 const AMONG: usize = 64;
 /// The power a of derived triangles.
-const DERIVED: f64 = 0.2;
+const DERIVED: f64 = 0.1;
 /// Cost of a template beside its triangles, in triangles.
 const TEMPLATE: f64 = 6.0;
 

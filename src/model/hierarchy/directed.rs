@@ -23,7 +23,7 @@ enum Edge {
     Table(usize, usize),
 }
 
-/// What families are scored by.
+/// The data and settings by which families are scored.
 struct Search<'a> {
     schema: &'a Schema,
     rows: &'a Rows,
