@@ -12,7 +12,7 @@
 //! | to the end | residuals: where parts of instances stand, by a coder of their own; empty where there are none |
 //!
 //! Whoever needs no residuals leaves the last part unread. Until version 2, buildings follow Hilbert's curve; from version 3 on they go along
-//! rows, each told by its place beside the one before it ([`rows`]). In version 1, rules have no parameters, and residuals follow the
+//! rows, each told by its place beside the one before it (`rows.rs`). In version 1, rules have no parameters, and residuals follow the
 //! rules in one part.
 //!
 //! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
