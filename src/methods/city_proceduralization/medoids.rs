@@ -21,7 +21,7 @@ const TRIED: usize = 12;
 const SIMPLE: usize = 8;
 const AMONG: usize = 64;
 /// The power a of derived triangles.
-const DERIVED: f64 = 0.1;
+const DERIVED: f64 = 0.2;
 /// Cost of a template beside its triangles, in triangles.
 const TEMPLATE: f64 = 6.0;
 
@@ -36,6 +36,8 @@ pub(super) struct Table<'a> {
     pub(super) counts: Vec<f64>,
     /// Triangles of each as a template.
     pub(super) triangles: Vec<f64>,
+    /// True if triangles have a price.
+    pub(super) priced: bool,
     pub(super) forms: Vec<Form<'a>>,
 }
 
@@ -89,6 +91,9 @@ impl Table<'_> {
 
     /// The prices around given types.
     fn price(&self, medoids: &[usize], uses: &[Use]) -> Price {
+        if !self.priced {
+            return Price::default();
+        }
         let apart = |i: usize| {
             let Use { kind, quarter } = uses[i];
             self.weights[i] * mismatch(self.forms[medoids[kind]], self.forms[i], quarter)
@@ -134,7 +139,7 @@ impl Table<'_> {
             let mut near = list.clone();
             let far = |i: usize| square(self.row(i), &mean);
             near.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-            near.truncate(AMONG);
+            near.truncate(if self.priced { AMONG } else { TRIED });
             if near.len() > TRIED {
                 let triangles = |i: &usize| self.triangles[*i];
                 near[TRIED..].sort_by(|a, b| triangles(a).total_cmp(&triangles(b)));

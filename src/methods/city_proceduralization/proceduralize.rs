@@ -166,7 +166,7 @@ impl<'a> Prepared<'a> {
                     patterns: Vec::new(),
                 };
                 if goes_on("types of components") {
-                    best.types = Some(TypeTree::new(components, &shape)?);
+                    best.types = Some(TypeTree::new(components, &shape, settings.representative)?);
                 }
                 if goes_on("patterns") {
                     best.patterns = patterns(components, &best.buildings);

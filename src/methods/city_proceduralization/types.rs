@@ -182,11 +182,16 @@ pub struct TypeTree<'a> {
 }
 
 impl<'a> TypeTree<'a> {
-    /// The hierarchy over the geometric features `points` of `components`.
+    /// The hierarchy over the geometric features `points` of `components`. With [`Representative::FewestPolygons`] triangles have a
+    /// price.
     ///
     /// # Errors
     /// [`ProceduralizeError::Ward`].
-    pub fn new(components: &'a [Component], points: &Points) -> Result<Self, ProceduralizeError> {
+    pub fn new(
+        components: &'a [Component],
+        points: &Points,
+        representative: Representative,
+    ) -> Result<Self, ProceduralizeError> {
         let d = points.dimension;
         // Equal components first: the hierarchy is over distinct ones.
         let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
@@ -228,6 +233,7 @@ impl<'a> TypeTree<'a> {
             weights,
             counts,
             triangles: triangles.collect(),
+            priced: representative == Representative::FewestPolygons,
             forms: forms.collect(),
         };
         Ok(Self {
@@ -239,7 +245,7 @@ impl<'a> TypeTree<'a> {
     }
 
     /// The hierarchy cut at more than `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
-    /// quarter turns; then the `k` types of most worth, again with rounds of medoids.
+    /// quarter turns; then, where triangles have a price, the `k` types of most worth, again with rounds of medoids.
     /// Types that stand for more components come first. Also their prices.
     pub(super) fn cut(&self, k: usize) -> Priced {
         let Table {
@@ -247,7 +253,8 @@ impl<'a> TypeTree<'a> {
         } = &self.table;
         let all = self.distinct.len();
         let k = k.clamp(1, all);
-        let wide = ((SURPLUS * k as f64) as usize).clamp(k, all);
+        let surplus = if self.table.priced { SURPLUS } else { 1.0 };
+        let wide = ((surplus * k as f64) as usize).clamp(k, all);
         let mut labels = self.tree.cut(wide);
         if wide < all {
             let zero = vec![0.0; wide * d];
