@@ -9,7 +9,6 @@ use edifice_grammar::Costs;
 use edifice_io::{
     ReadOptions, draw, facade_json, read_bytes, read_source, write_atomic, write_facade,
 };
-use edifice_shape::comparison::{Agreement, THRESHOLDS, compare};
 use edifice_shape::{AnnotatedFacade, LabelGrid, Rect, Region, decompose, elements_of_facade};
 use edifice_structure_completion::method;
 use edifice_structure_completion::task::Task;
@@ -17,6 +16,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use super::comparison::comparison;
 use super::errors::failed;
 use super::grammar::Grammar;
 use super::worker::{detached, watched};
@@ -241,9 +241,7 @@ impl Facade {
         repeat_cost: Option<f64>,
     ) -> PyResult<Grammar> {
         let defaults = Settings::default();
-        let default_costs = Costs::default();
-        let split = split_cost.unwrap_or(default_costs.split);
-        let repeat = repeat_cost.unwrap_or(default_costs.repeat);
+        let usual = Costs::default();
         let operations = match ops {
             None => defaults.operations,
             Some(mut names) => {
@@ -252,30 +250,14 @@ impl Facade {
             }
         };
         let settings = Settings {
-            method: match method {
-                "adp" => Method::AdpBest,
-                "adp-paper" => Method::AdpPaper,
-                "importance" => Method::Importance,
-                "greedy" => Method::Greedy,
-                "bayesian" => Method::Bayesian,
-                "symmetry" => Method::Symmetry,
-                other => {
-                    return Err(failed(format!(
-                        "unknown method {other:?}, expected adp, adp-paper, importance, greedy, bayesian or symmetry"
-                    )));
-                }
-            },
+            method: method.parse::<Method>().map_err(failed)?,
             iterations: iterations.unwrap_or(defaults.iterations),
             seed,
             operations,
-            costs: Costs {
-                split,
-                sym_split: split,
-                grid_split: split,
-                repeat,
-                repeat_aba: repeat,
-                ..default_costs
-            },
+            costs: Costs::of(
+                split_cost.unwrap_or(usual.split),
+                repeat_cost.unwrap_or(usual.repeat),
+            ),
             ..defaults
         };
         let facade = self.inner.facade.clone();
@@ -359,32 +341,7 @@ impl Facade {
     /// Compares a predicted layout of elements with this true one: `f1` by IoU, `mean_f1`, `iou`, counts, of all and of each label, as
     /// `edifice facade compare` tells them.
     fn compare<'py>(&self, py: Python<'py>, predicted: &Self) -> PyResult<Bound<'py, PyDict>> {
-        let (truth, found) = (self.annotated()?, predicted.annotated()?);
-        let longer = truth.facade.width.max(truth.facade.height);
-        let counts = |r: &Rect| match &found.unknown {
-            Some(unknown) => {
-                let (x, y) = r.centre();
-                unknown.iter().any(|u| u.contains(x, y))
-            }
-            None => true,
-        };
-        let of = |layout: &AnnotatedFacade| -> Vec<Region> {
-            let all = layout.facade.regions.iter();
-            all.filter(|r| counts(&r.rect)).cloned().collect()
-        };
-        let zipped = found.facade.regions.iter().zip(&found.notes);
-        let told: Vec<Option<f64>> = zipped
-            .filter(|(r, _)| counts(&r.rect))
-            .map(|(_, note)| note.probability)
-            .collect();
-        let result = compare(&of(&truth), &of(&found), &told, longer);
-        let about = agreement(py, &result.all)?;
-        let labels = PyDict::new(py);
-        for (label, own) in &result.labels {
-            labels.set_item(label, agreement(py, own)?)?;
-        }
-        about.set_item("labels", labels)?;
-        Ok(about)
+        comparison(py, &self.annotated()?, &predicted.annotated()?)
     }
 
     /// The facade drawn as SVG, for notebooks.
@@ -412,17 +369,4 @@ impl Facade {
         let read = py.get_type::<Self>().getattr("from_json")?;
         Ok((read, (self.to_json(),)))
     }
-}
-
-fn agreement<'py>(py: Python<'py>, own: &Agreement) -> PyResult<Bound<'py, PyDict>> {
-    let (about, f1) = (PyDict::new(py), PyDict::new(py));
-    for (at, value) in THRESHOLDS.iter().zip(own.f1()) {
-        f1.set_item(at, value)?;
-    }
-    about.set_item("f1", f1)?;
-    about.set_item("mean_f1", own.mean_f1())?;
-    about.set_item("iou", own.iou)?;
-    about.set_item("truth", own.truth)?;
-    about.set_item("predicted", own.predicted)?;
-    Ok(about)
 }

@@ -4,6 +4,7 @@
 
 mod arrays;
 mod city;
+mod comparison;
 mod errors;
 mod facade;
 mod grammar;

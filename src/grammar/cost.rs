@@ -53,6 +53,18 @@ impl Costs {
     /// Greatest cost.
     pub const GREATEST: f64 = 1e3;
 
+    /// The default costs, but for those of all kinds of splits and of all kinds of repeats.
+    pub fn of(split: f64, repeat: f64) -> Self {
+        Self {
+            split,
+            sym_split: split,
+            grid_split: split,
+            repeat,
+            repeat_aba: repeat,
+            ..Self::default()
+        }
+    }
+
     /// True if an operation or a successor may have this cost.
     pub fn allows(cost: f64) -> bool {
         cost == 0.0 || (Self::LEAST..=Self::GREATEST).contains(&cost)

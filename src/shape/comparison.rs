@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Rect, Region};
+use super::{AnnotatedFacade, Rect, Region};
 
 /// Thresholds of IoU: 0.5, 0.55, ..., 0.95.
 pub const THRESHOLDS: [f64; 10] = [0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
@@ -82,6 +82,54 @@ pub struct Comparison {
     pub predicted: Regularity,
     /// `None` where no predicted element carries a probability.
     pub calibration: Option<Calibration>,
+}
+
+/// Two layouts of different outlines.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the outline is {found:?}, that of the truth {truth:?}")]
+pub struct OutlineError {
+    /// Width and height of the predicted layout.
+    pub found: [f64; 2],
+    /// Width and height of the true one.
+    pub truth: [f64; 2],
+}
+
+/// As [`compare`], of two layouts of one facade. Where the predicted one names an unknown part, only elements whose centre lies in it
+/// count, unless the `whole` layout is asked for.
+///
+/// # Errors
+/// [`OutlineError`] for outlines that differ by more than 1e-6 of the longer side.
+pub fn compare_layouts(
+    truth: &AnnotatedFacade,
+    predicted: &AnnotatedFacade,
+    whole: bool,
+) -> Result<Comparison, OutlineError> {
+    let size = |layout: &AnnotatedFacade| [layout.facade.width, layout.facade.height];
+    let (wanted, found) = (size(truth), size(predicted));
+    let longer = wanted[0].max(wanted[1]);
+    if (0..2).any(|k| (wanted[k] - found[k]).abs() > 1e-6 * longer) {
+        let truth = wanted;
+        return Err(OutlineError { found, truth });
+    }
+    let counts = |rect: &Rect| match &predicted.unknown {
+        Some(unknown) if !whole => {
+            let (x, y) = rect.centre();
+            unknown.iter().any(|u| u.contains(x, y))
+        }
+        _ => true,
+    };
+    let truth: Vec<Region> = (truth.facade.regions.iter())
+        .filter(|region| counts(&region.rect))
+        .cloned()
+        .collect();
+    let (mut regions, mut probabilities) = (Vec::new(), Vec::new());
+    for (region, note) in predicted.facade.regions.iter().zip(&predicted.notes) {
+        if counts(&region.rect) {
+            regions.push(region.clone());
+            probabilities.push(note.probability);
+        }
+    }
+    Ok(compare(&truth, &regions, &probabilities, longer))
 }
 
 /// Compares predicted regions with true ones. `probabilities` are those of the predicted regions, in their order; regions beyond its end have

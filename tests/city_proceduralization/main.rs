@@ -5,6 +5,7 @@ mod citygml;
 mod commands;
 mod compact;
 mod far_away;
+mod formats;
 mod gltf;
 mod grammar;
 mod interrupted;

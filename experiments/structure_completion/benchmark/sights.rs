@@ -80,20 +80,11 @@ impl Sight {
                 vec![Rect::new(x, 0.0, wide, h)]
             }
         };
-        let is_hidden = |e: &&Element| {
-            let (x, y) = e.rect.centre();
-            regions.iter().any(|r| r.contains(x, y))
-        };
-        let (hidden, observed): (Vec<&Element>, Vec<&Element>) =
-            layout.elements.iter().partition(is_hidden);
-        let partial = PartialLayout {
-            width: w,
-            height: h,
-            observed: observed.into_iter().copied().collect(),
-            unknown: self.masked.then_some(regions),
-            forbidden: Vec::new(),
-        };
-        (partial, hidden.into_iter().copied().collect())
+        let (mut partial, hidden) = PartialLayout::hiding(layout, regions);
+        if !self.masked {
+            partial.unknown = None;
+        }
+        (partial, hidden)
     }
 }
 

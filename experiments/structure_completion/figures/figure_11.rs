@@ -33,20 +33,7 @@ fn apart(layout: &Layout) -> (PartialLayout, Vec<Element>) {
         Rect::new(0.45 * w, up, across, up),
         Rect::new(0.0, 0.0, across, up),
     ];
-    let is_hidden = |e: &&Element| {
-        let (x, y) = e.rect.centre();
-        unknown.iter().any(|u| u.contains(x, y))
-    };
-    let (hidden, observed): (Vec<&Element>, Vec<&Element>) =
-        layout.elements.iter().partition(is_hidden);
-    let partial = PartialLayout {
-        width: w,
-        height: h,
-        observed: observed.into_iter().copied().collect(),
-        unknown: Some(unknown.clone()),
-        forbidden: Vec::new(),
-    };
-    (partial, hidden.into_iter().copied().collect())
+    PartialLayout::hiding(layout, unknown)
 }
 
 #[derive(Serialize, Deserialize)]

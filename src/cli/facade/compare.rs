@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_shape::AnnotatedFacade;
-use edifice_shape::comparison::{Agreement, Comparison, Regularity, THRESHOLDS, compare};
+use edifice_shape::comparison::{Agreement, Comparison, Regularity, THRESHOLDS, compare_layouts};
 use serde_json::{Value, json};
 
 use super::input;
@@ -36,14 +35,6 @@ pub struct Args {
     json: bool,
 }
 
-/// Two layouts of different outlines.
-#[derive(Debug, thiserror::Error)]
-#[error("the outline is {found:?}, that of the truth {truth:?}")]
-struct Outline {
-    found: [f64; 2],
-    truth: [f64; 2],
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let truth = input::annotated(&args.truth, &args.reading)?;
@@ -51,7 +42,8 @@ pub fn run(args: &Args) -> Result<()> {
     print::line("f1@.5   f1@.75  mean f1  iou     true  pred  overlap  prediction")?;
     for path in &args.predicted {
         let predicted = input::annotated(path, &args.reading)?;
-        let found = compared(&truth, &predicted, path, args.whole)?;
+        let found =
+            compare_layouts(&truth, &predicted, args.whole).map_err(|e| Error::content(path, e))?;
         let (f1, all) = (found.all.f1(), &found.all);
         print::line(&format!(
             "{:<8.4}{:<8.4}{:<9.4}{:<8.4}{:<6}{:<6}{:<9.4}{}",
@@ -83,41 +75,6 @@ pub fn run(args: &Args) -> Result<()> {
         ),
         false => Ok(()),
     }
-}
-
-/// Compares two layouts of one facade.
-fn compared(
-    truth: &AnnotatedFacade,
-    predicted: &AnnotatedFacade,
-    path: &Path,
-    whole: bool,
-) -> Result<Comparison> {
-    let size = |layout: &AnnotatedFacade| [layout.facade.width, layout.facade.height];
-    let (wanted, found) = (size(truth), size(predicted));
-    let longer = wanted[0].max(wanted[1]);
-    if (0..2).any(|k| (wanted[k] - found[k]).abs() > 1e-6 * longer) {
-        let truth = wanted;
-        return Err(Error::content(path, Outline { found, truth }));
-    }
-    let counts = |rect: &edifice_shape::Rect| match &predicted.unknown {
-        Some(unknown) if !whole => {
-            let (x, y) = rect.centre();
-            unknown.iter().any(|u| u.contains(x, y))
-        }
-        _ => true,
-    };
-    let truth: Vec<_> = (truth.facade.regions.iter())
-        .filter(|region| counts(&region.rect))
-        .cloned()
-        .collect();
-    let (mut regions, mut probabilities) = (Vec::new(), Vec::new());
-    for (region, note) in predicted.facade.regions.iter().zip(&predicted.notes) {
-        if counts(&region.rect) {
-            regions.push(region.clone());
-            probabilities.push(note.probability);
-        }
-    }
-    Ok(compare(&truth, &regions, &probabilities, longer))
 }
 
 fn object(found: &Comparison, path: &Path) -> Value {

@@ -47,14 +47,7 @@ pub fn run(args: &Args) -> Result<()> {
         .map(|path| reading::source(path, &options)?.facade(path))
         .collect();
     let facades = facades?;
-    let costs = Costs {
-        split: args.split_cost,
-        sym_split: args.split_cost,
-        grid_split: args.split_cost,
-        repeat: args.repeat_cost,
-        repeat_aba: args.repeat_cost,
-        ..Costs::default()
-    };
+    let costs = Costs::of(args.split_cost, args.repeat_cost);
     let judged = evaluate(&grammar, &facades, &costs);
     let errors: Vec<Option<f64>> = (facades.iter().enumerate())
         .map(|(index, facade)| Some(wrong_share(&derive(&grammar, index).ok()?, facade)))

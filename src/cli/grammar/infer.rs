@@ -104,14 +104,7 @@ enum MethodName {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let costs = Costs {
-        split: args.split_cost,
-        sym_split: args.split_cost,
-        grid_split: args.split_cost,
-        repeat: args.repeat_cost,
-        repeat_aba: args.repeat_cost,
-        ..Costs::default()
-    };
+    let costs = Costs::of(args.split_cost, args.repeat_cost);
     let facades = read(args, costs)?;
     if args.sizes == Sizes::Free {
         return super::library::infer(&facades, &costs, args.output.as_deref(), args.json);

@@ -37,14 +37,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let path = &args.grammar;
-    let costs = Costs {
-        split: args.split_cost,
-        sym_split: args.split_cost,
-        grid_split: args.split_cost,
-        repeat: args.repeat_cost,
-        repeat_aba: args.repeat_cost,
-        ..Costs::default()
-    };
+    let costs = Costs::of(args.split_cost, args.repeat_cost);
     let bytes = edifice_io::read_bytes(path)?;
     if edifice_io::grammar_library_json::is_library(&bytes) {
         return super::library::show(path, &bytes, &costs, args.json);

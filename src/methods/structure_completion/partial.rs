@@ -1,7 +1,7 @@
 //! Partial layouts: elements that are observed, wall that is known, and the rest, which is unknown.
 
 use super::layout::places::Places;
-use super::layout::{Class, Element};
+use super::layout::{Class, Element, Layout};
 use edifice_shape::Rect;
 
 /// The input of a completion.
@@ -66,6 +66,25 @@ pub struct Overlap {
 }
 
 impl PartialLayout {
+    /// A whole layout whose content in these rectangles is not known, and the elements that they hide: those whose centre lies in
+    /// one.
+    pub fn hiding(layout: &Layout, unknown: Vec<Rect>) -> (Self, Vec<Element>) {
+        let is_hidden = |e: &&Element| {
+            let (x, y) = e.rect.centre();
+            unknown.iter().any(|u| u.contains(x, y))
+        };
+        let (hidden, observed): (Vec<&Element>, Vec<&Element>) =
+            layout.elements.iter().partition(is_hidden);
+        let partial = Self {
+            width: layout.width,
+            height: layout.height,
+            observed: observed.into_iter().copied().collect(),
+            unknown: Some(unknown),
+            forbidden: Vec::new(),
+        };
+        (partial, hidden.into_iter().copied().collect())
+    }
+
     /// Checks the observed elements against the outline and the unknown part.
     ///
     /// # Errors
