@@ -3,8 +3,9 @@
 use edifice::model::hierarchy::{Group, Settings, learn};
 use edifice::model::network::Evidence;
 use edifice::model::tables::Dataset;
-use edifice::model::tables::compare::{Contender, extended, held_out};
+use edifice::model::tables::compare::{Contender, held_out};
 use edifice::model::tables::encoding::Encoding;
+use edifice::model::tables::learn::extended;
 use edifice::model::tables::transform::{Bounds, Tails, Transform};
 use edifice::model::{Cell, Table};
 use edifice::rng::{Stream, stream};

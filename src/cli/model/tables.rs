@@ -8,8 +8,9 @@ use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_model::ModelError;
 use edifice_model::tables::Dataset;
-use edifice_model::tables::compare::{BACKGROUND, extended};
+use edifice_model::tables::compare::BACKGROUND;
 use edifice_model::tables::encoding::Encoding;
+use edifice_model::tables::learn::extended;
 use edifice_model::tables::table_model::{FORMAT, TableModel};
 
 use super::data::{TableInput, csv_lines, read_model, read_rows, read_table, rows};

@@ -4,9 +4,9 @@
 use std::ops::ControlFlow;
 
 use super::Dataset;
-use super::encoding::Encoding;
-use super::joined::{learn_joined, learn_one_group};
+use super::joined::learn_one_group;
 use super::kernels::Kernels;
+use super::learn::{encode, extended, learn_encoded};
 use super::mixture::Baseline;
 use crate::ModelError;
 use crate::hierarchy::{Settings, Step, Variant, learn};
@@ -102,21 +102,21 @@ pub fn held_out(
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
     if let Contender::Extended | Contender::OneGroup = contender {
-        let encoding = Encoding::learn(train, &settings.priors.linear, seed)?;
-        let table = encoding.encode(&train.table)?;
-        let settings = extended(settings);
-        let groups = encoding.groups(&train.groups);
         let go_on = |_: Option<&Step>| ControlFlow::Continue(());
-        let model = match contender {
+        let (encoding, model) = match contender {
             Contender::OneGroup => {
-                match learn_one_group(&table, &groups, &settings, seed, &go_on)? {
+                let (encoding, encoded) = encode(train, settings, seed, &go_on)?;
+                let (table, groups) = (&encoded.table, &encoded.groups);
+                let settings = extended(settings);
+                let model = match learn_one_group(table, groups, &settings, seed, &go_on)? {
                     Some((learned, _)) => learned.model,
-                    None => learn(&table, &groups, &settings, seed)?.model,
-                }
+                    None => learn(table, groups, &settings, seed)?.model,
+                };
+                (encoding, model)
             }
             _ => {
-                let found = learn_joined(&table, &groups, &settings, seed, &go_on)?;
-                found.learned.model
+                let (encoding, found) = learn_encoded(train, settings, seed, &go_on)?;
+                (encoding, found.learned.model)
             }
         };
         let logs = model.log_likelihood(&encoding.encode(&test.table)?)?;
@@ -147,15 +147,6 @@ pub fn held_out(
         }
     };
     Ok(logs.into_iter().map(|log| -log).collect())
-}
-
-/// The settings of [`Contender::Extended`].
-pub fn extended(settings: &Settings) -> Settings {
-    Settings {
-        variant: Variant::Full,
-        category_edges: true,
-        ..settings.clone()
-    }
 }
 
 /// The fit of a learned model to unseen rows.

@@ -1,13 +1,55 @@
 //! Learning the model of a table by default settings, from the table as its schema reads it to a [`TableModel`].
 
 use super::Dataset;
-use super::compare::extended;
 use super::encoding::Encoding;
 use super::joined::{Joined, learn_joined};
 use super::schema::Schema;
 use super::table_model::TableModel;
 use crate::ModelError;
-use crate::hierarchy::{Observer, Settings};
+use crate::hierarchy::{Observer, Settings, Variant};
+
+/// The settings of the extended model: lateral edges, from categories as well.
+pub fn extended(settings: &Settings) -> Settings {
+    Settings {
+        variant: Variant::Full,
+        category_edges: true,
+        ..settings.clone()
+    }
+}
+
+/// The encoding of a table's numbers, learnt from it, and the table in it. `observer` is asked before each column: those that come after it has
+/// ended enter without a transform.
+///
+/// # Errors
+/// As [`Encoding::learn`] and [`Encoding::encode`].
+pub(super) fn encode(
+    data: &Dataset,
+    settings: &Settings,
+    seed: u64,
+    observer: &Observer,
+) -> Result<(Encoding, Dataset), ModelError> {
+    let goes_on = || observer(None).is_continue();
+    let (encoding, _) = Encoding::learn_while(data, &settings.priors.linear, seed, &goes_on)?;
+    let table = encoding.encode(&data.table)?;
+    let groups = encoding.groups(&data.groups);
+    Ok((encoding, Dataset { table, groups }))
+}
+
+/// Learns the extended model of a table, and the encoding by which it reads numbers; [`TableModel::learn`] keeps both with the schema.
+///
+/// # Errors
+/// As [`TableModel::learn`].
+pub(super) fn learn_encoded(
+    data: &Dataset,
+    settings: &Settings,
+    seed: u64,
+    observer: &Observer,
+) -> Result<(Encoding, Joined), ModelError> {
+    let (encoding, encoded) = encode(data, settings, seed, observer)?;
+    let (table, groups) = (&encoded.table, &encoded.groups);
+    let search = learn_joined(table, groups, &extended(settings), seed, observer)?;
+    Ok((encoding, search))
+}
 
 /// A learned model of a table, and the search that found it.
 #[derive(Debug, Clone)]
@@ -56,10 +98,7 @@ impl TableModel {
         seed: u64,
         observer: &Observer,
     ) -> Result<LearnedTable, ModelError> {
-        let encoding = Encoding::learn(data, &settings.priors.linear, seed)?;
-        let table = encoding.encode(&data.table)?;
-        let groups = encoding.groups(&data.groups);
-        let search = learn_joined(&table, &groups, &extended(settings), seed, observer)?;
+        let (encoding, search) = learn_encoded(data, settings, seed, observer)?;
         Ok(LearnedTable {
             model: Self {
                 schema: schema.clone(),

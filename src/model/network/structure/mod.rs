@@ -13,7 +13,8 @@
 //! [`Search::patience`] moves without a new best, and starts anew ([`Search::restarts`]) from a random structure of the best
 //! one's equivalence class, which has other neighbours (repeated covered arc reversal, Castelo and Kočka 2003), every second
 //! time with a few random moves besides. Families' scores are kept, so that each is counted once; a move changes the gains of moves into
-//! one or two variables only. Edges may be required or forbidden, variables ordered in tiers.
+//! one or two variables only. Edges may be required or forbidden, variables ordered in tiers. Of up to six variables all structures
+//! are compared besides (`exact.rs`).
 //!
 //! Both scores are the same for structures of one equivalence class: only the skeleton and the v-structures can be learned,
 //! and the direction of the other edges is the first found.
@@ -24,6 +25,7 @@
 
 mod climb;
 mod constraints;
+mod exact;
 mod families;
 mod incomplete;
 mod settings;
@@ -38,8 +40,11 @@ use families::Families;
 pub use incomplete::search_incomplete;
 pub use settings::{Score, Search};
 
-/// Result of [`search`], which has an example: the structure of highest score that was met, not with certainty the highest of
-/// all, as the problem is NP-hard (Koller and Friedman 2009, Sec. 18.4). [`score`] of its edges gives [`Found::score`] again.
+/// Scores that differ by less are those of one equivalence class, nats.
+const NOISE: f64 = 1e-9;
+
+/// Result of [`search`], which has an example: of up to six variables the structure of highest score of all; of more, that of highest score
+/// that was met, not with certainty the highest of all, as the problem is NP-hard (Koller and Friedman 2009, Sec. 18.4). [`score`] of its edges gives [`Found::score`] again.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The structure with tables: MAP under the prior of [`FitSettings`].
@@ -95,7 +100,14 @@ pub fn search_while(
     let mut climb = Climb::new(&mut families, &allowed, settings, goes_on)?;
     climb.run(&mut stream(seed, "network/structure", 0));
     let interrupted = climb.ended();
-    let (parents, score, moves) = climb.best();
+    let (mut parents, mut score, moves) = climb.best();
+    if families.variables() <= exact::MOST
+        && !interrupted
+        && let Some(best) = exact::best(&mut families, &allowed, settings.most_parents)
+        && best.1 > score + NOISE
+    {
+        (parents, score) = best;
+    }
     let columns = data.columns();
     let name = |i: usize| columns[i].name().to_owned();
     let mut edges = Vec::new();
