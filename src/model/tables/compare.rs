@@ -28,7 +28,7 @@ pub enum Contender {
     Model3,
     /// A Gaussian mixture chosen by MDL.
     Gmm,
-    /// The hierarchical model of an encoded table ([`Encoding`]), with lateral edges from categories as well: none of the
+    /// The hierarchical model of an encoded table ([`Encoding`](super::encoding::Encoding)), with lateral edges from categories as well: none of the
     /// paper's. At an atom its density is a probability.
     Extended,
     /// The same with all real columns in one group, which share one hidden variable (`one_group`).
