@@ -13,7 +13,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
-use super::components::Component;
+use super::component::{CELLS, Component};
 use super::features::Points;
 use super::orientation::is_symmetric;
 use super::settings::ProceduralizeError;
@@ -123,7 +123,7 @@ fn stacks(components: &[Component], buildings: usize) -> (Vec<Vec<usize>>, Vec<u
 
 /// The features of a stack.
 fn row(components: &[Component], parts: &[usize], shape: &Points) -> Vec<f64> {
-    let cells = (super::components::CELLS * super::components::CELLS) as f64;
+    let cells = (CELLS * CELLS) as f64;
     let mut row = Vec::new();
     for (k, &i) in parts.iter().enumerate() {
         let c = &components[i];

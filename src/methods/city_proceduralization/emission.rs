@@ -1,7 +1,7 @@
 //! From types to a grammar (Eq. 5 to 7).
 
 use super::building_types::BuildingTypes;
-use super::components::Component;
+use super::component::Component;
 use super::parse_tree::ParseTree;
 use super::rulebook::{RuleUse, Rulebook};
 use super::types::Types;

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
-use super::components::Component;
+use super::component::Component;
 use edifice_shape::triangles::convex_hull;
 
 /// Names of the eleven features of the paper, in order; the names that weights are given by.

@@ -7,8 +7,8 @@
 
 use rayon::prelude::*;
 
-use super::components::{CELLS, Component};
-use super::nearest::Nearest;
+use super::component::{CELLS, Component};
+use super::nearest::{Nearest, square};
 use super::uses::Use;
 
 /// Number of rounds of finding medoids.
@@ -239,8 +239,4 @@ fn looks_apart(template: &[f32], component: &[f32], quarter: u8) -> f64 {
         .map(|i| (template[from(i)] - component[i]).abs())
         .sum();
     LOOKS_WEIGHT * f64::from(sum) / n as f64
-}
-
-pub(super) fn square(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }

@@ -47,7 +47,8 @@
 
 pub mod building_types;
 mod candidates;
-pub mod components;
+pub mod component;
+mod components;
 pub mod emission;
 pub mod facades;
 pub mod features;
@@ -71,7 +72,8 @@ pub mod types;
 mod uses;
 pub mod windows;
 
-pub use components::{Component, Decomposition, decompose};
+pub use component::Component;
+pub use components::{Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{Proceduralized, Structure, from_components, proceduralize};

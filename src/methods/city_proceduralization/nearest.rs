@@ -1,6 +1,5 @@
 //! The nearest of some rows of a table of features.
 
-use super::medoids::square;
 use edifice_cluster::KdTree;
 
 /// Chosen rows in a kd-tree.
@@ -47,4 +46,9 @@ impl<'a> Nearest<'a> {
         self.tree.search(point, f64::INFINITY, bound, visit);
         found.into_iter().map(|f| f.1).collect()
     }
+}
+
+/// The squared Euclidean distance of two points.
+pub(super) fn square(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }

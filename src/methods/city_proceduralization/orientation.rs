@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::components::{CELLS, Component};
+use super::component::{CELLS, Component};
 
 /// First moments below this share of the mean say nothing about the orientation.
 const SYMMETRIC: f64 = 0.004;

@@ -1,7 +1,7 @@
 //! Patterns: types of buildings that stand at the same place relative to each other, again and again.
 
 use super::building_types::BuildingTypes;
-use super::components::Component;
+use super::component::Component;
 use super::type_graph::{NEIGHBOUR, NodeInstance, neighbours};
 use edifice_grammar::instance::{Posed, Repeated, repeated};
 

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::building_types::{BuildingTypes, building_types};
-use super::components::{Component, Decomposition, decompose};
+use super::component::Component;
+use super::components::{Decomposition, decompose};
 use super::emission::{Detail, Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
 use super::parse_tree::{ParseTree, grow};

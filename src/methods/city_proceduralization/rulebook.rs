@@ -13,10 +13,10 @@ use rustc_hash::FxHashMap;
 
 use super::building_types::{BuildingTypes, projected};
 use super::candidates::{Candidate, Near, best};
-use super::components::Component;
+use super::component::Component;
 use super::gain::Gain;
-use super::medoids::square;
 use super::nearest::Nearest;
+use super::nearest::square;
 use super::settings::ProceduralizeError;
 use super::stacks::Stack;
 use super::types::Priced;

@@ -7,7 +7,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::components::{CELLS, Component, SAMPLES};
+use super::component::{CELLS, Component};
+use super::components::SAMPLES;
 use super::types::Types;
 use edifice_shape::triangles::{OrientedBox, TriangleMesh, height_map};
 

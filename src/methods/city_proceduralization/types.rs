@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use super::components::Component;
+use super::component::Component;
 use super::features::{Points, paper_features};
 use super::medoids::{Form, Price, Table, square};
 use super::pruning::pruned;

@@ -25,6 +25,7 @@ use rand::RngExt;
 
 use self::occupancy::Occupancy;
 pub use self::shape::Shape;
+use self::shape::rotated;
 use self::sources::{AREAS, HEIGHTS, Source, sources};
 use super::localization::Landmark;
 use edifice_base::rng;
@@ -252,10 +253,4 @@ fn large(sources: &[Source], shape: &Shape, rng: &mut rng::Stream) -> Vec<usize>
     }
     chosen.sort_by_key(|&s| std::cmp::Reverse(sources[s].footprint.points()));
     chosen
-}
-
-/// A vector turned by degrees.
-fn rotated([x, y]: [f64; 2], degrees: f64) -> [f64; 2] {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    [x * cos - y * sin, x * sin + y * cos]
 }

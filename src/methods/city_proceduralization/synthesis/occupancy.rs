@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{Shape, rotated};
+use super::shape::{Shape, rotated};
 use edifice_shape::triangles::{TriangleMesh, plan_area};
 
 /// Side of a cell, in metres.

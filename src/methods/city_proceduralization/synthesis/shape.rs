@@ -64,3 +64,9 @@ impl Shape {
             .sum()
     }
 }
+
+/// A vector turned by degrees.
+pub(super) fn rotated([x, y]: [f64; 2], degrees: f64) -> [f64; 2] {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    [x * cos - y * sin, x * sin + y * cos]
+}

@@ -6,7 +6,6 @@
 //! - Shops and doors stand as high, and as wide up to a ratio of 1.25, as the seen ones of their class, and on the column, the
 //!   middle between two columns, or the middle of the facade if one of these is nearer than a quarter of their width.
 
-use super::regular::Host;
 use super::scene::{Scene, of};
 use super::shared::Lines;
 use crate::completion::Reason;
@@ -20,6 +19,19 @@ pub const WIDE: f64 = 2.0;
 const SAME_WIDTH: f64 = 1.25;
 /// Largest way of a shop or door to its place by rule, in units of its width.
 const REACH: f64 = 0.25;
+
+/// A window in its cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Host {
+    /// Its column.
+    pub column: usize,
+    /// Its row.
+    pub row: usize,
+    /// Its place.
+    pub rect: Rect,
+    /// Its index among the elements given; `None` of a seen one.
+    pub given: Option<usize>,
+}
 
 /// True if a balcony hangs before or below a window.
 pub fn is_host(window: &Rect, balcony: &Rect) -> bool {

@@ -10,7 +10,7 @@
 
 use std::collections::HashSet;
 
-use super::belong;
+use super::belong::{self, Host};
 use super::by_place::ByPlace;
 use super::scene::{Scene, of};
 use super::shared::Lines;
@@ -25,19 +25,6 @@ const TOUCH: f64 = 1e-6;
 pub fn clash(a: &Element, b: &Element) -> bool {
     let least = a.rect.area().min(b.rect.area());
     !a.class.may_overlap(b.class) && a.rect.overlap(&b.rect) > TOUCH * least
-}
-
-/// A window in its cell.
-#[derive(Debug, Clone, Copy)]
-pub struct Host {
-    /// Its column.
-    pub column: usize,
-    /// Its row.
-    pub row: usize,
-    /// Its place.
-    pub rect: Rect,
-    /// Its index among the elements given; `None` of a seen one.
-    pub given: Option<usize>,
 }
 
 /// A regular layout: added elements in the order in which they were given, each with the index of the element that it was,

@@ -14,7 +14,8 @@
 //! symmetry of the facade.
 
 use super::belong;
-use super::regular::{Host, clash};
+use super::belong::Host;
+use super::regular::clash;
 use super::scene::{Scene, of};
 use super::shared::SAME_SIZE;
 use crate::completion::Reason;
