@@ -18,9 +18,6 @@ use edifice_structure_completion::method::{self, Method};
 use edifice_structure_completion::model::Model;
 use edifice_structure_completion::task::Task;
 
-/// Folds of the cross-validation.
-const FOLDS: usize = 5;
-
 /// One facade, one task, one seed; the models that have not seen it.
 struct Unit<'a> {
     item: &'a Item,
@@ -33,7 +30,8 @@ struct Unit<'a> {
 pub fn run(ctx: &mut Context) -> Result<()> {
     let seeds = ctx.budget().choose(1, 2, 5);
     ctx.setting("mask_seeds", seeds);
-    ctx.setting("folds", FOLDS);
+    let folds = ctx.budget().choose(2, 5, 5);
+    ctx.setting("folds", folds);
     let all = data::items(ctx)?;
     let shipped = all.iter().all(|i| i.dataset == "shipped");
     // The few shipped layouts are too few to leave any out.
@@ -48,8 +46,8 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         .filter(usable)
         .filter(|i| !(i.in_scope || shipped))
         .collect();
-    let fold = folds::folds(&used, FOLDS, ctx.seed());
-    let models: Vec<Model> = (0..FOLDS)
+    let fold = folds::folds(&used, folds, ctx.seed());
+    let models: Vec<Model> = (0..folds)
         .map(|f| folds::model(&used, ctx.seed(), |i| fold[i] != f))
         .collect::<Result<_>>()?;
     let mut others: BTreeMap<&str, Model> = BTreeMap::new();

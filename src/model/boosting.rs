@@ -244,8 +244,13 @@ fn grow(
     for level in 0..settings.levels {
         let leaves = 1 << level;
         let mut best = (0.0, None);
+        let mut sums = vec![(0.0, 0.0); leaves * BINS];
         for (feature, bins) in binned.iter().enumerate() {
-            let mut sums = vec![(0.0, 0.0); leaves * BINS];
+            // A feature of one value has no cut.
+            if cuts[feature].is_empty() {
+                continue;
+            }
+            sums.fill((0.0, 0.0));
             for ((&leaf, &bin), step) in leaf_of.iter().zip(bins).zip(steps) {
                 let sum = &mut sums[leaf * BINS + usize::from(bin)];
                 sum.0 += step.0;
@@ -288,11 +293,16 @@ fn gains(sums: &[(f64, f64)], cuts: usize, ridge: f64) -> Vec<f64> {
     let mut gains = vec![0.0; cuts];
     for leaf in sums.chunks(BINS) {
         let (g, h) = leaf.iter().fold((0.0, 0.0), |(g, h), s| (g + s.0, h + s.1));
+        // A leaf without rows gains nothing.
+        if (g, h) == (0.0, 0.0) {
+            continue;
+        }
+        let uncut = value(g, h);
         let (mut gl, mut hl) = (0.0, 0.0);
         for (gain, sum) in gains.iter_mut().zip(leaf) {
             gl += sum.0;
             hl += sum.1;
-            *gain += value(gl, hl) + value(g - gl, h - hl) - value(g, h);
+            *gain += value(gl, hl) + value(g - gl, h - hl) - uncut;
         }
     }
     gains
