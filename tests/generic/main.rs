@@ -1,6 +1,8 @@
-//! Optimizers, clusters and shapes against independent checks.
+//! What all methods share: optimizers, clusters and shapes against independent checks, grammars, readers and writers.
 
 mod cluster_hierarchy;
+mod grammar;
+mod io;
 mod optim_genetic;
 mod optim_projection;
 mod shape_triangles;

@@ -23,7 +23,7 @@
 //! # What CityEngine asks for
 //! The rules of its reference that text keeps to. Pages are below
 //! <https://esri.github.io/cityengine-sdk/html/cgaref/cgareference/> unless said otherwise;
-//! `tests/grammar_cga_reference.rs` and, for sizes, `tests/grammar_cga_sizes.rs` have a test for each row.
+//! `tests/generic/grammar/cga_reference.rs` and, for sizes, `cga_sizes.rs` beside it have a test for each row.
 //!
 //! | page | it says | written | read |
 //! | --- | --- | --- | --- |

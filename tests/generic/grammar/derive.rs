@@ -1,6 +1,6 @@
 //! Derivation, checking and evaluation of split grammars.
 
-use crate::support::{naive, random_grammar};
+use super::support::{naive, random_grammar};
 use edifice::grammar::{
     Costs, EvaluateError, Grammar, GrammarError, Operation, Rule, Size, Start, Successor, Warning,
     check, derivation, derive, evaluate, same_tiling,

@@ -1,13 +1,13 @@
 //! Grammars as CGA text: round trips, what is understood, and errors with their place.
 
-use crate::support::{random_grammar, size_independent, stochastic};
+use super::support::{random_grammar, size_independent, stochastic};
 use edifice::grammar::{Costs, Grammar, Operation, Size, derive, evaluate, listing};
 use edifice::io::grammar_cga::{from_str, parse, to_string};
 use edifice::io::grammar_json;
 use edifice::shape::Axis;
 use proptest::prelude::*;
 
-const FIG9: &str = include_str!("../../datasets/facade_grammar/wu2014_fig9.cga");
+const FIG9: &str = include_str!("../../../datasets/facade_grammar/wu2014_fig9.cga");
 
 /// The rules of each symbol brought together, as text does.
 fn gathered(grammar: &Grammar) -> Grammar {

@@ -1,6 +1,6 @@
 //! Grammar files in JSON: round trips, and every way to be wrong named with its place.
 
-use crate::support::{random_grammar, size_independent, stochastic};
+use super::support::{random_grammar, size_independent, stochastic};
 use edifice::grammar::{Grammar, Size, Start};
 use edifice::io::grammar_json::{parse, to_string};
 use proptest::prelude::*;

@@ -1,6 +1,6 @@
 //! Size-independent and stochastic grammars.
 
-use crate::support::{random_grammar, stochastic};
+use super::support::{random_grammar, stochastic};
 use edifice::grammar::{
     Grammar, GrammarError, Operation, Sampler, Size, Successor, check, derive, derive_at,
     same_tiling, scaled, size_independent,

@@ -23,8 +23,8 @@ fn packed(text: &[u8]) -> Vec<u8> {
 
 const MATRIX: &str = "wall wall wall wall\nwall window window wall\nwall wall wall wall\n";
 
-const LABELME: &str = include_str!("../../fuzz/seeds/labelme/a.json");
-const COCO: &str = include_str!("../../fuzz/seeds/coco/a.json");
+const LABELME: &str = include_str!("../../../fuzz/seeds/labelme/a.json");
+const COCO: &str = include_str!("../../../fuzz/seeds/coco/a.json");
 const XML: &[u8] = include_bytes!("../../fuzz/seeds/cmp_xml/a.xml");
 const HOUSES: &[u8] = include_bytes!("../../fuzz/seeds/building_json/a.buildings.jsonl");
 

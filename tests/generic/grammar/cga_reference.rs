@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use crate::support::{random_grammar, size_independent, stochastic};
+use super::support::{random_grammar, size_independent, stochastic};
 use edifice::grammar::{
     Grammar, Operation, Rule, Start, Successor, derive, derive_at, same_tiling,
 };

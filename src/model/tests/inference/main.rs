@@ -1,0 +1,4 @@
+//! Inference against truths that share no code with it.
+
+mod factor_graphs;
+mod program;
