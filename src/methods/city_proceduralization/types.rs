@@ -6,7 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::component::Component;
 use super::features::{Points, paper_features};
-use super::medoids::{Form, Price, Table, square};
+use super::medoids::{Form, Price, Table};
+use super::nearest::square;
 use super::pruning::pruned;
 use super::settings::{ProceduralizeError, Representative};
 pub use super::uses::Use;
