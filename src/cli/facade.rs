@@ -31,7 +31,8 @@ pub enum Command {
     /// Convert a facade to another format, told by the file names.
     ///
     /// Reads .facade.json, label images (.png), matrices of labels (.txt, .csv), rectangles of the CMP
-    /// database (.xml) and boxes drawn with LabelMe or kept as COCO (.json); all text files also as .gz.
+    /// database, annotations of Pascal VOC and eTRIMS (.xml), and boxes drawn with LabelMe or kept as COCO (.json);
+    /// all text files also as .gz.
     /// Writes .facade.json, .svg, .png and .txt. Label images become tilings of rectangles that full
     /// lines can split; boxes become element layouts, which are drawn on a wall.
     #[command(after_help = "Examples:

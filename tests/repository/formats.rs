@@ -7,6 +7,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use edifice_io as io;
 use edifice_model::network::Network;
+use edifice_shape::Rect;
 
 const PAGE: &str = include_str!("../../FORMATS.md");
 
@@ -51,6 +52,12 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
         "labelme" => drop(io::labelme::parse(bytes, path)?),
         "coco" => drop(io::coco::parse(bytes, path, None)?),
         "cmp" => assert_eq!(io::cmp_xml::parse(bytes, path)?.objects.len(), 1),
+        "annotation" => {
+            let facade = io::annotation_xml::parse(bytes, path, None)?;
+            let rects: Vec<_> = facade.regions.iter().map(|r| r.rect).collect();
+            let door = Rect::new(10.0, 0.0, 50.0, 100.0);
+            assert_eq!(rects, [Rect::new(20.0, 500.0, 30.0, 60.0), door]);
+        }
         "label-text" => drop(io::label_text::parse(bytes, path, None)?),
         "grammar" => {
             let grammar = io::grammar_json::parse(bytes, path)?;
