@@ -189,8 +189,12 @@ impl Annotation {
                     draft.edges[index] = Some(number(edge, text)?);
                 }
             }
-            [_, "object", "polygon", "pt", axis @ "x"] => draft.point[0] = Some(number(axis, text)?),
-            [_, "object", "polygon", "pt", axis @ "y"] => draft.point[1] = Some(number(axis, text)?),
+            [_, "object", "polygon", "pt", axis @ "x"] => {
+                draft.point[0] = Some(number(axis, text)?)
+            }
+            [_, "object", "polygon", "pt", axis @ "y"] => {
+                draft.point[1] = Some(number(axis, text)?)
+            }
             [_, "object", "polygon", "pt"] => match std::mem::take(&mut draft.point) {
                 [Some(x), Some(y)] => draft.points.push([x, y]),
                 [None, _] => return Err(AnnotationError::Missing("x> in a <pt")),
@@ -268,7 +272,10 @@ mod tests {
     #[test]
     fn boxes_and_polygons_are_elements_with_y_up() {
         let facade = parse(VOC.as_bytes(), "dir/house.1.xml".as_ref(), None).unwrap();
-        assert_eq!((facade.name.as_str(), facade.width, facade.height), ("house", 40.0, 60.0));
+        assert_eq!(
+            (facade.name.as_str(), facade.width, facade.height),
+            ("house", 40.0, 60.0)
+        );
         let regions = facade.regions.iter().map(|r| (r.label.as_str(), r.rect));
         let regions: Vec<(&str, Rect)> = regions.collect();
         let expected = [
@@ -278,7 +285,9 @@ mod tests {
         ];
         assert_eq!(regions, expected);
         assert!(is_annotation(VOC.as_bytes()));
-        assert!(!is_annotation(b"<annotation><object><labelname>window</labelname>"));
+        assert!(!is_annotation(
+            b"<annotation><object><labelname>window</labelname>"
+        ));
     }
 
     #[test]
@@ -292,27 +301,54 @@ mod tests {
         let end = "<imagesize><nrows>60</nrows><ncols>40</ncols></imagesize></annotation>";
         let labelme = without.replacen("</annotation>", end, 1);
         let whole = parse(VOC.as_bytes(), "a.xml".as_ref(), None).unwrap();
-        assert_eq!(parse(labelme.as_bytes(), "a.xml".as_ref(), None).unwrap(), whole);
+        assert_eq!(
+            parse(labelme.as_bytes(), "a.xml".as_ref(), None).unwrap(),
+            whole
+        );
     }
 
     #[test]
     fn bad_files_name_their_place() {
         let cases = [
-            ("<xmin>3<", "<xmin>nan<", "line 6, column 26: <xmin> is \"nan\""),
+            (
+                "<xmin>3<",
+                "<xmin>nan<",
+                "line 6, column 26: <xmin> is \"nan\"",
+            ),
             ("<xmin>3<", "<xmin>1e999<", "<xmin> is \"1e999\""),
             ("<xmin>3<", "<xmin><", "<xmin> is \"\""),
-            ("<xmin>3</xmin>", "", "line 7, column 114: an object without <xmin>"),
+            (
+                "<xmin>3</xmin>",
+                "",
+                "line 7, column 114: an object without <xmin>",
+            ),
             ("<xmax>10<", "<xmax>2<", "window: the box is 0 x 15.5"),
             ("<ymax>20.5<", "<ymax>-9<", "window: the box is 8 x -14"),
             ("<name>window</name>", "", "an object without <name>"),
             ("<name>door<", "<name> <", "an object without <name>"),
-            ("<x>20</x>", "", "line 9, column 47: an object without <x> in a <pt>"),
-            ("<width>40<", "<width>0<", "width of the image: 0, expected a positive"),
+            (
+                "<x>20</x>",
+                "",
+                "line 9, column 47: an object without <x> in a <pt>",
+            ),
+            (
+                "<width>40<",
+                "<width>0<",
+                "width of the image: 0, expected a positive",
+            ),
             ("<height>60<", "<height>-60<", "height of the image: -60"),
             ("&amp;", "&lol;", "`&lol;` is unknown"),
-            ("</object>\n<object><name>door", "<object><name>door", "line 11"),
+            (
+                "</object>\n<object><name>door",
+                "<object><name>door",
+                "line 11",
+            ),
             ("</annotation>", "", "the file ends inside <annotation>"),
-            ("<annotation verified=\"yes\">", "<annotations>", "<annotations> is no <annotation>"),
+            (
+                "<annotation verified=\"yes\">",
+                "<annotations>",
+                "<annotations> is no <annotation>",
+            ),
         ];
         for (from, to, expected) in cases {
             let text = VOC.replacen(from, to, 1);
@@ -330,7 +366,11 @@ mod tests {
         let over = VOC.replacen("<x>29</x>", "<x>99</x>", 1);
         let facade = parse(over.as_bytes(), "a.xml".as_ref(), None).unwrap();
         assert_eq!(facade.regions[1].rect, Rect::new(20.0, 0.0, 20.0, 20.0));
-        let text = VOC.replacen("<pt><x>30</x><y>40</y></pt><pt><x>29</x><y>60.4</y></pt>", "", 1);
+        let text = VOC.replacen(
+            "<pt><x>30</x><y>40</y></pt><pt><x>29</x><y>60.4</y></pt>",
+            "",
+            1,
+        );
         assert!(fail(&text).contains("door: the box is 0 x 0"));
     }
 }

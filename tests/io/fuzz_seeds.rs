@@ -4,8 +4,8 @@ use std::path::Path;
 
 use edifice::io::json::parse_json;
 use edifice::io::{
-    LabelMap, annotation_xml, building_csv, building_json, city, cmp_xml, coco, facade_json, footprint,
-    grammar_cga, grammar_json, label_image, label_text, labelme, surface_obj,
+    LabelMap, annotation_xml, building_csv, building_json, city, cmp_xml, coco, facade_json,
+    footprint, grammar_cga, grammar_json, label_image, label_text, labelme, surface_obj,
 };
 use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};

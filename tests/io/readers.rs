@@ -5,7 +5,8 @@ use std::path::Path;
 
 use edifice::Result;
 use edifice::io::{
-    self, LabelMap, annotation_xml, cmp_xml, coco, draw, facade_json, label_image, label_text, labelme,
+    self, LabelMap, annotation_xml, cmp_xml, coco, draw, facade_json, label_image, label_text,
+    labelme,
 };
 use edifice::shape::{Facade, LabelGrid, Rect, Region, decompose};
 use proptest::prelude::*;
