@@ -221,7 +221,6 @@ import os; os._exit(0)
         "edifice.HouseModel.shipped().generate(count=100_000)",
         "edifice.TableModel(max_styles=2, max_kinds=2).fit(rows[:60, :3]).complete(np.where(rng.random((100_000, 3)) < 0.5, np.nan, 0.5))",
         "layout(12, 16).hide('r20').complete(method='annealing', count=8)",
-        "edifice.Logic.fit([edifice.Facade.from_array(rng.integers(0, 3, (60, 60)), ['a', 'b', 'c'], str(k)) for k in range(6)])",
     ]:
         text = code.format(here=here, call=call)
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=120)
