@@ -8,8 +8,8 @@ use edifice_experiments::sweep::examples::examples;
 
 const BOARD: &str = include_str!("../../datasets/structure_completion/leaderboard.csv");
 const TASKS: [&str; 5] = ["r20", "r50", "side50", "corner36", "bottom40"];
-/// Layouts that ship, all of which are hidden and completed.
-const LAYOUTS: usize = 34;
+/// Layouts that are hidden and completed.
+const LAYOUTS: usize = 8;
 
 fn rows() -> Vec<Vec<String>> {
     let mut reader = csv::Reader::from_reader(BOARD.as_bytes());
