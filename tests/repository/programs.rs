@@ -99,7 +99,7 @@ fn files_and_tables_are_told_to_programs() {
     let [tiles, view, network, pages] = ["tiles", "v.png", "n.json", "man"].map(out);
     let cases: &[(&str, &[&str])] = &[
         ("grammar derive", &[&first, "-o", &derived]),
-        ("grammar edit", &[&first, "outline 9,9", "-o", &edited]),
+        ("grammar edit", &[&first, "symbol 0.0=Ground", "-o", &edited]),
         ("grammar merge", &[&first, &b, "-o", &merged]),
         ("grammar combine", &[&first, &second, "-o", &both]),
         ("grammar draw", &[&library, "-o", &drawn]),
@@ -118,7 +118,7 @@ fn files_and_tables_are_told_to_programs() {
         ("building draw", &[cabin, "-o", &house]),
         ("city derive", &[town, "-o", &city]),
         ("city convert", &[&city, "-o", &again]),
-        ("city edit", &[town, "scale T1=1,1,2", "-o", &scaled]),
+        ("city edit", &[town, "scale house=1,1,2", "-o", &scaled]),
         ("city tiles", &[town, "-o", &tiles]),
         ("city draw", &[town, "--size", "64x48", "-o", &view]),
         ("model schema", &[&numbers]),
