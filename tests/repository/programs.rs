@@ -99,7 +99,10 @@ fn files_and_tables_are_told_to_programs() {
     let [tiles, view, network, pages] = ["tiles", "v.png", "n.json", "man"].map(out);
     let cases: &[(&str, &[&str])] = &[
         ("grammar derive", &[&first, "-o", &derived]),
-        ("grammar edit", &[&first, "symbol 0.0=Ground", "-o", &edited]),
+        (
+            "grammar edit",
+            &[&first, "symbol 0.0=Ground", "-o", &edited],
+        ),
         ("grammar merge", &[&first, &b, "-o", &merged]),
         ("grammar combine", &[&first, &second, "-o", &both]),
         ("grammar draw", &[&library, "-o", &drawn]),

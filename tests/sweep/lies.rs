@@ -14,7 +14,7 @@ type Lie = (&'static str, &'static str, &'static str);
 const STUDIES: [(&str, &str, &str, &[Lie]); 3] = [
     (
         "structure_completion/complete",
-        "layouts/office_1.facade.json",
+        "layouts/office_*.facade.json",
         "method = \"mirror\"",
         &[
             (
@@ -91,12 +91,17 @@ const STUDIES: [(&str, &str, &str, &[Lie]); 3] = [
             (
                 "nothing ranked",
                 "printf 'query,facade,distance\\n' > \"$2\"",
-                "is missing",
+                "has no rows",
             ),
             (
-                "not a distance",
-                "sed 1d \"$1\" | sed 's/$/,x,-1/' > t; { echo query,facade,distance; cat t; } > \"$2\"",
-                "",
+                "below zero",
+                "printf 'query,facade,distance\\n%s,%s,-1\\n' \"$(sed -n 2p \"$1\")\" \"$(sed -n 3p \"$1\")\" > \"$2\"",
+                "is no finite number of at least 0",
+            ),
+            (
+                "one of many",
+                "printf 'query,facade,distance\\n%s,%s,1\\n' \"$(sed -n 2p \"$1\")\" \"$(sed -n 3p \"$1\")\" > \"$2\"",
+                "is missing",
             ),
             (
                 "other columns",
