@@ -12,7 +12,7 @@ use edifice_base::file::media_type;
 /// Name of the metadata in a bundle.
 pub const METADATA: &str = "ro-crate-metadata.json";
 
-/// What a crate says of a bundle beside its content.
+/// The facts of a publication that a bundle does not hold.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Published {
     /// Day of publication, `YYYY-MM-DD`; today (UTC) without it.

@@ -100,7 +100,7 @@ pub fn parse(bytes: &[u8], path: &Path, beside: Option<(f64, f64)>) -> Result<Fa
     Facade::new(file_stem(path), "px", width, height, regions).map_err(|e| Error::content(path, e))
 }
 
-/// What was read of a file.
+/// The parts of a file that were read.
 #[derive(Default)]
 struct Annotation {
     width: Option<f64>,

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 /// Names that look like identifiers and are none.
-const NAMES: [&str; 32] = [
+const NAMES: [&str; 33] = [
     "ArviZ",
     "CatBoost",
     "CityEngine",
@@ -39,6 +39,7 @@ const NAMES: [&str; 32] = [
     "pyAgrum",
     "sRGB",
     "softImpute",
+    "eTRIMS",
 ];
 
 /// Countable nouns that once replaced verbs: without an article they stand in the place of one.

@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Hide by the frozen mask, which the content of the facade alone decides, not its name, the order of its elements or the
-    /// seed: that of the leaderboard (datasets/structure_completion)
+    /// seed: that of the leaderboard (`datasets/structure_completion`)
     #[arg(long, conflicts_with = "seed")]
     frozen: bool,
     /// Partial layout to write

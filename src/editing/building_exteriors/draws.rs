@@ -25,7 +25,7 @@ const POOL: usize = 2000;
 /// Root mean square distance, in standard deviations, below which two houses are the same.
 const APART: f64 = 0.05;
 
-/// What is asked of a model of houses.
+/// A question to a model of houses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draws {
     /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none.
