@@ -35,11 +35,11 @@ const NAMES: [&str; 33] = [
     "SplitMix64",
     "StepMix",
     "WebP",
+    "eTRIMS",
     "glTF",
     "pyAgrum",
     "sRGB",
     "softImpute",
-    "eTRIMS",
 ];
 
 /// Countable nouns that once replaced verbs: without an article they stand in the place of one.
