@@ -313,14 +313,14 @@ mod tests {
             (
                 "<xmin>3<",
                 "<xmin>nan<",
-                "line 6, column 26: <xmin> is \"nan\"",
+                "line 6, column 25: <xmin> is \"nan\"",
             ),
             ("<xmin>3<", "<xmin>1e999<", "<xmin> is \"1e999\""),
             ("<xmin>3<", "<xmin><", "<xmin> is \"\""),
             (
                 "<xmin>3</xmin>",
                 "",
-                "line 7, column 114: an object without <xmin>",
+                "line 7, column 113: an object without <xmin>",
             ),
             ("<xmax>10<", "<xmax>2<", "window: the box is 0 x 15.5"),
             ("<ymax>20.5<", "<ymax>-9<", "window: the box is 8 x -14"),
@@ -329,7 +329,7 @@ mod tests {
             (
                 "<x>20</x>",
                 "",
-                "line 9, column 47: an object without <x> in a <pt>",
+                "line 9, column 50: an object without <x> in a <pt>",
             ),
             (
                 "<width>40<",
