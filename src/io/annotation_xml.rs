@@ -341,7 +341,7 @@ mod tests {
             (
                 "</object>\n<object><name>door",
                 "<object><name>door",
-                "line 11",
+                "line 10, column 1",
             ),
             ("</annotation>", "", "the file ends inside <annotation>"),
             (
