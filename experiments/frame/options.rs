@@ -64,6 +64,9 @@ pub struct Args {
     /// Make nothing: say which artefacts of the report are older than the code or the data that they show
     #[arg(long)]
     pub verify: bool,
+    /// Print one line of JSON, for programs
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Checked options.

@@ -1,9 +1,10 @@
 //! Progress on standard error: bars on a terminal, plain lines elsewhere.
 
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
+use edifice_base::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// True once only warnings are told.
@@ -79,6 +80,19 @@ impl Drop for Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// A line for programs to standard output; a reader that has gone away is no error.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be written.
+pub fn result(value: &serde_json::Value) -> Result<()> {
+    match writeln!(std::io::stdout().lock(), "{value}") {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::io("standard output".as_ref(), "write", e))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -7,12 +7,13 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use clap::Parser;
+use serde_json::{Value, json};
 
 use super::context::{Context, DATASETS, STOP, WORK};
 use super::document::readable;
 use super::lock::Lock;
 use super::options::{Args, Options};
-use super::progress::line;
+use super::progress::{line, result};
 use super::provenance::{Comparison, Machine, Made, Run, commit};
 use super::verify::{say_which_are_older, sources_of};
 use super::{Artefact, Experiment};
@@ -59,6 +60,18 @@ impl Report {
         lines.extend(self.failed.iter().map(|entry| named(entry, "failed")));
         lines.push(format!("Report: {}", self.index.display()));
         lines
+    }
+
+    /// The same for programs.
+    fn value(&self) -> Value {
+        let named = |entries: &[(String, String)], why: &str| -> Vec<Value> {
+            let entry = |(name, text): &(String, String)| json!({ "artefact": name, (why): text });
+            entries.iter().map(entry).collect()
+        };
+        json!({
+            "made": self.made, "skipped": named(&self.skipped, "reason"), "failed": named(&self.failed, "error"),
+            "index": self.index, "seconds": self.seconds,
+        })
     }
 
     /// The report, or an error when an artefact failed.
@@ -353,9 +366,10 @@ pub fn main(experiment: &'static Experiment) -> ExitCode {
 /// # Errors
 /// As [`run`] and [`Report::check`].
 pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()> {
+    let json = args.json;
     let options = args.check()?;
     if options.verify {
-        return say_which_are_older(&choose(experiments, &options.only)?, &options);
+        return say_which_are_older(&choose(experiments, &options.only)?, &options, json);
     }
     // A second Ctrl-C stops at once: nothing finished is lost either way.
     let _ = ctrlc::set_handler(|| {
@@ -367,6 +381,9 @@ pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()>
     let report = run(experiments, &options)?;
     for text in report.summary() {
         line(&text);
+    }
+    if json {
+        result(&report.value())?;
     }
     report.check().map(|_| ())
 }

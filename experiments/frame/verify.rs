@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::options::Options;
-use super::progress::line;
+use super::progress::{line, result};
 use super::provenance::{self, Made, Run};
 use super::{Artefact, Experiment};
 use crate::sweep::sources;
@@ -74,9 +74,10 @@ struct Stale {
 pub fn say_which_are_older(
     chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
     options: &Options,
+    json: bool,
 ) -> Result<()> {
     let found = verify(chosen, options)?;
-    let mut older = 0;
+    let (mut older, mut states) = (0, Vec::new());
     for (name, state) in &found {
         let said = match state {
             State::Current => "is of this code and data".to_owned(),
@@ -88,6 +89,16 @@ pub fn say_which_are_older(
             }
         };
         line(&format!("{name} {said}"));
+        let (word, than): (&str, &[String]) = match state {
+            State::Current => ("current", &[]),
+            State::Missing => ("missing", &[]),
+            State::Unknown => ("unknown", &[]),
+            State::Older(parts) => ("older", parts),
+        };
+        states.push(serde_json::json!({ "artefact": name, "state": word, "older_than": than }));
+    }
+    if json {
+        result(&serde_json::json!({ "states": states }))?;
     }
     match older {
         0 => Ok(()),

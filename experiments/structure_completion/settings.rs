@@ -16,6 +16,8 @@ pub(super) struct Complete {
     pub method: Method,
     /// Part that is hidden.
     pub task: Task,
+    /// Hide by the frozen mask of the facade, which its content alone decides, and not by the seed.
+    pub frozen: bool,
     /// Scoring functions whose weight is set to 0, of `paper`.
     pub left_out: Vec<Term>,
     /// Policies of a generation, of `paper`.
@@ -31,6 +33,7 @@ impl Default for Complete {
         Self {
             method: Method::Best,
             task: Task::Side50,
+            frozen: false,
             left_out: Vec::new(),
             population: Budget::PAPER.population,
             generations: Budget::PAPER.generations,

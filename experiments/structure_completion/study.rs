@@ -18,5 +18,5 @@ pub fn complete() -> Study {
             &["edifice-structure-completion", "edifice-io"],
             "structure_completion",
         )
-        .asking(&["task"])
+        .asking(&["task", "frozen"])
 }

@@ -86,8 +86,10 @@ impl Trial for Completion {
     fn prepare(settings: &Complete, given: &Given) -> Result<(Question, Vec<Element>)> {
         static LAYOUTS: Shared<Vec<Layout>> = Shared::new();
         let layout = item(given.path)?.layout;
-        let mut drawn = drawn(&layout, given.seed);
-        let (partial, hidden) = settings.task.hide(&layout, &mut drawn);
+        let (partial, hidden) = match settings.frozen {
+            true => settings.task.hide_frozen(&layout),
+            false => settings.task.hide(&layout, &mut drawn(&layout, given.seed)),
+        };
         if hidden.is_empty() {
             return Err(Error::content(given.path, Refused::NothingHidden));
         }

@@ -5,6 +5,7 @@ use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
@@ -12,9 +13,10 @@ use super::collect::{RESULTS, TIMES, collect};
 use super::instances::belonging;
 use super::journal::{Keep, read_all};
 use super::plan::{Head, PLAN, Plan, Task};
+use super::ro_crate::{File, METADATA, Published, metadata};
 use super::run::entry;
 use super::study::Study;
-use crate::frame::provenance::{self, Machine};
+use crate::frame::provenance::{self, Machine, hex};
 use edifice_base::{Error, Result, Watched, file, unwatched};
 
 /// The contents of a bundle.
@@ -57,11 +59,18 @@ pub struct Verified {
     pub not_run: usize,
 }
 
-/// Packs a sweep's file, plan, results, times, instances and what was learnt from.
+/// Packs a sweep's file, plan, results, times, instances and what was learnt from; with `published`, also metadata that make
+/// it a Research Object Crate.
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize> {
+pub fn bundle(
+    plan: &Plan,
+    sweep: &Path,
+    out: &Path,
+    to: &Path,
+    published: Option<&Published>,
+) -> Result<usize> {
     collect(plan, out)?;
     let mut files: Vec<(String, PathBuf)> = vec![("sweep.toml".into(), sweep.to_path_buf())];
     for name in [PLAN, RESULTS, TIMES] {
@@ -84,7 +93,7 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
             files.push((name, needed.path.clone()));
         }
     }
-    let mut listed = Vec::new();
+    let (mut listed, mut sizes) = (Vec::new(), Vec::new());
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     // A fixed date: the same content is the same bytes.
     let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
@@ -95,7 +104,25 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
         archive.start_file(name, options).map_err(|e| fail(&e))?;
         archive.write_all(&bytes).map_err(|e| fail(&e))?;
         listed.push((name.clone(), provenance::digest(path)?));
+        sizes.push(bytes.len());
     }
+    if let Some(published) = published {
+        let files: Vec<File> = (listed.iter().zip(&sizes))
+            .map(|((name, sha256), bytes)| File {
+                name,
+                sha256,
+                bytes: *bytes,
+            })
+            .collect();
+        let metadata = metadata(plan, &files, published);
+        let text = serde_json::to_vec_pretty(&metadata).map_err(Error::method)?;
+        archive
+            .start_file(METADATA, options)
+            .map_err(|e| fail(&e))?;
+        archive.write_all(&text).map_err(|e| fail(&e))?;
+        listed.push((METADATA.into(), hex(&Sha256::digest(&text))));
+    }
+    let packed = listed.len() + 1;
     let manifest = Manifest {
         format: "edifice/sweep-bundle".into(),
         version: 1,
@@ -110,7 +137,7 @@ pub fn bundle(plan: &Plan, sweep: &Path, out: &Path, to: &Path) -> Result<usize>
     archive.write_all(&text).map_err(|e| fail(&e))?;
     let bytes = archive.finish().map_err(|e| fail(&e))?.into_inner();
     file::write_atomic(to, &bytes)?;
-    Ok(files.len() + 1)
+    Ok(packed)
 }
 
 /// Unpacks a bundle into an empty folder, checks its digests, and runs `sample` of its finished tasks again, evenly spread.

@@ -30,6 +30,7 @@ pub mod journal;
 pub mod plan;
 pub mod record;
 pub mod report;
+pub mod ro_crate;
 pub mod run;
 mod shared;
 pub(super) mod sources;

@@ -3,7 +3,7 @@
 The classes that need scikit-learn (``TableModel``, ``GaussianMixture``) and pandas (``sweep``) are loaded when they are asked for.
 """
 
-from ._native import City, CityGrammar, EdificeError, Facade, Grammar, House, Logic, Network
+from ._native import City, CityGrammar, EdificeError, Facade, Grammar, House, HouseModel, Logic, Network
 
 __all__ = [
     "City",
@@ -13,6 +13,7 @@ __all__ = [
     "GaussianMixture",
     "Grammar",
     "House",
+    "HouseModel",
     "Logic",
     "Network",
     "TableModel",

@@ -20,6 +20,13 @@ pub struct House {
     inner: Building,
 }
 
+impl House {
+    /// The house of a building.
+    pub fn of(inner: Building) -> Self {
+        Self { inner }
+    }
+}
+
 #[pymethods]
 impl House {
     /// Reads the houses of `.building.json` or `.buildings.jsonl`.

@@ -9,6 +9,7 @@ mod errors;
 mod facade;
 mod grammar;
 mod house;
+mod house_model;
 mod logic;
 mod mixture;
 mod network;
@@ -30,6 +31,8 @@ mod _native {
     use super::grammar::Grammar;
     #[pymodule_export]
     use super::house::House;
+    #[pymodule_export]
+    use super::house_model::HouseModel;
     #[pymodule_export]
     use super::logic::Logic;
     #[pymodule_export]

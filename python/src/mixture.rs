@@ -110,9 +110,12 @@ impl MixtureModel {
         rows: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (values, d) = values(&rows);
-        let points = points(d, &values).map_err(failed)?;
-        let found = self.inner.posterior(&points).map_err(failed)?;
-        PyArray2::from_vec2(py, &found).map_err(failed)
+        let mixture = self.inner.clone();
+        let found = detached(py, move || {
+            let points = points(d, &values).map_err(|e| e.to_string())?;
+            mixture.posterior(&points).map_err(|e| e.to_string())
+        })?;
+        PyArray2::from_vec2(py, &found.map_err(failed)?).map_err(failed)
     }
 
     /// Draws rows.
@@ -122,7 +125,10 @@ impl MixtureModel {
         count: usize,
         seed: u64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let drawn = self.inner.sample(count, &mut stream(seed, "gmm sample", 0));
+        let mixture = self.inner.clone();
+        let drawn = detached(py, move || {
+            mixture.sample(count, &mut stream(seed, "gmm sample", 0))
+        })?;
         let d = self.inner.dimension();
         PyArray1::from_vec(py, drawn).reshape([count, d])
     }

@@ -2,16 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use edifice_model::ModelError;
 use edifice_model::network::{self, Evidence};
 use pyo3::prelude::*;
 
 use super::errors::failed;
+use super::worker::detached;
 
 /// A Bayesian network of discrete variables.
 #[pyclass(module = "edifice", frozen)]
 pub struct Network {
-    inner: network::Network,
+    inner: Arc<network::Network>,
 }
 
 fn evidence(given: Option<BTreeMap<String, String>>) -> Evidence {
@@ -28,7 +31,7 @@ impl Network {
     /// Reads a network in the interchange format (BIF).
     #[staticmethod]
     fn from_bif(text: &str) -> PyResult<Self> {
-        let inner = network::Network::from_bif(text).map_err(failed)?;
+        let inner = Arc::new(network::Network::from_bif(text).map_err(failed)?);
         Ok(Self { inner })
     }
 
@@ -39,7 +42,9 @@ impl Network {
         let text = String::from_utf8(bytes).map_err(failed)?;
         let inner = network::Network::from_bif(&text)
             .map_err(|e| failed(format!("{}: {e}", path.display())))?;
-        Ok(Self { inner })
+        Ok(Self {
+            inner: Arc::new(inner),
+        })
     }
 
     /// The network in BIF.
@@ -69,32 +74,35 @@ impl Network {
     #[pyo3(signature = (name, given = None))]
     fn query(
         &self,
-        name: &str,
+        py: Python<'_>,
+        name: String,
         given: Option<BTreeMap<String, String>>,
     ) -> PyResult<BTreeMap<String, f64>> {
-        let found = self
-            .inner
-            .marginal(&evidence(given), name)
-            .map_err(failed)?;
-        let categories = self.inner.categories(name).map_err(failed)?;
-        Ok(categories.iter().cloned().zip(found).collect())
+        let (network, evidence) = (Arc::clone(&self.inner), evidence(given));
+        let found = detached(py, move || {
+            let found = network.marginal(&evidence, &name)?;
+            let categories = network.categories(&name)?.iter().cloned();
+            Ok::<_, ModelError>(categories.zip(found).collect())
+        })?;
+        found.map_err(failed)
     }
 
     /// Log probability of what is given, nats.
-    fn log_probability(&self, given: BTreeMap<String, String>) -> PyResult<f64> {
-        self.inner
-            .log_probability(&evidence(Some(given)))
-            .map_err(failed)
+    fn log_probability(&self, py: Python<'_>, given: BTreeMap<String, String>) -> PyResult<f64> {
+        let (network, evidence) = (Arc::clone(&self.inner), evidence(Some(given)));
+        detached(py, move || network.log_probability(&evidence))?.map_err(failed)
     }
 
     /// The most probable category of all variables together, given those of some.
     #[pyo3(signature = (given = None))]
     fn explain(
         &self,
+        py: Python<'_>,
         given: Option<BTreeMap<String, String>>,
     ) -> PyResult<BTreeMap<String, String>> {
-        let found = self.inner.explain(&evidence(given)).map_err(failed)?;
-        Ok(found.values.into_iter().collect())
+        let (network, evidence) = (Arc::clone(&self.inner), evidence(given));
+        let found = detached(py, move || network.explain(&evidence))?;
+        Ok(found.map_err(failed)?.values.into_iter().collect())
     }
 
     fn __len__(&self) -> usize {

@@ -9,7 +9,7 @@ use edifice_model::hierarchy::{Constant, Settings};
 use edifice_model::tables::compare::BACKGROUND;
 use edifice_model::tables::schema::{Kind, Schema, SchemaGroup};
 use edifice_model::tables::table_model::TableModel;
-use edifice_model::{Cell, Table};
+use edifice_model::{Cell, ModelError, Table};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -101,29 +101,43 @@ impl FittedTable {
     }
 
     /// Draws rows of text cells, and the names of their columns.
-    fn sample(&self, count: usize, seed: u64) -> PyResult<(Vec<String>, Vec<Vec<String>>)> {
-        let mut rng = stream(seed, "model/sample", 0);
-        let table = self.inner.sample(count, &mut rng).map_err(failed)?;
-        Ok(texts(&table))
+    fn sample(&self, py: Python<'_>, count: usize, seed: u64) -> PyResult<Texts> {
+        let model = Arc::clone(&self.inner);
+        let found = detached(py, move || {
+            let mut rng = stream(seed, "model/sample", 0);
+            Ok::<_, ModelError>(texts(&model.sample(count, &mut rng)?))
+        })?;
+        found.map_err(failed)
     }
 
     /// Completes each row once: missing cells are drawn given the others.
     fn complete(
         &self,
+        py: Python<'_>,
         header: Vec<String>,
         rows: Vec<Vec<String>>,
         seed: u64,
-    ) -> PyResult<(Vec<String>, Vec<Vec<String>>)> {
+    ) -> PyResult<Texts> {
         let data = self.rows(&header, &rows)?;
-        let (mut names, mut completed) = (Vec::new(), Vec::new());
-        for row in 0..data.rows() {
-            let mut rng = stream(seed, "model/complete", row as u64);
-            let draws = self.inner.complete(&data.select(&[row]), 1, &mut rng);
-            let (header, drawn) = texts(&draws.map_err(failed)?);
-            names = header;
-            completed.extend(drawn);
-        }
-        Ok((names, completed))
+        let model = Arc::clone(&self.inner);
+        let stop = Stop(Arc::default());
+        let stopped = Arc::clone(&stop.0);
+        let found = detached(py, move || {
+            let (mut names, mut completed) = (Vec::new(), Vec::new());
+            for row in 0..data.rows() {
+                if stopped.load(Ordering::Relaxed) {
+                    break;
+                }
+                let mut rng = stream(seed, "model/complete", row as u64);
+                let draws = model.complete(&data.select(&[row]), 1, &mut rng)?;
+                let (header, drawn) = texts(&draws);
+                names = header;
+                completed.extend(drawn);
+            }
+            Ok::<_, ModelError>((names, completed))
+        })?;
+        drop(stop);
+        found.map_err(failed)
     }
 
     /// Number of styles.
@@ -164,8 +178,11 @@ impl FittedTable {
     }
 }
 
+/// Names of columns, and cells as text.
+type Texts = (Vec<String>, Vec<Vec<String>>);
+
 /// Names of the columns and the cells as text, missing ones empty.
-fn texts(table: &Table) -> (Vec<String>, Vec<Vec<String>>) {
+fn texts(table: &Table) -> Texts {
     let names = table.columns().iter().map(|c| c.name().to_owned());
     let cell = |column: &edifice_model::Column, row: usize| match column.cell(row) {
         Cell::Missing => String::new(),

@@ -98,6 +98,24 @@ def test_house():
     assert pickle.loads(pickle.dumps(house)) == house
 
 
+def test_houses_are_generated():
+    model = edifice.HouseModel.shipped()
+    assert model.attributes["bbox"] == ["bbox.w", "bbox.d", "bbox.h"] and model.styles > 1
+    houses = model.generate({"bbox.w": 14.5, "garage": "none"}, count=3, seed=2)
+    assert [h.name for h in houses] == ["house_0001", "house_0002", "house_0003"]
+    assert all(abs(h.attributes["bbox.w"] - 14.5) < 0.01 for h in houses)
+    assert all(box["height"] > 0 for h in houses for box in h.boxes)
+    again = pickle.loads(pickle.dumps(model)).generate({"bbox.w": 14.5, "garage": "none"}, count=3, seed=2)
+    assert again == houses
+    assert model.generate({"bbox.w": 14.5, "garage": "none"}, count=3, seed=3) != houses
+    assert model.generate({"bbox": [14.5, 9, 6], "roof.hip": True}, count=1)[0].attributes["roof.hip"] == 1.0
+    for given, words in [({"height": 3}, "no column or attribute `height`"), ({"bbox": [1.0]}, "`bbox` has 3 numbers"), ({"bbox.w": {}}, "bbox.w: {} is no number")]:
+        with pytest.raises(edifice.EdificeError, match=words):
+            model.generate(given, count=1)
+    with pytest.raises(edifice.EdificeError, match="--count: must be at least 1"):
+        model.generate(count=0)
+
+
 def test_logic():
     facades = [edifice.Facade.from_array(grid(rows, columns), ["wall", "window"]) for rows, columns in ((2, 3), (2, 3), (4, 6))]
     logic = edifice.Logic.fit(facades)
@@ -200,6 +218,9 @@ import os; os._exit(0)
         "edifice.TableModel(max_styles=25, max_kinds=25).fit(rows)",
         "edifice.Facade.from_array(rng.integers(0, 3, (40, 40)), ['a', 'b', 'c']).infer(iterations=10**9)",
         "edifice.City.from_arrays([box(15.0 * k, *rng.uniform(4, 14, 2)) for k in range(3000)]).proceduralize(mode='paper')",
+        "edifice.HouseModel.shipped().generate(count=100_000)",
+        "edifice.TableModel(max_styles=2, max_kinds=2).fit(rows[:60, :3]).complete(np.where(rng.random((100_000, 3)) < 0.5, np.nan, 0.5))",
+        "layout(12, 16).hide('r20').complete(method='annealing', count=8)",
     ]:
         text = code.format(here=here, call=call)
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=120)
@@ -230,6 +251,10 @@ def test_same_bytes_as_the_command_line(tmp_path):
     grammar.write(tmp_path / "python.city-grammar.json")
     run("city", "proceduralize", "c.city.json", "--templates", 2, "--seed", 4, "-o", "program.city-grammar.json")
     assert same("python.city-grammar.json", "program.city-grammar.json")
+    run("building", "generate", "--given", "bbox.w=14.5", "--given", "garage=none", "-n", 3, "--seed", 2, "-o", "houses", "--format", "json")
+    for house in edifice.HouseModel.shipped().generate({"bbox.w": 14.5, "garage": "none"}, count=3, seed=2):
+        house.write(tmp_path / "python.building.json")
+        assert same("python.building.json", f"houses/{house.name}.building.json")
     told = json.loads(run("facade", "compare", "b.facade.json", "program.whole.facade.json", "--json").stdout.splitlines()[-1])
     assert told["predictions"][0]["mean_f1"] == whole.compare(edifice.Facade.read(tmp_path / "program.whole.facade.json"))["mean_f1"]
 

@@ -17,6 +17,21 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 const PREFIX: &str = ".edifice-";
 const SUFFIX: &str = ".tmp";
 
+/// Media type by the ending of a file's name.
+pub fn media_type(name: &str) -> &'static str {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "png" => "image/png",
+        "jpg" | "jpeg" => "image/jpeg",
+        "json" | "jsonl" => "application/json",
+        "csv" => "text/csv",
+        "toml" => "application/toml",
+        "txt" | "bif" | "cga" | "py" => "text/plain",
+        "xml" | "gml" => "application/xml",
+        "gz" => "application/gzip",
+        _ => "application/octet-stream",
+    }
+}
+
 /// Reads a whole file.
 ///
 /// # Errors

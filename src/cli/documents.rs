@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap_complete::Shell;
 use edifice_base::{Error, Result, file};
 
-use super::print;
+use super::print::{self, Json};
 
 /// Options of `completions`.
 #[derive(clap::Args)]
@@ -17,6 +17,8 @@ pub struct Completions {
     /// The shell
     #[arg(value_enum)]
     shell: Shell,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Options of `man`.
@@ -26,13 +28,21 @@ pub struct Man {
     /// Folder for the pages, one a command; without it that of `edifice` is printed
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Prints the completions of a shell.
 pub fn completions(args: &Completions, mut command: clap::Command) -> Result<()> {
     let mut text = Vec::new();
     clap_complete::generate(args.shell, &mut command, "edifice", &mut text);
-    print::line(String::from_utf8_lossy(&text).trim_end())
+    let text = String::from_utf8_lossy(&text);
+    match args.json.is_asked() {
+        true => args
+            .json
+            .end(&serde_json::json!({ "shell": args.shell.to_string(), "text": text })),
+        false => print::line(text.trim_end()),
+    }
 }
 
 /// Writes the manual pages.
@@ -40,21 +50,27 @@ pub fn man(args: &Man, command: clap::Command) -> Result<()> {
     let mut command = command.disable_help_subcommand(true);
     command.build();
     let Some(folder) = &args.output else {
-        return print::line(&String::from_utf8_lossy(&page(&command)?));
+        let page = page(&command)?;
+        let text = String::from_utf8_lossy(&page);
+        return match args.json.is_asked() {
+            true => args.json.end(&serde_json::json!({ "text": text })),
+            false => print::line(&text),
+        };
     };
     std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
     let mut open = vec![("edifice".to_owned(), command)];
-    let mut count = 0;
+    let mut files = Vec::new();
     while let Some((name, command)) = open.pop() {
         for inner in command.get_subcommands() {
             open.push((format!("{name}-{}", inner.get_name()), inner.clone()));
         }
         let named = command.name(name.clone().leak() as &str);
-        file::write_atomic(&folder.join(format!("{name}.1")), &page(&named)?)?;
-        count += 1;
+        let path = folder.join(format!("{name}.1"));
+        file::write_atomic(&path, &page(&named)?)?;
+        files.push(path);
     }
-    print::message(&format!("{count} pages in {}", folder.display()));
-    Ok(())
+    print::message(&format!("{} pages in {}", files.len(), folder.display()));
+    args.json.end(&serde_json::json!({ "files": files }))
 }
 
 /// The page of a command.

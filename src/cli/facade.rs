@@ -21,7 +21,7 @@ use edifice_shape as shape;
 use edifice_shape::{Decomposition, Facade, LabelGrid};
 
 use super::cleaning::Cleaning;
-use super::print;
+use super::print::{self, Json};
 use super::reading::{self, Reading};
 use super::tolerance;
 
@@ -31,7 +31,8 @@ pub enum Command {
     /// Convert a facade to another format, told by the file names.
     ///
     /// Reads .facade.json, label images (.png), matrices of labels (.txt, .csv), rectangles of the CMP
-    /// database (.xml) and boxes drawn with LabelMe or kept as COCO (.json); all text files also as .gz.
+    /// database, annotations of Pascal VOC and eTRIMS (.xml), and boxes drawn with LabelMe or kept as COCO (.json);
+    /// all text files also as .gz.
     /// Writes .facade.json, .svg, .png and .txt. Label images become tilings of rectangles that full
     /// lines can split; boxes become element layouts, which are drawn on a wall.
     #[command(after_help = "Examples:
@@ -86,6 +87,8 @@ pub struct Convert {
     /// apart are merged. The cost never rises with the tolerance; 0 changes nothing.
     #[arg(long, value_name = "P%", value_parser = tolerance::per_cent, conflicts_with_all = ["regularize", "elements"])]
     tolerance: Option<f64>,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -107,7 +110,7 @@ fn convert(options: &Convert) -> Result<()> {
     let source = options.cleaning.source(source, path)?;
     if let Some(share) = options.tolerance {
         let facade = tolerance::retiled(source, path, share, &Default::default())?;
-        return written(&facade, &options.output);
+        return written(&facade, options);
     }
     let source = match (source, options.regularize) {
         (source, None) => source,
@@ -134,11 +137,12 @@ fn convert(options: &Convert) -> Result<()> {
         (Source::Cmp(cmp, width, height), false) => tiling(path, &cmp.label_grid(width, height)?)?,
         (Source::Picture(grid), false) => tiling(path, &grid)?,
     };
-    written(&facade, &options.output)
+    written(&facade, options)
 }
 
 /// Writes a facade, and tells what cannot be seen in a picture.
-fn written(facade: &Facade, output: &Path) -> Result<()> {
+fn written(facade: &Facade, options: &Convert) -> Result<()> {
+    let output = &options.output;
     io::write_facade(facade, output)?;
     if output
         .extension()
@@ -149,7 +153,9 @@ fn written(facade: &Facade, output: &Path) -> Result<()> {
         }
     }
     let count = facade.regions.len();
-    print::line(&format!("{}: {count} regions", output.display()))
+    let text = format!("{}: {count} regions", output.display());
+    let value = serde_json::json!({ "file": output, "regions": count });
+    options.json.after(&text, &value)
 }
 
 /// Decomposes a picture and tells what had to be cut.

@@ -4,7 +4,6 @@ pub mod data;
 mod drawing;
 pub mod evaluate;
 mod fit;
-pub mod given;
 pub mod learning;
 mod network;
 mod query;
@@ -21,7 +20,8 @@ use edifice_io::json::parse_json;
 use edifice_model::ModelError;
 use edifice_model::network::{Evidence, FORMAT, Network, OLD_FORMAT};
 
-use super::{MODELS, print};
+use super::MODELS;
+use super::print::{self, Json};
 
 pub use tables::TABLE_MODEL;
 
@@ -31,7 +31,7 @@ pub enum Command {
     /// Print the schema that is guessed of a table, to edit.
     #[command(after_help = "Examples:
   cut -d, -f1-4 datasets/building_exteriors/real.houses.csv > plans.csv && edifice model schema plans.csv > plans.schema.json")]
-    Schema(data::TableInput),
+    Schema(tables::SchemaArgs),
     /// Learn a hierarchical model with hidden styles from any table.
     #[command(after_help = "Examples:
   edifice model learn plans.csv --schema plans.schema.json --max-styles 3 -o plans.table-model.json
@@ -98,6 +98,8 @@ pub enum Command {
         /// Evidence of a drawing: VARIABLE=CATEGORY; repeatable.
         #[arg(long)]
         given: Vec<String>,
+        #[command(flatten)]
+        json: Json,
     },
 }
 
@@ -148,13 +150,15 @@ pub fn run(command: Command) -> Result<()> {
             network,
             output,
             given,
+            json,
         } => {
             let network = network::network(&network)?;
             let evidence = query::hard(&network, &given, Evidence::new())?;
             let names = given.iter().filter_map(|g| g.split_once('='));
             let names: Vec<String> = names.map(|(name, _)| name.to_owned()).collect();
             network::convert(&network, &output, &evidence, &names)?;
-            Vec::new()
+            let variables = network.names().count();
+            return json.end(&serde_json::json!({ "file": output, "variables": variables }));
         }
     };
     lines.iter().try_for_each(|line| print::line(line))

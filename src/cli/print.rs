@@ -17,6 +17,35 @@ pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
+/// The option of a line for programs.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct Json {
+    /// Print one line of JSON, for programs
+    #[arg(long)]
+    json: bool,
+}
+
+impl Json {
+    /// True if the line was asked for.
+    pub fn is_asked(self) -> bool {
+        self.json
+    }
+
+    /// Prints the line, if it was asked for.
+    pub fn end(self, value: &serde_json::Value) -> edifice_base::Result<()> {
+        match self.json {
+            true => line(&value.to_string()),
+            false => Ok(()),
+        }
+    }
+
+    /// Prints a text, and then the line, if it was asked for.
+    pub fn after(self, text: &str, value: &serde_json::Value) -> edifice_base::Result<()> {
+        line(text)?;
+        self.end(value)
+    }
+}
+
 /// Prints one line of result to standard output; a reader that has gone away is not an error.
 pub fn line(text: &str) -> edifice_base::Result<()> {
     let mut out = std::io::stdout().lock();

@@ -9,7 +9,7 @@ use edifice_studio::private::state_folder;
 use edifice_studio::redirect::Redirect;
 use edifice_studio::{Settings, start};
 
-use super::print;
+use super::print::{self, Json};
 
 /// Options of `edifice studio`.
 #[derive(clap::Args)]
@@ -37,6 +37,8 @@ pub struct Args {
     /// Never write a file
     #[arg(long)]
     read_only: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -49,7 +51,12 @@ pub fn run(args: Args) -> Result<()> {
         state: state.clone(),
         ..Settings::default()
     })?;
-    print::line(running.address())?;
+    match args.json.is_asked() {
+        true => args
+            .json
+            .end(&serde_json::json!({ "address": running.address() }))?,
+        false => print::line(running.address())?,
+    }
     let wanted = !args.no_open && std::io::stdout().is_terminal();
     let redirect = state
         .filter(|_| wanted)

@@ -14,6 +14,7 @@ use edifice_base::{Ended, Error, Progress, Result};
 use edifice_experiments::studies as all_studies;
 use edifice_experiments::sweep::collect::{ArmState, RESULTS, collect, state};
 use edifice_experiments::sweep::plan::{PLAN, Plan};
+use edifice_experiments::sweep::ro_crate::{Published, is_date};
 use edifice_experiments::sweep::run::{Wanted, run as run_shard, shard};
 use edifice_experiments::sweep::{Study, bundle, report};
 
@@ -50,9 +51,9 @@ pub enum Command {
     #[command(after_help = "Example: edifice sweep report ablation.toml --out ablation")]
     Report(Report),
     /// Pack file, plan, instances and results into one zip
-    #[command(
-        after_help = "Example: edifice sweep bundle ablation.toml --out ablation -o ablation.zip"
-    )]
+    #[command(after_help = "Examples:
+  edifice sweep bundle ablation.toml --out ablation -o ablation.zip
+  edifice sweep bundle ablation.toml --out ablation -o crate.zip --ro-crate --licence https://creativecommons.org/licenses/by/4.0/")]
     Bundle(Bundle),
     /// Check a bundle: its digests, and a sample of its tasks run again
     #[command(after_help = "Example: edifice sweep verify ablation.zip --sample 1")]
@@ -106,6 +107,23 @@ pub struct Bundle {
     /// File to write
     #[arg(short, value_name = "ZIP")]
     output: PathBuf,
+    /// Add the metadata that make it a Research Object Crate 1.1 (ro-crate-metadata.json)
+    #[arg(long)]
+    ro_crate: bool,
+    /// With --ro-crate, the day of publication; today (UTC) by default
+    #[arg(long, value_name = "YYYY-MM-DD", requires = "ro_crate", value_parser = day)]
+    published: Option<String>,
+    /// With --ro-crate, the address of the licence of data and results
+    #[arg(long, value_name = "URL", requires = "ro_crate")]
+    licence: Option<String>,
+}
+
+/// A day as an argument.
+fn day(text: &str) -> std::result::Result<String, String> {
+    match is_date(text) {
+        true => Ok(text.to_owned()),
+        false => Err("expected a day, YYYY-MM-DD".into()),
+    }
 }
 
 /// Options of `verify`.
@@ -158,15 +176,21 @@ pub fn run(command: Command) -> Result<()> {
                 let index = report::publish(&options.common.sweep, &options.common.out, into)?;
                 print::message(&format!("report in {}", index.display()));
             }
-            Ok(())
+            let folder = options.common.out.join("report");
+            json(&options.common, &serde_json::json!({ "folder": folder }))
         }
         Command::Bundle(options) => {
             let plan = Plan::current(&options.common.sweep, &options.common.out, &studies)?;
+            let published = options.ro_crate.then(|| Published {
+                date: options.published.clone(),
+                licence: options.licence.clone(),
+            });
             let files = bundle::bundle(
                 &plan,
                 &options.common.sweep,
                 &options.common.out,
                 &options.output,
+                published.as_ref(),
             )?;
             print::message(&format!("{files} files in {}", options.output.display()));
             json(&options.common, &serde_json::json!({ "files": files }))

@@ -1,6 +1,7 @@
 //! Houses: boxes added, moved, resized and removed, a house suggested by the learned model around the touched boxes
 //! (Fan and Wonka 2016, Fig. 19), and other plans with the same attributes.
 
+pub mod draws;
 mod steps;
 mod text;
 mod view;

@@ -12,6 +12,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::label_map::CMP;
+use super::xml_place::place;
 use super::{file_stem, read_bytes};
 use edifice_base::{Error, Result};
 use edifice_shape::{Facade, LabelGrid, Rect, Region};
@@ -102,15 +103,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<CmpFacade> {
                 CmpError::Xml(_) => reader.error_position(),
                 _ => reader.buffer_position(),
             };
-            let position = (position as usize).min(bytes.len());
-            let before = &bytes[..position];
-            let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-            let column = 1 + before.iter().rev().take_while(|&&b| b != b'\n').count();
-            Err(Error::input(
-                path,
-                format!("line {line}, column {column}"),
-                error,
-            ))
+            Err(Error::input(path, place(bytes, position), error))
         }
     }
 }

@@ -9,7 +9,8 @@ use super::nearest_colour::NearestColours;
 use super::packed::{extension, read_bytes};
 use super::pixels::JPEG_MAGIC;
 use super::{
-    LabelMap, cmp_xml, coco, draw, facade_json, json, label_image, label_text, labelme, pixels,
+    LabelMap, annotation_xml, cmp_xml, coco, draw, facade_json, json, label_image, label_text,
+    labelme, pixels,
 };
 use edifice_base::file::write_atomic;
 use edifice_base::{Error, Result};
@@ -29,7 +30,8 @@ pub struct ReadOptions {
     pub nearest_colour: bool,
     /// The image of a COCO file that is meant, if it has several.
     pub image: Option<String>,
-    /// Width and height of a CMP facade, in pixels, when no PNG of its name stands beside the XML.
+    /// Width and height of a CMP facade or of an annotation without a size, in pixels, when no PNG of its name stands beside
+    /// the XML.
     pub size: Option<(f64, f64)>,
 }
 
@@ -61,7 +63,7 @@ impl Source {
 /// A file of a kind that is not read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{kind} is unsupported; facades are read from .facade.json, LabelMe and COCO JSON, label images (.png; .jpg with --nearest-colour), text matrices (.txt, .csv) and CMP rectangles (.xml), each text also as .gz"
+    "{kind} is unsupported; facades are read from .facade.json, LabelMe and COCO JSON, label images (.png; .jpg with --nearest-colour), text matrices (.txt, .csv), CMP rectangles and annotations of Pascal VOC and eTRIMS (.xml), each text also as .gz"
 )]
 pub struct Unsupported {
     /// The kind of the file, as far as it can be told.
@@ -140,8 +142,12 @@ pub fn read_noted(path: &Path, options: &ReadOptions) -> Result<(Source, Option<
             return Err(Error::content(path, Unsupported { kind }));
         }
         Format::Text => Source::Picture(label_text::parse(&bytes, path, map)?),
+        Format::Xml if annotation_xml::is_annotation(&bytes) => {
+            let beside = size_beside(path, options)?;
+            Source::Layout(annotation_xml::parse(&bytes, path, beside)?)
+        }
         Format::Xml => {
-            let (width, height) = cmp_size(path, options)?;
+            let (width, height) = size_beside(path, options)?.unwrap_or((CMP_SIDE, CMP_SIDE));
             Source::Cmp(cmp_xml::parse(&bytes, path)?, width, height)
         }
     };
@@ -236,8 +242,8 @@ pub fn read_label_grid(path: &Path, options: &ReadOptions) -> Result<LabelGrid> 
     read_source(path, options)?.label_grid(path)
 }
 
-/// Size of a CMP facade: of the PNG beside it, else as asked for, else a square.
-fn cmp_size(path: &Path, options: &ReadOptions) -> Result<(f64, f64)> {
+/// Size of the image that an XML file tells of: of the PNG beside it, else as asked for.
+fn size_beside(path: &Path, options: &ReadOptions) -> Result<Option<(f64, f64)>> {
     let packed = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("gz"));
@@ -247,8 +253,11 @@ fn cmp_size(path: &Path, options: &ReadOptions) -> Result<(f64, f64)> {
     };
     let png = plain.with_extension("png");
     match std::fs::read(&png) {
-        Ok(bytes) => pixels::size(&bytes).map_err(|e| Error::content(&png, e)),
-        Err(_) => Ok(options.size.unwrap_or((CMP_SIDE, CMP_SIDE))),
+        Ok(bytes) => {
+            let size = pixels::size(&bytes).map_err(|e| Error::content(&png, e))?;
+            Ok(Some(size))
+        }
+        Err(_) => Ok(options.size),
     }
 }
 

@@ -5,6 +5,7 @@
 //! [`write_facade`] tell the format by the file name. Every text format is also read gzipped.
 
 mod annotation;
+pub mod annotation_xml;
 pub mod building_csv;
 pub mod building_json;
 pub mod city;
@@ -36,6 +37,7 @@ pub mod scene_png;
 pub mod scene_svg;
 pub mod surface_obj;
 mod table_text;
+mod xml_place;
 
 use std::path::Path;
 

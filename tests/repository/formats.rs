@@ -7,6 +7,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use edifice_io as io;
 use edifice_model::network::Network;
+use edifice_shape::Rect;
 
 const PAGE: &str = include_str!("../../FORMATS.md");
 
@@ -51,6 +52,12 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
         "labelme" => drop(io::labelme::parse(bytes, path)?),
         "coco" => drop(io::coco::parse(bytes, path, None)?),
         "cmp" => assert_eq!(io::cmp_xml::parse(bytes, path)?.objects.len(), 1),
+        "annotation" => {
+            let facade = io::annotation_xml::parse(bytes, path, None)?;
+            let rects: Vec<_> = facade.regions.iter().map(|r| r.rect).collect();
+            let door = Rect::new(10.0, 0.0, 50.0, 100.0);
+            assert_eq!(rects, [Rect::new(20.0, 500.0, 30.0, 60.0), door]);
+        }
         "label-text" => drop(io::label_text::parse(bytes, path, None)?),
         "grammar" => {
             let grammar = io::grammar_json::parse(bytes, path)?;
@@ -119,12 +126,12 @@ fn sweep(study: &str, ending: &str, text: &str) {
     assert_eq!(line["finished"], 1, "{study} on the example");
 }
 
-fn word(path: &Path) -> &str {
+pub fn word(path: &Path) -> &str {
     path.to_str().expect("a path of text")
 }
 
 /// The last line of standard output of a command, as JSON.
-fn line(words: &[&str]) -> serde_json::Value {
+pub fn line(words: &[&str]) -> serde_json::Value {
     let mut command = Command::cargo_bin("edifice").expect("the program");
     let output = command.current_dir(root()).args(words).assert().success();
     let text = String::from_utf8_lossy(&output.get_output().stdout).into_owned();
@@ -132,14 +139,14 @@ fn line(words: &[&str]) -> serde_json::Value {
     serde_json::from_str(&last).unwrap_or_else(|e| panic!("{words:?}: {e}: {text}"))
 }
 
-fn keys(words: &[&str]) -> BTreeSet<String> {
+pub fn keys(words: &[&str]) -> BTreeSet<String> {
     let line = line(words);
     let object = line.as_object().expect("an object");
     object.keys().cloned().collect()
 }
 
 /// The keys that the page lists for a command, those in brackets left out.
-fn listed(command: &str) -> BTreeSet<String> {
+pub fn listed(command: &str) -> BTreeSet<String> {
     let all = table();
     let cell = all
         .get(command)
@@ -166,7 +173,7 @@ fn listed(command: &str) -> BTreeSet<String> {
 }
 
 /// The rows of the table of lines: command, and the cell of its keys.
-fn table() -> BTreeMap<String, String> {
+pub fn table() -> BTreeMap<String, String> {
     let rows = PAGE.split("| command | keys |").nth(1).expect("the table");
     let rows = rows.lines().skip(2).take_while(|l| l.starts_with('|'));
     let mut table = BTreeMap::new();

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 /// Names that look like identifiers and are none.
-const NAMES: [&str; 32] = [
+const NAMES: [&str; 33] = [
     "ArviZ",
     "CatBoost",
     "CityEngine",
@@ -35,6 +35,7 @@ const NAMES: [&str; 32] = [
     "SplitMix64",
     "StepMix",
     "WebP",
+    "eTRIMS",
     "glTF",
     "pyAgrum",
     "sRGB",

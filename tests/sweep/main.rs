@@ -2,6 +2,9 @@
 
 mod commands;
 mod judges;
+mod leaderboard;
+#[cfg(unix)]
+mod lies;
 mod papers;
 mod refusals;
 mod robust;

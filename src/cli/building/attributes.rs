@@ -1,17 +1,19 @@
 //! `edifice building attributes`.
 
 use super::data::Input;
-use crate::model::data::csv_lines;
-use crate::print;
+use crate::model::data::print_table;
+use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     input: Input,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> edifice_base::Result<()> {
-    print::line(&csv_lines(&args.input.read()?.table).join("\n"))
+    print_table(&args.input.read()?.table, args.json)
 }

@@ -5,23 +5,17 @@ use std::path::PathBuf;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS};
-use edifice_building_exteriors::coding::attribute_rows;
-use edifice_building_exteriors::data::{self as rows_of, filled};
-use edifice_building_exteriors::design::{MOVED, Possible, possible_rows, wanted_rows};
+use edifice_building_exteriors::data::filled;
+use edifice_building_exteriors::design::MOVED;
 use edifice_building_exteriors::house::Options;
-use edifice_building_exteriors::mass::footprint::{decided, distance};
-use edifice_building_exteriors::model_file::ModelFile;
 use edifice_building_exteriors::observations::cell;
+use edifice_editing::building_exteriors::draws::{Draws, Order, Ordered, ordered};
 use edifice_editing::building_exteriors::{is_file_name, shipped_model};
 use edifice_io::building_csv::{self, TextTable};
 use edifice_io::footprint;
-use edifice_model::Table;
-use edifice_shape::Rect;
 
 use super::data;
-use super::draw::{Draw, drawn_table};
-use super::produce::{Order, Output, produce};
-use crate::model::given::evidence;
+use super::produce::{Output, produce};
 use crate::print;
 
 /// Options of `build`.
@@ -134,43 +128,6 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
         .collect())
 }
 
-/// Draws a batch of samples at each call.
-type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
-
-/// The source of the samples of `generate`, and the values that are given.
-fn sampler<'a>(
-    args: &'a GenerateArgs,
-    file: &'a ModelFile,
-    plan: Option<&[Rect]>,
-) -> Result<(Sampler<'a>, Table)> {
-    let mut rng = stream(args.output.seed, "building/sample", 0);
-    if let Some(style) = args.style {
-        let index = style.checked_sub(1);
-        let index = index.ok_or_else(|| Error::option("--style", "the first style is 1"))?;
-        let batch = move || {
-            let draws = file.sample_style(index, args.count, &mut rng);
-            let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
-            Ok(draws.table)
-        };
-        return Ok((Box::new(batch), Table::new()));
-    }
-    let kinds = file.sample(1, &mut rng).map_err(Error::method)?;
-    let mut given = evidence(&file.attributes(), &kinds.table, &args.given)
-        .map_err(|e| Error::option("--given", e.to_string()))?;
-    for (c, value) in plan.into_iter().flat_map(decided) {
-        // What --given says of the plan is checked against it when the houses are made.
-        if given.column(COLUMNS[c]).is_err() {
-            given = given
-                .real(COLUMNS[c], [Some(value)])
-                .map_err(Error::method)?;
-        }
-    }
-    let draw = Draw::new(args.count, args.most_probable, args.output.seed);
-    let (evidence, mut batches) = (given.clone(), 0..);
-    let batch = move || drawn_table(file, &evidence, &draw, batches.next().unwrap_or(0));
-    Ok((Box::new(batch), given))
-}
-
 /// Runs `generate`.
 pub fn generate(args: &GenerateArgs) -> Result<()> {
     let own = args.model.as_deref().map(data::model).transpose()?;
@@ -178,80 +135,44 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
         Some(file) => file,
         None => shipped_model()?,
     };
-    if args.count == 0 {
-        return Err(Error::option("--count", "must be at least 1"));
-    }
     let plan = args.footprint.as_deref().map(footprint::read).transpose()?;
-    let (mut draw, given) = sampler(args, file, plan.as_deref())?;
-    let is_given: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
     let database = args.output.making.database()?;
-    let mut rng = stream(args.output.seed, "building/fill", 0);
-    let mut whole = || whole(draw()?, &given, &mut rng);
-    let rows = match args.most_probable || args.untruncated {
-        true => wanted_rows(&whole()?),
-        false => {
-            let deviations = &database.deviations;
-            let reach = |row: &[f64; 49]| match &plan {
-                Some(plan) => distance(row, &is_given, plan, deviations),
-                None => 0.0,
-            };
-            let possible = possible_rows(args.count, &is_given, deviations, reach, whole)?;
-            tell(&possible, plan.is_some());
-            possible.rows
-        }
+    let draws = Draws {
+        given: args.given.clone(),
+        style: args.style,
+        count: args.count,
+        most_probable: args.most_probable,
+        untruncated: args.untruncated,
+        seed: args.output.seed,
     };
-    let orders: Vec<Order> = rows
-        .iter()
-        .enumerate()
-        .map(|(row, wanted)| Order {
-            name: format!("house_{:04}", row + 1),
-            wanted: *wanted,
-            given: is_given,
-        })
-        .collect();
+    let ordered = ordered(file, &draws, plan.as_deref(), &database)?;
+    tell(&ordered, plan.is_some());
     let options = Options {
         footprint: plan,
         ..args.output.making.options()
     };
-    produce(&orders, &database, &options, &args.output, None)
+    produce(&ordered.orders, &database, &options, &args.output, None)
 }
 
 /// Says how many samples were passed over.
-fn tell(possible: &Possible, on_plan: bool) {
-    let houses = possible.rows.len();
+fn tell(ordered: &Ordered, on_plan: bool) {
+    let houses = ordered.orders.len();
     let what = match on_plan {
         true => "stands on the footprint",
         false => "can have them",
     };
-    if possible.drawn > houses {
+    if ordered.drawn > houses {
         print::message(&format!(
             "{} of {} samples passed over: no house {what} within {MOVED} standard deviations (--untruncated builds them \
              too)",
-            possible.drawn - houses,
-            possible.drawn
+            ordered.drawn - houses,
+            ordered.drawn
         ));
     }
-    if possible.impossible > 0 {
+    if ordered.impossible > 0 {
         print::message(&format!(
             "the last {} of {houses} rows were among them: nothing better was drawn; their reports say what is missed",
-            possible.impossible
+            ordered.impossible
         ));
     }
-}
-
-/// A table of draws that has all columns: what the model does not know is completed by the one that ships, what is given
-/// counting too.
-fn whole(table: Table, given: &Table, rng: &mut impl rand::Rng) -> Result<Table> {
-    if COLUMNS.iter().all(|name| table.column(name).is_ok()) {
-        return Ok(table);
-    }
-    let known = attribute_rows(given).pop();
-    let mut rows = attribute_rows(&table);
-    for row in &mut rows {
-        for (value, known) in row.iter_mut().zip(known.iter().flatten()) {
-            *value = known.or(*value);
-        }
-    }
-    let rows = filled(rows, shipped_model()?, rng).map_err(Error::method)?;
-    rows_of::table(&rows).map_err(Error::method)
 }

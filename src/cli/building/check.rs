@@ -10,7 +10,7 @@ use edifice_shape::Building;
 
 use super::output::{street, write_png};
 use super::produce::RoofOption;
-use crate::print;
+use crate::print::{self, Json};
 
 /// Options of `check`.
 #[derive(clap::Args)]
@@ -42,6 +42,8 @@ pub struct DrawArgs {
     /// Roofs of each box, or one joined roof.
     #[arg(long, value_enum, default_value = "boxes")]
     roof: RoofOption,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Houses that are not what they should be.
@@ -128,5 +130,7 @@ pub fn draw(args: &DrawArgs) -> Result<()> {
         () if ending("svg") => write_atomic(&args.output, scene_svg::elevations(&scene).as_bytes()),
         () if ending("glb") => gltf::write(&scene, &args.output),
         () => Err(Error::option("--output", "must end in .png, .svg or .glb")),
-    }
+    }?;
+    let value = serde_json::json!({ "file": args.output, "houses": houses.len() });
+    args.json.end(&value)
 }

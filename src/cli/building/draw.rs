@@ -7,23 +7,19 @@ use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::{completions, observed};
 use edifice_building_exteriors::model_file::ModelFile;
+use edifice_editing::building_exteriors::draws::{Draws, drawn_table, given_table, style_table};
 use edifice_editing::building_exteriors::is_file_name;
 use edifice_io::building_json;
 use edifice_model::{Cell, Table};
 
 use super::data::{self, Input};
 use super::produce::Making;
-use crate::model::data::csv_lines;
-use crate::model::given::evidence;
-use crate::print;
+use crate::model::data::{csv_lines, print_table};
+use crate::print::{self, Json};
 
-/// Samples among which the most probable are sought.
-const POOL: usize = 2000;
 /// Houses drawn where no number is asked for, and houses completed.
 const COUNT: usize = 10;
 const COMPLETED: usize = 5;
-/// Root mean square distance, in standard deviations, below which two houses are the same.
-const APART: f64 = 0.05;
 
 /// The number of houses to draw, and the choice among them.
 #[derive(clap::Args)]
@@ -40,12 +36,14 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// Options of drawing from their values.
-    pub fn new(count: usize, most_probable: bool, seed: u64) -> Self {
-        Self {
-            count: Some(count),
-            most_probable,
-            seed,
+    fn draws(&self) -> Draws {
+        Draws {
+            given: Vec::new(),
+            style: None,
+            count: self.count(),
+            most_probable: self.most_probable,
+            untruncated: true,
+            seed: self.seed,
         }
     }
 
@@ -67,6 +65,8 @@ pub struct SampleArgs {
     style: Option<usize>,
     #[command(flatten)]
     draw: Draw,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Options of `complete`.
@@ -103,17 +103,14 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
         return Err(Error::option("--count", "must be at least 1"));
     }
     if let Some(style) = args.style {
-        let index = style
-            .checked_sub(1)
-            .ok_or_else(|| Error::option("--style", "the first style is 1"))?;
-        let draws = file.sample_style(index, args.draw.count(), &mut rng);
-        let draws = draws.map_err(|e| Error::option("--style", e.to_string()))?;
-        return print::line(&csv_lines(&draws.table).join("\n"));
+        let table = style_table(&file, style, args.draw.count(), &mut rng)?;
+        return print_table(&table, args.json);
     }
-    let kinds = file.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&file.attributes(), &kinds.table, &args.given)
-        .map_err(|e| Error::option("--given", e.to_string()))?;
-    print::line(&drawn(&file, &given, &args.draw, 0)?.join("\n"))
+    let given = given_table(&file, &args.given, &mut rng)?;
+    print_table(
+        &drawn_table(&file, &given, &args.draw.draws(), 0)?,
+        args.json,
+    )
 }
 
 /// Runs `complete`.
@@ -159,9 +156,7 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
         return Err(Error::option("--count", "must be at least 1"));
     }
     let mut rng = stream(args.draw.seed, "building/kinds", 0);
-    let kinds = file.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&file.attributes(), &kinds.table, &args.given)
-        .map_err(|e| Error::option("--given", e.to_string()))?;
+    let given = given_table(file, &args.given, &mut rng)?;
     let database = args.making.database()?;
     let options = args.making.options();
     let mut all = Vec::new();
@@ -197,21 +192,5 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
 
 /// Completions of one row as CSV lines, the header first.
 fn drawn(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Vec<String>> {
-    Ok(csv_lines(&drawn_table(file, given, draw, row)?))
-}
-
-/// Completions of one row.
-pub fn drawn_table(file: &ModelFile, given: &Table, draw: &Draw, row: u64) -> Result<Table> {
-    let mut rng = stream(draw.seed, "building/draw", row);
-    let draws = if draw.most_probable {
-        let pool = POOL.max(draw.count());
-        file.most_probable(given, draw.count(), pool, APART, &mut rng)
-    } else if given.columns().is_empty() {
-        file.sample(draw.count(), &mut rng)
-    } else {
-        file.complete(given, draw.count(), &mut rng)
-    };
-    // Each row was asked about on its own; the message names its place in the input.
-    let draws = draws.map_err(|e| Error::method(e.in_row(row as usize)))?;
-    Ok(draws.table)
+    Ok(csv_lines(&drawn_table(file, given, &draw.draws(), row)?))
 }

@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::house::{
-    Database, Generated, HouseReport, Joining, Method, Options, generate,
+    Database, Generated, HouseReport, Joining, Method, Options,
 };
-use edifice_building_exteriors::mass::contradiction::check_given;
-use edifice_building_exteriors::mass::footprint::reconcile;
+use edifice_editing::building_exteriors::draws::Order;
 use edifice_io::{gltf, write_atomic};
 use edifice_shape::Building;
 use rayon::prelude::*;
@@ -87,16 +85,6 @@ pub enum MethodOption {
     Paper,
 }
 
-/// A house to make.
-pub struct Order {
-    /// Its name, and that of its files.
-    pub name: String,
-    /// The 49 columns.
-    pub wanted: [f64; 49],
-    /// Columns that must stay.
-    pub given: [bool; 49],
-}
-
 impl Making {
     /// The database of donors.
     pub fn database(&self) -> Result<Database> {
@@ -146,18 +134,13 @@ pub fn produce(
     output: &Output,
     source: Option<&Path>,
 ) -> Result<()> {
-    let named = |house: &str, e: String| match source {
-        Some(path) => Error::content(path, format!("{house}: {e}")),
-        None => Error::method(format!("{house}: {e}")),
+    let wrong = |message: String| match source {
+        Some(path) => Error::content(path, message),
+        None => Error::method(message),
     };
     // Nothing is written when some row cannot be a house.
     for order in orders {
-        let named = |e: String| named(&order.name, e);
-        check_given(&order.wanted, &order.given).map_err(|e| named(e.to_string()))?;
-        if let Some(plan) = &options.footprint {
-            reconcile(&mut order.wanted.clone(), &order.given, plan)
-                .map_err(|e| named(e.to_string()))?;
-        }
+        order.check(options).map_err(wrong)?;
     }
     output::folder(&output.output)?;
     let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
@@ -169,17 +152,9 @@ pub fn produce(
                 if !output.street && is_done(&output.report_file(&order.name), order) {
                     return Ok(None);
                 }
-                let mut rng = stream(output.seed, &format!("building/generate/{}", order.name), 0);
                 let start = std::time::Instant::now();
-                let house = generate(
-                    &order.name,
-                    &order.wanted,
-                    &order.given,
-                    database,
-                    options,
-                    &mut rng,
-                )
-                .map_err(|e| named(&order.name, e.to_string()))?;
+                let house = order.made(database, options, output.seed);
+                let house = house.map_err(|e| wrong(format!("{}: {e}", order.name)))?;
                 let seconds = start.elapsed().as_secs_f64();
                 output::write(
                     &house.building,

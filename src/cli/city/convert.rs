@@ -6,7 +6,7 @@ use edifice_base::{Error, Result};
 use edifice_io::city::{cityjson, obj};
 
 use super::data;
-use crate::print;
+use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
@@ -16,6 +16,8 @@ pub struct Args {
     /// The city to write: `.obj` or `.city.json`.
     #[arg(short, long)]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -30,7 +32,7 @@ pub fn run(args: &Args) -> Result<()> {
         Some("obj") => obj::write(&city, &args.output)?,
         _ => edifice_io::write_atomic(&args.output, cityjson::to_string(&city).as_bytes())?,
     }
-    print::line(&format!(
+    let text = format!(
         "{}: {} buildings, {} triangles, {}",
         args.output.display(),
         city.buildings.len(),
@@ -38,5 +40,10 @@ pub fn run(args: &Args) -> Result<()> {
         city.reference_system
             .as_deref()
             .unwrap_or("no reference system")
-    ))
+    );
+    let value = serde_json::json!({
+        "file": args.output, "buildings": city.buildings.len(), "triangles": city.triangles(),
+        "reference_system": city.reference_system,
+    });
+    args.json.after(&text, &value)
 }

@@ -7,6 +7,7 @@ use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 use edifice_io::city::{self, cityjson, glb, grammar_file, obj};
 
 use super::data;
+use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
@@ -22,6 +23,8 @@ pub struct Args {
     /// Write a glTF node for each instance, for viewers without `EXT_mesh_gpu_instancing`.
     #[arg(long)]
     no_instancing: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -35,12 +38,17 @@ pub fn run(args: &Args) -> Result<()> {
         grammar = grammar.rules_only();
     }
     if is_grammar {
-        return grammar_file::write(&grammar, &args.output);
+        grammar_file::write(&grammar, &args.output)?;
     }
     let derivation = grammar
         .derive()
         .map_err(|e| Error::content(&args.grammar, e))?;
-    write(&grammar, &derivation, &args.output, !args.no_instancing)
+    if !is_grammar {
+        write(&grammar, &derivation, &args.output, !args.no_instancing)?;
+    }
+    args.json.end(&serde_json::json!({
+        "file": args.output, "buildings": derivation.buildings.len(), "instances": derivation.instances.len(),
+    }))
 }
 
 /// Refuses a name of no format before the work begins.

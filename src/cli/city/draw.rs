@@ -6,6 +6,7 @@ use edifice_base::{Error, Result};
 use edifice_io::city::picture::{self, Drawing, Drawn};
 
 use super::colours::{Colour, Colouring, Read, colouring};
+use crate::print::Json;
 
 /// Most pixels along a side.
 const MOST: usize = 8192;
@@ -39,6 +40,8 @@ pub struct Args {
     /// The property that colours tell; a legend says what they stand for.
     #[arg(long, value_enum, default_value = "plain")]
     colour: Colour,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -78,7 +81,11 @@ pub fn run(args: &Args) -> Result<()> {
     edifice_io::write_atomic(
         &args.output,
         &bytes.map_err(|e| Error::content(&args.output, e))?,
-    )
+    )?;
+    let value = serde_json::json!({
+        "file": args.output, "buildings": shown.city.buildings.len(), "width": width, "height": height,
+    });
+    args.json.end(&value)
 }
 
 fn drawn<'a>(read: &'a Read, colours: Option<&'a [[u8; 3]]>) -> Drawn<'a> {

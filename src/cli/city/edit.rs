@@ -9,7 +9,7 @@ use edifice_io::city::grammar_file;
 
 use super::data;
 use super::residuals::Residuals;
-use crate::print;
+use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
@@ -25,6 +25,8 @@ pub struct Args {
     /// The grammar to write (`*.city-grammar.json`, also with `.gz`, or `*.city-grammar.bin`).
     #[arg(short, long)]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 fn parse(text: &str) -> std::result::Result<CityEdit, String> {
@@ -38,9 +40,8 @@ pub fn run(args: &Args) -> Result<()> {
     let edited =
         edit(&grammar, &args.edits, carry).map_err(|e| Error::content(&args.grammar, e))?;
     grammar_file::write(&edited, &args.output)?;
-    print::line(&format!(
-        "{}: {} rules",
-        args.output.display(),
-        edited.rules.len()
-    ))
+    let rules = edited.rules.len();
+    let text = format!("{}: {rules} rules", args.output.display());
+    let value = serde_json::json!({ "file": args.output, "rules": rules });
+    args.json.after(&text, &value)
 }

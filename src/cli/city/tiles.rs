@@ -6,7 +6,7 @@ use edifice_base::{Error, Result};
 use edifice_io::city::tiles;
 
 use super::data;
-use crate::print;
+use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
@@ -19,6 +19,8 @@ pub struct Args {
     /// Most instances in a tile.
     #[arg(long, default_value_t = tiles::MOST_INSTANCES)]
     instances: usize,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -38,5 +40,8 @@ pub fn run(args: &Args) -> Result<()> {
         edifice_io::write_atomic(&args.output.join(name), bytes)?;
     }
     let bytes: usize = files.iter().map(|f| f.1.len()).sum();
-    print::line(&format!("{} tiles, {bytes} bytes", files.len() - 1))
+    let tiles = files.len() - 1;
+    let value = serde_json::json!({ "folder": args.output, "tiles": tiles, "bytes": bytes });
+    args.json
+        .after(&format!("{tiles} tiles, {bytes} bytes"), &value)
 }

@@ -1,5 +1,6 @@
 //! A data set in Croissant 1.0, the metadata of ML Commons (JSON-LD).
 
+use edifice_base::file::media_type;
 use serde_json::{Value, json};
 
 use super::set::{Found, Set};
@@ -9,7 +10,7 @@ pub fn metadata(set: &Set, files: &[Found]) -> Value {
     let object = |file: &Found| {
         json!({
             "@type": "cr:FileObject", "@id": file.name, "name": file.name, "contentUrl": file.name,
-            "contentSize": format!("{} B", file.bytes), "encodingFormat": format(&file.name),
+            "contentSize": format!("{} B", file.bytes), "encodingFormat": media_type(&file.name),
             "sha256": file.sha256,
         })
     };
@@ -27,20 +28,6 @@ pub fn metadata(set: &Set, files: &[Found]) -> Value {
         "keywords": set.labels,
         "distribution": files.iter().map(object).collect::<Vec<_>>(),
     })
-}
-
-/// Media type by the ending of a name.
-fn format(name: &str) -> &'static str {
-    match name.rsplit('.').next().unwrap_or_default() {
-        "png" => "image/png",
-        "jpg" | "jpeg" => "image/jpeg",
-        "json" | "jsonl" => "application/json",
-        "csv" => "text/csv",
-        "txt" | "bif" => "text/plain",
-        "xml" | "gml" => "application/xml",
-        "gz" => "application/gzip",
-        _ => "application/octet-stream",
-    }
 }
 
 /// The context that Croissant 1.0 prescribes.

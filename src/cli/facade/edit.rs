@@ -7,7 +7,7 @@ use edifice_editing::structure_completion::{FacadeEdit, edit};
 use edifice_io::{facade_json, photograph, write_atomic};
 
 use super::input;
-use crate::print;
+use crate::print::Json;
 use crate::reading::Reading;
 
 /// Options of `facade edit`.
@@ -38,6 +38,8 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    json: Json,
 }
 
 fn parse(text: &str) -> std::result::Result<FacadeEdit, String> {
@@ -59,5 +61,7 @@ pub fn run(args: &Args) -> Result<()> {
         facade_json::annotated_to_string(&edited).as_bytes(),
     )?;
     let count = edited.facade.regions.len();
-    print::line(&format!("{}: {count} elements", args.output.display()))
+    let text = format!("{}: {count} elements", args.output.display());
+    let value = serde_json::json!({ "file": args.output, "elements": count });
+    args.json.after(&text, &value)
 }

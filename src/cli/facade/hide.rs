@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use edifice_base::{Error, Result, rng};
 use edifice_io::{facade_json, write_atomic};
 use edifice_shape::{AnnotatedFacade, Facade, Rect};
+use edifice_structure_completion::frozen::Digest;
 use edifice_structure_completion::task::Task;
 
 use super::input;
@@ -23,6 +24,10 @@ pub struct Args {
     /// Seed
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Hide by the frozen mask, which the content of the facade alone decides, not its name, the order of its elements or the
+    /// seed: that of the leaderboard (`datasets/structure_completion`)
+    #[arg(long, conflicts_with = "seed")]
+    frozen: bool,
     /// Partial layout to write
     #[arg(short, long, value_name = "PARTIAL.facade.json")]
     output: PathBuf,
@@ -47,8 +52,16 @@ pub fn run(args: &Args) -> Result<()> {
         ));
     }
     let rects: Vec<Rect> = facade.regions.iter().map(|r| r.rect).collect();
-    let mut stream = rng::stream(args.seed, "facade hide", 0);
-    let (hidden, unknown) = task.split(facade.width, facade.height, &rects, &mut stream);
+    let named = facade.regions.iter().map(|r| (r.label.as_str(), r.rect));
+    let named: Vec<(&str, Rect)> = named.collect();
+    let (width, height) = (facade.width, facade.height);
+    let (hidden, unknown) = match args.frozen {
+        true => task.split_frozen(width, height, &named),
+        false => {
+            let mut stream = rng::stream(args.seed, "facade hide", 0);
+            task.split(width, height, &rects, &mut stream)
+        }
+    };
     let mut partial = AnnotatedFacade {
         facade: Facade {
             regions: Vec::new(),
@@ -71,7 +84,8 @@ pub fn run(args: &Args) -> Result<()> {
     let (seen, all) = (partial.facade.regions.len(), rects.len());
     if args.json {
         let about = serde_json::json!({
-            "task": task.name(), "observed": seen, "hidden": all - seen, "seed": args.seed,
+            "task": task.name(), "observed": seen, "hidden": all - seen, "seed": args.seed, "frozen": args.frozen,
+            "digest": format!("{:016x}", Digest::new(width, height, &named).value),
         });
         return print::line(&about.to_string());
     }

@@ -8,7 +8,7 @@ use edifice_grammar::{Derivation, Grammar, check};
 use edifice_io::{read_grammar, write_atomic, write_facade};
 use edifice_shape::Facade;
 
-use crate::print;
+use crate::print::{self, Json};
 
 /// Options of `edifice grammar derive`.
 #[derive(clap::Args)]
@@ -44,6 +44,8 @@ pub struct Args {
     /// File to write: .facade.json, .svg, .png or .glb (in relief, metres)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -54,14 +56,19 @@ pub fn run(args: &Args) -> Result<()> {
         true => write_atomic(&args.output, &glb(&facade)?)?,
         false => write_facade(&facade, &args.output)?,
     }
-    print::line(&format!(
+    let text = format!(
         "{}: {} regions, {} x {} {}",
         args.output.display(),
         facade.regions.len(),
         facade.width,
         facade.height,
         facade.unit
-    ))
+    );
+    let value = serde_json::json!({
+        "file": args.output, "regions": facade.regions.len(), "width": facade.width, "height": facade.height,
+        "unit": facade.unit, "seed": args.seed,
+    });
+    args.json.after(&text, &value)
 }
 
 fn derive(args: &Args) -> Result<Facade> {

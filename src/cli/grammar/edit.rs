@@ -8,7 +8,7 @@ use edifice_editing::split_grammar::{GrammarEdit, edit};
 use edifice_grammar::{Costs, check};
 use edifice_io::{read_grammar, write_grammar};
 
-use crate::print;
+use crate::print::{self, Json};
 
 /// Options of `edifice grammar edit`.
 #[derive(clap::Args)]
@@ -33,6 +33,8 @@ pub struct Args {
     /// Grammar to write: .grammar.json or .cga
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 fn parse(text: &str) -> std::result::Result<GrammarEdit, String> {
@@ -49,9 +51,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
     write_grammar(&edited, &args.output)?;
     let cost = (Costs::default().grammar(&edited) * 1e9).round() / 1e9;
-    print::line(&format!(
-        "{}: {} rules, cost {cost}",
-        args.output.display(),
-        edited.rules.len()
-    ))
+    let rules = edited.rules.len();
+    let text = format!("{}: {rules} rules, cost {cost}", args.output.display());
+    let value = serde_json::json!({ "file": args.output, "rules": rules, "cost": cost });
+    args.json.after(&text, &value)
 }

@@ -32,7 +32,7 @@ counts of repeats are parameters of the rules, so that different facades share t
 and tells how like them others are.
 Without -o the grammar is listed on standard output.")]
 pub struct Args {
-    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml); text also as .gz
+    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles or annotations (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
     /// Method of search

@@ -11,7 +11,7 @@ use edifice_io as io;
 use edifice_io::grammar_library_json::{self as library_json, EncodedFacade};
 use edifice_shape::Facade;
 
-use crate::print;
+use crate::print::{self, Json};
 use crate::reading::{self, Reading};
 
 /// Makes the library of some facades and writes or lists it.
@@ -125,6 +125,8 @@ pub struct Draw {
     /// File to write (.facade.json, .svg, .png), or folder for .facade.json files
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs `grammar draw`.
@@ -135,21 +137,24 @@ pub fn draw(args: &Draw) -> Result<()> {
         let facade = library
             .draw(&mut stream(args.seed, "draw", 0), "drawn")
             .map_err(wrong)?;
-        return io::write_facade(&facade, &args.output);
+        io::write_facade(&facade, &args.output)?;
+        let value = serde_json::json!({ "files": [args.output], "seed": args.seed });
+        return args.json.end(&value);
     }
+    let mut files = Vec::new();
     std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, "create", e))?;
     for k in 0..args.count {
         let name = format!("drawn_{}", k + 1);
         let facade = library
             .draw(&mut stream(args.seed, "draw", k.into()), &name)
             .map_err(wrong)?;
-        io::write_facade(&facade, &args.output.join(format!("{name}.facade.json")))?;
+        let path = args.output.join(format!("{name}.facade.json"));
+        io::write_facade(&facade, &path)?;
+        files.push(path);
     }
-    print::line(&format!(
-        "{}: {} facades",
-        args.output.display(),
-        args.count
-    ))
+    let text = format!("{}: {} facades", args.output.display(), args.count);
+    let value = serde_json::json!({ "files": files, "seed": args.seed });
+    args.json.after(&text, &value)
 }
 
 /// Options of `edifice grammar score`.
@@ -202,6 +207,8 @@ pub struct Encode {
     /// Encoded facade to write: .encoded.json
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs `grammar encode`.
@@ -220,11 +227,10 @@ pub fn encode(args: &Encode) -> Result<()> {
     };
     library_json::write_code(&encoded, &args.output)?;
     let bytes = encoded.bytes.len();
-    print::line(&format!(
-        "{}: {:.2} bits, {bytes} bytes",
-        args.output.display(),
-        encoded.bits
-    ))
+    let (file, bits) = (args.output.display(), encoded.bits);
+    let value = serde_json::json!({ "file": args.output, "bits": bits, "bytes": bytes });
+    let text = format!("{file}: {bits:.2} bits, {bytes} bytes");
+    args.json.after(&text, &value)
 }
 
 /// Options of `edifice grammar decode`.
@@ -239,6 +245,8 @@ pub struct Decode {
     /// Facade to write: .facade.json, .svg, .png
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs `grammar decode`.
@@ -252,7 +260,9 @@ pub fn decode(args: &Decode) -> Result<()> {
     let facade = library
         .decode(&encoded.bytes, &encoded.name)
         .map_err(|e| Error::content(&args.encoded, e))?;
-    io::write_facade(&facade, &args.output)
+    io::write_facade(&facade, &args.output)?;
+    let value = serde_json::json!({ "file": args.output, "regions": facade.regions.len() });
+    args.json.end(&value)
 }
 
 /// Options of `edifice grammar combine`.
@@ -272,6 +282,8 @@ pub struct Combine {
     /// Stochastic grammar to write: .cga or .grammar.json
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs `grammar combine`.
@@ -283,10 +295,8 @@ pub fn combine(args: &Combine) -> Result<()> {
         .collect::<Result<Vec<_>>>()?;
     let combined = edifice_grammar::combine(&grammars).map_err(Error::method)?;
     io::write_grammar(&combined, &args.output)?;
-    print::line(&format!(
-        "{}: {} grammars, {} rules",
-        args.output.display(),
-        grammars.len(),
-        combined.rules.len()
-    ))
+    let (file, count, rules) = (args.output.display(), grammars.len(), combined.rules.len());
+    let value = serde_json::json!({ "file": args.output, "grammars": count, "rules": rules });
+    let text = format!("{file}: {count} grammars, {rules} rules");
+    args.json.after(&text, &value)
 }

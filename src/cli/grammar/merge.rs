@@ -9,7 +9,7 @@ use edifice_grammar::Costs;
 use edifice_io::{read_facade, read_grammar, write_grammar};
 use edifice_shape::Facade;
 
-use crate::print;
+use crate::print::Json;
 
 /// Options of `edifice grammar merge`.
 #[derive(clap::Args)]
@@ -27,6 +27,8 @@ pub struct Args {
     /// Grammar to write: .grammar.json or .cga
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -41,10 +43,11 @@ pub fn run(args: &Args) -> Result<()> {
     let found = merge(&grammar, &further, &Work::default())?;
     write_grammar(&found.grammar, &args.output)?;
     let cost = (Costs::default().grammar(&found.grammar) * 1e9).round() / 1e9;
-    print::line(&format!(
-        "{}: {} facades, {} rules, cost {cost}",
-        args.output.display(),
-        found.grammar.starts.len(),
-        found.grammar.rules.len()
-    ))
+    let (facades, rules) = (found.grammar.starts.len(), found.grammar.rules.len());
+    let file = args.output.display();
+    let value = serde_json::json!({
+        "file": args.output, "facades": facades, "rules": rules, "cost": cost,
+    });
+    let text = format!("{file}: {facades} facades, {rules} rules, cost {cost}");
+    args.json.after(&text, &value)
 }

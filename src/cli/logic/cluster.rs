@@ -11,7 +11,7 @@ use edifice_report::{Figure, HeatMap, Merge};
 use nalgebra::DMatrix;
 
 use super::input::{Energy, Facades, Linkage, Measure, model};
-use crate::print;
+use crate::print::{self, Json};
 
 /// Options of `logic cluster`.
 #[derive(clap::Args)]
@@ -38,6 +38,8 @@ pub struct Args {
     /// Draw the dendrogram and the matrix in its order, as .svg; a .png goes beside it.
     #[arg(short, long, value_name = "FIGURE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command: one line per facade, in the order of the dendrogram.
@@ -50,11 +52,13 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(path) = &args.output {
         draw(&model, &tree, &distances, &clusters, path)?;
     }
+    let mut all = Vec::new();
     for facade in tree.leaf_order() {
-        let name = &model.facades[facade].name;
-        print::line(&format!("{}\t{name}", clusters[facade] + 1))?;
+        let (name, cluster) = (&model.facades[facade].name, clusters[facade] + 1);
+        print::line(&format!("{cluster}\t{name}"))?;
+        all.push(serde_json::json!({ "name": name, "cluster": cluster }));
     }
-    Ok(())
+    args.json.end(&serde_json::json!({ "facades": all }))
 }
 
 fn draw(

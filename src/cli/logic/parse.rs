@@ -10,7 +10,7 @@ use edifice_procedural_logic::{Model, NaryTree, Parameters, split_grammar};
 use edifice_shape::LabelGrid;
 
 use super::input::{Energy, Facades, read_model};
-use crate::print;
+use crate::print::{self, Json};
 
 /// Options of `logic parse`.
 #[derive(clap::Args)]
@@ -28,6 +28,8 @@ pub struct Args {
     /// Grammar file to write (.grammar.json or .cga); a folder for several facades.
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -41,7 +43,8 @@ pub fn run(args: &Args) -> Result<()> {
         }
     };
     if let [grid] = grids.as_slice() {
-        return write(&parse(&mut model, grid)?, &args.output);
+        let found = write(&parse(&mut model, grid)?, &args.output)?;
+        return args.json.end(&serde_json::json!({ "grammars": [found] }));
     }
     let mut names = HashSet::new();
     if let Some(twice) = grids.iter().find(|grid| !names.insert(&grid.name)) {
@@ -49,14 +52,13 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let folder = &args.output;
     std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+    let mut found = Vec::new();
     for grid in &grids {
         let grammar = parse(&mut model, grid)?;
-        write(
-            &grammar,
-            &folder.join(format!("{}.grammar.json", grid.name)),
-        )?;
+        let path = folder.join(format!("{}.grammar.json", grid.name));
+        found.push(write(&grammar, &path)?);
     }
-    Ok(())
+    args.json.end(&serde_json::json!({ "grammars": found }))
 }
 
 /// Two facades whose grammars would go to one file.
@@ -74,11 +76,10 @@ fn parse(model: &mut Model, grid: &LabelGrid) -> Result<Grammar> {
     ))
 }
 
-fn write(grammar: &Grammar, path: &Path) -> Result<()> {
+/// Writes a grammar, and says so to people and to programs.
+fn write(grammar: &Grammar, path: &Path) -> Result<serde_json::Value> {
     write_grammar(grammar, path)?;
-    print::line(&format!(
-        "{}: {} rules",
-        path.display(),
-        grammar.rules.len()
-    ))
+    let rules = grammar.rules.len();
+    print::line(&format!("{}: {rules} rules", path.display()))?;
+    Ok(serde_json::json!({ "file": path, "rules": rules }))
 }

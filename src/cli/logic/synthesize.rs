@@ -8,7 +8,7 @@ use edifice_io::write_facade;
 use edifice_procedural_logic::{Known, Style, starting_rules};
 
 use super::input::read_model;
-use crate::print;
+use crate::print::Json;
 
 /// Options of `logic synthesize`.
 #[derive(clap::Args)]
@@ -41,6 +41,8 @@ pub struct Args {
     /// Folder for the facades.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -54,6 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
     let style = Style::learn(&model, start).map_err(|error| Error::content(&args.model, error))?;
     let folder = &args.output;
     std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
+    let mut files = Vec::new();
     for index in 1..=args.count {
         let mut rng = stream(args.seed, "virtual facade", index);
         let instance = style
@@ -67,16 +70,21 @@ pub fn run(args: &Args) -> Result<()> {
         let layout = model.layout(&facade).map_err(Error::method)?;
         let path = folder.join(format!("{}.{}", facade.name, args.format));
         write_facade(&layout, &path)?;
+        files.push(path);
     }
     let similar = match style.similar {
         0 => String::new(),
         count => format!(" and {count} of similar structure"),
     };
-    print::line(&format!(
+    let text = format!(
         "{} facades from {} example{}{similar} in {}",
         args.count,
         style.examples,
         if style.examples == 1 { "" } else { "s" },
         folder.display()
-    ))
+    );
+    let value = serde_json::json!({
+        "files": files, "examples": style.examples, "similar": style.similar, "seed": args.seed,
+    });
+    args.json.after(&text, &value)
 }

@@ -8,9 +8,10 @@ use edifice_io::{json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 use edifice_model::tables::table_model::TableModel;
-use edifice_model::{Cell, Table};
+use edifice_model::{Cell, Column, Table};
+use serde_json::Value;
 
-use crate::print;
+use crate::print::{self, Json};
 
 /// A table, and how to read it.
 #[derive(clap::Args)]
@@ -35,14 +36,15 @@ impl TableInput {
         Ok((data, schema))
     }
 
-    /// The guessed schema, of the columns that can be in one; the others are said.
-    pub fn guess(&self) -> Result<Schema> {
+    /// The guessed schema, of the columns that can be in one, and why others are left out, which is said.
+    pub fn guess(&self) -> Result<(Schema, Vec<String>)> {
         let text = read_table(&self.table)?;
         let (schema, left_out) = Schema::guess_some(&text.header, &text.rows);
-        for reason in left_out {
+        let left_out: Vec<String> = left_out.iter().map(ToString::to_string).collect();
+        for reason in &left_out {
             print::message(&format!("left out: {reason}"));
         }
-        Ok(schema)
+        Ok((schema, left_out))
     }
 }
 
@@ -83,6 +85,63 @@ pub fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset
     schema.groups.retain(|group| !group.columns.is_empty());
     let data = schema.read(&text.header, &text.rows);
     data.map_err(|e| Error::content(path, e))
+}
+
+/// Prints a table as CSV, or as one line of JSON: numbers, categories by name, missing cells null.
+pub fn print_table(table: &Table, json: Json) -> Result<()> {
+    match json.is_asked() {
+        true => json.end(&json_of(table)),
+        false => print::line(&csv_lines(table).join("\n")),
+    }
+}
+
+/// A table as `columns`, their names, and `rows`.
+pub fn json_of(table: &Table) -> Value {
+    let names: Vec<&str> = table.columns().iter().map(|c| c.name()).collect();
+    let cell = |column: &Column, row: usize| match column.cell(row) {
+        Cell::Missing => Value::Null,
+        Cell::Real(value) => value.into(),
+        Cell::Code(code) => {
+            let names = column.categories().unwrap_or_default();
+            names
+                .get(code)
+                .map_or(Value::Null, |name| name.as_str().into())
+        }
+    };
+    let row = |row| {
+        table
+            .columns()
+            .iter()
+            .map(|c| cell(c, row))
+            .collect::<Vec<Value>>()
+    };
+    let rows: Vec<Vec<Value>> = (0..table.rows()).map(row).collect();
+    serde_json::json!({ "columns": names, "rows": rows })
+}
+
+/// Completed rows for programs, gathered.
+#[derive(Default)]
+pub struct Completed {
+    columns: Value,
+    rows: Vec<Value>,
+    of: Vec<usize>,
+}
+
+impl Completed {
+    /// Adds rows; `of` says which row of the table, from 0, each of them completes.
+    pub fn add(&mut self, drawn: &Table, of: impl Fn(usize) -> usize) {
+        let mut value = json_of(drawn);
+        self.columns = value["columns"].take();
+        if let Value::Array(rows) = value["rows"].take() {
+            self.of.extend((0..rows.len()).map(of));
+            self.rows.extend(rows);
+        }
+    }
+
+    /// Prints the line, if it was asked for.
+    pub fn end(self, json: Json) -> Result<()> {
+        json.end(&serde_json::json!({ "columns": self.columns, "rows": self.rows, "of": self.of }))
+    }
 }
 
 /// A table as lines of CSV, the header first; categories by name, missing cells empty.

@@ -13,7 +13,7 @@ use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split, sum
 use super::data::TableInput;
 use super::learning::{heed_interrupts, interrupted, seconds};
 use super::search::Search;
-use crate::print;
+use crate::print::{self, Json};
 
 /// Time between two looks at the clock.
 const ASKED: Duration = Duration::from_millis(100);
@@ -49,6 +49,8 @@ pub struct Splits {
     time_limit: Option<f64>,
     #[command(flatten)]
     search: Search,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs the command.
@@ -82,7 +84,10 @@ impl Splits {
         if train.is_empty() || test.is_empty() {
             return Err(Error::option("--share", "leaves no row on one side"));
         }
-        print::line("model,split,nll")?;
+        let json = self.json;
+        if !json.is_asked() {
+            print::line("model,split,nll")?;
+        }
         let mut losses = vec![Vec::new(); contenders.len()];
         heed_interrupts();
         let limit = self.time_limit.map(seconds);
@@ -102,7 +107,9 @@ impl Splits {
                 let rows = split(data.table.rows(), self.share, self.search.seed, index);
                 Error::content(path, within(&e, &rows, index))
             })?;
-            print::line(&format!("{},{},{mean:.4}", contenders[which].0, index + 1))?;
+            if !json.is_asked() {
+                print::line(&format!("{},{},{mean:.4}", contenders[which].0, index + 1))?;
+            }
             losses[which].push(mean);
         }
         let whole = losses.iter().map(Vec::len).min().unwrap_or(0);
@@ -114,18 +121,23 @@ impl Splits {
             ));
         }
         if whole == 0 {
-            return Ok(());
+            return json.end(&serde_json::json!({ "splits": 0, "models": [] }));
         }
         losses.iter_mut().for_each(|own| own.truncate(whole));
         let reference = &losses[0];
+        let mut models = Vec::new();
         for ((name, _), own) in contenders.iter().zip(&losses) {
             let s = summary(own, reference);
             print::message(&format!(
                 "{name}: {:.3} +- {:.3} nats a row, {:+.3} +- {:.3} beside {}",
                 s.mean, s.error, s.difference, s.difference_error, contenders[0].0
             ));
+            models.push(serde_json::json!({
+                "model": name, "nll": own, "mean": s.mean, "error": s.error, "difference": s.difference,
+                "difference_error": s.difference_error,
+            }));
         }
-        Ok(())
+        json.end(&serde_json::json!({ "splits": whole, "models": models }))
     }
 
     /// The mean loss of every model on every split, as (split, place of the model, loss), in order, from a thread of its own: one that is in the midst of a

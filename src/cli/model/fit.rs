@@ -9,9 +9,9 @@ use edifice_model::network::{Evidence, FitSettings, Network};
 use edifice_model::tables::table_model::LogParts;
 use edifice_model::{ModelError, Table};
 
-use super::data::{csv_lines, read_table};
+use super::data::{Completed, csv_lines, print_table, read_table};
 use super::{network, query};
-use crate::print;
+use crate::print::{self, Json};
 
 /// Texts that commonly mean "not known".
 const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
@@ -132,20 +132,26 @@ fn table(network: &Network, text: &TextTable) -> Result<Table, ModelError> {
 }
 
 /// Runs `sample` of a network.
-pub fn sample(network: &Network, given: &[String], count: usize, seed: u64) -> Result<()> {
+pub fn sample(
+    network: &Network,
+    given: &[String],
+    count: usize,
+    seed: u64,
+    json: Json,
+) -> Result<()> {
     let evidence = query::hard(network, given, Evidence::new())?;
     let mut rng = stream(seed, "model/sample", 0);
     let drawn = network.sample(&evidence, count, &mut rng);
     let drawn = drawn.map_err(|e| Error::option("--given", e.to_string()))?;
-    print::line(&csv_lines(&drawn).join("\n"))
+    print_table(&drawn, json)
 }
 
 /// Runs `score` of a network.
-pub fn score(network: &Network, path: &Path) -> Result<()> {
+pub fn score(network: &Network, path: &Path, json: Json) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
     let parts = parts(network, &table(network, &text).map_err(at)?).map_err(at)?;
-    print_parts(&parts)
+    print_parts(&parts, json)
 }
 
 /// `log P(c)` of the categories c of every row, and `log p(x | c)` of its numbers.
@@ -165,8 +171,13 @@ fn parts(network: &Network, table: &Table) -> std::result::Result<LogParts, Mode
     })
 }
 
-/// Prints the parts of every row as CSV, and their means.
-pub fn print_parts(parts: &LogParts) -> Result<()> {
+/// Prints the parts of every row, as CSV or for programs, and their means.
+pub fn print_parts(parts: &LogParts, json: Json) -> Result<()> {
+    if json.is_asked() {
+        return json.end(&serde_json::json!({
+            "log_probability_mass": parts.log_probability_mass, "log_density": parts.log_density,
+        }));
+    }
     print::line("row,log_probability_mass,log_density")?;
     let both = parts.log_probability_mass.iter().zip(&parts.log_density);
     for (row, (mass, density)) in both.enumerate() {
@@ -187,12 +198,17 @@ fn means(parts: &LogParts) -> String {
 }
 
 /// Runs `complete` of a network: other columns of the table pass through, before its own.
-pub fn complete(network: &Network, path: &Path, count: usize, seed: u64) -> Result<()> {
+pub fn complete(network: &Network, path: &Path, count: usize, seed: u64, json: Json) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
     let table = table(network, &text).map_err(at)?;
     let mut rng = stream(seed, "model/complete", 0);
     let drawn = network.complete(&table, count, &mut rng).map_err(at)?;
+    if json.is_asked() {
+        let mut completed = Completed::default();
+        completed.add(&drawn, |i| i / count.max(1));
+        return completed.end(json);
+    }
     let own: Vec<String> = drawn
         .columns()
         .iter()

@@ -10,14 +10,16 @@ use edifice_model::ModelError;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::BACKGROUND;
 use edifice_model::tables::encoding::Encoding;
+use edifice_model::tables::given::evidence;
 use edifice_model::tables::learn::extended;
 use edifice_model::tables::table_model::{FORMAT, TableModel};
 
-use super::data::{TableInput, csv_lines, read_model, read_rows, read_table, rows};
-use super::given::evidence;
+use super::data::{
+    Completed, TableInput, csv_lines, print_table, read_model, read_rows, read_table, rows,
+};
 use super::learning::{Learning, heed_interrupts};
 use super::{Shown, fit, network_of};
-use crate::print;
+use crate::print::{self, Json};
 
 /// Options of `learn`.
 #[derive(clap::Args)]
@@ -38,6 +40,15 @@ pub struct LearnArgs {
     json: bool,
 }
 
+/// Options of `schema`.
+#[derive(clap::Args)]
+pub struct SchemaArgs {
+    #[command(flatten)]
+    input: TableInput,
+    #[command(flatten)]
+    json: Json,
+}
+
 /// Options of `score`.
 #[derive(clap::Args)]
 pub struct ScoreArgs {
@@ -45,6 +56,8 @@ pub struct ScoreArgs {
     model: PathBuf,
     /// The table.
     table: PathBuf,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Options of `sample`.
@@ -61,6 +74,8 @@ pub struct SampleArgs {
     /// Seed of all random streams.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Options of `complete`.
@@ -76,11 +91,20 @@ pub struct CompleteArgs {
     /// Seed of all random streams.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    json: Json,
 }
 
 /// Runs `schema`.
-pub fn schema(input: &TableInput) -> Result<()> {
-    print::line(&input.guess()?.to_json().map_err(Error::method)?)
+pub fn schema(args: &SchemaArgs) -> Result<()> {
+    let (schema, left_out) = args.input.guess()?;
+    let text = schema.to_json().map_err(Error::method)?;
+    if !args.json.is_asked() {
+        return print::line(&text);
+    }
+    let schema: serde_json::Value = serde_json::from_str(&text).map_err(Error::method)?;
+    args.json
+        .end(&serde_json::json!({ "schema": schema, "left_out": left_out }))
 }
 
 /// Runs `learn`.
@@ -190,12 +214,13 @@ fn mixed(model: &TableModel) -> Option<String> {
 /// Runs `score`: the log probability mass and the log density of every row, missing cells integrated out.
 pub fn score(args: &ScoreArgs) -> Result<()> {
     if let Some(network) = network_of(&args.model)? {
-        return fit::score(&network, &args.table);
+        return fit::score(&network, &args.table, args.json);
     }
     let model = read_model(&args.model)?;
     let data = read_rows(&model, &args.table)?;
     let parts = model.log_parts(&data.table);
-    fit::print_parts(&parts.map_err(|e| Error::content(&args.table, e))?)
+    let parts = parts.map_err(|e| Error::content(&args.table, e))?;
+    fit::print_parts(&parts, args.json)
 }
 
 /// Runs `sample`.
@@ -204,7 +229,7 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
         return Err(Error::option("--count", "must be at least 1"));
     }
     if let Some(network) = network_of(&args.model)? {
-        return fit::sample(&network, &args.given, args.count, args.seed);
+        return fit::sample(&network, &args.given, args.count, args.seed, args.json);
     }
     let model = read_model(&args.model)?;
     let mut rng = stream(args.seed, "model/sample", 0);
@@ -216,13 +241,13 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
         false => model.complete(&given, args.count, &mut rng),
     };
     let table = draws.map_err(|e| Error::option("--given", e.to_string()))?;
-    print::line(&csv_lines(&table).join("\n"))
+    print_table(&table, args.json)
 }
 
 /// Runs `complete`.
 pub fn complete(args: &CompleteArgs) -> Result<()> {
     if let Some(network) = network_of(&args.model)? {
-        return fit::complete(&network, &args.table, args.count, args.seed);
+        return fit::complete(&network, &args.table, args.count, args.seed, args.json);
     }
     let model = read_model(&args.model)?;
     let text = read_table(&args.table)?;
@@ -233,11 +258,16 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
         false => text.header.clone(),
     };
     let passed = fit::Passed::new(&text, &known);
+    let mut completed = Completed::default();
     for row in 0..data.table.rows() {
         let mut rng = stream(args.seed, "model/complete", row as u64);
         let given = data.table.select(&[row]);
         let draws = model.complete(&given, args.count, &mut rng);
         let draws = draws.map_err(|e| Error::content(&args.table, e.in_row(row)))?;
+        if args.json.is_asked() {
+            completed.add(&draws, |_| row);
+            continue;
+        }
         let mut lines = csv_lines(&draws).into_iter();
         if let Some(header) = lines.next().filter(|_| row == 0) {
             print::line(&passed.header(&header))?;
@@ -246,7 +276,7 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
             print::line(&passed.line(row, &line))?;
         }
     }
-    Ok(())
+    completed.end(args.json)
 }
 
 /// The display of a model of a table by `model show`.

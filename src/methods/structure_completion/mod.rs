@@ -50,6 +50,7 @@ pub mod annealing;
 pub mod baselines;
 pub mod best;
 pub mod completion;
+pub mod frozen;
 pub mod layout;
 pub mod made;
 pub mod measure;

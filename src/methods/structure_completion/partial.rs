@@ -69,20 +69,34 @@ impl PartialLayout {
     /// A whole layout whose content in these rectangles is not known, and the elements that they hide: those whose centre lies in
     /// one.
     pub fn hiding(layout: &Layout, unknown: Vec<Rect>) -> (Self, Vec<Element>) {
-        let is_hidden = |e: &&Element| {
+        let is_hidden = |e: &Element| {
             let (x, y) = e.rect.centre();
             unknown.iter().any(|u| u.contains(x, y))
         };
-        let (hidden, observed): (Vec<&Element>, Vec<&Element>) =
-            layout.elements.iter().partition(is_hidden);
+        let hidden: Vec<bool> = layout.elements.iter().map(is_hidden).collect();
+        Self::parted(layout, &hidden, Some(unknown))
+    }
+
+    /// A whole layout of which some elements are hidden, and these; `hidden` has a value for each element, `unknown` is that of
+    /// the partial layout.
+    pub fn parted(
+        layout: &Layout,
+        hidden: &[bool],
+        unknown: Option<Vec<Rect>>,
+    ) -> (Self, Vec<Element>) {
+        let side = |wanted: bool| {
+            let elements = layout.elements.iter().zip(hidden);
+            let kept = elements.filter(move |(_, hidden)| **hidden == wanted);
+            kept.map(|(e, _)| *e).collect::<Vec<Element>>()
+        };
         let partial = Self {
             width: layout.width,
             height: layout.height,
-            observed: observed.into_iter().copied().collect(),
-            unknown: Some(unknown),
+            observed: side(false),
+            unknown,
             forbidden: Vec::new(),
         };
-        (partial, hidden.into_iter().copied().collect())
+        (partial, side(true))
     }
 
     /// Checks the observed elements against the outline and the unknown part.

@@ -111,20 +111,6 @@ impl Task {
     pub fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
         let rects: Vec<Rect> = layout.elements.iter().map(|e| e.rect).collect();
         let (hidden, unknown) = self.split(layout.width, layout.height, &rects, rng);
-        let side = |wanted: bool| {
-            let elements = layout.elements.iter().zip(&hidden);
-            elements
-                .filter(move |(_, hidden)| **hidden == wanted)
-                .map(|(e, _)| *e)
-                .collect::<Vec<Element>>()
-        };
-        let partial = PartialLayout {
-            width: layout.width,
-            height: layout.height,
-            observed: side(false),
-            unknown,
-            forbidden: Vec::new(),
-        };
-        (partial, side(true))
+        PartialLayout::parted(layout, &hidden, unknown)
     }
 }

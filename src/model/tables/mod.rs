@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`schema`] | which columns are which attributes, written by hand or guessed |
 //! | [`encoding`] | values that many rows share as categories, the others transformed |
+//! | [`given`] | evidence in words |
 //! | [`transform`] | monotone transforms of a real column |
 //! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
 //! | [`joined`] | real columns with one hidden variable together or one each, by the higher score |
@@ -17,6 +18,7 @@
 pub mod bins;
 pub mod compare;
 pub mod encoding;
+pub mod given;
 mod guess;
 pub mod joined;
 pub mod kernels;

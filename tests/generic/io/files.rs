@@ -25,8 +25,10 @@ const MATRIX: &str = "wall wall wall wall\nwall window window wall\nwall wall wa
 
 const LABELME: &str = include_str!("../../../fuzz/seeds/labelme/a.json");
 const COCO: &str = include_str!("../../../fuzz/seeds/coco/a.json");
-const XML: &[u8] = include_bytes!("../../fuzz/seeds/cmp_xml/a.xml");
-const HOUSES: &[u8] = include_bytes!("../../fuzz/seeds/building_json/a.buildings.jsonl");
+const VOC: &[u8] = include_bytes!("../../../fuzz/seeds/annotation_xml/voc.xml");
+const POLYGONS: &[u8] = include_bytes!("../../../fuzz/seeds/annotation_xml/polygon.xml");
+const XML: &[u8] = include_bytes!("../../../fuzz/seeds/cmp_xml/a.xml");
+const HOUSES: &[u8] = include_bytes!("../../../fuzz/seeds/building_json/a.buildings.jsonl");
 
 #[test]
 fn every_text_format_is_read_packed() {
@@ -190,6 +192,33 @@ fn blended_and_jpeg_colours_need_the_option() {
             stderr(&assert)
         );
     }
+}
+
+#[test]
+fn annotations_are_element_layouts() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (name, bytes) in [("v.xml", VOC), ("p.xml", POLYGONS)] {
+        std::fs::write(folder.join(name), bytes).unwrap();
+    }
+    for (from, to) in [("v.xml", "v.facade.json"), ("p.xml", "p.facade.json")] {
+        edifice(folder, &["facade", "convert", from, "-o", to]).success();
+        let same = edifice(folder, &["facade", "compare", to, from, "--json"]).success();
+        let line = String::from_utf8_lossy(&same.get_output().stdout).into_owned();
+        assert!(line.contains(r#""mean_f1":1.0"#), "{line}");
+    }
+    let text = std::fs::read_to_string(folder.join("v.facade.json")).unwrap();
+    let window = r#"{ "label": "window", "x": 2.0, "y": 40.0, "width": 8.0, "height": 15.0 }"#;
+    assert!(text.contains(window), "{text}");
+    // Without a size that of the picture beside the file is taken; without both nothing is guessed.
+    let text = String::from_utf8_lossy(VOC).replace("<width>40</width>", "");
+    std::fs::write(folder.join("b.xml"), text).unwrap();
+    let convert = ["facade", "convert", "b.xml", "-o", "b.facade.json"];
+    let assert = edifice(folder, &convert).code(1);
+    let expected = "b.xml: neither <size> nor <imagesize>";
+    assert!(stderr(&assert).contains(expected), "{}", stderr(&assert));
+    edifice(folder, &["facade", "convert", "v.xml", "-o", "b.png"]).success();
+    edifice(folder, &convert).success();
 }
 
 #[test]

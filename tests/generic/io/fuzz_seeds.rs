@@ -4,8 +4,8 @@ use std::path::Path;
 
 use edifice::io::json::parse_json;
 use edifice::io::{
-    LabelMap, building_csv, building_json, city, cmp_xml, coco, facade_json, footprint,
-    grammar_cga, grammar_json, label_image, label_text, labelme, surface_obj,
+    LabelMap, annotation_xml, building_csv, building_json, city, cmp_xml, coco, facade_json,
+    footprint, grammar_cga, grammar_json, label_image, label_text, labelme, surface_obj,
 };
 use edifice::methods::building_exteriors::model_file;
 use edifice::methods::procedural_logic::{Model, ModelFile};
@@ -19,6 +19,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
     let path = Path::new("seed");
     let text = std::str::from_utf8(bytes).ok();
     match reader {
+        "annotation_xml" => annotation_xml::parse(bytes, path, None).is_ok(),
         "bif" => text.is_some_and(|t| Network::from_bif(t).is_ok()),
         "building_csv" => building_csv::parse(bytes, path).is_ok(),
         "building_json" => {
@@ -87,5 +88,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 29);
+    assert_eq!(targets, 30);
 }

@@ -102,6 +102,8 @@ fn numbers_in_facades_and_grammars() {
         12,
     );
     check(&seed("fuzz/seeds/cmp_xml/a.xml"), &to_json, 6);
+    check(&seed("fuzz/seeds/annotation_xml/voc.xml"), &to_json, 6);
+    check(&seed("fuzz/seeds/annotation_xml/polygon.xml"), &to_json, 6);
     let grammar = seed("fuzz/seeds/grammar_json/b.grammar.json");
     check(&grammar, &["grammar", "show", "FILE"], 30);
     check(&grammar, &["grammar", "derive", "FILE", "-o", &json], 8);

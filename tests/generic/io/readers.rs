@@ -5,7 +5,8 @@ use std::path::Path;
 
 use edifice::Result;
 use edifice::io::{
-    self, LabelMap, cmp_xml, coco, draw, facade_json, label_image, label_text, labelme,
+    self, LabelMap, annotation_xml, cmp_xml, coco, draw, facade_json, label_image, label_text,
+    labelme,
 };
 use edifice::shape::{Facade, LabelGrid, Rect, Region, decompose};
 use proptest::prelude::*;
@@ -23,6 +24,7 @@ fn read_all(bytes: &[u8]) -> std::result::Result<(), TestCaseError> {
     named(LabelMap::parse(bytes, path))?;
     named(labelme::parse(bytes, path))?;
     named(coco::parse(bytes, path, None))?;
+    named(annotation_xml::parse(bytes, path, Some((30.0, 40.0))))?;
     named(label_image::parse_nearest(bytes, path, None))?;
     if let Some(cmp) = named(cmp_xml::parse(bytes, path))? {
         cmp.elements(100.0, 80.0).unwrap();
@@ -96,6 +98,8 @@ fn files() -> Vec<Vec<u8>> {
         CMP.as_bytes().to_vec(),
         br#"{"window": [255, 0, 0], "wall": 2}"#.to_vec(),
         include_bytes!("../../fuzz/seeds/labelme/a.json").to_vec(),
+        include_bytes!("../../fuzz/seeds/annotation_xml/voc.xml").to_vec(),
+        include_bytes!("../../fuzz/seeds/annotation_xml/polygon.xml").to_vec(),
         include_bytes!("../../fuzz/seeds/coco/a.json").to_vec(),
         jpeg(),
     ]

@@ -1,7 +1,7 @@
 //! Evidence in words: `garage=none`, `bbox.w=12`, `wwr=0.2,0.2,0.1,0.1`, `roof.hip=yes`.
 
-use edifice_model::hierarchy::Group;
-use edifice_model::{ModelError, Table};
+use crate::hierarchy::Group;
+use crate::{ModelError, Table};
 
 /// The defects of a piece of evidence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,0 +1,266 @@
+//! Houses drawn from a model, for `edifice building generate` and for Python: rows of attributes, drawn anew until a house can
+//! have them, and the houses that are built from rows.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::shipped_model;
+use edifice_base::rng::{Stream, stream};
+use edifice_base::{Error, Progress, Result, Watch};
+use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::coding::attribute_rows;
+use edifice_building_exteriors::data::{filled, table};
+use edifice_building_exteriors::design::{Possible, possible_rows, wanted_rows};
+use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
+use edifice_building_exteriors::mass::contradiction::check_given;
+use edifice_building_exteriors::mass::footprint::{decided, distance, reconcile};
+use edifice_building_exteriors::model_file::ModelFile;
+use edifice_model::Table;
+use edifice_model::tables::given::evidence;
+use edifice_shape::Rect;
+
+/// Samples among which the most probable are sought.
+const POOL: usize = 2000;
+/// Root mean square distance, in standard deviations, below which two houses are the same.
+const APART: f64 = 0.05;
+
+/// A question to a model of houses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draws {
+    /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none.
+    pub given: Vec<String>,
+    /// Draw from this style only (the first is 1), without evidence.
+    pub style: Option<usize>,
+    /// Houses.
+    pub count: usize,
+    /// Draw many, and keep the most probable that differ.
+    pub most_probable: bool,
+    /// Take every sample, also those that no house can have.
+    pub untruncated: bool,
+    /// Seed of all random streams.
+    pub seed: u64,
+}
+
+/// A house to make.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Order {
+    /// Its name, and that of its files.
+    pub name: String,
+    /// The 49 columns.
+    pub wanted: [f64; 49],
+    /// Columns that must stay.
+    pub given: [bool; 49],
+}
+
+/// Houses to make, drawn from a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ordered {
+    /// One for each house, named `house_0001`, ...
+    pub orders: Vec<Order>,
+    /// Rows drawn in all.
+    pub drawn: usize,
+    /// Those of `orders` that no house can have, the last ones: nothing better was drawn.
+    pub impossible: usize,
+}
+
+impl Order {
+    /// Checks that nothing that is given contradicts itself or the footprint of `options`.
+    ///
+    /// # Errors
+    /// The contradiction, with the name of the house.
+    pub fn check(&self, options: &Options) -> std::result::Result<(), String> {
+        check_given(&self.wanted, &self.given).map_err(|e| format!("{}: {e}", self.name))?;
+        match &options.footprint {
+            Some(plan) => reconcile(&mut self.wanted.clone(), &self.given, plan)
+                .map_err(|e| format!("{}: {e}", self.name)),
+            None => Ok(()),
+        }
+    }
+
+    /// Makes the house. It depends on its name, its row and the seed, and not on other houses.
+    ///
+    /// # Errors
+    /// [`GenerateError`].
+    pub fn made(
+        &self,
+        database: &Database,
+        options: &Options,
+        seed: u64,
+    ) -> std::result::Result<Generated, GenerateError> {
+        let mut rng = stream(seed, &format!("building/generate/{}", self.name), 0);
+        let (wanted, given) = (&self.wanted, &self.given);
+        generate(&self.name, wanted, given, database, options, &mut rng)
+    }
+}
+
+/// Draws rows for houses. What the model does not know is said by the one that ships; on a footprint (`plan`), rows that
+/// cannot stand on it are drawn anew.
+///
+/// # Errors
+/// [`Error::Option`] for a count of 0, evidence that the model does not know and a style that it does not have; those of
+/// sampling.
+pub fn ordered(
+    file: &ModelFile,
+    draws: &Draws,
+    plan: Option<&[Rect]>,
+    database: &Database,
+) -> Result<Ordered> {
+    if draws.count == 0 {
+        return Err(Error::option("--count", "must be at least 1"));
+    }
+    let (mut draw, given) = sampler(file, draws, plan)?;
+    let is_given: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
+    let mut rng = stream(draws.seed, "building/fill", 0);
+    let mut whole = || whole(draw()?, &given, &mut rng);
+    let possible = match draws.most_probable || draws.untruncated {
+        true => {
+            let rows = wanted_rows(&whole()?);
+            let drawn = rows.len();
+            Possible {
+                rows,
+                drawn,
+                impossible: 0,
+            }
+        }
+        false => {
+            let deviations = &database.deviations;
+            let reach = |row: &[f64; 49]| match plan {
+                Some(plan) => distance(row, &is_given, plan, deviations),
+                None => 0.0,
+            };
+            possible_rows(draws.count, &is_given, deviations, reach, whole)?
+        }
+    };
+    let rows = possible.rows.iter().enumerate();
+    let orders = rows.map(|(row, wanted)| Order {
+        name: format!("house_{:04}", row + 1),
+        wanted: *wanted,
+        given: is_given,
+    });
+    Ok(Ordered {
+        orders: orders.collect(),
+        drawn: possible.drawn,
+        impossible: possible.impossible,
+    })
+}
+
+/// Draws a batch of samples at each call.
+type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
+
+/// The source of the samples, and the values that are given.
+fn sampler<'a>(
+    file: &'a ModelFile,
+    draws: &'a Draws,
+    plan: Option<&[Rect]>,
+) -> Result<(Sampler<'a>, Table)> {
+    let mut rng = stream(draws.seed, "building/sample", 0);
+    if let Some(style) = draws.style {
+        let batch = move || style_table(file, style, draws.count, &mut rng);
+        return Ok((Box::new(batch), Table::new()));
+    }
+    let mut given = given_table(file, &draws.given, &mut rng)?;
+    for (c, value) in plan.into_iter().flat_map(decided) {
+        // What is given of the plan is checked against it when the houses are made.
+        if given.column(COLUMNS[c]).is_err() {
+            let more = given.real(COLUMNS[c], [Some(value)]);
+            given = more.map_err(Error::method)?;
+        }
+    }
+    let (evidence, mut batches) = (given.clone(), 0..);
+    let batch = move || drawn_table(file, &evidence, draws, batches.next().unwrap_or(0));
+    Ok((Box::new(batch), given))
+}
+
+/// Samples of one style, the first is 1.
+///
+/// # Errors
+/// [`Error::Option`] for a style that the model does not have.
+pub fn style_table(
+    file: &ModelFile,
+    style: usize,
+    count: usize,
+    rng: &mut Stream,
+) -> Result<Table> {
+    let wrong = |message: String| Error::option("--style", message);
+    let index = style.checked_sub(1);
+    let index = index.ok_or_else(|| wrong("the first style is 1".into()))?;
+    let draws = file.sample_style(index, count, rng);
+    Ok(draws.map_err(|e| wrong(e.to_string()))?.table)
+}
+
+/// Evidence as a table of one row. A sample of the model tells the kinds of the columns.
+///
+/// # Errors
+/// [`Error::Option`] for evidence that the model does not know.
+pub fn given_table(file: &ModelFile, given: &[String], rng: &mut Stream) -> Result<Table> {
+    let kinds = file.sample(1, rng).map_err(Error::method)?;
+    evidence(&file.attributes(), &kinds.table, given)
+        .map_err(|e| Error::option("--given", e.to_string()))
+}
+
+/// Completions of one row; `row` names their random stream, and the row in errors. Of `draws`, the number, the choice among
+/// them and the seed are heeded.
+///
+/// # Errors
+/// Those of the model.
+pub fn drawn_table(file: &ModelFile, given: &Table, draws: &Draws, row: u64) -> Result<Table> {
+    let mut rng = stream(draws.seed, "building/draw", row);
+    let count = draws.count;
+    let found = if draws.most_probable {
+        file.most_probable(given, count, POOL.max(count), APART, &mut rng)
+    } else if given.columns().is_empty() {
+        file.sample(count, &mut rng)
+    } else {
+        file.complete(given, count, &mut rng)
+    };
+    // Each row was asked about on its own; the message names its place in the input.
+    let found = found.map_err(|e| Error::method(e.in_row(row as usize)))?;
+    Ok(found.table)
+}
+
+/// A table of draws that has all columns: what the model does not know is completed by the one that ships, what is given
+/// counting too.
+fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Table> {
+    if COLUMNS.iter().all(|name| drawn.column(name).is_ok()) {
+        return Ok(drawn);
+    }
+    let known = attribute_rows(given).pop();
+    let mut rows = attribute_rows(&drawn);
+    for row in &mut rows {
+        for (value, known) in row.iter_mut().zip(known.iter().flatten()) {
+            *value = known.or(*value);
+        }
+    }
+    let rows = filled(rows, shipped_model()?, rng).map_err(Error::method)?;
+    table(&rows).map_err(Error::method)
+}
+
+/// Makes houses in parallel, in their order. Nothing is made where a row contradicts itself. The watch is told of each house;
+/// where it breaks, only those are returned that were made before.
+///
+/// # Errors
+/// The contradiction, or that of [`Order::made`], with the name of the house.
+pub fn houses(
+    orders: &[Order],
+    database: &Database,
+    options: &Options,
+    seed: u64,
+    watch: &Watch,
+) -> Result<Vec<Generated>> {
+    for order in orders {
+        order.check(options).map_err(Error::method)?;
+    }
+    let (all, done) = (orders.len() as u64, AtomicU64::new(0));
+    let made = orders.par_iter().map(|order| {
+        let before = done.fetch_add(1, Ordering::Relaxed);
+        if watch(Progress::of("houses", before, all)).is_break() {
+            return Ok(None);
+        }
+        let house = order.made(database, options, seed);
+        let house = house.map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
+        Ok(Some(house))
+    });
+    let made: Result<Vec<Option<Generated>>> = made.collect();
+    Ok(made?.into_iter().flatten().collect())
+}
