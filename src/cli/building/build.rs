@@ -20,7 +20,7 @@ use edifice_shape::Rect;
 
 use super::data;
 use super::draw::{Draw, drawn_table};
-use super::produce::{Order, Output, produce};
+use super::produce::{Order, Output, Redraw, produce};
 use crate::model::given::evidence;
 use crate::print;
 
@@ -43,8 +43,8 @@ pub struct BuildArgs {
 /// Options of `generate`.
 #[derive(clap::Args)]
 pub struct GenerateArgs {
-    /// The model (`*.houses.json`); the one that ships by default. Attributes that it does not know are those of the one
-    /// that ships.
+    /// The model (`*.houses.json`); by default the one that ships, learnt from real houses. `made` is that of the made
+    /// houses. Attributes that a model does not know are those of the one that ships.
     model: Option<PathBuf>,
     /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none (all zero); repeatable.
     #[arg(long)]
@@ -58,7 +58,8 @@ pub struct GenerateArgs {
     /// Draw many and keep the most probable that differ.
     #[arg(long)]
     most_probable: bool,
-    /// Build every sample, also those that no house can have; they are repaired. Without it such samples are drawn anew.
+    /// Build every sample, also those that no house can have; they are repaired. Without it such samples are drawn anew,
+    /// and so are those whose houses miss them by more than a quarter of a deviation or that one would not believe.
     #[arg(long, conflicts_with = "most_probable")]
     untruncated: bool,
     /// Footprint of all houses: one rectilinear polygon without holes, in degrees or metres (GeoJSON).
@@ -80,6 +81,7 @@ pub fn build(args: &BuildArgs) -> Result<()> {
         &options,
         &args.output,
         Some(&args.attributes),
+        None,
     )
 }
 
@@ -195,10 +197,21 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
                 Some(plan) => distance(row, &is_given, plan, deviations),
                 None => 0.0,
             };
-            let possible = possible_rows(args.count, &is_given, deviations, reach, whole)?;
+            let possible = possible_rows(args.count, &is_given, deviations, reach, &mut whole)?;
             tell(&possible, plan.is_some());
             possible.rows
         }
+    };
+    let mut again = |count| {
+        let deviations = &database.deviations;
+        let none = |_: &[f64; 49]| 0.0;
+        Ok(possible_rows(count, &is_given, deviations, none, &mut whole)?.rows)
+    };
+    // On a footprint the house is as near as it can be; the other two say which rows are built.
+    let redraws = plan.is_none() && !args.most_probable && !args.untruncated;
+    let redraw: Option<&mut Redraw> = match redraws {
+        true => Some(&mut again),
+        false => None,
     };
     let orders: Vec<Order> = rows
         .iter()
@@ -213,7 +226,7 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
         footprint: plan,
         ..args.output.making.options()
     };
-    produce(&orders, &database, &options, &args.output, None)
+    produce(&orders, &database, &options, &args.output, None, redraw)
 }
 
 /// Says how many samples were passed over.

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::design::MOVED;
+use edifice_building_exteriors::house::inspect::implausible;
 use edifice_building_exteriors::house::{
     Database, Generated, HouseReport, Joining, Method, Options, generate,
 };
@@ -19,6 +21,8 @@ use crate::print;
 
 /// Most houses that are in memory and written together.
 const CHUNK: usize = 64;
+/// Rows drawn at most in the place of one whose house is not believable.
+const ATTEMPTS: u64 = 12;
 
 /// The folder of the houses, and their form.
 #[derive(clap::Args)]
@@ -136,15 +140,27 @@ impl Output {
     fn report_file(&self, name: &str) -> PathBuf {
         self.output.join(format!("{name}.report.json"))
     }
+
+    /// Writes a house and its report.
+    fn write(&self, house: &Generated, seconds: f64) -> Result<()> {
+        let (building, model) = (&house.building, &house.model);
+        output::write(building, model, &self.output, &self.making.format)?;
+        let text = report(&house.report, Some(seconds))?;
+        let path = self.report_file(&building.name);
+        write_atomic(&path, format!("{text}\n").as_bytes())
+    }
 }
 
-/// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same attributes are left as they are.
+/// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same
+/// attributes are left as they are. With `redraw`, a house that misses its row or that one would not believe gives way to
+/// one of another row.
 pub fn produce(
     orders: &[Order],
     database: &Database,
     options: &Options,
     output: &Output,
     source: Option<&Path>,
+    mut redraw: Option<&mut Redraw>,
 ) -> Result<()> {
     let named = |house: &str, e: String| match source {
         Some(path) => Error::content(path, format!("{house}: {e}")),
@@ -160,46 +176,35 @@ pub fn produce(
         }
     }
     output::folder(&output.output)?;
+    let made = |order: &Order, attempt: u64| -> Made {
+        let name = format!("building/generate/{}", order.name);
+        let mut rng = stream(output.seed, &name, attempt);
+        let start = std::time::Instant::now();
+        let (name, wanted) = (&order.name, &order.wanted);
+        let house = generate(name, wanted, &order.given, database, options, &mut rng)
+            .map_err(|e| named(&order.name, e.to_string()))?;
+        Ok(Some((house, start.elapsed().as_secs_f64())))
+    };
     let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
-    let (mut done, mut near) = (0, 0);
+    let (mut done, mut near, mut replaced) = (0, 0, 0);
     for chunk in orders.chunks(CHUNK) {
-        let made: Vec<Result<Option<(Generated, f64)>>> = chunk
+        let first = chunk.par_iter().map(|order| {
+            match !output.street && is_done(&output.report_file(&order.name), order) {
+                true => Ok(None),
+                false => made(order, 0),
+            }
+        });
+        let mut houses: Vec<Made> = first.collect();
+        if let Some(redraw) = redraw.as_deref_mut() {
+            replaced += replace(chunk, &mut houses, redraw, &made)?;
+        }
+        let houses = houses.into_iter().collect::<Result<Vec<_>>>()?;
+        houses
             .par_iter()
-            .map(|order| {
-                if !output.street && is_done(&output.report_file(&order.name), order) {
-                    return Ok(None);
-                }
-                let mut rng = stream(output.seed, &format!("building/generate/{}", order.name), 0);
-                let start = std::time::Instant::now();
-                let house = generate(
-                    &order.name,
-                    &order.wanted,
-                    &order.given,
-                    database,
-                    options,
-                    &mut rng,
-                )
-                .map_err(|e| named(&order.name, e.to_string()))?;
-                let seconds = start.elapsed().as_secs_f64();
-                output::write(
-                    &house.building,
-                    &house.model,
-                    &output.output,
-                    &output.making.format,
-                )?;
-                let text = report(&house.report, Some(seconds))?;
-                write_atomic(
-                    &output.report_file(&order.name),
-                    format!("{text}\n").as_bytes(),
-                )?;
-                Ok(Some((house, seconds)))
-            })
-            .collect();
-        for house in made {
-            done += 1;
-            let Some((house, seconds)) = house? else {
-                continue;
-            };
+            .flatten()
+            .try_for_each(|(house, seconds)| output.write(house, *seconds))?;
+        done += houses.len();
+        for (house, seconds) in houses.into_iter().flatten() {
             near += usize::from(house.report.repaired_z <= 0.05);
             if output.json {
                 print::line(&report(&house.report, Some(seconds))?)?;
@@ -215,11 +220,70 @@ pub fn produce(
     if output.street {
         gltf::write(&output::street(&street), &output.output.join("street.glb"))?;
     }
+    if replaced > 0 {
+        print::message(&format!(
+            "{replaced} houses missed their samples or were implausible and gave way to others"
+        ));
+    }
     print::message(&format!(
         "{done} houses in {}, {near} made now within 0.05 standard deviations of their attributes",
         output.output.display()
     ));
     Ok(())
+}
+
+/// Draws rows of attributes anew.
+pub type Redraw<'a> = dyn FnMut(usize) -> Result<Vec<[f64; 49]>> + 'a;
+
+/// A house and the seconds that it took; none where it had been made before.
+type Made = Result<Option<(Generated, f64)>>;
+
+/// True if a house has its attributes and nothing that one would not believe.
+fn is_believable(made: &Made) -> bool {
+    match made {
+        Ok(Some((house, _))) => {
+            let report = &house.report;
+            report.max_z <= MOVED && report.styles && implausible(&house.building).is_empty()
+        }
+        Ok(None) => true,
+        Err(_) => false,
+    }
+}
+
+/// Makes houses of other rows in the place of those that are not believable; returns their number.
+fn replace(
+    orders: &[Order],
+    houses: &mut [Made],
+    redraw: &mut Redraw,
+    made: &(impl Fn(&Order, u64) -> Made + Sync),
+) -> Result<usize> {
+    let mut count = 0;
+    for attempt in 1..=ATTEMPTS {
+        let bad = |i: &usize| !is_believable(&houses[*i]);
+        let bad: Vec<usize> = (0..houses.len()).filter(bad).collect();
+        if bad.is_empty() {
+            break;
+        }
+        let rows = redraw(bad.len())?;
+        count += rows.len();
+        let others: Vec<(usize, Made)> = (bad.into_par_iter().zip(rows))
+            .map(|(i, wanted)| {
+                let order = Order {
+                    name: orders[i].name.clone(),
+                    wanted,
+                    given: orders[i].given,
+                };
+                (i, made(&order, attempt))
+            })
+            .collect();
+        for (i, other) in others {
+            // Of none that is believable the first is kept, unless there is no house of it.
+            if is_believable(&other) || houses[i].is_err() {
+                houses[i] = other;
+            }
+        }
+    }
+    Ok(count)
 }
 
 fn is_done(path: &Path, order: &Order) -> bool {
