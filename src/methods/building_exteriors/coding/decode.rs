@@ -102,7 +102,10 @@ fn possible(
     if settles {
         parts::settle(row, given);
     }
-    let ground = [0, 1, 3].map(|c| row[c]).into_iter().try_fold(1.0, |a, v| Some(a * v?));
+    let ground = [0, 1, 3]
+        .map(|c| row[c])
+        .into_iter()
+        .try_fold(1.0, |a, v| Some(a * v?));
     let most = match ground {
         Some(ground) if settles && parts::area(row) > 0.0 => 1.0 - parts::area(row) / ground,
         _ => 1.0,

@@ -101,7 +101,8 @@ fn variables(group: &attributes::Group) -> Vec<&'static str> {
 impl Observation {
     /// The category of the number of floors.
     fn count(&self) -> Option<&'static str> {
-        self.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?).copied())
+        self.floors
+            .and_then(|f| COUNTS.get(f.checked_sub(1)?).copied())
     }
 
     /// The value of a variable; flags are 0 or 1.
@@ -144,7 +145,9 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
                 continue;
             }
             table = match group.level {
-                Level::Element => table.binary(name, cells.into_iter().map(|v| v.map(|v| v > 0.5)))?,
+                Level::Element => {
+                    table.binary(name, cells.into_iter().map(|v| v.map(|v| v > 0.5)))?
+                }
                 Level::Mass | Level::Facade => table.real(name, cells)?,
             };
             own.push(name);
@@ -198,7 +201,10 @@ pub fn coded_evidence(given: &[AttributeRow], columns: &[String]) -> Result<Tabl
     let mut table = Table::new();
     let knows = |name: &str| columns.iter().any(|c| c == name);
     for name in columns {
-        let flag = COLUMNS.iter().position(|c| c == name).is_some_and(|c| c >= STYLES);
+        let flag = COLUMNS
+            .iter()
+            .position(|c| c == name)
+            .is_some_and(|c| c >= STYLES);
         let cells = houses.iter().map(|h| h.value(name));
         let discrete = [FLOORS, PLAN].contains(&name.as_str())
             || THERE.contains(&name.as_str())

@@ -58,10 +58,7 @@ fn rect(row: &AttributeRow, extents: [f64; 2], c: usize) -> Option<Edges> {
     let size = |axis: usize| row[c + 2 + axis].filter(|v| *v > 0.0);
     let (w, d) = (size(0)?, size(1)?);
     let (x, y) = (row[c]? * extents[0], row[c + 1]? * extents[1]);
-    Some([
-        [x - w / 2.0, x + w / 2.0],
-        [y - d / 2.0, y + d / 2.0],
-    ])
+    Some([[x - w / 2.0, x + w / 2.0], [y - d / 2.0, y + d / 2.0]])
 }
 
 fn garage_at([x, y, w, d]: [f64; 4], extents: [f64; 2]) -> Edges {
@@ -72,7 +69,12 @@ fn garage_at([x, y, w, d]: [f64; 4], extents: [f64; 2]) -> Edges {
     [[left, left + w], closed([low, low + d], [0.0, extents[1]])]
 }
 
-fn porch_at([x, _, w, d]: [f64; 4], extents: [f64; 2], front: bool, garage: Option<Edges>) -> Option<Edges> {
+fn porch_at(
+    [x, _, w, d]: [f64; 4],
+    extents: [f64; 2],
+    front: bool,
+    garage: Option<Edges>,
+) -> Option<Edges> {
     let d = d.min(extents[1] - BEHIND);
     let (mut low, mut high) = (0.0, extents[0]);
     // A porch stands beside the garage, never before or behind it.
@@ -116,7 +118,8 @@ fn closed([low, high]: [f64; 2], [from, to]: [f64; 2]) -> [f64; 2] {
 fn write(row: &mut AttributeRow, c: usize, [x, y]: Edges, [w, d]: [f64; 2]) {
     let (own_w, own_d) = (x[1] - x[0], y[1] - y[0]);
     let on = |v: f64, end: f64, length: f64| if (v - end).abs() < 1e-6 { length } else { 0.0 };
-    let open = on(x[0], 0.0, own_d) + on(x[1], w, own_d) + on(y[0], 0.0, own_w) + on(y[1], d, own_w);
+    let open =
+        on(x[0], 0.0, own_d) + on(x[1], w, own_d) + on(y[0], 0.0, own_w) + on(y[1], d, own_w);
     let values = [
         (x[0] + x[1]) / 2.0 / w,
         (y[0] + y[1]) / 2.0 / d,

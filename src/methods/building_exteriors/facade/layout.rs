@@ -60,6 +60,8 @@ pub fn furnish(
         max_z: 0.0,
         evaluations: 0,
     };
+    // Windows that the sides so far have beyond the usual number: the others have fewer, so that the house has as many.
+    let mut beyond = 0.0;
     for (s, side) in Side::ALL.into_iter().enumerate() {
         let mut search = SideSearch {
             building,
@@ -70,12 +72,14 @@ pub fn furnish(
             styles: shared(&styles, s),
             column: s,
             cuts: target.cuts,
+            beyond,
             evaluations: 0,
         };
         let door = (!has_door(&target.fixed))
             .then(|| door_strip(building, &walls, side))
             .flatten();
         let (pieces, z) = search.run(door);
+        beyond = search.beyond;
         out.evaluations += search.evaluations;
         out.max_z = out.max_z.max(z);
         out.pieces.extend(pieces);
@@ -154,6 +158,8 @@ struct SideSearch<'a> {
     styles: Vec<ElementStyle>,
     column: usize,
     cuts: bool,
+    /// Windows beyond the usual number on the sides before this one, then with it.
+    beyond: f64,
     evaluations: u64,
 }
 
@@ -170,10 +176,15 @@ impl SideSearch<'_> {
         // The usual number of windows for the glazed area, evenly on all walls.
         let glazed = self.wanted[0] * total * self.building.floor_height
             - f64::from(u8::from(door.is_some())) * DOOR[0] * DOOR[1];
-        let usual = usual_count(glazed);
+        let own = usual_count(glazed);
+        let usual = (own - self.beyond).clamp(0.5 * own, 2.0 * own);
         let natural = (total / usual).clamp(USUAL[0], USUAL[1]);
         let mut best: Option<(Vec<FacadePiece>, [f64; 3])> = None;
-        for (k, spacing) in SPACINGS.map(|share| share * natural).into_iter().enumerate() {
+        for (k, spacing) in SPACINGS
+            .map(|share| share * natural)
+            .into_iter()
+            .enumerate()
+        {
             if k >= LOOKED && best.as_ref().is_some_and(|b| b.1[0] <= ENOUGH) {
                 break;
             }
@@ -200,9 +211,9 @@ impl SideSearch<'_> {
                 }
             }
         }
-        best.map_or((Vec::new(), 0.0), |(pieces, [_, _, z])| {
-            (pieces, z % NO_DOOR)
-        })
+        let (pieces, [_, _, z]) = best.unwrap_or_default();
+        self.beyond += windows(&pieces) as f64 - own;
+        (pieces, z % NO_DOOR)
     }
 
     /// Asymmetric width of the fixed pieces.

@@ -94,7 +94,8 @@ fn plan(target: &MassTarget, rng: &mut impl Rng) -> Option<Vec<Rect>> {
             return None;
         }
         // Neighbouring corners: left, right, and those at the back.
-        let (right, back) = [(false, false), (true, false), (true, true), (false, true)][(first + k) % 4];
+        let (right, back) =
+            [(false, false), (true, false), (true, true), (false, true)][(first + k) % 4];
         let hole = Rect::new(
             if right { w - width } else { 0.0 },
             if back { d - depth } else { 0.0 },

@@ -208,7 +208,11 @@ impl Found {
     }
 
     fn keep(&mut self, model: MassModel, blocks: Option<Vec<Block>>) {
-        let buried = if is_buried(&model.building) { BURIED } else { 0.0 };
+        let buried = if is_buried(&model.building) {
+            BURIED
+        } else {
+            0.0
+        };
         let (cost, complexity) = (model.max_z + buried, complexity(&model.building));
         let worse = match cost.max(self.cost) <= self.enough {
             true => complexity >= self.complexity,
