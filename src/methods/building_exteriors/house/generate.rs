@@ -250,7 +250,7 @@ pub struct Draft {
     shell: Faces,
     /// The numbers of the surface are still 0.
     report: HouseReport,
-    /// Number of [findings](implausible) that one would not believe.
+    /// Number of [findings](implausible) that one would not believe; a style that is missing is one.
     findings: usize,
 }
 
@@ -347,7 +347,7 @@ pub fn draft(
         reached,
     };
     Ok(Draft {
-        findings: implausible(&building).len(),
+        findings: implausible(&building).len() + usize::from(!report.styles),
         building,
         shell,
         report,
