@@ -6,6 +6,7 @@ use std::sync::Arc;
 use edifice_building_exteriors::house::Options;
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_editing::building_exteriors::draws::{Draws, houses, ordered};
+use edifice_editing::building_exteriors::redraws::Redraws;
 use edifice_editing::building_exteriors::{shipped_database, shipped_model};
 use edifice_io::read_bytes;
 use pyo3::prelude::*;
@@ -74,7 +75,7 @@ impl HouseModel {
 
     /// Draws houses; the same seed gives the bytes of `edifice building generate`. `given` maps a column or an attribute to its value: a number, a truth
     /// value, a text (`none`: all zero), or a list with a value for each column of an attribute. `style` draws from one style only, the first is 1;
-    /// `most_probable` draws many and keeps the most probable that differ. Samples that no house can have are drawn anew, unless `untruncated`.
+    /// `most_probable` draws many and keeps the most probable that differ. Samples that no house can have, or whose houses miss them or are not believable, are drawn anew, unless `untruncated`.
     #[pyo3(signature = (given = None, count = 10, seed = 1, style = None, most_probable = false, untruncated = false))]
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn generate(
@@ -105,7 +106,16 @@ impl HouseModel {
         let made = watched(py, move |watch| {
             let database = shipped_database()?;
             let drawn = ordered(&model, &draws, None, database)?;
-            houses(&drawn.orders, database, &Options::default(), seed, watch)
+            let redraws = Redraws::new(&model, &draws, database, false);
+            let options = Options::default();
+            houses(
+                &drawn.orders,
+                database,
+                &options,
+                seed,
+                redraws.as_ref(),
+                watch,
+            )
         })?;
         let made = made.map_err(failed)?;
         Ok(made.into_iter().map(|h| House::of(h.building)).collect())

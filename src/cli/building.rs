@@ -39,18 +39,18 @@ A CSV of other columns needs a schema: --schema datasets/building_exteriors/h2k.
     Learn(learn::Args),
     /// Show styles, cardinalities and lateral edges of a model, and draw its network.
     #[command(after_help = "Examples:
-  edifice building show datasets/building_exteriors/default.houses.json --svg network.svg")]
+  edifice building show datasets/building_exteriors/real.houses.json --svg network.svg")]
     Show(show::Args),
     /// Sample houses, as attributes; prints CSV.
     #[command(after_help = "Examples:
-  edifice building sample datasets/building_exteriors/default.houses.json -n 5
-  edifice building sample datasets/building_exteriors/default.houses.json --given garage=none --given bbox.w=14 --given roof.hip=yes
-  edifice building sample datasets/building_exteriors/default.houses.json --given wwr=0.2,0.2,0.1,0.1 --most-probable")]
+  edifice building sample datasets/building_exteriors/real.houses.json -n 5
+  edifice building sample datasets/building_exteriors/real.houses.json --given garage=none --given bbox.w=14 --given roof.hip=yes
+  edifice building sample datasets/building_exteriors/real.houses.json --given wwr=0.2,0.2,0.1,0.1 --most-probable")]
     Sample(draw::SampleArgs),
     /// Complete houses whose attributes are partly missing; prints CSV.
     #[command(after_help = "Examples:
-  edifice building complete datasets/building_exteriors/default.houses.json village.buildings.jsonl -n 2 --most-probable
-  edifice building complete datasets/building_exteriors/default.houses.json village.buildings.jsonl -n 1 -o completed --format json,glb
+  edifice building complete datasets/building_exteriors/real.houses.json village.buildings.jsonl -n 2 --most-probable
+  edifice building complete datasets/building_exteriors/real.houses.json village.buildings.jsonl -n 1 -o completed --format json,glb
 A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
     Complete(draw::CompleteArgs),
     /// Compare houses with the true ones: attributes, soundness, closed surfaces.
@@ -63,16 +63,16 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
     #[command(after_help = "Examples:
   edifice building attributes datasets/building_exteriors/houses.buildings.jsonl > houses.csv
   head -n 4 houses.csv > few.csv && edifice building build few.csv -o houses --format json,obj,glb,png
-  edifice building sample datasets/building_exteriors/default.houses.json -n 5 > sampled.csv && edifice building build sampled.csv --repair -o sampled")]
+  edifice building sample datasets/building_exteriors/real.houses.json -n 5 > sampled.csv && edifice building build sampled.csv --repair -o sampled")]
     Build(build::BuildArgs),
     /// Sample attributes from a model and build the houses.
     #[command(after_help = "Examples:
   edifice building generate -n 3 -o generated --format json,obj,glb,svg,png
   edifice building generate -n 3 --given garage=none --given roof.hip=yes -o without_garage --json
   edifice building generate -n 4 --footprint datasets/building_exteriors/plot.geojson -o plot
-  edifice building generate datasets/building_exteriors/default.houses.json -n 6 --most-probable -o made
+  edifice building generate made -n 6 --most-probable -o made
   edifice building generate -n 12 -o town --street
-Without a model houses are drawn from the one that ships.")]
+Without a model houses are drawn from the one that ships, learnt from real houses; `made` is that of the made houses.")]
     Generate(build::GenerateArgs),
     /// Make other houses with the attributes of a house, their plans at least 5 % apart.
     #[command(after_help = "Examples:

@@ -2,6 +2,7 @@
 //! (Fan and Wonka 2016, Fig. 19), and other plans with the same attributes.
 
 pub mod draws;
+pub mod redraws;
 mod steps;
 mod text;
 mod view;
@@ -35,7 +36,10 @@ use edifice_shape::Building;
 pub const DATABASE: &str = "building_exteriors/houses.buildings.jsonl";
 /// Real houses of Delft, measured from the 3D BAG by `edifice building import`.
 const REAL: &str = "building_exteriors/delft.buildings.jsonl";
-const MODEL: &str = "building_exteriors/default.houses.json";
+const MODEL: &str = "building_exteriors/real.houses.json";
+/// The name of the model of the made houses on the command line, and its file in the program.
+pub const MADE: &str = "made";
+const MADE_MODEL: &str = "building_exteriors/made.houses.json";
 const ENDING: &str = ".building.json";
 const FORMATS: &[&str] = &["glb", "obj", "svg"];
 
@@ -55,7 +59,7 @@ pub const EDITOR: Editor = Editor {
             id: "modern",
             kind: "house",
             title: "A modern house",
-            about: "Flat roofs on two floors: one of the two hundred houses that the model was learned from.",
+            about: "Flat roofs on two floors: one of the two hundred made houses.",
             source: Source::Line(DATABASE, 62, "house_0063"),
         },
     ],
@@ -100,19 +104,32 @@ pub fn shipped_database() -> Result<&'static Database> {
     Ok(READ.get_or_init(|| database))
 }
 
-/// The model that ships with the project, learned from the made houses by `edifice building learn`.
+/// The model that ships with the project, learned from real houses by `edifice building learn`.
 ///
 /// # Errors
 /// As [`shipped_database`].
 pub fn shipped_model() -> Result<&'static ModelFile> {
     static READ: OnceLock<ModelFile> = OnceLock::new();
-    if let Some(model) = READ.get() {
+    read_once(&READ, MODEL)
+}
+
+/// The model of the made houses, whose truth is known.
+///
+/// # Errors
+/// As [`shipped_database`].
+pub fn made_model() -> Result<&'static ModelFile> {
+    static READ: OnceLock<ModelFile> = OnceLock::new();
+    read_once(&READ, MADE_MODEL)
+}
+
+fn read_once(known: &'static OnceLock<ModelFile>, name: &str) -> Result<&'static ModelFile> {
+    if let Some(model) = known.get() {
         return Ok(model);
     }
-    let path = Path::new(MODEL);
-    let text = std::str::from_utf8(shipped_bytes(MODEL)?).map_err(|e| Error::content(path, e))?;
+    let path = Path::new(name);
+    let text = std::str::from_utf8(shipped_bytes(name)?).map_err(|e| Error::content(path, e))?;
     let model = ModelFile::from_json(text).map_err(|e| Error::content(path, e))?;
-    Ok(READ.get_or_init(|| model))
+    Ok(known.get_or_init(|| model))
 }
 
 /// The house after edits; with a model, the one it suggests.

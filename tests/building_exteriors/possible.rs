@@ -16,7 +16,7 @@ use rand_distr::StandardNormal;
 fn shipped() -> (Database, ModelFile) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/building_exteriors");
     let houses = building_json::read(&folder.join("houses.buildings.jsonl")).unwrap();
-    let path = folder.join("default.houses.json");
+    let path = folder.join("made.houses.json");
     let model = ModelFile::from_json(&std::fs::read_to_string(&path).unwrap()).unwrap();
     (Database::new(houses).unwrap(), model)
 }

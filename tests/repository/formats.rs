@@ -281,7 +281,7 @@ fn lines_for_programs_have_the_keys_of_the_page() {
     let cottage = "datasets/facade_grammar/layouts/cottage_1.facade.json";
     let terraces =
         ["a", "b"].map(|k| format!("datasets/facade_grammar/layouts/terrace_{k}.facade.json"));
-    let houses = "datasets/building_exteriors/default.houses.json";
+    let houses = "datasets/building_exteriors/real.houses.json";
     let town = "datasets/city_proceduralization/town.city-grammar.json";
     let asia = "datasets/model/asia.bif";
     let (grammar, half, logic) = (

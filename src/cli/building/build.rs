@@ -10,6 +10,7 @@ use edifice_building_exteriors::design::MOVED;
 use edifice_building_exteriors::house::Options;
 use edifice_building_exteriors::observations::cell;
 use edifice_editing::building_exteriors::draws::{Draws, Order, Ordered, ordered};
+use edifice_editing::building_exteriors::redraws::Redraws;
 use edifice_editing::building_exteriors::{is_file_name, shipped_model};
 use edifice_io::building_csv::{self, TextTable};
 use edifice_io::footprint;
@@ -37,8 +38,8 @@ pub struct BuildArgs {
 /// Options of `generate`.
 #[derive(clap::Args)]
 pub struct GenerateArgs {
-    /// The model (`*.houses.json`); the one that ships by default. Attributes that it does not know are those of the one
-    /// that ships.
+    /// The model (`*.houses.json`); by default the one that ships, learnt from real houses. `made` is that of the made
+    /// houses. Attributes that a model does not know are those of the one that ships.
     model: Option<PathBuf>,
     /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none (all zero); repeatable.
     #[arg(long)]
@@ -52,7 +53,8 @@ pub struct GenerateArgs {
     /// Draw many and keep the most probable that differ.
     #[arg(long)]
     most_probable: bool,
-    /// Build every sample, also those that no house can have; they are repaired. Without it such samples are drawn anew.
+    /// Build every sample, also those that no house can have; they are repaired. Without it such samples are drawn anew,
+    /// and so are those whose houses miss them by more than a quarter of a deviation or that one would not believe.
     #[arg(long, conflicts_with = "most_probable")]
     untruncated: bool,
     /// Footprint of all houses: one rectilinear polygon without holes, in degrees or metres (GeoJSON).
@@ -74,6 +76,7 @@ pub fn build(args: &BuildArgs) -> Result<()> {
         &options,
         &args.output,
         Some(&args.attributes),
+        None,
     )
 }
 
@@ -147,11 +150,13 @@ pub fn generate(args: &GenerateArgs) -> Result<()> {
     };
     let ordered = ordered(file, &draws, plan.as_deref(), &database)?;
     tell(&ordered, plan.is_some());
+    let redraws = Redraws::new(file, &draws, &database, plan.is_some());
     let options = Options {
         footprint: plan,
         ..args.output.making.options()
     };
-    produce(&ordered.orders, &database, &options, &args.output, None)
+    let (orders, output) = (&ordered.orders, &args.output);
+    produce(orders, &database, &options, output, None, redraws.as_ref())
 }
 
 /// Says how many samples were passed over.

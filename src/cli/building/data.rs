@@ -8,6 +8,7 @@ use edifice_building_exteriors::coding::{Observation, coded};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_building_exteriors::observations::{observations, only, tells_of_houses};
+use edifice_editing::building_exteriors::{MADE, made_model};
 use edifice_io::{building_csv, building_json, json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
@@ -97,8 +98,11 @@ impl Input {
     }
 }
 
-/// Reads a learned model.
+/// Reads a learned model; `made` is that of the made houses, which ships.
 pub fn model(path: &Path) -> Result<ModelFile> {
+    if path.as_os_str() == MADE {
+        return made_model().cloned();
+    }
     let bytes = read_bytes(path)?;
     let text = String::from_utf8(bytes).map_err(|e| Error::content(path, e))?;
     ModelFile::from_json(&text).map_err(|e| Error::content(path, e))

@@ -8,6 +8,7 @@ use edifice_building_exteriors::house::{
     Database, Generated, HouseReport, Joining, Method, Options,
 };
 use edifice_editing::building_exteriors::draws::Order;
+use edifice_editing::building_exteriors::redraws::{Redraws, believable};
 use edifice_io::{gltf, write_atomic};
 use edifice_shape::Building;
 use rayon::prelude::*;
@@ -124,15 +125,27 @@ impl Output {
     fn report_file(&self, name: &str) -> PathBuf {
         self.output.join(format!("{name}.report.json"))
     }
+
+    /// Writes a house and its report.
+    fn write(&self, house: &Generated, seconds: f64) -> Result<()> {
+        let (building, model) = (&house.building, &house.model);
+        output::write(building, model, &self.output, &self.making.format)?;
+        let text = report(&house.report, Some(seconds))?;
+        let path = self.report_file(&building.name);
+        write_atomic(&path, format!("{text}\n").as_bytes())
+    }
 }
 
-/// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same attributes are left as they are.
+/// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same
+/// attributes are left as they are. With `redraws`, a house that misses its row or that one would not believe gives way to
+/// one of another row.
 pub fn produce(
     orders: &[Order],
     database: &Database,
     options: &Options,
     output: &Output,
     source: Option<&Path>,
+    redraws: Option<&Redraws>,
 ) -> Result<()> {
     let wrong = |message: String| match source {
         Some(path) => Error::content(path, message),
@@ -143,38 +156,29 @@ pub fn produce(
         order.check(options).map_err(wrong)?;
     }
     output::folder(&output.output)?;
+    let make = |(number, order): (usize, &Order)| -> Result<Option<(Generated, f64, bool)>> {
+        if !output.street && is_done(&output.report_file(&order.name), order) {
+            return Ok(None);
+        }
+        let start = std::time::Instant::now();
+        let made = believable(order, number, database, options, output.seed, redraws);
+        let (house, other) = made.map_err(wrong)?;
+        let seconds = start.elapsed().as_secs_f64();
+        output.write(&house, seconds)?;
+        Ok(Some((house, seconds, other)))
+    };
     let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
-    let (mut done, mut near) = (0, 0);
-    for chunk in orders.chunks(CHUNK) {
-        let made: Vec<Result<Option<(Generated, f64)>>> = chunk
-            .par_iter()
-            .map(|order| {
-                if !output.street && is_done(&output.report_file(&order.name), order) {
-                    return Ok(None);
-                }
-                let start = std::time::Instant::now();
-                let house = order.made(database, options, output.seed);
-                let house = house.map_err(|e| wrong(format!("{}: {e}", order.name)))?;
-                let seconds = start.elapsed().as_secs_f64();
-                output::write(
-                    &house.building,
-                    &house.model,
-                    &output.output,
-                    &output.making.format,
-                )?;
-                let text = report(&house.report, Some(seconds))?;
-                write_atomic(
-                    &output.report_file(&order.name),
-                    format!("{text}\n").as_bytes(),
-                )?;
-                Ok(Some((house, seconds)))
-            })
-            .collect();
+    let (mut done, mut near, mut replaced) = (0, 0, 0);
+    for (chunk, orders) in orders.chunks(CHUNK).enumerate() {
+        let numbered = orders.par_iter().enumerate();
+        let made = numbered.map(|(k, order)| make((chunk * CHUNK + k, order)));
+        let made: Vec<Result<Option<(Generated, f64, bool)>>> = made.collect();
         for house in made {
             done += 1;
-            let Some((house, seconds)) = house? else {
+            let Some((house, seconds, other)) = house? else {
                 continue;
             };
+            replaced += usize::from(other);
             near += usize::from(house.report.repaired_z <= 0.05);
             if output.json {
                 print::line(&report(&house.report, Some(seconds))?)?;
@@ -189,6 +193,11 @@ pub fn produce(
     }
     if output.street {
         gltf::write(&output::street(&street), &output.output.join("street.glb"))?;
+    }
+    if replaced > 0 {
+        print::message(&format!(
+            "{replaced} houses missed their samples or were implausible and gave way to others"
+        ));
     }
     print::message(&format!(
         "{done} houses in {}, {near} made now within 0.05 standard deviations of their attributes",

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use super::redraws::{Redraws, believable};
 use super::shipped_model;
 use edifice_base::rng::{Stream, stream};
 use edifice_base::{Error, Progress, Result, Watch};
@@ -78,7 +79,7 @@ impl Order {
         }
     }
 
-    /// Makes the house. It depends on its name, its row and the seed, and not on other houses.
+    /// Makes the house. It depends on its name, its row, the seed and the attempt (0 for its own row), and not on other houses.
     ///
     /// # Errors
     /// [`GenerateError`].
@@ -87,8 +88,9 @@ impl Order {
         database: &Database,
         options: &Options,
         seed: u64,
+        attempt: u64,
     ) -> std::result::Result<Generated, GenerateError> {
-        let mut rng = stream(seed, &format!("building/generate/{}", self.name), 0);
+        let mut rng = stream(seed, &format!("building/generate/{}", self.name), attempt);
         let (wanted, given) = (&self.wanted, &self.given);
         generate(&self.name, wanted, given, database, options, &mut rng)
     }
@@ -109,7 +111,7 @@ pub fn ordered(
     if draws.count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
-    let (mut draw, given) = sampler(file, draws, plan)?;
+    let (mut draw, given) = sampler(file, draws, plan, 0)?;
     let is_given: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
     let mut rng = stream(draws.seed, "building/fill", 0);
     let mut whole = || whole(draw()?, &given, &mut rng);
@@ -146,15 +148,16 @@ pub fn ordered(
 }
 
 /// Draws a batch of samples at each call.
-type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
+pub(super) type Sampler<'a> = Box<dyn FnMut() -> Result<Table> + 'a>;
 
-/// The source of the samples, and the values that are given.
-fn sampler<'a>(
+/// The source of the samples, and the values that are given; `part` numbers the random streams.
+pub(super) fn sampler<'a>(
     file: &'a ModelFile,
     draws: &'a Draws,
     plan: Option<&[Rect]>,
+    part: u64,
 ) -> Result<(Sampler<'a>, Table)> {
-    let mut rng = stream(draws.seed, "building/sample", 0);
+    let mut rng = stream(draws.seed, "building/sample", part);
     if let Some(style) = draws.style {
         let batch = move || style_table(file, style, draws.count, &mut rng);
         return Ok((Box::new(batch), Table::new()));
@@ -167,8 +170,8 @@ fn sampler<'a>(
             given = more.map_err(Error::method)?;
         }
     }
-    let (evidence, mut batches) = (given.clone(), 0..);
-    let batch = move || drawn_table(file, &evidence, draws, batches.next().unwrap_or(0));
+    let (evidence, mut batches) = (given.clone(), part << 32..);
+    let batch = move || drawn_table(file, &evidence, draws, batches.next().unwrap_or(part << 32));
     Ok((Box::new(batch), given))
 }
 
@@ -221,7 +224,7 @@ pub fn drawn_table(file: &ModelFile, given: &Table, draws: &Draws, row: u64) -> 
 
 /// A table of draws that has all columns: what the model does not know is completed by the one that ships, what is given
 /// counting too.
-fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Table> {
+pub(super) fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Table> {
     if COLUMNS.iter().all(|name| drawn.column(name).is_ok()) {
         return Ok(drawn);
     }
@@ -237,7 +240,8 @@ fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Table> {
 }
 
 /// Makes houses in parallel, in their order. Nothing is made where a row contradicts itself. The watch is told of each house;
-/// where it breaks, only those are returned that were made before.
+/// where it breaks, only those are returned that were made before. With `redraws`, a house that is not believable gives way to
+/// one of another row.
 ///
 /// # Errors
 /// The contradiction, or that of [`Order::made`], with the name of the house.
@@ -246,20 +250,20 @@ pub fn houses(
     database: &Database,
     options: &Options,
     seed: u64,
+    redraws: Option<&Redraws>,
     watch: &Watch,
 ) -> Result<Vec<Generated>> {
     for order in orders {
         order.check(options).map_err(Error::method)?;
     }
     let (all, done) = (orders.len() as u64, AtomicU64::new(0));
-    let made = orders.par_iter().map(|order| {
+    let made = orders.par_iter().enumerate().map(|(number, order)| {
         let before = done.fetch_add(1, Ordering::Relaxed);
         if watch(Progress::of("houses", before, all)).is_break() {
             return Ok(None);
         }
-        let house = order.made(database, options, seed);
-        let house = house.map_err(|e| Error::method(format!("{}: {e}", order.name)))?;
-        Ok(Some(house))
+        let house = believable(order, number, database, options, seed, redraws);
+        Ok(Some(house.map_err(Error::method)?.0))
     });
     let made: Result<Vec<Option<Generated>>> = made.collect();
     Ok(made?.into_iter().flatten().collect())

@@ -4,7 +4,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::attributes::{AttributeRow, GROUPS};
-use super::coding::{Coding, attribute_rows, coded_evidence, decoded};
+use super::coding::{Coding, attribute_rows, coded_evidence, settled};
 use edifice_model::hierarchy::{Draws, Group, Hierarchy};
 use edifice_model::{ModelError, Table};
 
@@ -61,7 +61,12 @@ impl ModelFile {
             Coding::Presence => {
                 let known = GROUPS.iter().filter(|g| {
                     let own = |c: &str| g.columns().contains(&c);
-                    let derived = g.name == "far" && self.has("bcr");
+                    let derived = match g.name {
+                        "far" => self.has("bcr"),
+                        "bdry" => self.has("plan"),
+                        "arf" => self.has("floors"),
+                        _ => false,
+                    };
                     derived || self.groups.iter().flat_map(|g| &g.columns).any(|c| own(c))
                 });
                 known.map(|g| Group::new(g.name, g.columns())).collect()
@@ -152,7 +157,7 @@ impl ModelFile {
         match self.coding {
             Coding::Published => Ok(draws),
             Coding::Presence => Ok(Draws {
-                table: decoded(&draws.table, given)?,
+                table: settled(&draws.table, given)?,
                 ..draws
             }),
         }

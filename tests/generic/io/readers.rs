@@ -97,10 +97,10 @@ fn files() -> Vec<Vec<u8>> {
         label_text::to_string(&facade).unwrap().into_bytes(),
         CMP.as_bytes().to_vec(),
         br#"{"window": [255, 0, 0], "wall": 2}"#.to_vec(),
-        include_bytes!("../../fuzz/seeds/labelme/a.json").to_vec(),
-        include_bytes!("../../fuzz/seeds/annotation_xml/voc.xml").to_vec(),
-        include_bytes!("../../fuzz/seeds/annotation_xml/polygon.xml").to_vec(),
-        include_bytes!("../../fuzz/seeds/coco/a.json").to_vec(),
+        include_bytes!("../../../fuzz/seeds/labelme/a.json").to_vec(),
+        include_bytes!("../../../fuzz/seeds/annotation_xml/voc.xml").to_vec(),
+        include_bytes!("../../../fuzz/seeds/annotation_xml/polygon.xml").to_vec(),
+        include_bytes!("../../../fuzz/seeds/coco/a.json").to_vec(),
         jpeg(),
     ]
 }

@@ -56,7 +56,8 @@ pub(super) fn door_strip(building: &Building, walls: &Walls, side: Side) -> Opti
             return widest;
         }
     }
-    if side == Side::Back {
+    // The house is entered in front; other sides have a door for a porch only.
+    if side != Side::Front {
         return None;
     }
     let garage = |k: usize| {
@@ -173,7 +174,7 @@ fn put(
                     places.push(middle);
                     places.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
                     let place = places.into_iter().find(|at| is_free(walls, room, *at));
-                    if place.is_some_and(|at| hang(pieces, *side, at)) {
+                    if place.is_some_and(|at| hang(pieces, strip, *side, at)) {
                         return true;
                     }
                 }
@@ -183,8 +184,9 @@ fn put(
     false
 }
 
-/// Hangs a door on the one piece of the ground floor at a place; `false` where there are several, behind each other.
-fn hang(pieces: &mut [FacadePiece], side: Side, at: f64) -> bool {
+/// Hangs a door on the piece of the ground floor at a place: of several behind each other, the one of the strip; `false`
+/// where it cannot be told.
+fn hang(pieces: &mut [FacadePiece], strip: &Strip, side: Side, at: f64) -> bool {
     let half = DOOR[0] / 2.0;
     let here = |p: &&mut FacadePiece| {
         let reach =
@@ -192,6 +194,10 @@ fn hang(pieces: &mut [FacadePiece], side: Side, at: f64) -> bool {
         p.side == side && p.base < 1e-6 && reach && p.height >= DOOR[1]
     };
     let mut own: Vec<&mut FacadePiece> = pieces.iter_mut().filter(here).collect();
+    if own.len() > 1 {
+        let near = |a: f64, b: f64| (a - b).abs() < 2e-3;
+        own.retain(|p| near(p.start, strip.start) && near(p.width, strip.width()));
+    }
     let [piece] = own.as_mut_slice() else {
         return false;
     };

@@ -6,11 +6,19 @@ use edifice_shape::{ElementStyle, FacadeElement, FacadePiece};
 /// Width and height of a window at scale 1, the medians of 101,549 windows of audited Canadian houses, and of a door (m).
 pub(super) const WINDOW: [f64; 2] = [0.91, 1.22];
 pub(super) const DOOR: [f64; 2] = [1.0, 2.1];
+/// Coefficient and exponent of the usual number of windows of a side on its glazed area (square metres): least squares of
+/// the logarithms over the 17,361 glazed sides of 4,874 audited Canadian houses, windows of basements left out.
+const COUNT: [f64; 2] = [1.27, 0.603];
 /// Tallest window (m).
 const TALLEST: f64 = 2.2;
 /// Narrowest piece with a window, and narrowest window (m).
 const NARROWEST: f64 = 0.85;
 const SLIMMEST: f64 = 0.35;
+
+/// Number of windows that a side with this area of windows (square metres) usually has.
+pub(super) fn usual_count(area: f64) -> f64 {
+    COUNT[0] * area.max(0.0).powf(COUNT[1])
+}
 
 /// The plan by which a strip is furnished.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -193,7 +201,9 @@ fn centres(width: f64, floor: usize, plan: &Plan, spacing: f64) -> Vec<(f64, f64
         return Vec::new();
     }
     let most = ((width - CLEAR) / (SLIMMEST + 2.0 * CLEAR)) as usize;
-    let mut count = ((width / spacing).round() as usize).clamp(1, most.max(1));
+    // A strip much narrower than the usual distance is left bare, unless something has to stand on it.
+    let least = usize::from(plan.door || !plan.symmetric);
+    let mut count = ((width / spacing).round() as usize).clamp(least, most.max(1));
     if plan.door {
         // An odd number, so that the door stands in the middle, and room for it.
         count = count.min((width / 1.4) as usize).max(1);

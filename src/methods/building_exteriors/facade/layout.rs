@@ -2,7 +2,7 @@
 
 use super::cut::{Candidate, Choice, NARROWEST, choices};
 use super::doors::{completed, door_strip};
-use super::glaze::{Plan, WINDOW, glaze, holds_asymmetric, millimetres};
+use super::glaze::{DOOR, Plan, glaze, holds_asymmetric, millimetres, usual_count};
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
 use crate::attributes::facade_attributes;
@@ -33,13 +33,18 @@ pub struct Facades {
     pub evaluations: u64,
 }
 
-/// Distances between windows to try (m); those come first at which windows of the usual size have the wanted ratio.
-const SPACINGS: [f64; 9] = [2.4, 2.0, 3.0, 1.6, 3.8, 1.25, 5.0, 6.5, 8.5];
+/// Distances between windows to try, in units of that at which the side has the usual number of windows for its ratio.
+const SPACINGS: [f64; 11] = [1.0, 1.15, 0.87, 1.35, 0.75, 1.7, 0.62, 2.3, 0.5, 3.5, 0.36];
+/// The nearest and the furthest usual distance (m).
+const USUAL: [f64; 2] = [1.2, 40.0];
 /// Choices of asymmetric strips tried.
 const CHOICES: usize = 10;
 /// Distance in standard deviations at which to stop, and what a missing door counts.
-const ENOUGH: f64 = 0.02;
+const ENOUGH: f64 = 0.04;
 const NO_DOOR: f64 = 100.0;
+
+/// Spacings of which the one with the most usual number of windows is taken; others are tried when these do not serve.
+const LOOKED: usize = 4;
 
 /// Puts windows and doors on the walls of a building; `deviations` are those of the twelve attributes.
 pub fn furnish(
@@ -55,6 +60,8 @@ pub fn furnish(
         max_z: 0.0,
         evaluations: 0,
     };
+    // Windows that the sides so far have beyond the usual number: the others have fewer, so that the house has as many.
+    let mut beyond = 0.0;
     for (s, side) in Side::ALL.into_iter().enumerate() {
         let mut search = SideSearch {
             building,
@@ -65,12 +72,14 @@ pub fn furnish(
             styles: shared(&styles, s),
             column: s,
             cuts: target.cuts,
+            beyond,
             evaluations: 0,
         };
         let door = (!has_door(&target.fixed))
             .then(|| door_strip(building, &walls, side))
             .flatten();
         let (pieces, z) = search.run(door);
+        beyond = search.beyond;
         out.evaluations += search.evaluations;
         out.max_z = out.max_z.max(z);
         out.pieces.extend(pieces);
@@ -80,6 +89,11 @@ pub fn furnish(
         completed(building, &walls, &mut out.pieces);
     }
     out
+}
+
+fn windows(pieces: &[FacadePiece]) -> usize {
+    let elements = pieces.iter().flat_map(|p| &p.elements);
+    elements.filter(|e| e.style != ElementStyle::Door).count()
 }
 
 fn is_entered(pieces: &[FacadePiece]) -> bool {
@@ -144,13 +158,14 @@ struct SideSearch<'a> {
     styles: Vec<ElementStyle>,
     column: usize,
     cuts: bool,
+    /// Windows beyond the usual number on the sides before this one, then with it.
+    beyond: f64,
     evaluations: u64,
 }
 
 impl SideSearch<'_> {
     /// The pieces nearest to the wanted attributes, and their distance.
     fn run(&mut self, door: Option<usize>) -> (Vec<FacadePiece>, f64) {
-        let mut best: Option<(Vec<FacadePiece>, f64, f64)> = None;
         let total: f64 = self
             .strips
             .iter()
@@ -158,17 +173,25 @@ impl SideSearch<'_> {
             .sum();
         let wanted = (1.0 - self.wanted[1]) * total - self.fixed_asymmetric();
         let enough = 0.01 * self.deviations[1] * total;
-        // Windows of the usual size, so far apart, cover the wanted share of the walls.
-        let natural =
-            WINDOW[0] * WINDOW[1] / (self.wanted[0].max(0.01) * self.building.floor_height);
-        let mut spacings = SPACINGS;
-        let off = |s: f64| (s / natural).ln().abs();
-        spacings.sort_by(|a, b| off(*a).total_cmp(&off(*b)));
-        for spacing in spacings {
+        // The usual number of windows for the glazed area, evenly on all walls.
+        let glazed = self.wanted[0] * total * self.building.floor_height
+            - f64::from(u8::from(door.is_some())) * DOOR[0] * DOOR[1];
+        let own = usual_count(glazed);
+        let usual = (own - self.beyond).clamp(0.5 * own, 2.0 * own);
+        let natural = (total / usual).clamp(USUAL[0], USUAL[1]);
+        let mut best: Option<(Vec<FacadePiece>, [f64; 3])> = None;
+        for (k, spacing) in SPACINGS
+            .map(|share| share * natural)
+            .into_iter()
+            .enumerate()
+        {
+            if k >= LOOKED && best.as_ref().is_some_and(|b| b.1[0] <= ENOUGH) {
+                break;
+            }
             let candidates = self.strips.iter().map(|s| self.candidate(s, spacing));
             let candidates: Vec<Candidate> = candidates.collect();
             let choices = choices(&candidates, wanted, enough, self.cuts, CHOICES);
-            for choice in &choices {
+            'near: for choice in &choices {
                 let (strips, plans) = self.plans(choice, door);
                 for plans in self.alignments(&strips, plans) {
                     let ratio = self.wanted[0];
@@ -176,25 +199,21 @@ impl SideSearch<'_> {
                     let (mut z, sum) = self.distance(&pieces);
                     let missing = door.is_some() && !is_entered(&pieces);
                     z += if missing { NO_DOOR } else { 0.0 };
-                    if best
-                        .as_ref()
-                        .is_none_or(|(_, least, all)| (z, sum) < (*least - 1e-9, *all))
-                    {
-                        best = Some((pieces, z, sum));
+                    // Of layouts that are near enough the one with the most usual number of windows.
+                    let off = (windows(&pieces) as f64 - usual).abs();
+                    let rank = [z.max(ENOUGH), if z <= ENOUGH { off } else { sum }, z];
+                    if best.as_ref().is_none_or(|(_, least)| rank < *least) {
+                        best = Some((pieces, rank));
                     }
                     if z <= ENOUGH {
-                        break;
+                        break 'near;
                     }
                 }
-                if best.as_ref().is_some_and(|b| b.1 <= ENOUGH) {
-                    break;
-                }
-            }
-            if best.as_ref().is_some_and(|b| b.1 <= ENOUGH) {
-                break;
             }
         }
-        best.map_or((Vec::new(), 0.0), |(pieces, z, _)| (pieces, z % NO_DOOR))
+        let (pieces, [_, _, z]) = best.unwrap_or_default();
+        self.beyond += windows(&pieces) as f64 - own;
+        (pieces, z % NO_DOOR)
     }
 
     /// Asymmetric width of the fixed pieces.

@@ -4,6 +4,7 @@ use rand::{Rng, RngExt};
 use serde::Serialize;
 
 use super::Database;
+use super::inspect::implausible;
 use super::model::{Model, furnished};
 use super::roof_styles::roof;
 use super::roofs::Joining;
@@ -24,8 +25,10 @@ use edifice_shape::{Building, MassBox, Rect, Special};
 const NUMBERS: usize = 39;
 /// A house within this distance of its row (standard deviations) is near enough.
 const NEAR: f64 = 0.05;
+/// Standard deviations that a plausible house may be further away than one with something that one would not believe.
+const FINDING: f64 = 0.25;
 /// Other plans tried else, their least 1 - IoU, and rounds of random arrangements over four to find them.
-const OTHERS: usize = 4;
+const OTHERS: usize = 8;
 const APART: f64 = 0.02;
 const ROUNDS: usize = 2;
 /// Generations of the genetic algorithm; the paper prints none.
@@ -201,10 +204,10 @@ pub fn generate(
     let first = mass.building.clone();
     let mut best = draft(wish.clone(), mass, database, options, rng)?;
     let searched = options.footprint.is_none() && options.method == Method::Best;
-    if !searched || best.repaired_z() <= NEAR {
+    if !searched || best.is_good() {
         return best.build();
     }
-    // The walls have no room for the wanted facades: other plans may.
+    // The walls have no room for the wanted facades, or one would not believe the house: other plans may do better.
     let few = Search {
         rounds: ROUNDS,
         ..options.search.clone()
@@ -213,11 +216,11 @@ pub fn generate(
     for mass in variations(&target, OTHERS, APART, &unlike, database, &few, rng) {
         let other = draft(wish.clone(), mass, database, options, rng)?;
         let spent = best.report.evaluations + other.report.evaluations;
-        if other.repaired_z() < best.repaired_z() {
+        if other.cost() < best.cost() {
             best = other;
         }
         best.report.evaluations = spent;
-        if best.repaired_z() <= NEAR {
+        if best.is_good() {
             break;
         }
     }
@@ -247,12 +250,24 @@ pub struct Draft {
     shell: Faces,
     /// The numbers of the surface are still 0.
     report: HouseReport,
+    /// Number of [findings](implausible) that one would not believe; a style that is missing is one.
+    findings: usize,
 }
 
 impl Draft {
     /// Largest distance from the repaired row in standard deviations.
     pub fn repaired_z(&self) -> f64 {
         self.report.repaired_z
+    }
+
+    /// True if the house has its attributes and nothing that one would not believe.
+    fn is_good(&self) -> bool {
+        self.report.repaired_z <= NEAR && self.findings == 0
+    }
+
+    /// Distance from the repaired row, each finding counted as [`FINDING`].
+    fn cost(&self) -> f64 {
+        self.report.repaired_z + FINDING * self.findings as f64
     }
 
     /// The house with its surface.
@@ -264,6 +279,7 @@ impl Draft {
             building,
             shell,
             mut report,
+            ..
         } = self;
         let model = furnished(&building, shell)?;
         report.triangles = model.report.triangles;
@@ -331,6 +347,7 @@ pub fn draft(
         reached,
     };
     Ok(Draft {
+        findings: implausible(&building).len() + usize::from(!report.styles),
         building,
         shell,
         report,

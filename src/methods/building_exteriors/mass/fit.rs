@@ -9,8 +9,9 @@ use crate::attributes::mass_attributes;
 use edifice_optim::least_squares::{Limits, Residuals, minimize};
 use edifice_shape::Building;
 
-/// Boxes thinner than this are pushed to grow (m).
+/// Boxes thinner than this are pushed to grow (m), and those of a fit that has boxes thinner than rooms.
 const WISHED_THICKNESS: f64 = 0.6;
+pub(super) const ROOM: f64 = 2.5;
 /// Lines nearer than this become one (Sec. 6.1, m).
 const SNAP: f64 = 0.1;
 
@@ -34,6 +35,8 @@ struct Model<'a> {
     scheme: &'a Scheme,
     target: &'a MassTarget,
     deviations: &'a [f64],
+    /// Boxes thinner than this are pushed to grow (m).
+    thickness: f64,
     evaluations: Cell<u64>,
 }
 
@@ -46,38 +49,51 @@ impl Residuals for Model<'_> {
         let each = measured.iter().zip(wanted).zip(self.deviations);
         out.extend(each.map(|((m, w), s)| (m - w) / s));
         let thin = self.scheme.thicknesses(x);
-        out.extend(thin.map(|t| 2.0 * (WISHED_THICKNESS - t).max(0.0)));
+        out.extend(thin.map(|t| 2.0 * (self.thickness - t).max(0.0)));
     }
 }
 
-/// Fits a scheme; then, when some lines come to lie within 10 cm, once more with these made one, if that
-/// reaches the attributes within `enough` too.
+/// Fits a scheme; then, when some lines come to lie within 10 cm, once more with these made one; then, when some box is
+/// narrower than a room, once more with such boxes pushed to grow: each if that reaches the attributes within `enough` too.
 pub(super) fn fit(scheme: &Scheme, target: &MassTarget, deviations: &[f64], enough: f64) -> Fitted {
-    let (x, first) = once(scheme, target, deviations);
-    if first.max_z > enough {
-        return first;
+    let (mut x, mut kept) = once(scheme, target, deviations, WISHED_THICKNESS);
+    if kept.max_z > enough {
+        return kept;
     }
-    let Some(snapped) = scheme.snapped(&x, SNAP) else {
-        return first;
+    let mut scheme = scheme.clone();
+    let again = |scheme: &Scheme, thickness: f64, kept: &mut Fitted| {
+        let (x, other) = once(scheme, target, deviations, thickness);
+        let evaluations = kept.evaluations + other.evaluations;
+        let is_better = other.max_z <= enough;
+        if is_better {
+            *kept = other;
+        }
+        kept.evaluations = evaluations;
+        is_better.then_some(x)
     };
-    let (_, second) = once(&snapped, target, deviations);
-    let evaluations = first.evaluations + second.evaluations;
-    let kept = if second.max_z <= enough {
-        second
-    } else {
-        first
-    };
-    Fitted {
-        evaluations,
-        ..kept
+    if let Some(snapped) = scheme.snapped(&x, SNAP)
+        && let Some(found) = again(&snapped, WISHED_THICKNESS, &mut kept)
+    {
+        (scheme, x) = (snapped, found);
     }
+    if scheme.thicknesses(&x).any(|t| t < ROOM) {
+        scheme.start = x;
+        again(&scheme, ROOM, &mut kept);
+    }
+    kept
 }
 
-fn once(scheme: &Scheme, target: &MassTarget, deviations: &[f64]) -> (Vec<f64>, Fitted) {
+fn once(
+    scheme: &Scheme,
+    target: &MassTarget,
+    deviations: &[f64],
+    thickness: f64,
+) -> (Vec<f64>, Fitted) {
     let model = Model {
         scheme,
         target,
         deviations,
+        thickness,
         evaluations: Cell::new(0),
     };
     let start = scheme.start.clone();

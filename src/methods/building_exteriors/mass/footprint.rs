@@ -238,7 +238,7 @@ fn place(wanted: &Rect, k: usize, plan: &[Rect], placed: &[(BoxStyle, Rect, f64)
 }
 
 /// The plan without some rectangles, as cells of the grid of all edges.
-fn without(plan: &[Rect], parts: &[Rect]) -> Vec<Rect> {
+pub(super) fn without(plan: &[Rect], parts: &[Rect]) -> Vec<Rect> {
     let lines = |ends: fn(&Rect) -> [f64; 2]| {
         let mut v: Vec<f64> = plan.iter().chain(parts).flat_map(ends).collect();
         v.sort_by(f64::total_cmp);

@@ -10,8 +10,9 @@
 //!
 //! with `s_c` the standard deviation of column `c` in the database, by Levenberg and Marquardt
 //! ([`edifice_optim::least_squares`]). Schemes come from the nearest houses of the database with the same
-//! floors, garage and porches (plain and mirrored), then from random arrangements ([`random`]). The first
-//! sound one within [`Search::enough`] is taken, else the best of all; lines are rounded to millimetres.
+//! floors, garage and porches (plain and mirrored), then from random arrangements ([`random`]). Beside these stand *plain*
+//! plans, whose coverage and boundary are exact by construction (`plain.rs`). Of the sound ones within
+//! [`Search::enough`] the plainest is taken, else the nearest of all; lines are rounded to millimetres.
 //!
 //! **`paper`** ([`anneal`]): Eq. 3 by simulated annealing, with the paper's moves and three restarts.
 //!
@@ -30,6 +31,7 @@ mod bound;
 pub mod contradiction;
 mod fit;
 pub mod footprint;
+mod plain;
 pub mod random;
 pub mod repair;
 mod scheme;

@@ -2,14 +2,15 @@
 
 use rand::Rng;
 
-use super::fit::{Fitted, fit};
+use super::fit::{Fitted, ROOM, fit};
+use super::plain::plain;
 use super::random;
 use super::scheme::{Block, PLAIN, Scheme, donated};
 use super::target::{MassTarget, PARTS, bounds};
 use super::{MASS, is_sound};
 use crate::attributes::mass_attributes;
 use crate::house::Database;
-use edifice_shape::{BoxStyle, Building, PlanUnion};
+use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Roof};
 
 /// Limits of a search.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +28,7 @@ pub struct Search {
 impl Default for Search {
     fn default() -> Self {
         Self {
-            donors: 8,
+            donors: 12,
             rounds: 100,
             enough: 0.008,
             leave_out: None,
@@ -60,8 +61,14 @@ pub struct MassError {
 const GLANCES: usize = 30;
 /// A mass model as plain as this is taken at once.
 const SIMPLE: f64 = 3.0;
-/// Rounds of wholly random arrangements at first.
+/// Rounds of wholly random arrangements at first, and rounds in which a plainer house is looked for than the donors gave.
 const OPENING: usize = 8;
+const PLAINER: usize = 12;
+/// Plain plans drawn, and the donors that are tried before them.
+const PLANS: usize = 24;
+const FIRST: usize = 4;
+/// Standard deviations that a garage or porch inside a general box counts.
+const BURIED: f64 = 1.0;
 
 /// Finds boxes with the wanted attributes.
 ///
@@ -75,11 +82,16 @@ pub fn search(
     rng: &mut impl Rng,
 ) -> Result<MassModel, MassError> {
     let deviations = &database.deviations[..MASS];
-    let mut found = Found {
-        enough: options.enough,
-        ..Found::default()
-    };
-    for (index, mirrored) in nearest(target, database, options) {
+    let mut found = Found::new(options.enough);
+    let donors = nearest(target, database, options);
+    for (k, &(index, mirrored)) in donors.iter().enumerate() {
+        if k == FIRST && frozen.is_empty() {
+            let roof = main_roof(&database.buildings[donors[0].0]);
+            found.plain(target, roof, deviations, rng);
+            if found.is_enough(frozen) {
+                break;
+            }
+        }
         let (mut blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         replace(&mut blocks, frozen);
         let scheme = Scheme::new(&blocks, roofs, target);
@@ -87,14 +99,12 @@ pub fn search(
             fit(&scheme, target, deviations, options.enough),
             Some(index),
         );
-        // Around observed boxes the nearest house decides, not the plainest: what is observed is not to be made plainer.
-        let simple = !frozen.is_empty() || found.complexity <= SIMPLE;
-        if found.max_z() <= options.enough && simple {
+        if found.is_enough(frozen) {
             break;
         }
     }
     for round in 0..options.rounds {
-        if found.max_z() <= options.enough {
+        if found.is_enough(frozen) || (found.cost <= options.enough && round >= PLAINER) {
             break;
         }
         // Every other round changes the best arrangement so far, once there have been a few to choose from.
@@ -120,17 +130,35 @@ fn complexity(building: &Building) -> f64 {
     general
         .map(|b| match b.width.min(b.depth) {
             w if w < 1.2 => 9.0,
-            w if w < 2.4 => 3.0,
+            w if w < ROOM => 3.0,
             _ => 1.0,
         })
         .sum()
 }
 
+/// Roof of the largest general box.
+fn main_roof(building: &Building) -> Roof {
+    let general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
+    let largest = general.max_by(|a, b| (a.width * a.depth).total_cmp(&(b.width * b.depth)));
+    largest.map_or(PLAIN, |b| b.roof)
+}
+
+/// True if a general box takes the place of a garage or porch.
+fn is_buried(building: &Building) -> bool {
+    let (general, parts): (Vec<_>, Vec<_>) = building
+        .boxes
+        .iter()
+        .partition(|b| b.style == BoxStyle::Main);
+    let within = |p: &MassBox, b: &MassBox| p.plan().overlap(&b.plan()) > 0.05;
+    parts.iter().any(|p| general.iter().any(|b| within(p, b)))
+}
+
 /// The best so far: among those that are near enough the plainest.
-#[derive(Default)]
 struct Found {
     best: Option<MassModel>,
     enough: f64,
+    /// Distance of the best, with what a buried part counts, and its complexity.
+    cost: f64,
     complexity: f64,
     evaluations: u64,
     /// General boxes of the best.
@@ -138,29 +166,64 @@ struct Found {
 }
 
 impl Found {
-    fn max_z(&self) -> f64 {
-        self.best.as_ref().map_or(f64::INFINITY, |b| b.max_z)
+    fn new(enough: f64) -> Self {
+        Self {
+            best: None,
+            enough,
+            cost: f64::INFINITY,
+            complexity: f64::INFINITY,
+            evaluations: 0,
+            nearest: None,
+        }
+    }
+
+    /// True if nothing better is looked for. Around observed boxes the nearest house decides, not the plainest: what is
+    /// observed is not to be made plainer.
+    fn is_enough(&self, frozen: &[Block]) -> bool {
+        self.cost <= self.enough && (!frozen.is_empty() || self.complexity <= SIMPLE)
     }
 
     fn add(&mut self, fitted: Fitted, donor: Option<usize>) {
         self.evaluations += fitted.evaluations;
-        let complexity = complexity(&fitted.building);
-        let both = fitted.max_z.max(self.max_z()) <= self.enough;
-        let worse = match both {
-            true => complexity >= self.complexity,
-            false => fitted.max_z >= self.max_z(),
-        };
-        if worse || !(is_sound(&fitted.building) && has_boxes(&fitted.building)) {
-            return;
-        }
-        self.complexity = complexity;
-        self.nearest = Some(fitted.blocks);
-        self.best = Some(MassModel {
+        let model = MassModel {
             building: fitted.building,
             max_z: fitted.max_z,
             evaluations: 0,
             donor,
-        });
+        };
+        self.keep(model, Some(fitted.blocks));
+    }
+
+    /// Draws plain plans until one is near enough.
+    fn plain(&mut self, target: &MassTarget, roof: Roof, deviations: &[f64], rng: &mut impl Rng) {
+        for _ in 0..PLANS {
+            if self.is_enough(&[]) {
+                break;
+            }
+            self.evaluations += 1;
+            if let Some(model) = plain(target, roof, deviations, rng) {
+                self.keep(model, None);
+            }
+        }
+    }
+
+    fn keep(&mut self, model: MassModel, blocks: Option<Vec<Block>>) {
+        let buried = if is_buried(&model.building) {
+            BURIED
+        } else {
+            0.0
+        };
+        let (cost, complexity) = (model.max_z + buried, complexity(&model.building));
+        let worse = match cost.max(self.cost) <= self.enough {
+            true => complexity >= self.complexity,
+            false => cost >= self.cost,
+        };
+        if worse || !(is_sound(&model.building) && has_boxes(&model.building)) {
+            return;
+        }
+        (self.cost, self.complexity) = (cost, complexity);
+        self.nearest = blocks.or(self.nearest.take());
+        self.best = Some(model);
     }
 }
 
@@ -177,44 +240,55 @@ pub fn variations(
 ) -> Vec<MassModel> {
     let mut found: Vec<MassModel> = Vec::new();
     let deviations = &database.deviations[..MASS];
-    let keep = |fitted: Fitted, donor, found: &mut Vec<MassModel>| {
+    let keep = |model: MassModel, found: &mut Vec<MassModel>| {
         let mut others = found.iter().map(|m| &m.building).chain(unlike);
-        let distinct = others.all(|other| 1.0 - iou(other, &fitted.building) >= apart);
-        if fitted.max_z <= 0.05
+        let distinct = others.all(|other| 1.0 - iou(other, &model.building) >= apart);
+        if model.max_z <= 0.05
             && distinct
-            && is_sound(&fitted.building)
-            && has_boxes(&fitted.building)
+            && is_sound(&model.building)
+            && has_boxes(&model.building)
         {
-            found.push(MassModel {
-                building: fitted.building,
-                max_z: fitted.max_z,
-                evaluations: fitted.evaluations,
-                donor,
-            });
+            found.push(model);
+        }
+    };
+    let fitted = |scheme: &Scheme, donor| {
+        let fitted = fit(scheme, target, deviations, 0.05);
+        MassModel {
+            building: fitted.building,
+            max_z: fitted.max_z,
+            evaluations: fitted.evaluations,
+            donor,
         }
     };
     let many = Search {
         donors: 8 * count,
         ..options.clone()
     };
-    for (index, mirrored) in nearest(target, database, &many) {
+    let donors = nearest(target, database, &many);
+    if let Some(&(index, _)) = donors.first() {
+        let roof = main_roof(&database.buildings[index]);
+        for _ in 0..PLANS {
+            if found.len() < count
+                && let Some(model) = plain(target, roof, deviations, rng)
+            {
+                keep(model, &mut found);
+            }
+        }
+    }
+    for (index, mirrored) in donors {
         if found.len() == count {
             return found;
         }
         let (blocks, roofs) = donated(&database.buildings[index], mirrored, target);
         let scheme = Scheme::new(&blocks, roofs, target);
-        keep(
-            fit(&scheme, target, deviations, 0.05),
-            Some(index),
-            &mut found,
-        );
+        keep(fitted(&scheme, Some(index)), &mut found);
     }
     for _ in 0..4 * options.rounds {
         if found.len() == count {
             break;
         }
         if let Some(scheme) = random_scheme(target, None, &[], deviations, rng) {
-            keep(fit(&scheme, target, deviations, 0.05), None, &mut found);
+            keep(fitted(&scheme, None), &mut found);
         }
     }
     found

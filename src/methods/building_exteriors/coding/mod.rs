@@ -6,7 +6,9 @@
 //!
 //! - makes presence discrete: `garage.there`, `porch.front.there`, `porch.back.there` (yes or no) and `floors` (1, 2, 3)
 //!   are variables of the model; the numbers of an absent part, and the share of a floor that is not there, are missing;
-//! - computes what follows: `arf.0 = 1 - arf.1 - arf.2`, `far = bcr / arf.0`;
+//! - reads plans and storeys by kinds that are exact ([`shape`]): boxes, cut corners and recesses, full floors;
+//! - computes what follows: `arf.0 = 1 - arf.1 - arf.2`, `far = bcr / arf.0`, `bdry`, `bbox.h`;
+//! - puts drawn garages and porches where they fit the drawn plan ([`parts`]);
 //! - moves each drawn row to the nearest that a house can have ([`repair`]): shares fall upwards, parts lie inside the
 //!   bounding box and beside each other, `bdry >= 2 (bbox.w + bbox.d) / sqrt(bcr bbox.w bbox.d)`, ratios lie in `[0, 1]`.
 //!
@@ -17,8 +19,14 @@
 //! - Densities are those of coded rows, so that they compare draws of one model, not models of both codings.
 //! - Columns without a known value in the data are left out of the model; its draws lack them.
 
-use super::attributes::{AttributeRow, COLUMNS, GROUPS, Level};
-use super::mass::repair::repair;
+mod decode;
+mod parts;
+mod shape;
+
+pub use decode::{decoded, settled};
+
+use self::shape::{FULL, PLAN, PLANS, RECESS, STOREY, UPPER};
+use super::attributes::{self, AttributeRow, COLUMNS, GROUPS, Level};
 use super::mass::target::{FLOOR_SHARE, PARTS};
 use edifice_model::hierarchy::Group;
 use edifice_model::tables::Dataset;
@@ -30,18 +38,13 @@ pub const THERE: [&str; 3] = ["garage.there", "porch.front.there", "porch.back.t
 pub const FLOORS: &str = "floors";
 /// Categories of [`FLOORS`].
 const COUNTS: [&str; 3] = ["1", "2", "3"];
-/// Groups of the discrete columns that the paper does not have.
+/// Groups of discrete columns that the paper does not have.
 const PRESENCE: &str = "presence";
+const FULL_FLOORS: &str = "full";
 
-/// First column of the facades, and of the styles.
-const FACADES: usize = 27;
+/// First column of the styles.
 const STYLES: usize = 39;
 const FAR: usize = 5;
-const SHARES: [usize; 3] = [6, 7, 8];
-/// Largest extent of a drawn house (m).
-const LARGEST: f64 = 60.0;
-/// Least share of an upper floor that is there.
-const LEAST_SHARE: f64 = 0.03;
 
 /// A coding of attributes as variables of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -85,7 +88,35 @@ impl From<AttributeRow> for Observation {
     }
 }
 
+/// Names of the variables that a group of attributes becomes.
+fn variables(group: &attributes::Group) -> Vec<&'static str> {
+    match group.name {
+        "bbox" => vec![COLUMNS[0], COLUMNS[1], STOREY[0], STOREY[1]],
+        "bdry" => vec![RECESS],
+        "arf" => UPPER.to_vec(),
+        _ => group.columns().to_vec(),
+    }
+}
+
 impl Observation {
+    /// The category of the number of floors.
+    fn count(&self) -> Option<&'static str> {
+        self.floors
+            .and_then(|f| COUNTS.get(f.checked_sub(1)?).copied())
+    }
+
+    /// The value of a variable; flags are 0 or 1.
+    fn value(&self, name: &str) -> Option<f64> {
+        if let Some(value) = self.shape(name) {
+            return value;
+        }
+        match COLUMNS.iter().position(|c| *c == name) {
+            Some(c) if c < STYLES => self.coded(c),
+            Some(c) => self.row[c],
+            None => None,
+        }
+    }
+
     /// The number of a coded real column.
     fn coded(&self, c: usize) -> Option<f64> {
         let part = PARTS.iter().position(|(_, p, _)| (*p..p + 6).contains(&c));
@@ -108,19 +139,16 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
     let mut groups = Vec::new();
     for group in &GROUPS {
         let mut own: Vec<&str> = Vec::new();
-        for (k, name) in group.columns().iter().enumerate() {
-            let c = group.first + k;
-            let is_flag = group.level == Level::Element;
-            let cells: Vec<Option<f64>> = match is_flag {
-                true => houses.iter().map(|h| h.row[c]).collect(),
-                false => houses.iter().map(|h| h.coded(c)).collect(),
-            };
+        for name in variables(group) {
+            let cells: Vec<Option<f64>> = houses.iter().map(|h| h.value(name)).collect();
             if cells.iter().all(Option::is_none) {
                 continue;
             }
-            table = match is_flag {
-                true => table.binary(name, cells.into_iter().map(|v| v.map(|v| v > 0.5)))?,
-                false => table.real(name, cells)?,
+            table = match group.level {
+                Level::Element => {
+                    table.binary(name, cells.into_iter().map(|v| v.map(|v| v > 0.5)))?
+                }
+                Level::Mass | Level::Facade => table.real(name, cells)?,
             };
             own.push(name);
         }
@@ -139,11 +167,23 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
         groups.push(Group::new(PRESENCE, &own));
     }
     if houses.iter().any(|h| h.floors.is_some()) {
-        let counts = houses
-            .iter()
-            .map(|h| h.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?)));
-        table = table.categorical(FLOORS, &COUNTS, counts.map(|c| c.copied()))?;
+        table = table.categorical(FLOORS, &COUNTS, houses.iter().map(Observation::count))?;
         groups.push(Group::new(FLOORS, &[FLOORS]));
+    }
+    if houses.iter().any(|h| h.plan().is_some()) {
+        let plans = houses.iter().map(|h| h.plan().map(|k| PLANS[k]));
+        table = table.categorical(PLAN, &PLANS, plans)?;
+        groups.push(Group::new(PLAN, &[PLAN]));
+    }
+    let mut own: Vec<&str> = Vec::new();
+    for (k, name) in FULL.into_iter().enumerate() {
+        if houses.iter().any(|h| h.full(k).is_some()) {
+            table = table.binary(name, houses.iter().map(|h| h.full(k)))?;
+            own.push(name);
+        }
+    }
+    if !own.is_empty() {
+        groups.push(Group::new(FULL_FLOORS, &own));
     }
     if groups.is_empty() {
         return Err(ModelError::Empty { what: "columns" });
@@ -156,23 +196,37 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
 /// # Errors
 /// [`ModelError::NotFinite`].
 pub fn coded_evidence(given: &[AttributeRow], columns: &[String]) -> Result<Table, ModelError> {
-    let houses: Vec<Observation> = given.iter().cloned().map(Observation::from).collect();
+    let mut houses: Vec<Observation> = given.iter().cloned().map(Observation::from).collect();
+    houses.iter_mut().for_each(|h| h.floors = h.counted());
     let mut table = Table::new();
     let knows = |name: &str| columns.iter().any(|c| c == name);
-    for (c, name) in COLUMNS.iter().enumerate().filter(|(_, n)| knows(n)) {
-        table = match c < STYLES {
-            true => table.real(name, houses.iter().map(|h| h.coded(c)))?,
-            false => table.binary(name, houses.iter().map(|h| h.row[c].map(|v| v > 0.5)))?,
+    for name in columns {
+        let flag = COLUMNS
+            .iter()
+            .position(|c| c == name)
+            .is_some_and(|c| c >= STYLES);
+        let cells = houses.iter().map(|h| h.value(name));
+        let discrete = [FLOORS, PLAN].contains(&name.as_str())
+            || THERE.contains(&name.as_str())
+            || FULL.contains(&name.as_str());
+        table = match (discrete, flag) {
+            (true, _) => continue,
+            (false, false) => table.real(name, cells)?,
+            (false, true) => table.binary(name, cells.map(|v| v.map(|v| v > 0.5)))?,
         };
     }
     for (k, name) in THERE.iter().enumerate().filter(|(_, n)| knows(n)) {
         table = table.binary(name, houses.iter().map(|h| h.there[k]))?;
     }
     if knows(FLOORS) {
-        let counts = houses
-            .iter()
-            .map(|h| h.floors.and_then(|f| COUNTS.get(f.checked_sub(1)?)));
-        table = table.categorical(FLOORS, &COUNTS, counts.map(|c| c.copied()))?;
+        table = table.categorical(FLOORS, &COUNTS, houses.iter().map(Observation::count))?;
+    }
+    if knows(PLAN) {
+        let plans = houses.iter().map(|h| h.plan().map(|k| PLANS[k]));
+        table = table.categorical(PLAN, &PLANS, plans)?;
+    }
+    for (k, name) in FULL.iter().enumerate().filter(|(_, n)| knows(n)) {
+        table = table.binary(name, houses.iter().map(|h| h.full(k)))?;
     }
     Ok(table)
 }
@@ -187,107 +241,4 @@ pub fn attribute_rows(table: &Table) -> Vec<AttributeRow> {
     };
     let row = |r: usize| (0..COLUMNS.len()).map(|c| value(r, c)).collect();
     (0..table.rows()).map(row).collect()
-}
-
-/// Drawn coded rows as attributes: what follows is computed, rows are moved to the nearest possible ones. `given` has the
-/// evidence of each row, which stays to the bit; a shorter list repeats its last.
-///
-/// # Errors
-/// [`ModelError::NotFinite`].
-pub fn decoded(drawn: &Table, given: &[AttributeRow]) -> Result<Table, ModelError> {
-    let none: AttributeRow = vec![None; COLUMNS.len()];
-    let category = |name: &str, row: usize| match drawn.column(name).map(|c| c.cell(row)) {
-        Ok(Cell::Code(code)) => Some(code),
-        _ => None,
-    };
-    let mut rows = attribute_rows(drawn);
-    for (i, row) in rows.iter_mut().enumerate() {
-        let given = given.get(i).or(given.last()).unwrap_or(&none);
-        let there = THERE.map(|name| category(name, i).map(|code| code == 1));
-        let floors = category(FLOORS, i).map(|code| code + 1);
-        possible(row, there, floors, given);
-    }
-    let mut table = Table::new();
-    for (c, name) in COLUMNS.iter().enumerate() {
-        let cells = || rows.iter().map(|row| row[c]);
-        if cells().any(|v| v.is_none()) {
-            continue;
-        }
-        table = match c < STYLES {
-            true => table.real(name, cells())?,
-            false => table.binary(name, cells().map(|v| v.map(|v| v > 0.5)))?,
-        };
-    }
-    Ok(table)
-}
-
-/// Completes a drawn row with what follows from it.
-fn possible(
-    row: &mut AttributeRow,
-    there: [Option<bool>; 3],
-    floors: Option<usize>,
-    given: &AttributeRow,
-) {
-    for (k, (_, c, _)) in PARTS.into_iter().enumerate() {
-        if there[k] == Some(false) {
-            row[c..c + 6].fill(Some(0.0));
-        }
-    }
-    for (value, known) in row.iter_mut().zip(given) {
-        *value = known.or(*value);
-    }
-    shares(row, floors, given);
-    for c in 0..2 {
-        if given[c].is_none() {
-            row[c] = row[c].map(|v| v.clamp(4.0, LARGEST));
-        }
-    }
-    if let (None, Some(covered), Some(ground)) = (given[FAR], row[3], row[6]) {
-        row[FAR] = Some(covered.clamp(0.2, 1.0) / ground);
-    }
-    if row[..FACADES].iter().all(Option::is_some) {
-        let mut whole: [f64; 49] = std::array::from_fn(|c| row[c].unwrap_or(0.0));
-        let known: [bool; 49] = std::array::from_fn(|c| given[c].is_some());
-        repair(&mut whole, &known, &[1.0; 49]);
-        for (value, repaired) in row.iter_mut().zip(whole) {
-            *value = value.map(|_| repaired);
-        }
-    }
-}
-
-/// The shares of the floors from those of the upper ones.
-fn shares(row: &mut AttributeRow, floors: Option<usize>, given: &AttributeRow) {
-    let Some(floors) = floors else { return };
-    let own = |c: usize| given[c].or(row[c]).unwrap_or(0.0);
-    let [_, mut first, mut second] = SHARES.map(own);
-    if given[8].is_none() {
-        second = match floors {
-            3 => second.clamp(LEAST_SHARE, 1.0 / 3.0),
-            _ => 0.0,
-        };
-    }
-    if given[7].is_none() {
-        first = match floors {
-            1 => 0.0,
-            _ => first.clamp(second.max(LEAST_SHARE), (1.0 - second) / 2.0),
-        };
-    }
-    // A given share of the ground floor leaves the rest to the others; so does a given floor area ratio.
-    let by_area = match (given[FAR], row[3]) {
-        (Some(far), Some(covered)) if far > 0.0 => Some((covered / far).clamp(1.0 / 3.0, 1.0)),
-        _ => None,
-    };
-    let ground = given[6].or(by_area.filter(|_| given[7].is_none() && given[8].is_none()));
-    if let (Some(ground), None, None) = (ground, given[7], given[8]) {
-        let rest = (1.0 - ground).max(0.0);
-        let upper = first + second;
-        (first, second) = match (rest > FLOOR_SHARE, upper > 0.0) {
-            (true, true) => (first * rest / upper, second * rest / upper),
-            (true, false) => (rest, 0.0),
-            (false, _) => (rest, 0.0),
-        };
-    }
-    row[6] = Some(given[6].unwrap_or(1.0 - first - second));
-    row[7] = Some(first);
-    row[8] = Some(second);
 }
