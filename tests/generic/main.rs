@@ -1,4 +1,4 @@
-//! What all methods share: optimizers, clusters and shapes against independent checks, grammars, readers and writers.
+//! Tests of the code that all methods share: optimizers, clusters and shapes against independent checks, grammars, readers and writers.
 
 mod cluster_hierarchy;
 mod grammar;

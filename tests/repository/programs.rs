@@ -67,7 +67,7 @@ fn files_and_tables_are_told_to_programs() {
     let at = |name: &str| word(&folder.path().join(name)).to_owned();
     let layout = |name: &str| format!("datasets/facade_grammar/layouts/{name}.facade.json");
     let [cottage, a, b] = ["cottage_1", "terrace_a", "terrace_b"].map(layout);
-    let houses = "datasets/building_exteriors/default.houses.json";
+    let houses = "datasets/building_exteriors/real.houses.json";
     let cabin = "datasets/examples/cottage.building.json";
     let town = "datasets/city_proceduralization/town.city-grammar.json";
     let asia = "datasets/model/asia.bif";

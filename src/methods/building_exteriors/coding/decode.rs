@@ -4,7 +4,7 @@ use super::super::attributes::{AttributeRow, COLUMNS};
 use super::super::mass::repair::repair;
 use super::super::mass::target::{FLOOR_SHARE, PARTS};
 use super::parts;
-use super::shape::{FULL, PLAN, RECESS, STOREY, Shape, UPPER};
+use super::shape::{FULL, PLAN, RECESS, RECESSED, STOREY, Shape, UPPER};
 use super::{FAR, FLOORS, STYLES, THERE, attribute_rows};
 use edifice_model::{Cell, ModelError, Table};
 
@@ -53,9 +53,10 @@ fn attribute_table(
         let given = given.get(i).or(given.last()).unwrap_or(&none);
         let there = THERE.map(|name| category(name, i).map(|code| code == 1));
         let floors = category(FLOORS, i).map(|code| code + 1);
+        let recess = real(RECESS, i);
         let shape = Shape {
-            plan: category(PLAN, i),
-            recess: real(RECESS, i),
+            plan: category(PLAN, i).or(recess.map(|_| RECESSED)),
+            recess,
             storey: STOREY.map(|name| real(name, i)),
             full: FULL.map(|name| category(name, i).map(|code| code == 1)),
             upper: UPPER.map(|name| real(name, i)),

@@ -25,7 +25,7 @@ mod shape;
 
 pub use decode::{decoded, settled};
 
-use self::shape::{FULL, PLAN, PLANS, RECESS, STOREY, UPPER};
+use self::shape::{FULL, PLAN, PLANS, RECESS, RECESSED, STOREY, UPPER};
 use super::attributes::{self, AttributeRow, COLUMNS, GROUPS, Level};
 use super::mass::target::{FLOOR_SHARE, PARTS};
 use edifice_model::hierarchy::Group;
@@ -170,14 +170,19 @@ pub fn coded(houses: &[Observation]) -> Result<Dataset, ModelError> {
         table = table.categorical(FLOORS, &COUNTS, houses.iter().map(Observation::count))?;
         groups.push(Group::new(FLOORS, &[FLOORS]));
     }
-    if houses.iter().any(|h| h.plan().is_some()) {
+    // Where all plans have recesses, and no floor is full, the recesses and the shares tell it.
+    if houses
+        .iter()
+        .filter_map(Observation::plan)
+        .any(|kind| kind != RECESSED)
+    {
         let plans = houses.iter().map(|h| h.plan().map(|k| PLANS[k]));
         table = table.categorical(PLAN, &PLANS, plans)?;
         groups.push(Group::new(PLAN, &[PLAN]));
     }
     let mut own: Vec<&str> = Vec::new();
     for (k, name) in FULL.into_iter().enumerate() {
-        if houses.iter().any(|h| h.full(k).is_some()) {
+        if houses.iter().any(|h| h.full(k) == Some(true)) {
             table = table.binary(name, houses.iter().map(|h| h.full(k)))?;
             own.push(name);
         }

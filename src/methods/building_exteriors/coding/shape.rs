@@ -18,6 +18,8 @@ use super::Observation;
 /// Names of the variables.
 pub(super) const PLAN: &str = "plan";
 pub(super) const PLANS: [&str; 3] = ["box", "corners", "recessed"];
+/// Index of `recessed`.
+pub(super) const RECESSED: usize = 2;
 pub(super) const RECESS: &str = "recess";
 pub(super) const STOREY: [&str; 2] = ["storey.single", "storey.stacked"];
 pub(super) const FULL: [&str; 2] = ["full.1", "full.2"];
@@ -45,7 +47,7 @@ impl Observation {
         let kind = match (bcr >= BOX, recess >= LONGER) {
             (true, false) => 0,
             (false, false) => 1,
-            (_, true) => 2,
+            (_, true) => RECESSED,
         };
         Some((kind, recess))
     }
@@ -76,7 +78,10 @@ impl Observation {
         Some(match name {
             "storey.single" => storey(0),
             "storey.stacked" => storey(1),
-            RECESS => self.outline().filter(|(kind, _)| *kind == 2).map(|o| o.1),
+            RECESS => self
+                .outline()
+                .filter(|(kind, _)| *kind == RECESSED)
+                .map(|o| o.1),
             "bcr" => self.row[3].filter(|_| self.plan() != Some(0)),
             "upper.1" => upper(0),
             "upper.2" => upper(1),
@@ -118,7 +123,7 @@ impl Shape {
         }
         if let (None, Some(w), Some(d), Some(bcr)) = (given[4], row[0], row[1], row[3]) {
             let recess = match (plan, self.recess) {
-                (2, Some(recess)) => recess.clamp(RECESSES[0], RECESSES[1].min(d.min(w))),
+                (RECESSED, Some(recess)) => recess.clamp(RECESSES[0], RECESSES[1].min(d.min(w))),
                 _ => 0.0,
             };
             row[4] = Some((2.0 * (w + d) + recess) / (bcr * w * d).sqrt());

@@ -27,6 +27,8 @@ const NUMBERS: usize = 39;
 const NEAR: f64 = 0.05;
 /// Standard deviations that a plausible house may be further away than one with something that one would not believe.
 const FINDING: f64 = 0.25;
+/// Findings that a missing style counts as: styles are asked for by name, so that a house without one is not what was ordered.
+const STYLE: usize = 4;
 /// Other plans tried else, their least 1 - IoU, and rounds of random arrangements over four to find them.
 const OTHERS: usize = 8;
 const APART: f64 = 0.02;
@@ -250,7 +252,7 @@ pub struct Draft {
     shell: Faces,
     /// The numbers of the surface are still 0.
     report: HouseReport,
-    /// Number of [findings](implausible) that one would not believe; a style that is missing is one.
+    /// Number of [findings](implausible) that one would not believe; a missing style counts as [`STYLE`] of them.
     findings: usize,
 }
 
@@ -347,7 +349,7 @@ pub fn draft(
         reached,
     };
     Ok(Draft {
-        findings: implausible(&building).len() + usize::from(!report.styles),
+        findings: implausible(&building).len() + STYLE * usize::from(!report.styles),
         building,
         shell,
         report,
