@@ -1,8 +1,6 @@
 //! A bundle as a Research Object Crate 1.1: its files, and the run that made the results of the others, as JSON-LD
 //! (<https://w3id.org/ro/crate/1.1>).
 
-use std::time::{SystemTime, UNIX_EPOCH};
-
 use serde_json::{Value, json};
 
 use super::collect::{RESULTS, TIMES};
@@ -15,8 +13,8 @@ pub const METADATA: &str = "ro-crate-metadata.json";
 /// The facts of a publication that a bundle does not hold.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Published {
-    /// Day of publication, `YYYY-MM-DD`; today (UTC) without it.
-    pub date: Option<String>,
+    /// Day of publication, `YYYY-MM-DD`.
+    pub date: String,
     /// Address of the licence of the data and results.
     pub licence: Option<String>,
 }
@@ -50,7 +48,7 @@ pub fn metadata(plan: &Plan, files: &[File], published: &Published) -> Value {
         "@id": "./", "@type": "Dataset",
         "name": format!("Sweep of {}", head.study),
         "description": about,
-        "datePublished": published.date.clone().unwrap_or_else(|| date(SystemTime::now())),
+        "datePublished": &published.date,
         "hasPart": all,
         "mentions": { "@id": "#run" },
     });
@@ -106,11 +104,8 @@ fn address(name: &str) -> String {
     name.bytes().map(byte).collect()
 }
 
-/// The day of a time, UTC, as `YYYY-MM-DD`.
-fn date(time: SystemTime) -> String {
-    let seconds = time
-        .duration_since(UNIX_EPOCH)
-        .map_or(0, |since| since.as_secs());
+/// The day, UTC, as `YYYY-MM-DD`, so many seconds after the beginning of 1970.
+pub fn date(seconds: u64) -> String {
     let mut days = seconds / 86_400;
     let is_leap = |y: u64| y.is_multiple_of(4) && (!y.is_multiple_of(100) || y.is_multiple_of(400));
     let mut year = 1970;
@@ -146,7 +141,6 @@ pub fn is_date(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     #[test]
     fn days_are_those_of_the_calendar() {
@@ -159,7 +153,7 @@ mod tests {
             (1_798_761_600, "2027-01-01"),
             (4_107_542_400, "2100-03-01"),
         ] {
-            assert_eq!(date(UNIX_EPOCH + Duration::from_secs(seconds)), expected);
+            assert_eq!(date(seconds), expected);
             assert!(is_date(expected));
         }
         for wrong in [

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use edifice_building_exteriors::house::Options;
 use edifice_building_exteriors::model_file::ModelFile;
-use edifice_editing::building_exteriors::draws::{Draws, houses, ordered};
-use edifice_editing::building_exteriors::redraws::Redraws;
+use edifice_editing::building_exteriors::draws::{Draws, ordered};
+use edifice_editing::building_exteriors::redraws::{Redraws, houses};
 use edifice_editing::building_exteriors::{shipped_database, shipped_model};
 use edifice_io::read_bytes;
 use pyo3::prelude::*;

@@ -14,7 +14,7 @@ use edifice_base::{Ended, Error, Progress, Result};
 use edifice_experiments::studies as all_studies;
 use edifice_experiments::sweep::collect::{ArmState, RESULTS, collect, state};
 use edifice_experiments::sweep::plan::{PLAN, Plan};
-use edifice_experiments::sweep::ro_crate::{Published, is_date};
+use edifice_experiments::sweep::ro_crate::{Published, date, is_date};
 use edifice_experiments::sweep::run::{Wanted, run as run_shard, shard};
 use edifice_experiments::sweep::{Study, bundle, report};
 
@@ -182,7 +182,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Bundle(options) => {
             let plan = Plan::current(&options.common.sweep, &options.common.out, &studies)?;
             let published = options.ro_crate.then(|| Published {
-                date: options.published.clone(),
+                date: options.published.clone().unwrap_or_else(today),
                 licence: options.licence.clone(),
             });
             let files = bundle::bundle(
@@ -352,4 +352,10 @@ fn words(seconds: f64) -> String {
         s if s < 6000.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
     }
+}
+
+/// Today, UTC.
+fn today() -> String {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    date(since.map_or(0, |since| since.as_secs()))
 }

@@ -1,14 +1,9 @@
-//! Houses drawn from a model, for `edifice building generate` and for Python: rows of attributes, drawn anew until a house can
-//! have them, and the houses that are built from rows.
+//! Rows of attributes drawn from a model of houses, for `edifice building generate` and for Python: drawn anew until a house can
+//! have them.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
-use rayon::prelude::*;
-
-use super::redraws::{Redraws, believable};
 use super::shipped_model;
 use edifice_base::rng::{Stream, stream};
-use edifice_base::{Error, Progress, Result, Watch};
+use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::coding::attribute_rows;
 use edifice_building_exteriors::data::{filled, table};
@@ -237,34 +232,4 @@ pub(super) fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Tab
     }
     let rows = filled(rows, shipped_model()?, rng).map_err(Error::method)?;
     table(&rows).map_err(Error::method)
-}
-
-/// Makes houses in parallel, in their order. Nothing is made where a row contradicts itself. The watch is told of each house;
-/// where it breaks, only those are returned that were made before. With `redraws`, a house that is not believable gives way to
-/// one of another row.
-///
-/// # Errors
-/// The contradiction, or that of [`Order::made`], with the name of the house.
-pub fn houses(
-    orders: &[Order],
-    database: &Database,
-    options: &Options,
-    seed: u64,
-    redraws: Option<&Redraws>,
-    watch: &Watch,
-) -> Result<Vec<Generated>> {
-    for order in orders {
-        order.check(options).map_err(Error::method)?;
-    }
-    let (all, done) = (orders.len() as u64, AtomicU64::new(0));
-    let made = orders.par_iter().enumerate().map(|(number, order)| {
-        let before = done.fetch_add(1, Ordering::Relaxed);
-        if watch(Progress::of("houses", before, all)).is_break() {
-            return Ok(None);
-        }
-        let house = believable(order, number, database, options, seed, redraws);
-        Ok(Some(house.map_err(Error::method)?.0))
-    });
-    let made: Result<Vec<Option<Generated>>> = made.collect();
-    Ok(made?.into_iter().flatten().collect())
 }

@@ -1,17 +1,20 @@
-//! Other rows for houses that miss theirs or that one would not believe.
+//! Houses that are built from drawn rows, and other rows for houses that miss theirs or that one would not believe.
 //!
 //! Each house has random streams of its own for the rows that are tried in the place of its first one, so that it does not
 //! depend on how many other houses are made, or were made before.
 
-use edifice_base::Result;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::draws::{Draws, Order, sampler, whole};
 use edifice_base::rng::stream;
+use edifice_base::{Error, Progress, Result, Watch};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::{MOVED, possible_rows};
 use edifice_building_exteriors::house::inspect::implausible;
 use edifice_building_exteriors::house::{Database, Generated, Options};
 use edifice_building_exteriors::model_file::ModelFile;
-
-use super::draws::{Draws, Order, sampler, whole};
 
 /// Rows drawn at most in the place of one whose house is not believable.
 const ATTEMPTS: u64 = 12;
@@ -107,4 +110,34 @@ pub fn believable(
 fn is_believable(house: &Generated) -> bool {
     let report = &house.report;
     report.max_z <= MOVED && report.styles && implausible(&house.building).is_empty()
+}
+
+/// Makes houses in parallel, in their order. Nothing is made where a row contradicts itself. The watch is told of each house;
+/// where it breaks, only those are returned that were made before. With `redraws`, a house that is not believable gives way to
+/// one of another row.
+///
+/// # Errors
+/// The contradiction, or that of [`Order::made`], with the name of the house.
+pub fn houses(
+    orders: &[Order],
+    database: &Database,
+    options: &Options,
+    seed: u64,
+    redraws: Option<&Redraws>,
+    watch: &Watch,
+) -> Result<Vec<Generated>> {
+    for order in orders {
+        order.check(options).map_err(Error::method)?;
+    }
+    let (all, done) = (orders.len() as u64, AtomicU64::new(0));
+    let made = orders.par_iter().enumerate().map(|(number, order)| {
+        let before = done.fetch_add(1, Ordering::Relaxed);
+        if watch(Progress::of("houses", before, all)).is_break() {
+            return Ok(None);
+        }
+        let house = believable(order, number, database, options, seed, redraws);
+        Ok(Some(house.map_err(Error::method)?.0))
+    });
+    let made: Result<Vec<Option<Generated>>> = made.collect();
+    Ok(made?.into_iter().flatten().collect())
 }

@@ -13,7 +13,7 @@
 //! Of 320 houses of Delft 41 % are boxes and 91 % have the boundary of their bounding box; of those with two floors or more
 //! 53 % have a full one. A Gaussian of `bcr`, `bdry` and `arf` draws none of these: its houses have slivers instead.
 
-use super::Observation;
+use super::observation::Observation;
 
 /// Names of the variables.
 pub(super) const PLAN: &str = "plan";
