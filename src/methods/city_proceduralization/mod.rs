@@ -1,7 +1,7 @@
 //! City proceduralization: a city of triangles becomes a grammar of instances (Demir, Aliaga and Benes
 //! 2014, "Proceduralization of Buildings at City Scale").
 //!
-//! 1. **Components** ([`components`], Sec. IV.A and B). A building is cut at the heights where the second
+//! 1. **Components** ([`decompose`], Sec. IV.A and B). A building is cut at the heights where the second
 //!    difference of its section area A(z) is large; each slab is closed and gets an oriented box.
 //! 2. **Types** ([`types`], Sec. IV.C and D). Components with like features are of one type; a type has a
 //!    representative, its template, which takes the place of all its members: box to box, by an affine map.

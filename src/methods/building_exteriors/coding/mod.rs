@@ -6,10 +6,10 @@
 //!
 //! - makes presence discrete: `garage.there`, `porch.front.there`, `porch.back.there` (yes or no) and `floors` (1, 2, 3)
 //!   are variables of the model; the numbers of an absent part, and the share of a floor that is not there, are missing;
-//! - reads plans and storeys by kinds that are exact ([`shape`]): boxes, cut corners and recesses, full floors;
+//! - reads plans and storeys by kinds that are exact (`shape`): boxes, cut corners and recesses, full floors;
 //! - computes what follows: `arf.0 = 1 - arf.1 - arf.2`, `far = bcr / arf.0`, `bdry`, `bbox.h`;
-//! - puts drawn garages and porches where they fit the drawn plan ([`parts`]);
-//! - moves each drawn row to the nearest that a house can have ([`repair`]): shares fall upwards, parts lie inside the
+//! - puts drawn garages and porches where they fit the drawn plan (`parts`);
+//! - moves each drawn row to the nearest that a house can have (`mass::repair`): shares fall upwards, parts lie inside the
 //!   bounding box and beside each other, `bdry >= 2 (bbox.w + bbox.d) / sqrt(bcr bbox.w bbox.d)`, ratios lie in `[0, 1]`.
 //!
 //! Given values are never moved. A row of attributes and its coded row tell the same of a house, but for a part whose
