@@ -7,5 +7,6 @@ mod leaderboard;
 mod lies;
 mod papers;
 mod refusals;
+mod research_objects;
 mod robust;
 mod running;

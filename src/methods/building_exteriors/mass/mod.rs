@@ -37,11 +37,13 @@ pub mod repair;
 mod scheme;
 mod search;
 pub mod target;
+mod variations;
 
 pub use bound::least_z;
 pub use scheme::Block;
-pub use search::{MassError, MassModel, Search, iou, nearest, search, variations};
+pub use search::{MassError, MassModel, Search, nearest, search};
 pub use target::{MassTarget, PartTarget};
+pub use variations::{iou, variations};
 
 use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion};
 

@@ -6,11 +6,11 @@ use super::fit::{Fitted, ROOM, fit};
 use super::plain::plain;
 use super::random;
 use super::scheme::{Block, PLAIN, Scheme, donated};
-use super::target::{MassTarget, PARTS, bounds};
+use super::target::{MassTarget, PARTS};
 use super::{MASS, is_sound};
 use crate::attributes::mass_attributes;
 use crate::house::Database;
-use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Roof};
+use edifice_shape::{BoxStyle, Building, MassBox, Roof};
 
 /// Limits of a search.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +65,7 @@ const SIMPLE: f64 = 3.0;
 const OPENING: usize = 8;
 const PLAINER: usize = 12;
 /// Plain plans drawn, and the donors that are tried before them.
-const PLANS: usize = 24;
+pub(super) const PLANS: usize = 24;
 const FIRST: usize = 4;
 /// Standard deviations that a garage or porch inside a general box counts.
 const BURIED: f64 = 1.0;
@@ -137,7 +137,7 @@ fn complexity(building: &Building) -> f64 {
 }
 
 /// Roof of the largest general box.
-fn main_roof(building: &Building) -> Roof {
+pub(super) fn main_roof(building: &Building) -> Roof {
     let general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
     let largest = general.max_by(|a, b| (a.width * a.depth).total_cmp(&(b.width * b.depth)));
     largest.map_or(PLAIN, |b| b.roof)
@@ -227,90 +227,8 @@ impl Found {
     }
 }
 
-/// Several different mass models of one target: each plan at least `apart` (1 - IoU) from the others and from those
-/// of `unlike`. Donors first, then random arrangements, then changes of those found.
-pub fn variations(
-    target: &MassTarget,
-    count: usize,
-    apart: f64,
-    unlike: &[Building],
-    database: &Database,
-    options: &Search,
-    rng: &mut impl Rng,
-) -> Vec<MassModel> {
-    let mut found: Vec<MassModel> = Vec::new();
-    let deviations = &database.deviations[..MASS];
-    let keep = |model: MassModel, found: &mut Vec<MassModel>| {
-        let mut others = found.iter().map(|m| &m.building).chain(unlike);
-        let distinct = others.all(|other| 1.0 - iou(other, &model.building) >= apart);
-        if model.max_z <= 0.05
-            && distinct
-            && is_sound(&model.building)
-            && has_boxes(&model.building)
-        {
-            found.push(model);
-        }
-    };
-    let fitted = |scheme: &Scheme, donor| {
-        let fitted = fit(scheme, target, deviations, 0.05);
-        MassModel {
-            building: fitted.building,
-            max_z: fitted.max_z,
-            evaluations: fitted.evaluations,
-            donor,
-        }
-    };
-    let many = Search {
-        donors: 8 * count,
-        ..options.clone()
-    };
-    let donors = nearest(target, database, &many);
-    if let Some(&(index, _)) = donors.first() {
-        let roof = main_roof(&database.buildings[index]);
-        for _ in 0..PLANS {
-            if found.len() < count
-                && let Some(model) = plain(target, roof, deviations, rng)
-            {
-                keep(model, &mut found);
-            }
-        }
-    }
-    for (index, mirrored) in donors {
-        if found.len() == count {
-            return found;
-        }
-        let (blocks, roofs) = donated(&database.buildings[index], mirrored, target);
-        let scheme = Scheme::new(&blocks, roofs, target);
-        keep(fitted(&scheme, Some(index)), &mut found);
-    }
-    for _ in 0..4 * options.rounds {
-        if found.len() == count {
-            break;
-        }
-        if let Some(scheme) = random_scheme(target, None, &[], deviations, rng) {
-            keep(fitted(&scheme, None), &mut found);
-        }
-    }
-    found
-}
-
-/// Intersection over union of two ground floors, their bounding boxes laid corner on corner.
-pub fn iou(a: &Building, b: &Building) -> f64 {
-    let plan = |building: &Building| -> Vec<edifice_shape::Rect> {
-        let [[x, _], [y, _]] = bounds(building);
-        let plan = building.floor_plan(0).into_iter();
-        plan.map(|r| edifice_shape::Rect::new(r.x - x, r.y - y, r.width, r.height))
-            .collect()
-    };
-    let (p, q) = (plan(a), plan(b));
-    let area = |plan: &[edifice_shape::Rect]| PlanUnion::new(plan).area();
-    let both: Vec<_> = p.iter().chain(&q).copied().collect();
-    let union = area(&both);
-    (area(&p) + area(&q) - union) / union
-}
-
 /// The best of a few random arrangements, at a glance.
-fn random_scheme(
+pub(super) fn random_scheme(
     target: &MassTarget,
     near: Option<&[Block]>,
     frozen: &[Block],
@@ -360,7 +278,7 @@ fn replace(blocks: &mut Vec<Block>, frozen: &[Block]) {
     }
 }
 
-fn has_boxes(building: &Building) -> bool {
+pub(super) fn has_boxes(building: &Building) -> bool {
     let mut general = building.boxes.iter().filter(|b| b.style == BoxStyle::Main);
     general.all(|b| b.width.min(b.depth) >= 0.3)
 }
