@@ -7,6 +7,7 @@ mod nearest;
 
 pub use lattice::lattice;
 pub use low_rank::low_rank;
+pub(super) use low_rank::{Cells, cells};
 pub use mirror::mirror;
 pub use nearest::nearest;
 

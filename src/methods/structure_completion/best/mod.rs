@@ -4,6 +4,7 @@
 //!    database below the lowest seen row, and database facades warped to the seen lines.
 //! 2. [`candidates`]: every distinct element, with the share of the pool that supports it and features of its place.
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
+//!    Without a mask it is weighed by what the seen lines say (`scattered`).
 //! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75, with balconies that are even
 //!    within their rows (`rows`) and the one door that is likely ([`doors`]).
 
@@ -22,6 +23,7 @@ pub mod modes;
 pub mod pool;
 mod regular;
 mod rows;
+mod scattered;
 pub mod scene;
 mod shared;
 mod spacing;

@@ -14,6 +14,7 @@ use super::judge::{Judge, Layout};
 use super::masses;
 use super::pool::{Draw, SHARES, pool, weights};
 use super::regular::regular;
+use super::scattered;
 use super::scene::{Scene, of};
 use crate::completion::{Completed, Completion, Reason};
 use crate::layout::{Class, Element};
@@ -55,6 +56,8 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         Some(learnt) => candidates.probabilities(learnt),
         None => loose.iter().map(|p| TIGHT * p).collect(),
     };
+    scattered::weigh(&scene, &candidates, &mut loose);
+    scattered::weigh(&scene, &candidates, &mut tight);
     let door = door(model, &scene, &draws, &mut candidates, &mut loose);
     tight.resize(loose.len(), 0.0);
     if let Some(door) = door {
