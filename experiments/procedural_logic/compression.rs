@@ -64,7 +64,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 if source.is_paper() {
                     compare(ctx, &evaluated, found.cost, &inference);
                 }
-                draw(ctx, &source, &evaluated, found.cost)?;
+                if source.pictured {
+                    draw(ctx, &source, &evaluated, found.cost)?;
+                }
             }
         }
     }

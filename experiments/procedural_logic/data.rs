@@ -26,6 +26,8 @@ pub struct Source {
     pub other_dataset: &'static str,
     /// Facades of another style; empty when the user has none.
     pub other: Vec<LabelGrid>,
+    /// True if pictures of it are drawn: of the shipped layouts only where there is no other set.
+    pub pictured: bool,
 }
 
 impl Source {
@@ -76,8 +78,10 @@ pub fn sources(ctx: &mut Context) -> Result<Vec<Source>> {
             by_hand: Vec::new(),
             other_dataset: "none",
             other: Vec::new(),
+            pictured: true,
         });
     }
+    sources[0].pictured = sources.len() == 1;
     Ok(sources)
 }
 
@@ -123,6 +127,7 @@ pub fn shipped_source(layouts: &[Facade]) -> Result<Source> {
         by_hand: Vec::new(),
         other_dataset: "shipped_blocks",
         other: blocks.into_iter().map(picture).collect::<Result<_>>()?,
+        pictured: true,
     })
 }
 
@@ -154,6 +159,7 @@ fn ecp(ctx: &mut Context) -> Result<Option<Source>> {
         by_hand,
         other_dataset: "graz50",
         other,
+        pictured: true,
     }))
 }
 

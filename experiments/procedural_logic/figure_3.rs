@@ -84,7 +84,9 @@ fn separate(ctx: &mut Context, source: &Source, table: &mut Table) -> Result<()>
             .map(|known| model.layout(known))
             .collect::<std::result::Result<Vec<_>, _>>()
             .map_err(Error::method)?;
-        draw(ctx, source, &tree, &distances, &sets, &layouts)?;
+        if source.pictured {
+            draw(ctx, source, &tree, &distances, &sets, &layouts)?;
+        }
     }
     Ok(())
 }

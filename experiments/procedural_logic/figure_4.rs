@@ -58,7 +58,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         if source.is_paper() {
             compare(ctx, &curves);
         }
-        draw(ctx, &source, &curves)?;
+        if source.pictured {
+            draw(ctx, &source, &curves)?;
+        }
         for (name, curve, distances) in &curves {
             if *name == Measure::Powerset.name() {
                 explain(ctx, &source, &model, curve, distances);

@@ -110,7 +110,9 @@ pub fn run(ctx: &mut Context) -> Result<()> {
                 }
             }
         }
-        ctx.figure(&source.figure("figure_6"), &figure)?;
+        if source.pictured {
+            ctx.figure(&source.figure("figure_6"), &figure)?;
+        }
     }
     ctx.table(&table);
     ctx.note(

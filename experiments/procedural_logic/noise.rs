@@ -139,7 +139,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         let suffix = source.figure("noise");
         let figure = draw(&source, &units, &outcomes);
         // At the smoke budget there is no strength to draw.
-        if ctx.budget() != Budget::Smoke {
+        if source.pictured && ctx.budget() != Budget::Smoke {
             ctx.figure(&suffix, &figure)?;
         }
     }

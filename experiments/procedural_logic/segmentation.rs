@@ -62,6 +62,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
         other: Vec::new(),
         dataset: exact.dataset,
         other_dataset: exact.other_dataset,
+        pictured: exact.pictured,
     };
     let sets = [("exact", exact), ("second", second)];
     let units: Vec<(usize, usize)> = (0..2)

@@ -37,8 +37,14 @@ pub fn draw(ctx: &mut Context, models: &Models) -> Result<()> {
             let layout = &models.tested[k].layout;
             let (partial, _) = sight.hide(layout, rng);
             let done = complete(Method::Best, &partial, &models.all[0], 1, rng);
+            // The name of the part stands once a row, with room at its sides.
+            let name = if place == 1 {
+                sight.name()
+            } else {
+                String::new()
+            };
             figure = figure.panel(panel(
-                sight.name(),
+                name,
                 layout.width,
                 layout.height,
                 &partial.observed,

@@ -6,10 +6,11 @@
 //! ([`decompose`]), whose own parse tree with equal regions written once says about how long its grammar is
 //! ([`parse_cost`]).
 //!
-//! For each *budget* `0, 1/16 %, 1/8 %, 1/4 %, ...` up to the tolerance, the picture of least estimate within the budget is
-//! priced by the caller (Wu's cost, as far as it can be proven), and the cheapest picture of all is the result; of equally
-//! cheap ones that with the least area wrong. Budgets of a smaller tolerance are among those of a larger one, so
-//! that *the cost never rises with the tolerance*. A tolerance of 0 gives the input back as it is.
+//! For each *budget* `0, 1/16 %, 1/8 %, 1/4 %, ...` up to the tolerance, both paths are made within the budget (a merge that
+//! a larger one allows may lead the path elsewhere), and their picture of least estimate is
+//! priced by the caller (Wu's cost, as far as it can be proven); the cheapest picture of all is the result; of equally
+//! cheap ones that with the least area wrong. Budgets of a smaller tolerance are among those of a larger one, and so are their
+//! pictures, so that *the cost never rises with the tolerance*. A tolerance of 0 gives the input back as it is.
 //!
 //! The result depends on the picture alone, not on the format that it was read from. A price that is proven is proven for
 //! the picture that was chosen, not over all pictures within the tolerance.
@@ -86,22 +87,19 @@ pub fn retile<E: std::error::Error + 'static>(
     if tolerance == 0.0 {
         return Ok(best);
     }
-    let states = estimated(grid, tolerance)?;
     let mut budget = SMALLEST;
-    let mut last: Option<usize> = None;
+    let mut last: Option<Facade> = None;
     while budget <= tolerance * (1.0 + 1e-9) {
-        let within = (0..states.len()).filter(|&k| states[k].wrong <= budget * (1.0 + 1e-9));
-        let least = within.min_by(|&a, &b| states[a].rank().total_cmp(&states[b].rank()));
-        if let Some(k) = least
-            && last != Some(k)
-        {
-            last = Some(k);
-            let cost = price(&states[k].facade).map_err(RetileError::Price)?;
+        let within = estimated(grid, budget * (1.0 + 1e-9))?.into_iter();
+        let least = within.min_by(|a, b| a.rank().total_cmp(&b.rank()));
+        if let Some(least) = least.filter(|l| last.as_ref() != Some(&l.facade)) {
+            let cost = price(&least.facade).map_err(RetileError::Price)?;
             best.priced += 1;
             if cost < best.price - 1e-9 {
-                best.facade = states[k].facade.clone();
-                (best.price, best.wrong) = (cost, states[k].wrong);
+                best.facade = least.facade.clone();
+                (best.price, best.wrong) = (cost, least.wrong);
             }
+            last = Some(least.facade);
         }
         budget *= 2.0;
     }
@@ -154,15 +152,15 @@ mod tests {
 
     use super::*;
 
-    /// Windows on a grid, some edges a pixel off.
+    /// Windows on a grid, some edges up to three pixels off.
     fn noisy(offsets: &[u8]) -> LabelGrid {
         let (columns, rows) = (60, 60);
         let mut cells = vec![0; columns * rows];
         for (k, offset) in offsets.iter().enumerate() {
             let (i, j) = (k % 3, k / 3 % 3);
             let (left, bottom) = (
-                5 + i * 18 + usize::from(offset % 2),
-                5 + j * 18 + usize::from(offset / 2 % 2),
+                5 + i * 18 + usize::from(offset % 4),
+                5 + j * 18 + usize::from(offset / 4 % 4),
             );
             for y in bottom..bottom + 10 {
                 for x in left..left + 8 {
@@ -205,9 +203,9 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(ProptestConfig::with_cases(96))]
         #[test]
-        fn prices_fall_and_what_is_wrong_is_counted(offsets in prop::collection::vec(0u8..4, 9)) {
+        fn prices_fall_and_what_is_wrong_is_counted(offsets in prop::collection::vec(0u8..16, 9)) {
             let grid = noisy(&offsets);
             let mut least = f64::INFINITY;
             for tolerance in [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04] {
