@@ -8,7 +8,7 @@ use edifice_building_exteriors::house::{Model, model};
 use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_shape::Building;
 
-use super::output::{street, write_png};
+use super::output::{row, street, write_png};
 use super::produce::RoofOption;
 use crate::print::{self, Json};
 
@@ -119,16 +119,18 @@ pub fn draw(args: &DrawArgs) -> Result<()> {
             houses.push((building, made));
         }
     }
-    let scene = street(&houses);
     let ending = |name: &str| {
         Path::new(&args.output)
             .extension()
             .is_some_and(|e| e == name)
     };
     match () {
-        () if ending("png") => write_png(&scene, &args.output),
-        () if ending("svg") => write_atomic(&args.output, scene_svg::elevations(&scene).as_bytes()),
-        () if ending("glb") => gltf::write(&scene, &args.output),
+        () if ending("png") => write_png(&street(&houses, 0), &args.output),
+        () if ending("svg") => {
+            let text = scene_svg::elevations(&row(&houses));
+            write_atomic(&args.output, text.as_bytes())
+        }
+        () if ending("glb") => gltf::write(&street(&houses, 0), &args.output),
         () => Err(Error::option("--output", "must end in .png, .svg or .glb")),
     }?;
     let value = serde_json::json!({ "file": args.output, "houses": houses.len() });

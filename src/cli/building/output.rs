@@ -4,6 +4,7 @@ use std::path::Path;
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::house::street::{self, Fronted};
 use edifice_building_exteriors::house::{Database, Model};
 use edifice_editing::building_exteriors::{scene_of, shipped_database};
 use edifice_io::scene_png::picture_png;
@@ -12,9 +13,10 @@ use edifice_scene::Scene;
 use edifice_scene::trace::{framing, trace};
 use edifice_shape::Building;
 
-/// Pixels of a picture.
+/// Pixels of a picture of a house, and of a street.
 const PICTURE: [usize; 2] = [800, 500];
-/// Room between houses of one scene (m).
+const STREET: [usize; 2] = [1600, 900];
+/// Room between houses of one row (m).
 const BETWEEN: f64 = 5.0;
 
 /// A file format.
@@ -40,31 +42,49 @@ pub fn database(path: Option<&Path>) -> Result<Database> {
     Database::new(building_json::read(path)?).map_err(|e| Error::content(path, e))
 }
 
-fn placed<'a>(building: &'a Building, model: &'a Model, at: [f64; 2]) -> Placed<'a> {
-    Placed {
-        name: &building.name,
-        surface: &model.surface,
-        at,
-        colours: building.name.bytes().map(usize::from).sum(),
-    }
+/// The number of the colours of a house.
+fn colours(building: &Building) -> usize {
+    building.name.bytes().map(usize::from).sum()
 }
 
-/// Houses in a row along the street.
-pub fn street(houses: &[(Building, Model)]) -> Scene {
+/// Houses side by side without anything around them.
+pub fn row(houses: &[(Building, Model)]) -> Scene {
     let mut x = 0.0;
     let mut all = Vec::new();
     for (building, model) in houses {
         let ends = building.boxes.iter().map(|b| b.x + b.width / 2.0);
-        all.push(placed(building, model, [x, 0.0]));
+        all.push(Placed {
+            name: &building.name,
+            surface: &model.surface,
+            at: [x, 0.0],
+            colours: colours(building),
+        });
         x += ends.fold(0.0, f64::max) + BETWEEN;
     }
     scene(&all)
 }
 
-/// Writes a scene as a picture.
+/// Houses on plots along streets; a single one stands alone. `seed` says where trees stand.
+pub fn street(houses: &[(Building, Model)], seed: u64) -> Scene {
+    if let [(building, model)] = houses {
+        return scene_of(building, model);
+    }
+    let fronted = houses.iter().map(|(building, model)| Fronted {
+        name: &building.name,
+        surface: &model.surface,
+        colours: colours(building),
+    });
+    street::street(&fronted.collect::<Vec<_>>(), seed)
+}
+
+/// Writes a scene as a picture; one of several groups is a street.
 pub fn write_png(scene: &Scene, path: &Path) -> Result<()> {
-    let [w, h] = PICTURE;
-    let camera = framing(scene, [0.45, -0.42, -0.9], w as f32 / h as f32);
+    let is_street = scene.groups.len() > 1;
+    let ([w, h], direction) = match is_street {
+        true => (STREET, street::DIRECTION),
+        false => (PICTURE, [0.45, -0.42, -0.9]),
+    };
+    let camera = framing(scene, direction, w as f32 / h as f32);
     let picture = trace(scene, &camera, w, h);
     let bytes = picture_png(&picture).map_err(|e| Error::content(path, e))?;
     write_atomic(path, &bytes)

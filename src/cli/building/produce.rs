@@ -27,7 +27,7 @@ pub struct Output {
     pub output: PathBuf,
     #[command(flatten)]
     pub making: Making,
-    /// Also write all houses of this run as one scene, a street: `DIR/street.glb`.
+    /// Also write all houses of this run on plots along streets: `DIR/street.glb`, and the picture `DIR/street.png`.
     #[arg(long)]
     pub street: bool,
     /// Seed of all random streams.
@@ -192,7 +192,9 @@ pub fn produce(
         }
     }
     if output.street {
-        gltf::write(&output::street(&street), &output.output.join("street.glb"))?;
+        let scene = output::street(&street, output.seed);
+        gltf::write(&scene, &output.output.join("street.glb"))?;
+        output::write_png(&scene, &output.output.join("street.png"))?;
     }
     if replaced > 0 {
         print::message(&format!(

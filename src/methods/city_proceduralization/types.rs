@@ -184,7 +184,7 @@ pub struct TypeTree<'a> {
 
 impl<'a> TypeTree<'a> {
     /// The hierarchy over the geometric features `points` of `components`. With [`Representative::FewestPolygons`] triangles have a
-    /// price.
+    /// higher price, those of templates, too.
     ///
     /// # Errors
     /// [`ProceduralizeError::Ward`].
@@ -234,7 +234,7 @@ impl<'a> TypeTree<'a> {
             weights,
             counts,
             triangles: triangles.collect(),
-            priced: representative == Representative::FewestPolygons,
+            few: representative == Representative::FewestPolygons,
             forms: forms.collect(),
         };
         Ok(Self {
@@ -246,7 +246,7 @@ impl<'a> TypeTree<'a> {
     }
 
     /// The hierarchy cut at more than `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
-    /// quarter turns; then, where triangles have a price, the `k` types of most worth, again with rounds of medoids.
+    /// quarter turns; then, for few polygons, the `k` types of most worth, again with rounds of medoids.
     /// Types that stand for more components come first. Also their prices.
     pub(super) fn cut(&self, k: usize) -> Priced {
         let Table {
@@ -254,7 +254,7 @@ impl<'a> TypeTree<'a> {
         } = &self.table;
         let all = self.distinct.len();
         let k = k.clamp(1, all);
-        let surplus = if self.table.priced { SURPLUS } else { 1.0 };
+        let surplus = if self.table.few { SURPLUS } else { 1.0 };
         let wide = ((surplus * k as f64) as usize).clamp(k, all);
         let mut labels = self.tree.cut(wide);
         if wide < all {

@@ -8,6 +8,7 @@ mod roof_styles;
 pub mod roofs;
 pub mod scene;
 pub mod solids;
+pub mod street;
 pub mod walls;
 pub mod windows;
 
