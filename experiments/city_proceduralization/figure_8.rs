@@ -8,7 +8,7 @@ use edifice_city_proceduralization::{Mode, proceduralize};
 use edifice_io::city::picture::side_by_side;
 
 /// Draws each city beside its level 4.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let width = ctx.budget().choose(160, 900, 1200);
     for (name, city) in data::cities(ctx)? {

@@ -19,7 +19,7 @@ const BETWEEN: f64 = 5.0;
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Format {
+pub(super) enum Format {
     /// `NAME.building.json`
     Json,
     /// `NAME.obj`, z up, in metres
@@ -33,7 +33,7 @@ pub enum Format {
 }
 
 /// Reads the database of donors: a file, or the shipped houses.
-pub fn database(path: Option<&Path>) -> Result<Database> {
+pub(super) fn database(path: Option<&Path>) -> Result<Database> {
     let Some(path) = path else {
         return shipped_database().cloned();
     };
@@ -50,7 +50,7 @@ fn placed<'a>(building: &'a Building, model: &'a Model, at: [f64; 2]) -> Placed<
 }
 
 /// Houses in a row along the street.
-pub fn street(houses: &[(Building, Model)]) -> Scene {
+pub(super) fn street(houses: &[(Building, Model)]) -> Scene {
     let mut x = 0.0;
     let mut all = Vec::new();
     for (building, model) in houses {
@@ -62,7 +62,7 @@ pub fn street(houses: &[(Building, Model)]) -> Scene {
 }
 
 /// Writes a scene as a picture.
-pub fn write_png(scene: &Scene, path: &Path) -> Result<()> {
+pub(super) fn write_png(scene: &Scene, path: &Path) -> Result<()> {
     let [w, h] = PICTURE;
     let camera = framing(scene, [0.45, -0.42, -0.9], w as f32 / h as f32);
     let picture = trace(scene, &camera, w, h);
@@ -71,7 +71,12 @@ pub fn write_png(scene: &Scene, path: &Path) -> Result<()> {
 }
 
 /// Writes a house in all formats asked for, named after it.
-pub fn write(building: &Building, model: &Model, folder: &Path, formats: &[Format]) -> Result<()> {
+pub(super) fn write(
+    building: &Building,
+    model: &Model,
+    folder: &Path,
+    formats: &[Format],
+) -> Result<()> {
     let file = |ending: &str| folder.join(format!("{}.{ending}", building.name));
     for format in formats {
         match format {
@@ -92,6 +97,6 @@ pub fn write(building: &Building, model: &Model, folder: &Path, formats: &[Forma
 }
 
 /// Makes the folder of the output.
-pub fn folder(path: &Path) -> Result<()> {
+pub(super) fn folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).map_err(|e| Error::io(path, "create", e))
 }

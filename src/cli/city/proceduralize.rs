@@ -63,7 +63,7 @@ enum Keep {
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Cities; buildings of several files are put together.
     #[arg(required = true)]
     input: Vec<PathBuf>,
@@ -120,7 +120,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let settings = settings(args)?;
     let start = Instant::now();
     print::message("reading");
