@@ -5,14 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{ingolstadt, synthetic};
 use crate::Context;
 use edifice_base::{Ended, Error, Result, Watch};
-use edifice_city_proceduralization::{Budget, Mode, Proceduralized, Settings, proceduralize};
+use edifice_city_proceduralization::{Budget, Mode, Settings, judge, proceduralize};
 use edifice_grammar::instance::Kept;
 use edifice_io::city;
 use edifice_report::Row;
-use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
-
-/// Cells of the raster that judges, in metres.
-pub(crate) const RESOLUTION: f64 = 1.0;
+use edifice_shape::triangles::{City, repair};
 
 /// Real cities below the data folder, the first of which most artefacts take.
 const REAL: [(&str, &str); 5] = [
@@ -126,23 +123,11 @@ pub(crate) fn measure(city: &City, settings: &Settings, watch: &Watch) -> Result
             .sum::<f64>(),
         terminals: grammar.templates.len() as f64,
         non_terminals: grammar.non_terminals() as f64,
-        iou: iou(city, &made)?,
+        iou: judge::iou(city, grammar).map_err(Error::method)?,
         bytes: city::grammar_json::packed_bytes(&grammar.keeping(Kept::Identifiers))
             .map_err(Error::method)? as f64,
         seconds,
     })
-}
-
-/// Volumetric intersection over union of the derived triangles with the input's.
-pub(crate) fn iou(city: &City, made: &Proceduralized) -> Result<f64> {
-    let derivation = made.grammar.derive().map_err(Error::method)?;
-    let derived = derivation.city(&made.grammar);
-    let repaired: Vec<TriangleMesh> = city.buildings.iter().map(|b| repair(&b.mesh).0).collect();
-    let first: Vec<&TriangleMesh> = repaired.iter().collect();
-    let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();
-    Ok(VolumeRaster { size: RESOLUTION }
-        .compare(&first, &second)
-        .iou())
 }
 
 /// A city whose meshes are repaired as the method repairs them.

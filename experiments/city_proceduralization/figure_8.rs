@@ -4,7 +4,7 @@ use super::data;
 use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
-use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_city_proceduralization::{Mode, judge, proceduralize};
 use edifice_io::city::picture::side_by_side;
 
 /// Draws each city beside its level 4.
@@ -21,7 +21,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             .city(&made.grammar);
         let picture =
             side_by_side(&[&city, &derived], width, width * 3 / 4).map_err(Error::method)?;
-        let value = data::iou(&city, &made)?;
+        let value = judge::iou(&city, &made.grammar).map_err(Error::method)?;
         ctx.observe(data::row(&name, "best", "level_4", "iou", value, ""));
         let what = format!(
             "{name}: the original and its {} templates",
