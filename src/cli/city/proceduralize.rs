@@ -14,7 +14,7 @@ use edifice_city_proceduralization::{
 };
 use edifice_grammar::instance::{InstanceGrammar, Kept};
 use edifice_io::city::{self, glb, grammar_file};
-use edifice_shape::triangles::{City, MeshFaults, TriangleMesh};
+use edifice_shape::triangles::{City, MeshFaults};
 
 use super::residuals::Residuals;
 use crate::print;
