@@ -15,7 +15,7 @@ use edifice_shape::Building;
 
 /// The generator's own knowledge of the houses, which learning does not see.
 #[derive(Deserialize)]
-pub struct Truth {
+pub(crate) struct Truth {
     /// Hidden style of each house.
     pub styles: Vec<usize>,
     /// Dependencies between attributes.
@@ -23,14 +23,14 @@ pub struct Truth {
 }
 
 /// The shipped database.
-pub struct Shipped {
+pub(crate) struct Shipped {
     pub buildings: Vec<Building>,
     pub data: Dataset,
     pub truth: Truth,
 }
 
 /// Reads the shipped database and, for judging only, its truth.
-pub fn shipped(ctx: &mut Context) -> Result<Shipped> {
+pub(crate) fn shipped(ctx: &mut Context) -> Result<Shipped> {
     let path = ctx.shipped("building_exteriors/houses.buildings.jsonl")?;
     let buildings = building_json::read(&path)?;
     let path = ctx.shipped("building_exteriors/truth.json")?;
@@ -44,7 +44,7 @@ pub fn shipped(ctx: &mut Context) -> Result<Shipped> {
 }
 
 /// The attributes of buildings.
-pub fn measure(buildings: &[Building]) -> Result<Dataset> {
+pub(crate) fn measure(buildings: &[Building]) -> Result<Dataset> {
     let rows = buildings.iter().map(attributes);
     let rows = rows.collect::<std::result::Result<Vec<_>, _>>();
     dataset(&rows.map_err(Error::method)?).map_err(Error::method)
@@ -66,7 +66,7 @@ const REAL: [(&str, &str, &str); 2] = [
 
 /// The real sets that are there: of each, up to `most` houses without missing values (a mixture
 /// over concatenated vectors has no place for these, and all models see the same houses).
-pub fn real(ctx: &mut Context, most: usize) -> Result<Vec<(&'static str, Dataset)>> {
+pub(crate) fn real(ctx: &mut Context, most: usize) -> Result<Vec<(&'static str, Dataset)>> {
     let mut sets = Vec::new();
     for (name, schema, table) in REAL {
         let schema = ctx.shipped(schema)?;
@@ -105,7 +105,7 @@ fn complete_rows(table: &Table) -> Vec<usize> {
 }
 
 /// The real value in a named column; NaN never leaves: `None` for a missing or categorical cell.
-pub fn number(table: &Table, column: &str, row: usize) -> Option<f64> {
+pub(crate) fn number(table: &Table, column: &str, row: usize) -> Option<f64> {
     match table.column(column).ok()?.cell(row) {
         Cell::Real(value) => Some(value),
         _ => None,
@@ -113,7 +113,7 @@ pub fn number(table: &Table, column: &str, row: usize) -> Option<f64> {
 }
 
 /// Index of the largest value; 0 of none.
-pub fn argmax(values: &[f64]) -> usize {
+pub(crate) fn argmax(values: &[f64]) -> usize {
     let best = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     best.map_or(0, |(i, _)| i)
 }

@@ -93,7 +93,7 @@ fn watched(building: &Building) -> Result<edifice_building_exteriors::house::Mod
 }
 
 /// Fig. 16: a completion beside the truth.
-pub fn figure_16(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_16(ctx: &mut Context) -> Result<()> {
     let learned = learned(ctx)?;
     let mut rows = Vec::new();
     let mut table = overlap_table("Completions of held-out houses from their front");
@@ -133,7 +133,7 @@ pub fn figure_16(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 17: three completed houses.
-pub fn figure_17(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_17(ctx: &mut Context) -> Result<()> {
     let learned = learned(ctx)?;
     let mut all = Vec::new();
     for index in [3, 7, 11] {
@@ -163,7 +163,7 @@ pub fn figure_17(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 18: several completions of one house.
-pub fn figure_18(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_18(ctx: &mut Context) -> Result<()> {
     let learned = learned(ctx)?;
     let (partial, houses) = completed(ctx, &learned, 5)?;
     let first = watched(&partial)?;
@@ -263,7 +263,7 @@ fn tell(
 }
 
 /// Fig. 19: a garage is added, moved to the back, and a box is resized; after each edit the model suggests a house.
-pub fn figure_19(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_19(ctx: &mut Context) -> Result<()> {
     let learned = learned(ctx)?;
     let start = learned
         .held_out

@@ -86,7 +86,7 @@ fn with(building: &Building, facades: &Facades) -> Result<Model> {
 }
 
 /// Fig. 7: energy of facades against generations, on the mass models that `best` finds for the houses of Fig. 6.
-pub fn figure_7(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_7(ctx: &mut Context) -> Result<()> {
     let database = database(ctx)?;
     let generations = ctx.budget().choose(3, 200, 1000);
     ctx.setting("generations", generations);
@@ -207,7 +207,7 @@ fn annealing(ctx: &Context) -> AnnealSettings {
 }
 
 /// Fig. 8: a house, and the houses that both methods make from its attributes, the house itself left out.
-pub fn figure_8(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_8(ctx: &mut Context) -> Result<()> {
     let database = database(ctx)?;
     let truth = database.buildings[HOUSE].clone();
     let whole = model(&truth, Joining::Boxes).map_err(Error::method)?;
@@ -246,7 +246,7 @@ pub fn figure_8(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 9: each attribute left out of Eq. 3 or 4 in turn, method `paper`.
-pub fn figure_9(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_9(ctx: &mut Context) -> Result<()> {
     let database = database(ctx)?;
     let wanted = row(&database, HOUSE);
     let mass_target = MassTarget::new(std::array::from_fn(|c| wanted[c]));

@@ -15,7 +15,7 @@ use edifice_report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};
 use edifice_shape::{BoxStyle, Building, PlanUnion, Rect};
 
 /// Learns from the shipped houses and shows the styles, their most typical houses and means.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;

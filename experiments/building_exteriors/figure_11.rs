@@ -20,7 +20,7 @@ struct Edges {
 }
 
 /// Lateral edges on the shipped houses, and on ever more houses of the same generator.
-pub fn left(ctx: &mut Context) -> Result<()> {
+pub(crate) fn left(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;
@@ -153,7 +153,7 @@ fn matrix(found: &[(String, String)], truth: &[(String, String)]) -> Figure {
 
 /// Of the 1,000 most probable samples: how many different training houses are nearest in some
 /// attribute.
-pub fn right(ctx: &mut Context) -> Result<()> {
+pub(crate) fn right(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;

@@ -11,7 +11,7 @@ use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split};
 use edifice_report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
 
 /// Fig. 12 left: five models over five splits of 80/20, on all three sets.
-pub fn left(ctx: &mut Context) -> Result<()> {
+pub(crate) fn left(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let most = ctx.budget().choose(60, 400, 5000);
@@ -167,7 +167,7 @@ fn behind(of: impl Fn(Contender) -> Vec<f64>) -> Vec<Contender> {
 }
 
 /// Fig. 12 right: the effect of the number of training houses, same splits.
-pub fn right(ctx: &mut Context) -> Result<()> {
+pub(crate) fn right(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let sizes: Vec<usize> = ctx.budget().choose(

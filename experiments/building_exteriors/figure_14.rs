@@ -34,7 +34,7 @@ struct Outcome {
 }
 
 /// Completes the held-out houses with a garage from bounding box and garage alone.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let draws = ctx.budget().choose(5, 100, 500);

@@ -54,7 +54,7 @@ pub(super) struct Answer {
 }
 
 /// The artefact `generation`.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let seed = ctx.seed();
     let settings = settings(ctx);

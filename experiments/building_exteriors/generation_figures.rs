@@ -15,7 +15,7 @@ use edifice_report::{Align, Chart, Figure, Scale, Series, Table};
 use edifice_scene::trace::{framing, trace};
 
 /// Fig. 6: energy of mass models against iterations.
-pub fn figure_6(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_6(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let seed = ctx.seed();
     let iterations = ctx.budget().choose(500, 10_000, 10_000);
@@ -73,7 +73,7 @@ pub fn figure_6(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 15: six synthesized houses.
-pub fn figure_15(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_15(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let seed = ctx.seed();
     let settings = settings(ctx);

@@ -18,7 +18,7 @@ use edifice_report::{Align, Row, Table};
 use edifice_shape::solid::faces;
 
 /// Times the parts of every shipped house, the house itself left out of the donors, and many whole houses.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
     let many = ctx.budget().choose(5, 200, 200);

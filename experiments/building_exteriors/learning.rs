@@ -7,7 +7,7 @@ use edifice_model::hierarchy::{Settings, learn};
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 
 /// Learns from the first 50, 100, 150 and 200 shipped houses, S from 2 to 25 as in the paper.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = Settings {
         styles: ctx.budget().choose(2..=3, 2..=25, 2..=25),

@@ -95,7 +95,7 @@ fn part(row: &[f64; 49], c: usize) -> Option<edifice_shape::Rect> {
 }
 
 /// Fig. 13: houses of the means of the mixture's components.
-pub fn figure_13(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_13(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let seed = ctx.seed();
@@ -129,7 +129,7 @@ pub fn figure_13(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 14: a sample of the mixture and one of ours, bounding box and garage given.
-pub fn figure_14(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_14(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let seed = ctx.seed();

@@ -10,13 +10,13 @@ use edifice_model::tables::compare::{Contender, Judged, held_out, judge, split};
 use edifice_report::{Align, Table};
 
 /// Mean losses of all contenders on one set, in their order.
-pub struct Means {
+pub(crate) struct Means {
     pub of: [f64; 5],
 }
 
 impl Means {
     /// The best of the models that ours is not clearly below.
-    pub fn rival(&self, level: &[Contender]) -> Option<Contender> {
+    pub(crate) fn rival(&self, level: &[Contender]) -> Option<Contender> {
         let mean = |c: &Contender| {
             let at = Contender::ALL.iter().position(|k| k == c);
             at.map_or(f64::INFINITY, |at| self.of[at])
@@ -28,7 +28,7 @@ impl Means {
 
 /// Compares ours with `rival` attribute by attribute on the splits of the figure, then learns both
 /// without the attribute on which ours loses most.
-pub fn explain(
+pub(crate) fn explain(
     ctx: &mut Context,
     name: &str,
     data: &Dataset,

@@ -17,7 +17,7 @@ const KINDS: [usize; 10] = [5, 3, 2, 4, 4, 3, 4, 3, 3, 3];
 const ROUNDS: usize = 20;
 
 /// Fits houses drawn with replacement from the shipped ones, up to as many as the budget allows.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let sizes: Vec<usize> = ctx.budget().choose(
         vec![1_000],

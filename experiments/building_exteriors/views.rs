@@ -10,9 +10,9 @@ use edifice_scene::trace::{framing, trace};
 use edifice_shape::{BoxStyle, Building, MassBox, Rect};
 
 /// Directions of the views of a house.
-pub const FRONT: [f32; 3] = [0.45, -0.42, -0.9];
-pub const RIGHT: [f32; 3] = [-0.95, -0.42, -0.35];
-pub const BACK: [f32; 3] = [-0.45, -0.42, 0.9];
+pub(crate) const FRONT: [f32; 3] = [0.45, -0.42, -0.9];
+pub(crate) const RIGHT: [f32; 3] = [-0.95, -0.42, -0.35];
+pub(crate) const BACK: [f32; 3] = [-0.45, -0.42, 0.9];
 
 /// Pixels between panels.
 const GAP: usize = 6;
@@ -27,7 +27,7 @@ const FRONT_PORCH: Colour = [96, 140, 214];
 const BACK_PORCH: Colour = [222, 120, 110];
 
 /// One picture of a sheet.
-pub enum Panel<'a> {
+pub(crate) enum Panel<'a> {
     /// A house in perspective, with its colours and the direction of the view.
     House(&'a Model, usize, [f32; 3]),
     /// Boxes from above; those marked yellow were observed, those outlined in red were edited.
@@ -44,7 +44,7 @@ pub enum Panel<'a> {
 }
 
 /// The panel of a building's boxes.
-pub fn plan(building: &Building) -> Panel<'_> {
+pub(crate) fn plan(building: &Building) -> Panel<'_> {
     Panel::Plan {
         boxes: &building.boxes,
         observed: &[],
@@ -53,7 +53,7 @@ pub fn plan(building: &Building) -> Panel<'_> {
 }
 
 /// Rows of panels as one PNG; `cell` is the size of a panel in pixels.
-pub fn sheet(rows: &[Vec<Panel>], cell: [usize; 2]) -> Result<Vec<u8>> {
+pub(crate) fn sheet(rows: &[Vec<Panel>], cell: [usize; 2]) -> Result<Vec<u8>> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let size = |n: usize, extent: usize| n * extent + n.saturating_sub(1) * GAP;
     let mut canvas = Canvas::new(size(columns, cell[0]), size(rows.len(), cell[1]));

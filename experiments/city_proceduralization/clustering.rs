@@ -19,7 +19,7 @@ struct Sums {
 }
 
 /// Compares at n/2 to n/64 clusters.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let (starts, levels) = ctx.budget().choose((1, 2), (5, 6), (5, 6));
     ctx.setting("starts", starts);

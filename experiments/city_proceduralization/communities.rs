@@ -29,7 +29,7 @@ struct Found {
 const MOST_EDGES: usize = 3000;
 
 /// Compares modularities.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let cities = data::cities(ctx)?;
     let units: Vec<usize> = (0..cities.len()).collect();

@@ -5,14 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{ingolstadt, synthetic};
 use crate::Context;
 use edifice_base::{Ended, Error, Result, Watch};
-use edifice_city_proceduralization::{Budget, Mode, Proceduralized, Settings, proceduralize};
+use edifice_city_proceduralization::{Budget, Mode, Settings, judge, proceduralize};
 use edifice_grammar::instance::Kept;
 use edifice_io::city;
 use edifice_report::Row;
-use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
-
-/// Cells of the raster that judges, in metres.
-pub const RESOLUTION: f64 = 1.0;
+use edifice_shape::triangles::{City, repair};
 
 /// Real cities below the data folder, the first of which most artefacts take.
 const REAL: [(&str, &str); 5] = [
@@ -24,12 +21,12 @@ const REAL: [(&str, &str); 5] = [
 ];
 
 /// The made city, and with `--data` the smallest real one.
-pub fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+pub(crate) fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
     some_cities(ctx, 1)
 }
 
 /// The made city, and with `--data` all real ones.
-pub fn all_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+pub(crate) fn all_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
     some_cities(ctx, REAL.len())
 }
 
@@ -55,7 +52,7 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
 }
 
 /// The city with textures, with `--data`.
-pub fn chiba(ctx: &mut Context) -> Result<Option<City>> {
+pub(crate) fn chiba(ctx: &mut Context) -> Result<Option<City>> {
     if ctx.budget() == crate::Budget::Smoke {
         return Ok(None);
     }
@@ -65,7 +62,7 @@ pub fn chiba(ctx: &mut Context) -> Result<Option<City>> {
 
 /// A result's measures.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Measures {
+pub(crate) struct Measures {
     /// Triangles of the templates.
     pub polygons: f64,
     /// Components.
@@ -89,7 +86,7 @@ pub struct Measures {
 }
 
 /// Names of modes.
-pub fn name(mode: Mode) -> &'static str {
+pub(crate) fn name(mode: Mode) -> &'static str {
     match mode {
         Mode::Best => "best",
         Mode::Paper => "paper",
@@ -97,7 +94,7 @@ pub fn name(mode: Mode) -> &'static str {
 }
 
 /// Proceduralizes a city and measures the result by its derived triangles.
-pub fn measure(city: &City, settings: &Settings, watch: &Watch) -> Result<Measures> {
+pub(crate) fn measure(city: &City, settings: &Settings, watch: &Watch) -> Result<Measures> {
     let start = std::time::Instant::now();
     let made = proceduralize(city, settings, watch).map_err(Error::method)?;
     if made.ended == Ended::Interrupted {
@@ -126,27 +123,15 @@ pub fn measure(city: &City, settings: &Settings, watch: &Watch) -> Result<Measur
             .sum::<f64>(),
         terminals: grammar.templates.len() as f64,
         non_terminals: grammar.non_terminals() as f64,
-        iou: iou(city, &made)?,
+        iou: judge::iou(city, grammar).map_err(Error::method)?,
         bytes: city::grammar_json::packed_bytes(&grammar.keeping(Kept::Identifiers))
             .map_err(Error::method)? as f64,
         seconds,
     })
 }
 
-/// Volumetric intersection over union of the derived triangles with the input's.
-pub fn iou(city: &City, made: &Proceduralized) -> Result<f64> {
-    let derivation = made.grammar.derive().map_err(Error::method)?;
-    let derived = derivation.city(&made.grammar);
-    let repaired: Vec<TriangleMesh> = city.buildings.iter().map(|b| repair(&b.mesh).0).collect();
-    let first: Vec<&TriangleMesh> = repaired.iter().collect();
-    let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();
-    Ok(VolumeRaster { size: RESOLUTION }
-        .compare(&first, &second)
-        .iou())
-}
-
 /// A city whose meshes are repaired as the method repairs them.
-pub fn repaired(city: &City) -> City {
+pub(crate) fn repaired(city: &City) -> City {
     let mut out = city.clone();
     for building in &mut out.buildings {
         building.mesh = repair(&building.mesh).0;
@@ -155,7 +140,7 @@ pub fn repaired(city: &City) -> City {
 }
 
 /// Settings of a mode at a level; level 0 is a template for each component.
-pub fn settings(mode: Mode, level: u32, seed: u64) -> Settings {
+pub(crate) fn settings(mode: Mode, level: u32, seed: u64) -> Settings {
     Settings {
         mode,
         budget: if level == 0 {
@@ -169,7 +154,7 @@ pub fn settings(mode: Mode, level: u32, seed: u64) -> Settings {
 }
 
 /// A row of the CSV.
-pub fn row(
+pub(crate) fn row(
     dataset: &str,
     method: &str,
     instance: &str,

@@ -3,7 +3,7 @@
 use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
 /// A city of bodies in rows, the first row behind; each body stands on the ground in the middle of its place.
-pub fn rows(rows: &[Vec<TriangleMesh>]) -> City {
+pub(crate) fn rows(rows: &[Vec<TriangleMesh>]) -> City {
     let width = |m: &TriangleMesh| {
         let (low, high) = m.bounds().unwrap_or_default();
         (high[0] - low[0]).max(high[1] - low[1])

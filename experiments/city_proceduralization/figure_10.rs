@@ -78,7 +78,7 @@ fn derived(city: &City, seed: u64) -> Result<City> {
 }
 
 /// Looks views of each city up in its grammar of level 4.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let views = ctx.budget().choose(10, 200, 200);
     ctx.setting("views", views);

@@ -15,7 +15,7 @@ const MOST: usize = 6;
 const GAP: f64 = 4.0;
 
 /// Draws for each number of components the largest building with that number, and counts them all.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let width = ctx.budget().choose(120, 480, 640);
     let mut table = Table::new("Buildings by their number of components")
         .column("city", Align::Left)

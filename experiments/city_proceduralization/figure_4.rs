@@ -19,7 +19,7 @@ const CLUSTERS: usize = 16;
 const WEIGHTS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 /// Draws the four types of most buildings, and measures how alike heights are within clusters as their weight grows.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let width = ctx.budget().choose(120, 480, 640);
     let mut table = Table::new("Spread of heights within 16 clusters over that of all components")

@@ -9,7 +9,7 @@ use edifice_io::city::picture::side_by_side;
 use edifice_report::{Align, Table};
 
 /// Draws the pattern that holds the most buildings, and lists its successors.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let width = ctx.budget().choose(120, 360, 480);
     for (name, city) in data::cities(ctx)? {

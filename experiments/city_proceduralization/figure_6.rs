@@ -20,7 +20,7 @@ struct Grown {
 }
 
 /// Lists the levels of the paper's parse tree over the types of level 4.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let cities = data::cities(ctx)?;
     let ways = [

@@ -8,7 +8,7 @@ use edifice_city_proceduralization::{Mode, Representative};
 use edifice_report::{Chart, Corner, Figure, Scale, Series};
 
 /// Runs all levels of each curve.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let levels: u32 = ctx.budget().choose(3, 8, 10);
     ctx.setting("levels", levels);

@@ -4,11 +4,11 @@ use super::data;
 use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
-use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_city_proceduralization::{Mode, judge, proceduralize};
 use edifice_io::city::picture::side_by_side;
 
 /// Draws each city beside its level 4.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let width = ctx.budget().choose(160, 900, 1200);
     for (name, city) in data::cities(ctx)? {
@@ -21,7 +21,7 @@ pub fn run(ctx: &mut Context) -> Result<()> {
             .city(&made.grammar);
         let picture =
             side_by_side(&[&city, &derived], width, width * 3 / 4).map_err(Error::method)?;
-        let value = data::iou(&city, &made)?;
+        let value = judge::iou(&city, &made.grammar).map_err(Error::method)?;
         ctx.observe(data::row(&name, "best", "level_4", "iou", value, ""));
         let what = format!(
             "{name}: the original and its {} templates",

@@ -10,7 +10,7 @@ use edifice_io::city::picture::side_by_side;
 use edifice_report::{Align, Table};
 
 /// Fills the shape "3DV" with each city's buildings, draws it beside the city, and judges it.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let width = ctx.budget().choose(160, 900, 1200);
     let height = ctx.budget().choose(150.0, 900.0, 900.0);

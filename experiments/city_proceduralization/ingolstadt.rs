@@ -31,7 +31,7 @@ struct Polygon {
 }
 
 /// Reads the file.
-pub fn read(path: &Path) -> Result<City> {
+pub(crate) fn read(path: &Path) -> Result<City> {
     let document: Document = parse_json(&read_bytes(path)?, path)?;
     let mut vertices: Vec<[f64; 3]> = Vec::new();
     let mut objects = Map::new();

@@ -24,7 +24,7 @@ const TOGETHER: f64 = 30.0;
 
 /// Measures of a city against the one that its grammar was made from.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Judged {
+pub(crate) struct Judged {
     /// Wasserstein distance over standard deviation: width, depth, height, distance to the nearest neighbour.
     pub wasserstein: [f64; 4],
     /// Jensen-Shannon divergence (base 2) of the frequencies with which types stand together.
@@ -44,7 +44,7 @@ pub struct Judged {
 }
 
 /// Judges `made`, a city that fills `shape`, against `original`.
-pub fn judge(
+pub(crate) fn judge(
     original: &InstanceGrammar,
     made: &InstanceGrammar,
     shape: &Shape,
@@ -251,7 +251,7 @@ fn extent(marks: &[Landmark]) -> f64 {
 /// Share of views whose place is found first. A view is a building of `truth` with those nearest to it, `seen` in all,
 /// in any order; its features carry `noise`, in standard deviations. It is looked up among `known`, the same buildings
 /// as the grammar gives them.
-pub fn rank_one(
+pub(crate) fn rank_one(
     truth: &[Landmark],
     known: &[Landmark],
     noise: f64,

@@ -16,7 +16,7 @@ const MOST: f64 = 256.0;
 const PAINTED: f64 = 0.9;
 
 /// The buildings of a city whose facades can be photographed.
-pub struct Streets<'a> {
+pub(crate) struct Streets<'a> {
     city: &'a City,
     landmarks: Vec<Landmark>,
     /// Index in the city of each landmark.
@@ -26,7 +26,7 @@ pub struct Streets<'a> {
 }
 
 impl<'a> Streets<'a> {
-    pub fn new(city: &'a City) -> Self {
+    pub(crate) fn new(city: &'a City) -> Self {
         let (all, indices) = landmarks(city);
         let (mut own, mut buildings, mut known) = (Vec::new(), Vec::new(), Vec::new());
         for (landmark, index) in all.into_iter().zip(indices) {
@@ -46,7 +46,7 @@ impl<'a> Streets<'a> {
     }
 
     /// The facades of the same buildings in another city, by their identifiers.
-    pub fn of(&self, other: &City) -> Vec<Vec<Facade>> {
+    pub(crate) fn of(&self, other: &City) -> Vec<Vec<Facade>> {
         let by_id: std::collections::BTreeMap<&str, usize> = (other.buildings.iter())
             .enumerate()
             .map(|(i, b)| (b.id.as_str(), i))
@@ -60,7 +60,7 @@ impl<'a> Streets<'a> {
 
     /// Share of `views` views, each of the `count` buildings nearest to a random one, of which the first place found is one of
     /// them. A photograph is of one of a building's facades, with `noise` in greys.
-    pub fn rank_one(
+    pub(crate) fn rank_one(
         &self,
         known: &[Vec<Facade>],
         count: usize,

@@ -29,7 +29,7 @@ const NOISE: [u32; 3] = [0, 1, 3];
 const CLOSE: f64 = 0.3;
 
 /// Runs both modes at each noise.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let motifs = ctx.budget().choose(60, 500, 500);
     ctx.setting("motifs", motifs);

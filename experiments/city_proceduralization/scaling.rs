@@ -24,7 +24,7 @@ const JITTER: f64 = 0.03;
 const GAP: f64 = 200.0;
 
 /// Runs cities of growing size.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let settings = data::settings(Mode::Best, 4, seed);
     let mut table = Table::new("Time and memory of level 4, `best`")

@@ -17,7 +17,7 @@ const SHOWN_OF_LARGE: [u32; 2] = [2, 4];
 const MOST_OF_PAPER: usize = 20_000;
 
 /// Runs both modes on every city and level.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
     let cities = data::all_cities(ctx)?;
     let buildings = |c: usize| cities[c].1.buildings.len();

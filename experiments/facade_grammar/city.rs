@@ -26,12 +26,12 @@ const HIGH_RISE: Groups = &[&["office_1", "office_2", "office_3"]];
 const DRAWS: usize = 4;
 
 /// Low-rise buildings from twelve layouts.
-pub fn figure_15(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_15(ctx: &mut Context) -> Result<()> {
     build(ctx, "figure_15", LOW_RISE, 3_600, ["12", "50 million"])
 }
 
 /// High-rise buildings from three layouts.
-pub fn figure_16(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_16(ctx: &mut Context) -> Result<()> {
     build(ctx, "figure_16", HIGH_RISE, 120, ["3", "–"])
 }
 

@@ -8,7 +8,7 @@ use edifice_facade_grammar::Operations;
 use edifice_report::{Align, Row, Table};
 
 /// The methods, operations and metrics of a comparison.
-pub struct Plan {
+pub(crate) struct Plan {
     /// Methods in the order of the columns.
     pub solvers: Vec<Solver>,
     /// Operations allowed.
@@ -18,7 +18,7 @@ pub struct Plan {
 }
 
 /// The runs of every method on every facade.
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// The facades.
     pub instances: Vec<Instance>,
     /// The methods.
@@ -28,7 +28,7 @@ pub struct Comparison {
 }
 
 /// Runs a plan on the shipped facades, and on the real ones that the user has.
-pub fn run(ctx: &mut Context, plan: Plan) -> Result<Comparison> {
+pub(crate) fn run(ctx: &mut Context, plan: Plan) -> Result<Comparison> {
     let mut instances: Vec<Instance> = data::shipped(ctx)?
         .into_iter()
         .map(|facade| Instance {
@@ -114,26 +114,26 @@ fn seeds_of(budget: Budget, instance: &Instance, solver: Solver) -> u64 {
 
 impl Comparison {
     /// The data sets, in order.
-    pub fn datasets(&self) -> Vec<&'static str> {
+    pub(crate) fn datasets(&self) -> Vec<&'static str> {
         let mut names: Vec<_> = self.instances.iter().map(|i| i.dataset).collect();
         names.dedup();
         names
     }
 
     /// Indices of a data set's facades.
-    pub fn of(&self, dataset: &str) -> Vec<usize> {
+    pub(crate) fn of(&self, dataset: &str) -> Vec<usize> {
         (0..self.instances.len())
             .filter(|&i| self.instances[i].dataset == dataset)
             .collect()
     }
 
     /// Least cost over the seeds.
-    pub fn least_cost(&self, instance: usize, solver: usize) -> f64 {
+    pub(crate) fn least_cost(&self, instance: usize, solver: usize) -> f64 {
         least(&self.costs(instance, solver))
     }
 
     /// Mean cost over the seeds.
-    pub fn mean_cost(&self, instance: usize, solver: usize) -> f64 {
+    pub(crate) fn mean_cost(&self, instance: usize, solver: usize) -> f64 {
         mean(&self.costs(instance, solver))
     }
 
@@ -143,7 +143,7 @@ impl Comparison {
     }
 
     /// Column of a method; `None` when it was not run.
-    pub fn column(&self, name: &str) -> Option<usize> {
+    pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.solvers.iter().position(|s| s.name() == name)
     }
 
@@ -164,7 +164,7 @@ impl Comparison {
 
     /// A table of one quantity on one data set, `least/mean` over the seeds, with the averages and
     /// the lowest of each row in bold.
-    pub fn table(
+    pub(crate) fn table(
         &self,
         title: String,
         dataset: &str,
@@ -230,7 +230,7 @@ impl Comparison {
     }
 
     /// Average of the methods' least costs over a data set.
-    pub fn average_least(&self, dataset: &str, solver: usize) -> f64 {
+    pub(crate) fn average_least(&self, dataset: &str, solver: usize) -> f64 {
         mean(
             &self
                 .of(dataset)
@@ -241,7 +241,7 @@ impl Comparison {
     }
 
     /// Average over a data set of the mean cost over the seeds.
-    pub fn average_mean(&self, dataset: &str, solver: usize) -> f64 {
+    pub(crate) fn average_mean(&self, dataset: &str, solver: usize) -> f64 {
         mean(
             &self
                 .of(dataset)
@@ -253,7 +253,7 @@ impl Comparison {
 
     /// On how many facades of a data set a method's least cost is lower than, equal to, higher than
     /// another's.
-    pub fn wins(&self, dataset: &str, first: usize, second: usize) -> [usize; 3] {
+    pub(crate) fn wins(&self, dataset: &str, first: usize, second: usize) -> [usize; 3] {
         let mut wins = [0; 3];
         for i in self.of(dataset) {
             let (a, b) = (self.least_cost(i, first), self.least_cost(i, second));

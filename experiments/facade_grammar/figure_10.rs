@@ -6,7 +6,7 @@ use edifice_base::Result;
 use edifice_report::{Figure, Row};
 
 /// Shows every shipped facade with its number of terminals.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let facades = data::shipped(ctx)?;
     let mut figure = Figure::new("the shipped facades", 7).cell(210.0, 250.0);
     for facade in &facades {

@@ -24,7 +24,7 @@ const WIDTHS: [f64; 4] = [0.8, 1.2, 1.4, 2.0];
 const NOISE: f64 = 1e-5;
 
 /// One facade in three ways, and all shipped layouts by bands.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (few, _) = super::iterations(ctx.budget());
     ctx.setting("facade", FACADE);
     ctx.setting("reach", ALIGN_REACH);

@@ -9,7 +9,7 @@ use edifice_report::{Align, Figure, Row, Table};
 use edifice_shape::Facade;
 
 /// Joint extraction from the four terraces, beside separate extraction.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (few, many) = super::iterations(ctx.budget());
     let iterations = ctx.budget().choose(few, many, many);
     let seeds = ctx.budget().choose(1, 3, 10);

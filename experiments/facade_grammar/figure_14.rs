@@ -29,7 +29,7 @@ struct Point {
 const FACADES: [&str; 3] = ["tenement_1", "office_1", "boulevard_1"];
 
 /// Best cost so far and seconds per iteration of three methods on three facades.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (few, many) = super::iterations(ctx.budget());
     let seeds = ctx.budget().choose(1, 3, 10);
     let count = ctx.budget().choose(1, 3, 3);

@@ -13,7 +13,7 @@ use edifice_report::{Align, Figure, Outline, Row, Table, category};
 use edifice_shape::Facade;
 
 /// Fig. 9: split and repeat.
-pub fn figure_9(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_9(ctx: &mut Context) -> Result<()> {
     let facade = data::figure_9(ctx)?;
     let printed = grammar_cga::read(&data::folder(ctx)?.join(format!("{FIGURE_9}.cga")))?;
     let costs = Costs::default();
@@ -46,7 +46,7 @@ pub fn figure_9(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 11: with the extensions of Sec. 4.7.
-pub fn figure_11(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_11(ctx: &mut Context) -> Result<()> {
     let facade = data::figure_9(ctx)?;
     let plain = example(ctx, &facade, Operations::default())?;
     let mirrored = Operations {

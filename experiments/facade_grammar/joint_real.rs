@@ -34,7 +34,7 @@ struct Answer {
 }
 
 /// Joint extraction from random sets of real facades, each set from one data set, beside the separate grammars.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (_, many) = iterations(ctx.budget());
     let (facades, sets) = ctx
         .budget()

@@ -9,10 +9,10 @@ use edifice_grammar::Costs;
 use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// A row of a table: a name, and what to run.
-pub type Case = (String, Question);
+pub(crate) type Case = (String, Question);
 
 /// The likeness of the grammars of all cases to all references.
-pub struct Scores {
+pub(crate) struct Scores {
     /// The facades with their references.
     pub judged: Vec<Judged>,
     /// Names of the cases.
@@ -22,7 +22,7 @@ pub struct Scores {
 }
 
 /// Runs every case on every facade; the observations go to the CSV, the kind of reference as data set.
-pub fn run(ctx: &mut Context, cases: &[Case]) -> Result<Scores> {
+pub(crate) fn run(ctx: &mut Context, cases: &[Case]) -> Result<Scores> {
     let judged = references::judged(ctx)?;
     let names: Vec<String> = cases.iter().map(|(name, _)| name.clone()).collect();
     ctx.setting("cases", names.clone());
@@ -68,7 +68,7 @@ pub fn run(ctx: &mut Context, cases: &[Case]) -> Result<Scores> {
 
 /// One of the three numbers of a likeness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
+pub(crate) enum Measure {
     /// Precision.
     Precision,
     /// Recall.
@@ -99,7 +99,7 @@ impl Measure {
 
 /// The layouts that a mean is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Layouts {
+pub(crate) enum Layouts {
     /// Layouts designed for the reference's kind.
     Own,
     /// All layouts that have a reference of the kind.
@@ -108,7 +108,7 @@ pub enum Layouts {
 
 impl Scores {
     /// Mean over the facades of a case's likeness to the references of a kind.
-    pub fn mean(&self, case: usize, kind: &str, layouts: Layouts, measure: Measure) -> f64 {
+    pub(crate) fn mean(&self, case: usize, kind: &str, layouts: Layouts, measure: Measure) -> f64 {
         let facades = self.judged.iter().zip(&self.found[case]);
         let chosen = facades.filter(|(j, _)| layouts == Layouts::All || j.own == kind);
         let values = chosen.flat_map(|(judged, each)| {
@@ -120,24 +120,24 @@ impl Scores {
     }
 
     /// Mean F of a case on the layouts of a kind's own.
-    pub fn f_score(&self, case: usize, kind: &str) -> f64 {
+    pub(crate) fn f_score(&self, case: usize, kind: &str) -> f64 {
         self.mean(case, kind, Layouts::Own, Measure::FScore)
     }
 
     /// Place of a case among others by F, from 1, rounded as it is printed: equal numbers share the better place.
-    pub fn rank(&self, case: usize, kind: &str, among: &[usize]) -> usize {
+    pub(crate) fn rank(&self, case: usize, kind: &str, among: &[usize]) -> usize {
         let value = |c: usize| (100.0 * self.f_score(c, kind)).round() as i64;
         1 + among.iter().filter(|&&c| value(c) > value(case)).count()
     }
 
     /// `precision, recall, F` over the layouts of a kind's own.
-    pub fn triple(&self, case: usize, kind: &str) -> String {
+    pub(crate) fn triple(&self, case: usize, kind: &str) -> String {
         let all = Measure::ALL.map(|m| self.mean(case, kind, Layouts::Own, m));
         all.map(|value| format!("{value:.2}")).join(", ")
     }
 
     /// The tables of all measures, and the picture of F.
-    pub fn show(&self, ctx: &mut Context, name: &str) -> Result<()> {
+    pub(crate) fn show(&self, ctx: &mut Context, name: &str) -> Result<()> {
         let kinds = references::kinds();
         let own = "each kind's own layouts";
         for (what, measure) in [
@@ -192,7 +192,7 @@ impl Scores {
     }
 
     /// The mean cost of the references of each kind on the layouts of their own, by the paper's costs.
-    pub fn costs(&self, kind: &str) -> f64 {
+    pub(crate) fn costs(&self, kind: &str) -> f64 {
         let own = self.judged.iter().filter(|j| j.own == kind);
         let grammars = own.flat_map(|j| j.references.iter().filter(|(k, _)| *k == kind));
         let costs = grammars.map(|(_, grammar)| Costs::default().grammar(grammar));

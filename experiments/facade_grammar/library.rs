@@ -40,7 +40,7 @@ struct Measured {
 }
 
 /// Cost and bits of the library of each real set, and of what it draws.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let mut table = Table::new("One library for all facades of a set")
         .column("set", Align::Left)
         .numbers([

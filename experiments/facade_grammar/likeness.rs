@@ -9,7 +9,7 @@ use edifice_grammar::{Grammar, derivation};
 
 /// Precision, recall and F-score.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Likeness {
+pub(crate) struct Likeness {
     /// Common regions over regions of the grammar judged.
     pub precision: f64,
     /// Common regions over regions of the reference.
@@ -36,7 +36,7 @@ fn regions(grammar: &Grammar) -> Result<HashSet<Key>> {
 ///
 /// # Errors
 /// [`Error::Method`] when one of them does not derive.
-pub fn likeness(grammar: &Grammar, reference: &Grammar) -> Result<Likeness> {
+pub(crate) fn likeness(grammar: &Grammar, reference: &Grammar) -> Result<Likeness> {
     let (ours, theirs) = (regions(grammar)?, regions(reference)?);
     let common = ours.intersection(&theirs).count() as f64;
     let share = |count: usize| {

@@ -48,7 +48,7 @@ impl Answer {
 }
 
 /// Bounds the cost of facade (i), of small shipped layouts, and of small real facades.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (_, many) = iterations(ctx.budget());
     let (terminals, real) = ctx.budget().choose((60, 1), (400, 8), (1_200, 40));
     let limits = match ctx.budget() {

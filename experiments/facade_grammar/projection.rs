@@ -33,7 +33,7 @@ struct Effect {
 
 /// Distinct sizes and costs before and after, and whether a second pass changes anything, by set and
 /// tolerance.
-pub fn table(ctx: &mut Context) -> Result<()> {
+pub(crate) fn table(ctx: &mut Context) -> Result<()> {
     let mut sources: Vec<(&str, String, Source)> = Vec::new();
     for facade in data::shipped(ctx)? {
         sources.push(("shipped", facade.name.clone(), Source::Tiling(facade)));

@@ -4,14 +4,14 @@ use crate::Context;
 use edifice_base::{Error, Result};
 
 /// The automatic methods of the paper's Tables 2 to 4, in their order.
-pub const AUTOMATIC: [&str; 4] = ["procedural_logic", "bayesian", "symmetry", "adp"];
+pub(crate) const AUTOMATIC: [&str; 4] = ["procedural_logic", "bayesian", "symmetry", "adp"];
 
 /// The printed numbers.
-pub struct Published(Vec<[String; 7]>);
+pub(crate) struct Published(Vec<[String; 7]>);
 
 impl Published {
     /// Reads them.
-    pub fn read(ctx: &mut Context) -> Result<Self> {
+    pub(crate) fn read(ctx: &mut Context) -> Result<Self> {
         let path = ctx.shipped("facade_grammar/published.csv")?;
         let mut reader = csv::Reader::from_path(&path).map_err(|e| Error::content(&path, e))?;
         let rows: std::result::Result<_, _> = reader.deserialize().collect();
@@ -19,7 +19,7 @@ impl Published {
     }
 
     /// A number as printed; a dash when the paper has none.
-    pub fn text(&self, key: [&str; 5]) -> String {
+    pub(crate) fn text(&self, key: [&str; 5]) -> String {
         self.find(key).unwrap_or("–").to_string()
     }
 
@@ -27,7 +27,7 @@ impl Published {
     ///
     /// # Errors
     /// [`Error::Method`] when the paper has none of this name.
-    pub fn number(&self, key: [&str; 5]) -> Result<f64> {
+    pub(crate) fn number(&self, key: [&str; 5]) -> Result<f64> {
         let value = self.find(key).and_then(|text| text.parse().ok());
         value.ok_or_else(|| Error::method(format!("the paper prints no number for {key:?}")))
     }

@@ -10,7 +10,7 @@ use edifice_report::{Align, Row, Table};
 
 /// Sets the ratio of average costs of each method to both configurations of ADP beside the ratio
 /// of the paper's printed averages. `(name, random)`; random methods have `many` iterations.
-pub fn compare(
+pub(crate) fn compare(
     ctx: &mut Context,
     found: &Comparison,
     printed: &Published,
@@ -49,7 +49,7 @@ pub fn compare(
 }
 
 /// Counts the facades on which the best configuration is lowest, for each data set.
-pub fn wins(ctx: &mut Context, found: &Comparison, many: u64) {
+pub(crate) fn wins(ctx: &mut Context, found: &Comparison, many: u64) {
     let name = Solver::Infer(BEST, many).name();
     let Some(best) = found.column(&name) else {
         return;

@@ -45,7 +45,7 @@ fn readings() -> Vec<(&'static str, Readings)> {
 type Unit = (usize, Solver, usize, u64);
 
 /// Runs the text's algorithm under each reading, many times on facade (i) and once on all others.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let readings = readings();
     let (few, many) = iterations(ctx.budget());
     let seeds = ctx.budget().choose(2, 30, 100);

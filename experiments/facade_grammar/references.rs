@@ -9,13 +9,13 @@ use edifice_io::grammar_cga;
 use edifice_shape::Facade;
 
 /// The grammars that the shipped layouts were derived from.
-pub const SHIPPED: &str = "shipped";
+pub(crate) const SHIPPED: &str = "shipped";
 /// The grammar printed for facade (i), which the paper's own method found.
-pub const PRINTED: &str = "printed";
+pub(crate) const PRINTED: &str = "printed";
 
 /// A facade with the grammars that it is judged by.
 #[derive(Debug, Clone)]
-pub struct Judged {
+pub(crate) struct Judged {
     /// The facade.
     pub facade: Facade,
     /// The kind of reference that the facade was designed for.
@@ -25,7 +25,7 @@ pub struct Judged {
 }
 
 /// The kinds of references, in the order of the tables.
-pub fn kinds() -> Vec<&'static str> {
+pub(crate) fn kinds() -> Vec<&'static str> {
     let made = Kind::ALL.map(Kind::name);
     [SHIPPED, PRINTED].into_iter().chain(made).collect()
 }
@@ -34,7 +34,7 @@ pub fn kinds() -> Vec<&'static str> {
 ///
 /// # Errors
 /// Those of the readers, or of a made grammar that does not derive.
-pub fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
+pub(crate) fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
     let mut all: Vec<Judged> = data::known(ctx)?
         .into_iter()
         .map(|(facade, grammar)| Judged {
@@ -63,7 +63,7 @@ pub fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
 }
 
 /// The paragraph on the references for the pages.
-pub const NOTE: &str = "**References.** The paper compares with grammars of four experts and three other people. Without people, the \
+pub(crate) const NOTE: &str = "**References.** The paper compares with grammars of four experts and three other people. Without people, the \
     references are of several kinds, none of which any method sees. *shipped*: the grammars that the 34 shipped layouts were \
     derived from, mostly all floors of a wing at once and then all elements of a floor at once. *printed*: the grammar that the paper \
     prints for facade (i) (Sec. 4.6); its own method found it. *floors_first*, *columns_first*, *interleaved*, *symmetric*, *nested*: \

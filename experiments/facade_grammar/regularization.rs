@@ -22,7 +22,7 @@ struct Effect {
 
 /// The properties that regularization keeps, on every set; then distinct sizes of windows and cut lines before and
 /// after, by tolerance, on the ECP labels.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     projection::table(ctx)?;
     let Some(folder) = ctx.real("facades/ecp2011/labels")? else {
         ctx.note("The second table needs the labels of ECP2011 (--data).");

@@ -44,7 +44,7 @@ struct Room {
 }
 
 /// Bounds every real facade of a comparison under the operations of [`Settings::default`].
-pub fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
+pub(crate) fn table(ctx: &mut Context, found: &Comparison, many: u64) -> Result<()> {
     let column = |method| found.column(&Solver::Infer(method, many).name());
     let (Some(best), Some(paper)) = (column(BEST), column(PAPER)) else {
         return Ok(());

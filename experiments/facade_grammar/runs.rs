@@ -13,7 +13,7 @@ use edifice_shape::Facade;
 
 /// A method with its number of iterations.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Solver {
+pub(crate) enum Solver {
     /// A method of this paper, or one that its authors rebuilt.
     Infer(Method, u64),
     /// Weissenberg et al. 2013.
@@ -22,7 +22,7 @@ pub enum Solver {
 
 impl Solver {
     /// Name in tables: `adp_best_10k`; without the iterations for methods that have none.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         match self {
             Solver::ProceduralLogic => "procedural_logic".into(),
             Solver::Infer(Method::Greedy, _) => "greedy".into(),
@@ -43,7 +43,7 @@ impl Solver {
     }
 
     /// Its name in the paper's Tables 2 to 4; `None` when they do not have it.
-    pub fn published(self) -> Option<&'static str> {
+    pub(crate) fn published(self) -> Option<&'static str> {
         match self {
             Solver::ProceduralLogic => Some("procedural_logic"),
             Solver::Infer(Method::Bayesian, _) => Some("bayesian"),
@@ -54,7 +54,7 @@ impl Solver {
     }
 
     /// True if the result depends on the seed, so that more than one seed says more.
-    pub fn random(self) -> bool {
+    pub(crate) fn random(self) -> bool {
         matches!(
             self,
             Solver::Infer(Method::AdpBest | Method::AdpPaper | Method::Importance, _)
@@ -64,7 +64,7 @@ impl Solver {
 
 /// The question of a run: a method and its settings.
 #[derive(Debug, Clone, Copy)]
-pub struct Question {
+pub(crate) struct Question {
     /// The method.
     pub solver: Solver,
     /// Its seed.
@@ -79,7 +79,7 @@ pub struct Question {
 
 impl Question {
     /// A question with the paper's costs and basic operations, and this project's readings.
-    pub fn new(solver: Solver, seed: u64) -> Self {
+    pub(crate) fn new(solver: Solver, seed: u64) -> Self {
         Self {
             solver,
             seed,
@@ -92,7 +92,7 @@ impl Question {
 
 /// The result of a run, by the independent evaluator.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// Cost of the grammar (Eq. 1).
     pub cost: f64,
     /// Its rules.
@@ -105,7 +105,7 @@ pub struct Answer {
 
 /// Runs a method on a facade, or on several for one joint grammar; the grammar derives back to
 /// them, or this fails.
-pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer)> {
+pub(crate) fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer)> {
     let start = ThreadTime::now();
     let grammar = match (question.solver, facades) {
         (Solver::ProceduralLogic, [facade]) => peers::grammar("procedural_logic", facade)?,
@@ -139,12 +139,12 @@ pub fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer
 }
 
 /// Least of a list; zero when it is empty.
-pub fn least(values: &[f64]) -> f64 {
+pub(crate) fn least(values: &[f64]) -> f64 {
     values.iter().copied().reduce(f64::min).unwrap_or_default()
 }
 
 /// Mean of a list; zero when it is empty.
-pub fn mean(values: &[f64]) -> f64 {
+pub(crate) fn mean(values: &[f64]) -> f64 {
     match values.len() {
         0 => 0.0,
         n => values.iter().sum::<f64>() / n as f64,

@@ -28,7 +28,7 @@ struct Times {
 }
 
 /// Times made facades of 50 to 20,000 terminals.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let sizes: &[usize] = ctx.budget().choose(
         &[60, 120],
         &[50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000],

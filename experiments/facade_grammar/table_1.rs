@@ -11,7 +11,7 @@ use edifice_facade_grammar::{Method, Operations};
 use edifice_report::{Align, Bars, Figure, Scale, Table};
 
 /// Costs, rules and times of the methods with 2,000 and 10,000 iterations.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (few, many) = super::iterations(ctx.budget());
     let with = |method| [Solver::Infer(method, few), Solver::Infer(method, many)];
     let mut solvers = Vec::new();

@@ -13,7 +13,7 @@ use edifice_report::{Align, Table};
 use edifice_shape::LabelGrid;
 
 /// Costs of five methods with splits alone.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (_, many) = super::iterations(ctx.budget());
     let plan = Plan {
         solvers: vec![

@@ -6,7 +6,7 @@ use edifice_base::Result;
 use edifice_report::{Align, Table};
 
 /// Shows the printed numbers.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let printed = Published::read(ctx)?;
     let users = (1..=7).map(|u| format!("user_{u}"));
     let methods: Vec<String> = AUTOMATIC

@@ -13,7 +13,7 @@ use edifice_grammar::derivation;
 use edifice_report::{Align, Figure, Outline, Table, Tiles, category};
 
 /// Five automatic methods, and greedy, against references of every kind.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (_, many) = super::iterations(ctx.budget());
     let solvers = [
         Solver::ProceduralLogic,

@@ -38,7 +38,7 @@ fn models() -> [(&'static str, Costs); 6] {
 const CHOSEN: usize = 2;
 
 /// Both configurations of ADP with six cost models against references of every kind.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (few, _) = super::iterations(ctx.budget());
     let mut cases: Vec<Case> = Vec::new();
     for method in [BEST, PAPER] {

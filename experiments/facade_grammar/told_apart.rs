@@ -5,7 +5,7 @@ use edifice_model::boosting::{Boosting, Settings};
 use edifice_shape::{Axis, Facade};
 
 /// Facades of one fold: those a classifier learns from, and those that it judges.
-pub struct Fold {
+pub(crate) struct Fold {
     /// Real facades to learn from.
     pub known: Vec<Facade>,
     /// Drawn ones to learn from.
@@ -21,7 +21,7 @@ pub struct Fold {
 ///
 /// # Errors
 /// [`Error::Method`] where features are not finite.
-pub fn area(folds: &[Fold], labels: &[&str]) -> Result<f64> {
+pub(crate) fn area(folds: &[Fold], labels: &[&str]) -> Result<f64> {
     let (mut real, mut drawn) = (Vec::new(), Vec::new());
     for fold in folds {
         let rows = |facades: &[Facade]| -> Vec<Vec<f64>> {

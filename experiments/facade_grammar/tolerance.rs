@@ -35,7 +35,7 @@ struct Point {
 }
 
 /// The curve of every set.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let most = ctx.budget().choose(1, 6, usize::MAX);
     let mut units: Vec<(&str, PathBuf)> = Vec::new();
     for (name, place, ending) in SETS {

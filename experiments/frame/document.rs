@@ -4,7 +4,7 @@ use super::provenance::Comparison;
 use edifice_report::{Align, Table};
 
 /// The page of one artefact.
-pub struct Document {
+pub(crate) struct Document {
     artefact: String,
     title: String,
     blocks: Vec<String>,
@@ -12,7 +12,7 @@ pub struct Document {
 
 impl Document {
     /// An empty page.
-    pub fn new(artefact: &str, title: &str) -> Self {
+    pub(crate) fn new(artefact: &str, title: &str) -> Self {
         Self {
             artefact: artefact.to_string(),
             title: title.to_string(),
@@ -21,17 +21,17 @@ impl Document {
     }
 
     /// Adds a block of Markdown.
-    pub fn block(&mut self, text: String) {
+    pub(crate) fn block(&mut self, text: String) {
         self.blocks.push(text);
     }
 
     /// Adds the picture `<name>.png`.
-    pub fn image(&mut self, name: &str, caption: &str) {
+    pub(crate) fn image(&mut self, name: &str, caption: &str) {
         self.blocks.push(format!("![{caption}]({name}.png)"));
     }
 
     /// The page, with the comparisons first, since they are what a reader looks for.
-    pub fn markdown(&self, comparisons: &[Comparison], skipped: Option<&str>) -> String {
+    pub(crate) fn markdown(&self, comparisons: &[Comparison], skipped: Option<&str>) -> String {
         let mut parts = vec![format!("# {}: {}", readable(&self.artefact), self.title)];
         if let Some(reason) = skipped {
             parts.push(format!("Not made in this run: {reason}"));
@@ -52,7 +52,7 @@ impl Document {
 }
 
 /// `table_1` as `Table 1`.
-pub fn readable(name: &str) -> String {
+pub(crate) fn readable(name: &str) -> String {
     let text = name.replace('_', " ");
     let mut letters = text.chars();
     match letters.next() {

@@ -23,7 +23,7 @@ struct Entry {
 }
 
 /// The journal of one artefact.
-pub struct Journal {
+pub(crate) struct Journal {
     path: PathBuf,
     done: HashMap<String, serde_json::Value>,
     file: Mutex<File>,
@@ -34,7 +34,7 @@ impl Journal {
     ///
     /// # Errors
     /// [`Error::Content`] when another process has it open.
-    pub fn open(path: &Path) -> Result<Self> {
+    pub(crate) fn open(path: &Path) -> Result<Self> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
         }
@@ -62,12 +62,12 @@ impl Journal {
     }
 
     /// The stored result of a unit; `None` when there is none of this shape.
-    pub fn get<R: serde::de::DeserializeOwned>(&self, key: &str) -> Option<R> {
+    pub(crate) fn get<R: serde::de::DeserializeOwned>(&self, key: &str) -> Option<R> {
         R::deserialize(self.done.get(key)?).ok()
     }
 
     /// Stores the result of a unit.
-    pub fn put<R: Serialize>(&self, key: &str, value: &R) -> Result<()> {
+    pub(crate) fn put<R: Serialize>(&self, key: &str, value: &R) -> Result<()> {
         let entry = Entry {
             key: key.to_string(),
             value: serde_json::to_value(value).map_err(Error::method)?,

@@ -17,14 +17,14 @@ const NAME: &str = ".lock";
 struct Busy;
 
 /// The right to write into a folder, until it is dropped or the process ends, however it ends.
-pub struct Lock(#[expect(dead_code, reason = "held, not read")] File);
+pub(crate) struct Lock(#[expect(dead_code, reason = "held, not read")] File);
 
 impl Lock {
     /// Takes the folder.
     ///
     /// # Errors
     /// [`Error::Content`] that names the folder when another run has it.
-    pub fn take(folder: &Path) -> Result<Self> {
+    pub(crate) fn take(folder: &Path) -> Result<Self> {
         let file = open(folder)?;
         exclusive(&file, folder)?;
         Ok(Self(file))
@@ -34,7 +34,7 @@ impl Lock {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub fn wait(folder: &Path) -> Result<Self> {
+    pub(crate) fn wait(folder: &Path) -> Result<Self> {
         let file = open(folder)?;
         file.lock().or_else(|e| unsupported(folder, e))?;
         Ok(Self(file))
@@ -45,7 +45,7 @@ impl Lock {
 ///
 /// # Errors
 /// [`Error::Content`] then, [`Error::Io`].
-pub fn exclusive(file: &File, path: &Path) -> Result<()> {
+pub(crate) fn exclusive(file: &File, path: &Path) -> Result<()> {
     match file.try_lock() {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => Err(Error::content(path, Busy)),

@@ -15,8 +15,10 @@ mod verify;
 pub use context::Context;
 pub use options::{Args, Budget, Options};
 pub use own::Own;
-pub use progress::{Progress, silence};
-pub use run::{Report, main, run, run_to_end};
+pub(crate) use progress::Progress;
+pub use progress::silence;
+pub(crate) use run::main;
+pub use run::{Report, run, run_to_end};
 pub(super) use run::{SWEEPS, write_index};
 
 /// One table or figure of a paper.

@@ -20,7 +20,7 @@ fn is_silent() -> bool {
 }
 
 /// Progress of one batch of units.
-pub struct Progress {
+pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     name: String,
     total: u64,
@@ -30,7 +30,7 @@ pub struct Progress {
 
 impl Progress {
     /// Starts at `done` of `total` units.
-    pub fn new(name: &str, total: u64, done: u64) -> Self {
+    pub(crate) fn new(name: &str, total: u64, done: u64) -> Self {
         let shown = std::io::stderr().is_terminal() && !is_silent();
         let bar = shown.then(|| {
             let bar = ProgressBar::new(total).with_position(done);
@@ -57,7 +57,7 @@ impl Progress {
     }
 
     /// One unit more is done; plain lines come at each tenth of a long batch.
-    pub fn step(&self) {
+    pub(crate) fn step(&self) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         match &self.bar {
             Some(bar) => bar.inc(1),
@@ -87,7 +87,7 @@ impl Drop for Progress {
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be written.
-pub fn result(value: &serde_json::Value) -> Result<()> {
+pub(crate) fn result(value: &serde_json::Value) -> Result<()> {
     match writeln!(std::io::stdout().lock(), "{value}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Error::io("standard output".as_ref(), "write", e))
@@ -97,7 +97,7 @@ pub fn result(value: &serde_json::Value) -> Result<()> {
 }
 
 /// A message to standard error; nobody is left to tell when that is closed. After [`silence`], only warnings.
-pub fn line(text: &str) {
+pub(crate) fn line(text: &str) {
     if is_silent() && !text.starts_with("warning") {
         return;
     }

@@ -10,7 +10,7 @@ use edifice_base::{Error, Result};
 
 /// Provenance of the artefacts of one paper, `OUT/<paper>/run.json`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Run {
+pub(crate) struct Run {
     /// Slug of the paper.
     pub experiment: String,
     /// Authors, year and title.
@@ -23,7 +23,7 @@ pub struct Run {
 
 /// The way in which an artefact was made.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Made {
+pub(crate) struct Made {
     /// Its subject.
     pub title: String,
     /// The command that makes it again; `DATA` stands for the folder of the real data.
@@ -61,7 +61,7 @@ pub struct Made {
 
 /// A machine, as far as it matters for times.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Machine {
+pub(crate) struct Machine {
     /// Logical cores.
     pub cores: usize,
     /// Threads that ran units.
@@ -74,7 +74,7 @@ pub struct Machine {
 
 impl Machine {
     /// This machine.
-    pub fn this(threads: usize) -> Self {
+    pub(crate) fn this(threads: usize) -> Self {
         Self {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             threads,
@@ -85,7 +85,7 @@ impl Machine {
 }
 
 /// The commit that the program was built from, and if files differed from it, as the build script found them.
-pub fn commit() -> (Option<String>, Option<bool>) {
+pub(crate) fn commit() -> (Option<String>, Option<bool>) {
     let commit = option_env!("EDIFICE_COMMIT").map(str::to_owned);
     let dirty = option_env!("EDIFICE_DIRTY").map(|d| d == "true");
     (commit, dirty)
@@ -93,7 +93,7 @@ pub fn commit() -> (Option<String>, Option<bool>) {
 
 /// A quantity, what the paper printed, what this run found.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// Name of the quantity.
     pub quantity: String,
     /// The paper's number as printed.
@@ -104,7 +104,7 @@ pub struct Comparison {
 
 impl Run {
     /// Reads `run.json`; a missing file, or one of another version, is an empty run.
-    pub fn read(path: &Path) -> Self {
+    pub(crate) fn read(path: &Path) -> Self {
         std::fs::read(path)
             .ok()
             .and_then(|bytes| serde_json::from_slice(&bytes).ok())
@@ -112,7 +112,7 @@ impl Run {
     }
 
     /// Writes `run.json`.
-    pub fn write(&self, path: &Path) -> Result<()> {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
         let mut bytes = serde_json::to_vec_pretty(self).map_err(Error::method)?;
         bytes.push(b'\n');
         edifice_base::file::write_atomic(path, &bytes)
@@ -120,14 +120,14 @@ impl Run {
 }
 
 /// SHA-256 of a file, or of the names and contents of all files below a folder, in order of name.
-pub fn digest(path: &Path) -> Result<String> {
+pub(crate) fn digest(path: &Path) -> Result<String> {
     let mut hash = Sha256::new();
     add(&mut hash, path, path)?;
     Ok(hex(&hash.finalize()))
 }
 
 /// Lower-case hexadecimal.
-pub fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 

@@ -220,10 +220,10 @@ fn make(
 }
 
 /// Folder of sweeps under the report.
-pub const SWEEPS: &str = "sweeps";
+pub(crate) const SWEEPS: &str = "sweeps";
 
 /// Writes `OUT/index.html` over every paper found there, and then every sweep, so that those run one by one add up.
-pub fn write_index(out: &Path) -> Result<PathBuf> {
+pub(crate) fn write_index(out: &Path) -> Result<PathBuf> {
     // Of two runs that end at once, the second writes the page that has both.
     let _lock = Lock::wait(out)?;
     let mut folders = made_in(out)?;
@@ -350,7 +350,7 @@ struct Cli {
 }
 
 /// The `main` of a paper's own binary.
-pub fn main(experiment: &'static Experiment) -> ExitCode {
+pub(crate) fn main(experiment: &'static Experiment) -> ExitCode {
     let args = Cli::parse().args;
     match run_to_end(&[experiment], args) {
         Ok(()) => ExitCode::SUCCESS,

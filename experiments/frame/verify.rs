@@ -13,7 +13,7 @@ use edifice_datasets as datasets;
 
 /// The state of a kept artefact.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum State {
+pub(crate) enum State {
     /// Made by this code from this data.
     Current,
     /// Not in the folder.
@@ -26,7 +26,7 @@ pub enum State {
 
 /// Digest of the sources that a paper's artefacts depend on: those of its method and of all that this is built on, of the readers
 /// and the layouts, of its own experiments, and the versions of foreign crates.
-pub fn sources_of(slug: &str) -> String {
+pub(crate) fn sources_of(slug: &str) -> String {
     let method = format!("edifice-{}", slug.replace('_', "-"));
     sources::digest(&[&method, "edifice-io", "edifice-layout"], slug)
 }
@@ -35,7 +35,7 @@ pub fn sources_of(slug: &str) -> String {
 ///
 /// # Errors
 /// Those of reading the data.
-pub fn verify(
+pub(crate) fn verify(
     chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
     options: &Options,
 ) -> Result<Vec<(String, State)>> {
@@ -71,7 +71,7 @@ struct Stale {
 ///
 /// # Errors
 /// When one is older, or data cannot be read.
-pub fn say_which_are_older(
+pub(crate) fn say_which_are_older(
     chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
     options: &Options,
     json: bool,

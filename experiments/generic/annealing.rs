@@ -35,7 +35,7 @@ impl Default for Settings {
 }
 
 /// Simulated annealing.
-pub fn study() -> Study {
+pub(crate) fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("left_out", Better::Lower), ("optimal", Better::Higher)];
     let about = "simulated annealing on knapsacks of known optimum: value left out of the knapsack";
     Study::new("optim/annealing", about, "optim", METRICS, run)

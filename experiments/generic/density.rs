@@ -27,7 +27,7 @@ const KERNELS: usize = 500;
 
 /// Why log densities are no answer, or rows no table.
 #[derive(Debug, thiserror::Error)]
-pub enum DensityError {
+pub(crate) enum DensityError {
     /// A cell is no finite number.
     #[error("`{0}` is no finite number")]
     NotANumber(String),
@@ -56,7 +56,7 @@ pub enum DensityError {
 }
 
 /// The question to a candidate: all that it sees.
-pub struct Question {
+pub(crate) struct Question {
     /// Names of the columns.
     pub header: Vec<String>,
     /// Rows to learn from.
@@ -66,7 +66,7 @@ pub struct Question {
 }
 
 /// The truth about a question: only the judge sees it.
-pub struct Truth {
+pub(crate) struct Truth {
     /// Rows of the question that are unseen ones of the table, in the order of the split.
     unseen: Vec<usize>,
     /// The other rows, and the log density that they were drawn from.
@@ -74,7 +74,7 @@ pub struct Truth {
 }
 
 /// Mixes unseen rows with probes.
-pub fn question(
+pub(crate) fn question(
     header: Vec<String>,
     train: Vec<Vec<f64>>,
     unseen: &[Vec<f64>],
@@ -112,7 +112,7 @@ pub fn question(
 ///
 /// # Errors
 /// [`DensityError`] when the log densities cannot be those of a density.
-pub fn judge(truth: &Truth, logs: &[f64]) -> std::result::Result<f64, DensityError> {
+pub(crate) fn judge(truth: &Truth, logs: &[f64]) -> std::result::Result<f64, DensityError> {
     let ratios = (truth.probes.iter()).map(|&(place, own)| (logs[place] - own).exp().min(CUT));
     let found = ratios.sum::<f64>() / truth.probes.len() as f64;
     let most = 1.0 + CUT * ((1.0 / FALSE_ALARM).ln() / (2.0 * PROBES as f64)).sqrt();
@@ -175,7 +175,7 @@ impl Kernels {
 ///
 /// # Errors
 /// [`Error::Input`] with the row and the cell that is none.
-pub fn read(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>)> {
+pub(crate) fn read(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>)> {
     let table = edifice_io::building_csv::read(path)?;
     let number = |(row, cell): (usize, &String)| {
         let value = cell.trim().parse::<f64>().ok();
@@ -195,7 +195,7 @@ pub fn read(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>)> {
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn write<'a>(
+pub(crate) fn write<'a>(
     header: &[String],
     rows: impl Iterator<Item = &'a [f64]>,
     path: &Path,
@@ -216,7 +216,7 @@ pub fn write<'a>(
 ///
 /// # Errors
 /// Names the row of what is none.
-pub fn read_answer(path: &Path, asked: usize) -> Result<Vec<f64>> {
+pub(crate) fn read_answer(path: &Path, asked: usize) -> Result<Vec<f64>> {
     let (header, rows) = read(path)?;
     let column = header.iter().position(|name| name == "log_density");
     let column = column.ok_or_else(|| Error::content(path, DensityError::NoColumn))?;

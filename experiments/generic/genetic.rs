@@ -42,7 +42,7 @@ impl Default for Settings {
 }
 
 /// The genetic algorithm.
-pub fn study() -> Study {
+pub(crate) fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("left_out", Better::Lower), ("optimal", Better::Higher)];
     let about =
         "the genetic algorithm on knapsacks of known optimum: value left out of the knapsack";

@@ -60,7 +60,7 @@ impl Default for Settings {
 }
 
 /// Gaussian mixtures.
-pub fn study() -> Study {
+pub(crate) fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("nll", Better::Lower), ("components", Better::Lower)];
     let about = "Gaussian mixtures on a CSV table of numbers: negative log-likelihood of unseen rows; seeds split the rows";
     Study::trial::<Density>("model/gmm", about, "model", METRICS)

@@ -15,7 +15,7 @@ use edifice_io::{json, read_bytes};
 /// A problem.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Knapsack {
+pub(crate) struct Knapsack {
     #[serde(rename = "format")]
     _format: String,
     #[serde(rename = "version")]
@@ -43,7 +43,7 @@ enum KnapsackError {
 const MOST: u64 = 1_000_000;
 
 /// A problem with the least cost of any solution.
-pub struct Solved {
+pub(crate) struct Solved {
     /// The problem.
     pub problem: Knapsack,
     least: u64,
@@ -54,7 +54,7 @@ impl Solved {
     ///
     /// # Errors
     /// [`Error::Input`], [`Error::Content`].
-    pub fn read(path: &Path) -> Result<Arc<Self>> {
+    pub(crate) fn read(path: &Path) -> Result<Arc<Self>> {
         static SOLVED: Shared<Solved> = Shared::new();
         SOLVED.get(path.display().to_string(), || {
             let bytes = read_bytes(path)?;
@@ -78,7 +78,7 @@ impl Solved {
     ///
     /// # Errors
     /// [`Error::Method`] for one that does not fit.
-    pub fn judge(&self, packed: &[bool]) -> Result<Outcome> {
+    pub(crate) fn judge(&self, packed: &[bool]) -> Result<Outcome> {
         let chosen = || self.problem.items.iter().zip(packed).filter(|(_, p)| **p);
         let weight = chosen().map(|((_, weight), _)| weight).sum::<u64>();
         let value = chosen().map(|((value, _), _)| value).sum::<u64>();
@@ -98,12 +98,12 @@ impl Solved {
 
 impl Knapsack {
     /// Value of all items.
-    pub fn total(&self) -> u64 {
+    pub(crate) fn total(&self) -> u64 {
         self.items.iter().map(|(value, _)| value).sum()
     }
 
     /// Takes out items, those of least value for their weight first, until the rest fits.
-    pub fn repair(&self, packed: &mut [bool]) {
+    pub(crate) fn repair(&self, packed: &mut [bool]) {
         let mut weight: u64 = (self.items.iter().zip(&*packed))
             .filter(|(_, p)| **p)
             .map(|((_, weight), _)| weight)

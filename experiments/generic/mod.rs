@@ -1,8 +1,8 @@
 //! Studies of the generic layers, for sweeps: models and optimizers without buildings.
 
-pub mod annealing;
+pub(crate) mod annealing;
 mod density;
-pub mod genetic;
-pub mod gmm;
+pub(crate) mod genetic;
+pub(crate) mod gmm;
 mod knapsack;
-pub mod network;
+pub(crate) mod network;

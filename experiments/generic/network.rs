@@ -45,7 +45,7 @@ impl Default for Settings {
 const UNSEEN: usize = 1_000;
 
 /// Learning of the parameters of a network.
-pub fn study() -> Study {
+pub(crate) fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("excess", Better::Lower)];
     let about = "parameters of a discrete Bayesian network (BIF) learnt from its own draws: log-likelihood of unseen rows below the true network's, nats a row";
     Study::new("model/network", about, "model", METRICS, run).made_of(&["edifice-model"], "generic")

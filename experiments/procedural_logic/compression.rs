@@ -12,7 +12,7 @@ use edifice_report::{Figure, HeatMap};
 const PRINTED: f64 = 68.0;
 
 /// Searches the grid for the fewest rules, on each set.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let axes = axes(ctx.budget());
     ctx.setting("alpha", axes[0].clone());
     ctx.setting("b_p", axes[1].clone());

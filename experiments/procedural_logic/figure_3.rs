@@ -15,7 +15,7 @@ use edifice_shape::{Facade, LabelGrid};
 const THUMBNAILS: usize = 12;
 
 /// Clusters both styles together and draws tree, matrix and some layouts in the order of the tree.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let title = "Purity of the two top clusters against the data set";
     let mut table = data_table(title, &["linkage"], &["facades", "purity"]);
     for source in sources(ctx)? {

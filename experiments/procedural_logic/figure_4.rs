@@ -19,7 +19,7 @@ type Curve<'a> = (&'a str, MatchCurve, &'a DMatrix<f64>);
 const MISSED: f64 = 0.5;
 
 /// Ranks the facades of each set by each measure.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     for source in sources(ctx)? {
         let model = Model::fit(&source.grids, Parameters::RETRIEVAL).map_err(Error::method)?;
         let profiles = model.profiles().map_err(Error::method)?;
@@ -90,7 +90,7 @@ const NOTE: &str = "Each facade queries all others (it is not ranked itself); fo
     takes running balconies from the annotation (`floor_balcony_annotation.txt`) and no doors.";
 
 /// The curve of a distance matrix under one reading of the gold standard.
-pub fn retrieve(
+pub(crate) fn retrieve(
     distances: &DMatrix<f64>,
     architecture: &[Architecture],
     doors: Doors,

@@ -18,7 +18,7 @@ use rand::RngExt;
 const PARAMETERS: Parameters = Parameters::COMPRESSION;
 
 /// Rules and time of each stage, and the time of resampled sets up to a city.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let mut figure = Figure::new("Rules and computing time against the number of facades", 3);
     let mut table = data_table(
         "The whole inference, resampled to larger sets",

@@ -19,7 +19,7 @@ const STARTS: usize = 4;
 const FEWEST: usize = 5;
 
 /// Draws facades for the most frequent starting rules, and tests many more.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let count = ctx.budget().choose(100, 1000, 1000);
     ctx.setting("facades", count);
     let mut table = data_table(

@@ -14,7 +14,7 @@ use edifice_report::{Align, Table};
 const LISTED: usize = 12;
 
 /// Lists the most frequent rules of each set, and the most frequent value of each feature.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     for source in sources(ctx)? {
         let model = Model::fit(&source.grids, Parameters::COMPRESSION).map_err(Error::method)?;
         let (rules, alphabet) = (&model.inference.rules, &model.alphabet);

@@ -10,7 +10,7 @@ use edifice_report::Table;
 use edifice_shape::{Facade, LabelGrid};
 
 /// Derives every facade from its own grammar and from the rules of all, and compares the pixels.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let mut table = data_table(
         "Pixels that differ from the label image",
         &[],

@@ -10,7 +10,7 @@ use edifice_base::Result;
 use edifice_procedural_logic::{Extent, Facing, Measure, Model, Parameters};
 
 /// Tries each reading of `W` in Eq. 3 with each reading of Eq. 6.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (alphas, parental, horizontal): (&[f64], &[f64], &[f64]) = match ctx.budget() {
         Budget::Smoke => (&[0.6], &[0.25], &[0.5]),
         _ => (

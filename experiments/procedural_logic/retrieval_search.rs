@@ -10,7 +10,7 @@ use edifice_optim::grid::{minimize, points};
 use edifice_procedural_logic::{Measure, Model, Parameters, search_axes};
 
 /// Searches the grid for the best curve of each measure.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let axes = match ctx.budget() {
         Budget::Smoke => [vec![0.5], vec![0.0625, 1.0], vec![0.125]],
         _ => search_axes(),

@@ -31,7 +31,7 @@ const WAYS: [(&str, Clean); 3] = [
 ];
 
 /// Exact labels and the second labelling under every way to clean.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let Some(exact) = sources(ctx)?.into_iter().find(Source::is_paper) else {
         ctx.skip("ECP2011 and its annotation are in the data folder (`--data`)");
         return Ok(());

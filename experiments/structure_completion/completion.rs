@@ -27,7 +27,7 @@ struct Unit<'a> {
 }
 
 /// Runs the benchmark.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seeds = ctx.budget().choose(1, 2, 5);
     ctx.setting("mask_seeds", seeds);
     let folds = ctx.budget().choose(2, 5, 5);

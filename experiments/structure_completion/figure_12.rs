@@ -11,7 +11,7 @@ use edifice_structure_completion::method::{Method, complete};
 use edifice_structure_completion::task::Task;
 
 /// Completes a few facades in five ways.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let all = data::items(ctx)?;
     let items: Vec<&data::Item> = all
         .iter()

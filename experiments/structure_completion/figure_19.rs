@@ -12,7 +12,7 @@ use edifice_structure_completion::method::{Method, complete};
 use edifice_structure_completion::task::Task;
 
 /// Completes a facade with half of its elements, and with a known half, by low rank and by the default method.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let all = data::items(ctx)?;
     let items: Vec<&data::Item> = all
         .iter()

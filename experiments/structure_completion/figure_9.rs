@@ -18,7 +18,7 @@ use edifice_structure_completion::task::Task;
 const PAIRS: usize = 5;
 
 /// Draws up to 50 pairs of truth and completion.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let count = ctx.budget().choose(4, 50, 50);
     let all = data::items(ctx)?;
     let mut items: Vec<&data::Item> = all

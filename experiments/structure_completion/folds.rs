@@ -11,7 +11,7 @@ use edifice_structure_completion::layout::Layout;
 use edifice_structure_completion::model::Model;
 
 /// The fold of each item: groups of near-twins in random order, dealt in turn.
-pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
+pub(crate) fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
     let layouts: Vec<Layout> = items.iter().map(|i| i.layout.clone()).collect();
     let groups = twins(&layouts);
     let mut order: Vec<usize> = groups.clone();
@@ -23,7 +23,7 @@ pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
 }
 
 /// A model of the items that `keep` keeps.
-pub fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
+pub(crate) fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
     let kept = (0..items.len()).filter(|&i| keep(i));
     let layouts = kept.map(|i| items[i].layout.clone()).collect();
     let trained = Model::train(layouts, seed, &unwatched).map_err(Error::method)?;

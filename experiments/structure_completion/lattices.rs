@@ -35,7 +35,7 @@ const SETS: [(&str, &str); 2] = [
 const COLUMNS: [&str; 6] = ["given", "closure", "vote", "lattice", "low_rank", "default"];
 
 /// Completes the lattices of both sets.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let most = ctx.budget().choose(5, 100, usize::MAX);
     ctx.setting("pairs", most.min(1_000_000));
     let model = shipped_model().map_err(Error::method)?;

@@ -20,7 +20,7 @@ use edifice_structure_completion::task::Task;
 const EVALUATIONS: usize = 10_000;
 
 /// Compares on the columns and rows of real facades.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = data::items(ctx)?;
     let layouts: Vec<Layout> = items.iter().map(|i| i.layout.clone()).collect();
     let model = Model::of_spacing(layouts);

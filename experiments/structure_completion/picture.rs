@@ -5,7 +5,7 @@ use edifice_report::{Colour, Outline, Tile, Tiles};
 use edifice_structure_completion::layout::Element;
 
 /// A panel of a wall with elements; the outlined ones were added.
-pub fn panel(
+pub(crate) fn panel(
     title: String,
     width: f64,
     height: f64,

@@ -14,7 +14,7 @@ use edifice_structure_completion::layout::{Class, Element};
 const FOLDS: usize = 5;
 
 /// Statistics of a whole layout: counts, sizes, gaps, borders, symmetry.
-pub fn statistics(width: f64, height: f64, elements: &[Element]) -> Vec<f64> {
+pub(crate) fn statistics(width: f64, height: f64, elements: &[Element]) -> Vec<f64> {
     let mut all = Vec::new();
     for class in Class::ALL {
         let rects: Vec<Rect> = elements
@@ -75,7 +75,7 @@ fn variation(values: &[f64]) -> f64 {
 ///
 /// # Errors
 /// [`BoostingError`] for fewer pairs than folds.
-pub fn auc(pairs: &[(Vec<f64>, Vec<f64>)], seed: u64) -> Result<f64, BoostingError> {
+pub(crate) fn auc(pairs: &[(Vec<f64>, Vec<f64>)], seed: u64) -> Result<f64, BoostingError> {
     let mut order: Vec<usize> = (0..pairs.len()).collect();
     order.shuffle(&mut stream(seed, "structure completion: plausibility", 0));
     let settings = Settings {

@@ -5,7 +5,7 @@ use edifice_base::{Error, Result};
 use edifice_io::read_bytes;
 
 /// The printed numbers.
-pub struct Published(Vec<Record>);
+pub(crate) struct Published(Vec<Record>);
 
 #[derive(serde::Deserialize)]
 struct Record {
@@ -18,7 +18,7 @@ struct Record {
 
 impl Published {
     /// Reads the file that ships.
-    pub fn read(ctx: &mut Context) -> Result<Self> {
+    pub(crate) fn read(ctx: &mut Context) -> Result<Self> {
         let path = ctx.shipped("structure_completion/published.csv")?;
         let bytes = read_bytes(&path)?;
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
@@ -27,7 +27,7 @@ impl Published {
     }
 
     /// A value of the paper's own method or of no method.
-    pub fn value(&self, artefact: &str, instance: &str, metric: &str) -> Option<f64> {
+    pub(crate) fn value(&self, artefact: &str, instance: &str, metric: &str) -> Option<f64> {
         let same = |r: &&Record| {
             r.artefact == artefact
                 && r.instance == instance
@@ -38,7 +38,7 @@ impl Published {
     }
 
     /// The value as text with its unit, or a dash where none is printed.
-    pub fn text(&self, artefact: &str, instance: &str, metric: &str) -> String {
+    pub(crate) fn text(&self, artefact: &str, instance: &str, metric: &str) -> String {
         let unit = if metric == "seconds" { " s" } else { "" };
         match self.value(artefact, instance, metric) {
             Some(value) => format!("{value}{unit}"),

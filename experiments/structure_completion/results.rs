@@ -13,11 +13,11 @@ use edifice_structure_completion::method::Method;
 use edifice_structure_completion::task::Task;
 
 /// The default method, learnt from the other data sets only.
-pub const OTHER_SETS: &str = "best_other_sets";
+pub(crate) const OTHER_SETS: &str = "best_other_sets";
 
 /// The values of one facade, task and seed.
 #[derive(Serialize, Deserialize)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// Method, metric, value.
     pub values: Vec<(String, String, f64)>,
     /// Method, statistics of the completed layout.
@@ -31,7 +31,7 @@ type Pairs = Vec<(Vec<f64>, Vec<f64>)>;
 
 /// Values by method, metric, task and facade.
 #[derive(Default)]
-pub struct Results {
+pub(crate) struct Results {
     values: BTreeMap<(String, String, &'static str), BTreeMap<String, Vec<f64>>>,
     pairs: BTreeMap<(String, &'static str), Pairs>,
     by_set: BTreeMap<(String, &'static str), Vec<f64>>,
@@ -51,7 +51,7 @@ fn mean(values: &[f64]) -> f64 {
 
 impl Results {
     /// Adds the values and the statistics of one facade, task and seed.
-    pub fn add(
+    pub(crate) fn add(
         &mut self,
         (dataset, facade): (&str, &str),
         task: &'static str,
@@ -100,7 +100,7 @@ impl Results {
     }
 
     /// Writes the tables.
-    pub fn tables(&self, ctx: &mut Context) -> Result<()> {
+    pub(crate) fn tables(&self, ctx: &mut Context) -> Result<()> {
         let tasks = Task::ALL.map(Task::name);
         let table =
             |title: &str, first: &str| Table::new(title).column(first, Align::Left).numbers(tasks);

@@ -48,7 +48,7 @@ impl Line {
 }
 
 /// Measures one thing after another.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let printed = Published::read(ctx)?;
     let items = data::items(ctx)?;
     let dataset = items.first().map_or("shipped", |i| i.dataset);

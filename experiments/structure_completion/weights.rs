@@ -48,7 +48,7 @@ fn rmse(weights: &[f64], truth: &[f64; TERMS]) -> f64 {
 }
 
 /// Learns from layouts drawn with the weights that the facades of the data have.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let printed = Published::read(ctx)?;
     let items = super::figures::facades(ctx)?;
     let layouts: Vec<&Layout> = items.iter().take(100).map(|i| &i.layout).collect();

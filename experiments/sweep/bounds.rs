@@ -13,7 +13,7 @@ use super::study::Better;
 const SLACK: f64 = 1e-9;
 
 /// Turns every record that contradicts a proven bound into a failure.
-pub fn refuse(plan: &Plan, records: &mut [Record]) {
+pub(crate) fn refuse(plan: &Plan, records: &mut [Record]) {
     let Some((metric, better)) = &plan.head.first else {
         return;
     };

@@ -18,7 +18,7 @@ const TABLE: &[Row] = include!(concat!(env!("OUT_DIR"), "/sources.rs"));
 /// Digest of some crates with all that they are built on, of a part of the experiments, and of the versions of foreign crates.
 ///
 /// Of a program that was built from a package of a registry, where no sources of neighbours lie, the version stands for them.
-pub fn digest(crates: &[&str], part: &str) -> String {
+pub(crate) fn digest(crates: &[&str], part: &str) -> String {
     let mut wanted: BTreeSet<&str> = BTreeSet::new();
     let mut open: Vec<&str> = crates.to_vec();
     while let Some(name) = open.pop() {

@@ -14,6 +14,7 @@ pub type Cause = Box<dyn std::error::Error + Send + Sync + 'static>;
 
 /// A failure with its place: which file, where in it, and why.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The operating system refused to read or write.
     #[error("{}: cannot {action}: {source}", path.display())]

@@ -18,7 +18,7 @@ use clap::Subcommand;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Measure the houses of city models (`LoD2`): detached buildings as boxes with roofs.
     #[command(after_help = "Examples:
   edifice building import datasets/building_exteriors/village.city.json -o village.buildings.jsonl --report village.csv
@@ -103,7 +103,7 @@ Columns are those of `building attributes`. Wishes that no house can have togeth
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice_base::Result<()> {
+pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Import(args) => import::run(&args),
         Command::Attributes(args) => attributes::run(&args),

@@ -18,7 +18,7 @@ use clap::Subcommand;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Make a grammar of a city.
     #[command(after_help = "Examples:
   edifice city derive datasets/city_proceduralization/town.city-grammar.json -o town.obj
@@ -82,7 +82,7 @@ The view lists buildings near each other: { \"format\": \"edifice/city-view\", \
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice_base::Result<()> {
+pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Proceduralize(args) => proceduralize::run(&args),
         Command::Derive(args) => derive::run(&args),

@@ -8,7 +8,7 @@ use edifice_shape::{LabelGrid, clean, on_lattice};
 
 /// The option.
 #[derive(clap::Args)]
-pub struct Cleaning {
+pub(crate) struct Cleaning {
     /// Make label pictures regular: windows and balconies on common rows and columns, straight bands behind them (exact labels
     /// stay as they are). With =PX, absorb specks and straighten edges that waver by up to PX instead (in the unit of the facade)
     #[arg(
@@ -42,12 +42,12 @@ fn how(text: &str) -> std::result::Result<How, String> {
 
 impl Cleaning {
     /// True if pictures are cleaned.
-    pub fn is_asked(&self) -> bool {
+    pub(crate) fn is_asked(&self) -> bool {
         self.clean.is_some()
     }
 
     /// The way to clean, for messages.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         match self.clean {
             Some(How::Pixels(tolerance)) => format!("with tolerance {tolerance}"),
             _ => "by rows and columns".to_owned(),
@@ -55,7 +55,7 @@ impl Cleaning {
     }
 
     /// A picture, cleaned if that was asked for.
-    pub fn picture(&self, grid: LabelGrid) -> Result<LabelGrid> {
+    pub(crate) fn picture(&self, grid: LabelGrid) -> Result<LabelGrid> {
         match self.clean {
             None => Ok(grid),
             Some(How::Lattice) => Ok(on_lattice(&grid)),
@@ -66,7 +66,7 @@ impl Cleaning {
     }
 
     /// A file's content as a cleaned picture, if that was asked for; else as it is.
-    pub fn source(&self, source: Source, path: &Path) -> Result<Source> {
+    pub(crate) fn source(&self, source: Source, path: &Path) -> Result<Source> {
         match self.clean {
             None => Ok(source),
             Some(_) => Ok(Source::Picture(self.picture(source.label_grid(path)?)?)),

@@ -15,7 +15,7 @@ use set::{Found, Set};
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// List the sets that are described, and which of them are in the data folder
     List(List),
     /// Read every file of sets and say what is missing or cannot be read
@@ -32,7 +32,7 @@ pub enum Command {
 
 /// Options of `list`.
 #[derive(clap::Args)]
-pub struct List {
+pub(crate) struct List {
     /// Folder with the real data sets; without it, the environment variable `EDIFICE_DATA`
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
@@ -43,7 +43,7 @@ pub struct List {
 
 /// Options of `check`.
 #[derive(clap::Args)]
-pub struct Check {
+pub(crate) struct Check {
     /// Names of sets, or files dataset.toml of your own; all that are described when none is named
     sets: Vec<String>,
     /// Folder with the real data sets; without it, the environment variable `EDIFICE_DATA`
@@ -56,7 +56,7 @@ pub struct Check {
 
 /// Options of `describe`.
 #[derive(clap::Args)]
-pub struct Describe {
+pub(crate) struct Describe {
     /// Folder of the set
     folder: PathBuf,
     /// Files of the set, below the folder, where no dataset.toml names them; repeatable
@@ -68,7 +68,7 @@ pub struct Describe {
 }
 
 /// Runs a command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     match command {
         Command::List(args) => list(&args),
         Command::Check(args) => check(&args),

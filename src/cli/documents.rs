@@ -13,7 +13,7 @@ use super::print::{self, Json};
   edifice completions bash > ~/.local/share/bash-completion/completions/edifice
   edifice completions zsh > ~/.zfunc/_edifice
   edifice completions fish > ~/.config/fish/completions/edifice.fish")]
-pub struct Completions {
+pub(crate) struct Completions {
     /// The shell
     #[arg(value_enum)]
     shell: Shell,
@@ -24,7 +24,7 @@ pub struct Completions {
 /// Options of `man`.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  edifice man -o ~/.local/share/man/man1")]
-pub struct Man {
+pub(crate) struct Man {
     /// Folder for the pages, one a command; without it that of `edifice` is printed
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -33,7 +33,7 @@ pub struct Man {
 }
 
 /// Prints the completions of a shell.
-pub fn completions(args: &Completions, mut command: clap::Command) -> Result<()> {
+pub(crate) fn completions(args: &Completions, mut command: clap::Command) -> Result<()> {
     let mut text = Vec::new();
     clap_complete::generate(args.shell, &mut command, "edifice", &mut text);
     let text = String::from_utf8_lossy(&text);
@@ -46,7 +46,7 @@ pub fn completions(args: &Completions, mut command: clap::Command) -> Result<()>
 }
 
 /// Writes the manual pages.
-pub fn man(args: &Man, command: clap::Command) -> Result<()> {
+pub(crate) fn man(args: &Man, command: clap::Command) -> Result<()> {
     let mut command = command.disable_help_subcommand(true);
     command.build();
     let Some(folder) = &args.output else {

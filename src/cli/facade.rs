@@ -27,7 +27,7 @@ use super::tolerance;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Convert a facade to another format, told by the file names.
     ///
     /// Reads .facade.json, label images (.png), matrices of labels (.txt, .csv), rectangles of the CMP
@@ -66,7 +66,7 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
 
 /// Options of `facade convert`.
 #[derive(Args)]
-pub struct Convert {
+pub(crate) struct Convert {
     /// Facade to read.
     input: PathBuf,
     /// File to write.
@@ -92,7 +92,7 @@ pub struct Convert {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     match command {
         Command::Convert(options) => convert(&options),
         Command::Train(args) => train::run(&args),

@@ -13,7 +13,7 @@ use edifice_grammar::Costs;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Infer the smallest split grammar of one or several facades.
     Infer(infer::Args),
     /// Derive a facade from a grammar, at its own or another size.
@@ -39,7 +39,7 @@ pub enum Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice_base::Result<()> {
+pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Infer(args) => infer::run(&args),
         Command::Derive(args) => derive::run(&args),

@@ -10,11 +10,11 @@ mod show;
 mod synthesize;
 
 use clap::Subcommand;
-pub use show::LOGIC;
+pub(crate) use show::LOGIC;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Learn rules from facades, or add facades to rules learned before.
     Fit(fit::Args),
     /// Parse facades into split grammars.
@@ -30,7 +30,7 @@ pub enum Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> edifice_base::Result<()> {
+pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
     match command {
         Command::Fit(args) => fit::run(&args),
         Command::Parse(args) => parse::run(&args),

@@ -1,13 +1,13 @@
 //! Models on the command line: Bayesian networks, models of tables, and the models of papers that have a [`Shown`].
 
-pub mod data;
+pub(crate) mod data;
 mod drawing;
-pub mod evaluate;
+pub(crate) mod evaluate;
 mod fit;
-pub mod learning;
+pub(crate) mod learning;
 mod network;
 mod query;
-pub mod search;
+pub(crate) mod search;
 mod structure;
 mod tables;
 
@@ -23,11 +23,11 @@ use edifice_model::network::{Evidence, FORMAT, Network, OLD_FORMAT};
 use super::MODELS;
 use super::print::{self, Json};
 
-pub use tables::TABLE_MODEL;
+pub(crate) use tables::TABLE_MODEL;
 
 /// Commands.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Print the schema that is guessed of a table, to edit.
     #[command(after_help = "Examples:
   cut -d, -f1-4 datasets/building_exteriors/real.houses.csv > plans.csv && edifice model schema plans.csv > plans.schema.json")]
@@ -110,7 +110,7 @@ enum Any {
 }
 
 /// A kind of model that a method of a paper has, and that `show` shows.
-pub struct Shown {
+pub(crate) struct Shown {
     /// The value of the key `format` of its files.
     pub format: &'static str,
     /// The lines to print, from the bytes and the path of a file; as JSON when asked for.
@@ -131,7 +131,7 @@ struct UnknownFormat {
 struct NotANetwork;
 
 /// Runs the command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     let lines = match command {
         Command::Schema(args) => return tables::schema(&args),
         Command::Learn(args) => return tables::learn(&args),

@@ -7,19 +7,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// From now on messages are not printed, but results, warnings and errors are.
-pub fn quiet() {
+pub(crate) fn quiet() {
     QUIET.store(true, Ordering::Relaxed);
     edifice_experiments::silence();
 }
 
 /// True after [`quiet`].
-pub fn is_quiet() -> bool {
+pub(crate) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
 /// The option of a line for programs.
 #[derive(Debug, Clone, Copy, clap::Args)]
-pub struct Json {
+pub(crate) struct Json {
     /// Print one line of JSON, for programs
     #[arg(long)]
     json: bool,
@@ -27,12 +27,12 @@ pub struct Json {
 
 impl Json {
     /// True if the line was asked for.
-    pub fn is_asked(self) -> bool {
+    pub(crate) fn is_asked(self) -> bool {
         self.json
     }
 
     /// Prints the line, if it was asked for.
-    pub fn end(self, value: &serde_json::Value) -> edifice_base::Result<()> {
+    pub(crate) fn end(self, value: &serde_json::Value) -> edifice_base::Result<()> {
         match self.json {
             true => line(&value.to_string()),
             false => Ok(()),
@@ -40,14 +40,14 @@ impl Json {
     }
 
     /// Prints a text, and then the line, if it was asked for.
-    pub fn after(self, text: &str, value: &serde_json::Value) -> edifice_base::Result<()> {
+    pub(crate) fn after(self, text: &str, value: &serde_json::Value) -> edifice_base::Result<()> {
         line(text)?;
         self.end(value)
     }
 }
 
 /// Prints one line of result to standard output; a reader that has gone away is not an error.
-pub fn line(text: &str) -> edifice_base::Result<()> {
+pub(crate) fn line(text: &str) -> edifice_base::Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(
@@ -58,7 +58,7 @@ pub fn line(text: &str) -> edifice_base::Result<()> {
 }
 
 /// Prints a message to standard error; after [`quiet`], only a warning.
-pub fn message(text: &str) {
+pub(crate) fn message(text: &str) {
     if is_quiet() && !text.starts_with("warning") {
         return;
     }
@@ -71,6 +71,6 @@ fn say(text: &str) {
 }
 
 /// Prints an error.
-pub fn error(error: &edifice_base::Error) {
+pub(crate) fn error(error: &edifice_base::Error) {
     say(&format!("error: {error}"));
 }

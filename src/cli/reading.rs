@@ -10,7 +10,7 @@ use super::print;
 
 /// Options of reading.
 #[derive(clap::Args)]
-pub struct Reading {
+pub(crate) struct Reading {
     /// Meaning of the colours or numbers of label images and text matrices, as JSON
     #[arg(long, value_name = "FILE")]
     label_map: Option<PathBuf>,
@@ -24,7 +24,7 @@ pub struct Reading {
 
 impl Reading {
     /// The options of the library; reads the label map.
-    pub fn options(&self) -> Result<ReadOptions> {
+    pub(crate) fn options(&self) -> Result<ReadOptions> {
         Ok(ReadOptions {
             label_map: self.label_map.as_deref().map(LabelMap::read).transpose()?,
             nearest_colour: self.nearest_colour,
@@ -35,7 +35,7 @@ impl Reading {
 }
 
 /// Reads a facade file and tells what was not read exactly.
-pub fn source(path: &Path, options: &ReadOptions) -> Result<Source> {
+pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source> {
     let (source, nearest) = io::read_noted(path, options)?;
     if let Some(nearest) = nearest {
         print::message(&format!("note: {}: {nearest}", path.display()));

@@ -11,7 +11,7 @@ use super::print;
 #[command(after_help = "Examples:
   edifice reproduce facade_grammar --only table_1 --budget smoke --out reports
   edifice reproduce --verify")]
-pub struct Args {
+pub(crate) struct Args {
     /// Papers to run; all when none is named
     papers: Vec<String>,
     #[command(flatten)]
@@ -19,7 +19,7 @@ pub struct Args {
 }
 
 /// Runs the experiments; wrong names of papers, artefacts and data sets are wrong usage.
-pub fn run(args: Args) -> edifice_base::Result<()> {
+pub(crate) fn run(args: Args) -> edifice_base::Result<()> {
     match chosen(args) {
         Err(error @ edifice_base::Error::Option { .. }) => {
             print::error(&error);

@@ -25,7 +25,7 @@ triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
 Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes; a file or a
 script of somebody else is not replaced unasked. A photograph that is drawn over is kept in the file. What is not saved is kept in
 the user's state folder ($XDG_STATE_HOME/edifice/studio, by default ~/.local/state/edifice/studio) and offered at the next start.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Files to open; without any, the page begins with examples
     files: Vec<PathBuf>,
     /// Port to listen on; 0 takes a free one
@@ -42,7 +42,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     let state = state_folder();
     let running = start(&Settings {
         files: args.files,

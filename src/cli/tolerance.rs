@@ -11,7 +11,7 @@ use edifice_shape::Facade;
 use crate::print;
 
 /// A share of the area on the command line: per cent, with or without the sign.
-pub fn per_cent(text: &str) -> std::result::Result<f64, String> {
+pub(crate) fn per_cent(text: &str) -> std::result::Result<f64, String> {
     let number = text.trim().trim_end_matches('%').trim_end();
     match number.parse::<f64>() {
         Ok(value) if (0.0..100.0).contains(&value) => Ok(value / 100.0),
@@ -21,7 +21,12 @@ pub fn per_cent(text: &str) -> std::result::Result<f64, String> {
 
 /// The tiling of shortest grammar whose picture differs from that of the file in at most a share of the area; prices are
 /// those of `settings`, and the difference and both prices are told.
-pub fn retiled(source: Source, path: &Path, share: f64, settings: &Settings) -> Result<Facade> {
+pub(crate) fn retiled(
+    source: Source,
+    path: &Path,
+    share: f64,
+    settings: &Settings,
+) -> Result<Facade> {
     let own = match &source {
         Source::Layout(facade) => {
             facade.check_tiling().map_err(|e| Error::content(path, e))?;

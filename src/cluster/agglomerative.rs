@@ -39,6 +39,7 @@ pub struct Dendrogram {
 
 /// Why a matrix is no distance matrix.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DistanceError {
     /// Not square.
     #[error("the matrix is {rows} x {columns}, not square")]

@@ -35,6 +35,7 @@ pub struct WardTree {
 
 /// Why points cannot be clustered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WardError {
     /// The table's length is not the number of weights times the dimension.
     #[error("{values} values are not {points} points of dimension {dimension}")]

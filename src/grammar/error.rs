@@ -5,6 +5,7 @@ use edifice_shape::Axis;
 /// Why a grammar is not valid, or cannot be derived. Rules are named by their index in
 /// [`Grammar::rules`](super::Grammar::rules), as in the path `rules[3]` of a grammar file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GrammarError {
     /// The grammar has no facade to start from.
     #[error("the grammar has no start")]
@@ -232,6 +233,7 @@ impl GrammarError {
 
 /// Something in a valid grammar that its author may not have meant.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Warning {
     /// No derivation reaches the rule.
     #[error("rules[{rule}] ({symbol}) is never used")]

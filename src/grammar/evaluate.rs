@@ -20,6 +20,7 @@ pub struct Evaluation {
 
 /// Why a grammar does not explain the facades given.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EvaluateError {
     /// The grammar itself is wrong.
     #[error(transparent)]

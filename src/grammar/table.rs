@@ -20,7 +20,7 @@ pub(super) struct Table<'g> {
 
 impl<'g> Table<'g> {
     /// Numbers the symbols of `grammar`.
-    pub fn new(grammar: &'g Grammar) -> Self {
+    pub(crate) fn new(grammar: &'g Grammar) -> Self {
         let mut names: Vec<&'g str> = Vec::new();
         let mut numbers: FxHashMap<&'g str, usize> = FxHashMap::default();
         let mut number = |name: &'g str| {
@@ -56,7 +56,7 @@ impl<'g> Table<'g> {
     }
 
     /// The symbols on some cycle, the first repeated at the end; `None` when derivation always ends.
-    pub fn cycle(&self) -> Option<Vec<String>> {
+    pub(crate) fn cycle(&self) -> Option<Vec<String>> {
         #[derive(Clone, Copy, PartialEq)]
         enum State {
             New,
@@ -102,7 +102,7 @@ impl<'g> Table<'g> {
     }
 
     /// For each symbol, true if some derivation reaches it from the starts.
-    pub fn reachable(&self) -> Vec<bool> {
+    pub(crate) fn reachable(&self) -> Vec<bool> {
         let mut seen = vec![false; self.names.len()];
         let mut stack = self.starts.clone();
         while let Some(symbol) = stack.pop() {

@@ -7,6 +7,7 @@ use edifice_shape::{Facade, Rect, Region};
 
 /// The first difference of two layouts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Difference {
     /// The facades have different sizes.
     #[error("sizes differ: {} x {} and {} x {}", .first.0, .first.1, .second.0, .second.1)]

@@ -36,7 +36,7 @@ pub(super) fn check_side(value: f64, path: &Path, place: &str) -> Result<()> {
 
 impl ImageBox {
     /// The smallest box around points; `None` without points.
-    pub fn around(points: &[[f64; 2]]) -> Option<Self> {
+    pub(crate) fn around(points: &[[f64; 2]]) -> Option<Self> {
         let mut points = points.iter();
         let &[x, y] = points.next()?;
         let first = Self {
@@ -55,7 +55,7 @@ impl ImageBox {
 
     /// The region of the box in an image of `width` x `height`, y up. What hangs over the border of the
     /// image, as hand-drawn boxes do, is cut off. Both sides of the image must be above zero.
-    pub fn region(self, label: &str, width: f64, height: f64) -> Result<Region, BoxError> {
+    pub(crate) fn region(self, label: &str, width: f64, height: f64) -> Result<Region, BoxError> {
         let (x, y) = (self.right - self.left, self.bottom - self.top);
         if !(x > 0.0 && y > 0.0) {
             return Err(BoxError::Empty {

@@ -46,6 +46,7 @@ pub struct CmpObject {
 
 /// Why a file is not a list of CMP objects.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CmpError {
     /// Malformed XML.
     #[error(transparent)]

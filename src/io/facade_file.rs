@@ -65,7 +65,7 @@ impl Source {
 #[error(
     "{kind} is unsupported; facades are read from .facade.json, LabelMe and COCO JSON, label images (.png; .jpg with --nearest-colour), text matrices (.txt, .csv), CMP rectangles and annotations of Pascal VOC and eTRIMS (.xml), each text also as .gz"
 )]
-pub struct Unsupported {
+pub(crate) struct Unsupported {
     /// The kind of the file, as far as it can be told.
     pub kind: String,
 }

@@ -16,6 +16,7 @@ use edifice_shape::{PlanUnion, Rect};
 
 /// Why a polygon is no footprint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FootprintError {
     /// Another kind of object, or not exactly one polygon.
     #[error("expected one Polygon, a Feature of one or a collection of one, found {0}")]

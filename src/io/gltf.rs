@@ -19,6 +19,7 @@ use edifice_scene::{Group, Instance, Material, Mesh, Scene};
 
 /// Why a scene cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GltfError {
     /// A mesh has no positions or no triangles, which glTF does not allow.
     #[error("mesh {index} ({name}) is empty")]

@@ -34,6 +34,7 @@ pub struct LatticePair {
 
 /// Reasons why an archive holds no pairs of lattices.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LatticeError {
     /// It cannot be unpacked, or has no array of this name.
     #[error("{0}")]

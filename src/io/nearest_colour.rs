@@ -57,7 +57,7 @@ struct Furthest {
 
 impl NearestSearch {
     /// A search among the colours of labels, at least one.
-    pub fn new(candidates: Vec<([u8; 3], u16)>) -> Self {
+    pub(crate) fn new(candidates: Vec<([u8; 3], u16)>) -> Self {
         Self {
             candidates,
             labels: FxHashMap::default(),
@@ -66,7 +66,7 @@ impl NearestSearch {
     }
 
     /// The label of the candidate nearest to a colour; `place` is where the colour is met.
-    pub fn label(&mut self, place: (usize, usize), colour: [u8; 3]) -> u16 {
+    pub(crate) fn label(&mut self, place: (usize, usize), colour: [u8; 3]) -> u16 {
         if let Some(&label) = self.labels.get(&colour) {
             return label;
         }
@@ -89,7 +89,7 @@ impl NearestSearch {
     }
 
     /// The report on all colours that were looked up; `None` if there was none.
-    pub fn found(&self, map: &LabelMap) -> Option<NearestColours> {
+    pub(crate) fn found(&self, map: &LabelMap) -> Option<NearestColours> {
         let Furthest {
             squared,
             colour,

@@ -8,7 +8,7 @@ use flate2::read::MultiGzDecoder;
 use edifice_base::{Error, Result, file};
 
 /// Most bytes that a packed file may unpack to: 256 MB.
-pub const MOST_BYTES: u64 = 1 << 28;
+pub(crate) const MOST_BYTES: u64 = 1 << 28;
 
 /// The first bytes of a gzipped file.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -16,7 +16,7 @@ const MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// A packed file that unpacks to more than is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("unpacks to more than {} MB", .0 >> 20)]
-pub struct TooLarge(pub u64);
+pub(crate) struct TooLarge(pub u64);
 
 /// Reads a whole file, unpacked if it is gzipped.
 ///
@@ -31,7 +31,7 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// As [`read_bytes`].
-pub fn unpacked(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>> {
+pub(crate) fn unpacked(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>> {
     unpacked_up_to(MOST_BYTES, bytes, path)
 }
 
@@ -51,7 +51,7 @@ fn unpacked_up_to(most: u64, bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>> {
 }
 
 /// The extension that tells the format, in lower case, without a closing `.gz`.
-pub fn extension(path: &Path) -> String {
+pub(crate) fn extension(path: &Path) -> String {
     let lower = |path: &Path| {
         let extension = path.extension().unwrap_or_default();
         extension.to_string_lossy().to_lowercase()

@@ -13,6 +13,7 @@ use edifice_shape::{Photograph, PhotographError, PhotographFormat};
 
 /// Why a text or a file is no photograph.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadPhotographError {
     /// The text is no address of a picture that it holds.
     #[error(

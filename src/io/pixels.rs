@@ -21,6 +21,7 @@ pub(super) const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
 
 /// Why a file is not a readable image.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PixelError {
     /// More pixels than are read; nothing was allocated for them.
     #[error("the image claims {width} x {height} pixels, at most {MAX_PIXELS} are read")]

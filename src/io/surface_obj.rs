@@ -31,6 +31,7 @@ pub fn to_text(surface: &Surface, name: &str) -> String {
 
 /// The defects of a line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ObjError {
     /// Not a finite number.
     #[error("{0:?} is not a finite number")]

@@ -18,7 +18,7 @@ const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
 ///
 /// # Errors
 /// [`Error::Content`] for Parquet, Arrow, ARFF, SQLite, HDF5 and zip files (Excel's), UTF-16 text, HTML and JSON, and an empty file.
-pub fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
+pub(crate) fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
     let starts: [(&[u8], &str); 8] = [
         (b"PAR1", "a Parquet file"),
         (b"ARROW1", "an Arrow file"),
@@ -67,7 +67,7 @@ pub fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
 }
 
 /// The separator of a table.
-pub fn separator(text: &[u8]) -> u8 {
+pub(crate) fn separator(text: &[u8]) -> u8 {
     let text = String::from_utf8_lossy(&text[..text.len().min(1 << 20)]);
     let mut lines: Vec<Vec<char>> = Vec::new();
     let (mut line, mut quoted) = (Vec::new(), false);
@@ -165,7 +165,7 @@ fn commas(text: &str) -> Option<Commas> {
 ///
 /// # Errors
 /// [`Error::Content`] for a column that could be read in two ways.
-pub fn points(
+pub(crate) fn points(
     header: &[String],
     rows: &mut [Vec<String>],
     separator: u8,

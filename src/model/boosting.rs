@@ -77,6 +77,7 @@ pub struct Boosting {
 
 /// Why a [`Boosting`] cannot be learnt, or read: the first three from [`Boosting::learn`], the last from [`Boosting::check`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BoostingError {
     /// There is no row.
     #[error("no rows to learn from")]

@@ -13,6 +13,7 @@
 /// assert!(matches!(error.in_row(7), ModelError::NotFinite { row: 7, .. }));
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// No rows, or no columns, where some are needed.
     #[error("no {what} to work with")]

@@ -33,7 +33,7 @@ pub(crate) struct Particles {
 
 impl Particles {
     /// An empty list of particles over `groups` groups and `missing` missing values.
-    pub fn new(groups: usize, missing: usize) -> Self {
+    pub(crate) fn new(groups: usize, missing: usize) -> Self {
         Self {
             groups,
             missing,
@@ -42,7 +42,7 @@ impl Particles {
     }
 
     /// One particle that has no states yet and no missing value.
-    pub fn start() -> Self {
+    pub(crate) fn start() -> Self {
         Self {
             log_densities: vec![0.0],
             ..Self::default()
@@ -50,20 +50,20 @@ impl Particles {
     }
 
     /// An empty list over the same groups and missing values.
-    pub fn like(&self) -> Self {
+    pub(crate) fn like(&self) -> Self {
         Self::new(self.groups, self.missing)
     }
 
     /// An empty list over one group more, which `extension` adds.
-    pub fn after(&self, extension: &Extension) -> Self {
+    pub(crate) fn after(&self, extension: &Extension) -> Self {
         Self::new(self.groups + 1, extension.missing())
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.log_densities.len()
     }
 
-    pub fn get(&self, i: usize) -> Particle<'_> {
+    pub(crate) fn get(&self, i: usize) -> Particle<'_> {
         let (g, m) = (self.groups, self.missing);
         Particle {
             log_density: self.log_densities[i],
@@ -73,12 +73,12 @@ impl Particles {
         }
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = Particle<'_>> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Particle<'_>> {
         (0..self.len()).map(|i| self.get(i))
     }
 
     /// Adds one over the same groups and missing values.
-    pub fn push(&mut self, particle: Particle) {
+    pub(crate) fn push(&mut self, particle: Particle) {
         self.log_densities.push(particle.log_density);
         self.states.extend(particle.states);
         self.means.extend(particle.mean);
@@ -149,7 +149,7 @@ pub(crate) struct Workspace {
 
 impl<'a> Extension<'a> {
     /// The group of `columns`, inputs first, of which `d` are its own, after `missing`.
-    pub fn new(missing: &[usize], columns: &'a [usize], d: usize, real: &'a [f64]) -> Self {
+    pub(crate) fn new(missing: &[usize], columns: &'a [usize], d: usize, real: &'a [f64]) -> Self {
         let (inputs, own) = columns.split_at(columns.len() - d);
         let place = |c: &usize| (*c, missing.iter().position(|m| m == c));
         let (gone, seen) = (0..d).partition(|&j| real[own[j]].is_nan());
@@ -164,12 +164,12 @@ impl<'a> Extension<'a> {
     }
 
     /// Number of values that are missing after the extension.
-    pub fn missing(&self) -> usize {
+    pub(crate) fn missing(&self) -> usize {
         self.missing + self.gone.len()
     }
 
     /// The log density of the extended particle.
-    pub fn density(&self, from: Particle, linear: &Linear, work: &mut Workspace) -> f64 {
+    pub(crate) fn density(&self, from: Particle, linear: &Linear, work: &mut Workspace) -> f64 {
         let (m, d) = (self.missing, linear.d);
         // Mean of y, and slopes on the values that are still missing.
         let mean = &mut work.mean;
@@ -228,7 +228,7 @@ impl<'a> Extension<'a> {
     }
 
     /// Appends the extended particle whose density was asked for last, with `state` if one is given.
-    pub fn append(
+    pub(crate) fn append(
         &self,
         from: Particle,
         state: Option<usize>,

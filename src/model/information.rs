@@ -30,7 +30,7 @@ pub(super) struct Information {
 
 impl Information {
     /// An estimate without observations, for `n` weights.
-    pub fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         Self {
             n,
             mean: vec![0.0; n * n],
@@ -39,7 +39,7 @@ impl Information {
     }
 
     /// Takes a round in: features of examples and of their negatives, and the mean gap between them.
-    pub fn observe(&mut self, examples: &[Vec<f64>], negatives: &[Vec<f64>], gap: &[f64]) {
+    pub(crate) fn observe(&mut self, examples: &[Vec<f64>], negatives: &[Vec<f64>], gap: &[f64]) {
         let mut now = vec![0.0; self.n * self.n];
         for (x, y) in examples.iter().zip(negatives) {
             let d: Vec<f64> = (0..self.n).map(|i| x[i] - y[i] - gap[i]).collect();
@@ -58,7 +58,7 @@ impl Information {
 
     /// `(I + λ)⁻¹ gradient`, shortened where it is longer than one standard deviation of the score. A matrix that is
     /// singular though a millionth of its mean variance is added gives the gradient as it is.
-    pub fn newton(&self, gradient: &[f64], penalty: f64) -> Vec<f64> {
+    pub(crate) fn newton(&self, gradient: &[f64], penalty: f64) -> Vec<f64> {
         let n = self.n;
         let variance = (0..n).map(|i| self.mean[i * n + i]).sum::<f64>() / n.max(1) as f64;
         let mut factor = self.mean.clone();
@@ -83,7 +83,7 @@ impl Information {
     }
 
     /// Roots of the diagonal of `(I + λ)⁻¹ / n`: standard errors of the weights from n examples. Infinite where I is singular.
-    pub fn standard_errors(&self, penalty: f64, examples: usize) -> Vec<f64> {
+    pub(crate) fn standard_errors(&self, penalty: f64, examples: usize) -> Vec<f64> {
         let n = self.n;
         let mut factor = self.mean.clone();
         (0..n).for_each(|i| factor[i * n + i] += penalty);

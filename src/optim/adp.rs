@@ -222,6 +222,7 @@ pub struct Adp<H, V> {
 
 /// The errors of a run: returned by [`Adp::run`], before the first walk for the first two.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AdpError {
     /// Not a single iteration was asked for.
     #[error("approximate dynamic programming needs at least one iteration")]

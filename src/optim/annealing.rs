@@ -134,6 +134,7 @@ pub struct Annealing {
 
 /// The errors of a run: temperatures in [`Annealing::new`], anything else in [`Annealing::run`].
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AnnealingError {
     /// Temperatures must be positive numbers, the first at least the last.
     #[error("annealing temperatures {start} to {end} are not positive and falling")]

@@ -93,6 +93,7 @@ pub type Population<G> = Vec<(G, f64)>;
 
 /// The errors of a run: settings in [`Genetic::new`], anything else in [`Genetic::run`].
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GeneticError {
     /// A setting is out of its range.
     #[error("genetic algorithm: {setting} is {value}, expected {expected}")]

@@ -10,6 +10,7 @@ use super::run::{Run, Search, execute};
 
 /// Why a search has no result: from [`minimize`], [`GridError::Cost`] at the first point that fails.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
     /// A variable has no value to try, or there is no variable.
     #[error("variable {variable} has no value to try")]

@@ -62,7 +62,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub fn new(limits: Limits) -> Self {
+    pub(crate) fn new(limits: Limits) -> Self {
         Self {
             limits,
             start: Instant::now(),
@@ -71,7 +71,7 @@ impl Watch {
     }
 
     /// The reason to end at this least cost so far, if any.
-    pub fn status(&self, best: f64) -> TerminationStatus {
+    pub(crate) fn status(&self, best: f64) -> TerminationStatus {
         let reason = if self.limits.target.is_some_and(|t| best <= t) {
             TerminationReason::TargetCostReached
         } else if self

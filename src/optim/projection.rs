@@ -45,6 +45,7 @@ pub struct BoundedSimplex {
 
 /// Why there is no projection: bounds and equality in [`BoundedSimplex::new`], the rest also in [`BoundedSimplex::project`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProjectionError {
     /// A list has not one number for each variable.
     #[error("{what} has {found} numbers, expected {expected}")]

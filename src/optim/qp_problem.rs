@@ -77,6 +77,7 @@ impl Row {
 /// Why numbers are not a convex quadratic program: from [`QuadraticProgram::check`], and through it from
 /// [`solve`](super::qp::solve). That there is no solution is an [`Outcome`](super::Outcome), not an error.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum QpError {
     /// A list has not one number for each variable.
     #[error("{what} has {found} numbers, expected {expected}")]

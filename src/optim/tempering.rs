@@ -59,6 +59,7 @@ impl Default for Settings {
 
 /// Failures of [`temper`].
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TemperingError {
     /// A setting is out of its range.
     #[error("`{setting}` must be {must}")]

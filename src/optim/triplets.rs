@@ -12,7 +12,7 @@ pub(super) struct Triplets {
 
 impl Triplets {
     /// Without entries, with room for so many.
-    pub fn with_capacity(count: usize) -> Self {
+    pub(crate) fn with_capacity(count: usize) -> Self {
         Self {
             rows: Vec::with_capacity(count),
             columns: Vec::with_capacity(count),
@@ -20,14 +20,14 @@ impl Triplets {
         }
     }
 
-    pub fn entry(&mut self, row: usize, column: usize, value: f64) {
+    pub(crate) fn entry(&mut self, row: usize, column: usize, value: f64) {
         self.rows.push(row);
         self.columns.push(column);
         self.values.push(value);
     }
 
     /// The matrix of so many rows and columns, by two sorts by counting: O(entries + rows + columns).
-    pub fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
+    pub(crate) fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
         if !self.rows.is_sorted() {
             order = sorted(&order, &self.rows, rows).0;

@@ -104,7 +104,7 @@ impl Scale {
 
 /// An axis with its range, in the axis's own coordinate (a decimal logarithm when logarithmic).
 #[derive(Debug, Clone)]
-pub struct Fitted {
+pub(crate) struct Fitted {
     log: bool,
     low: f64,
     high: f64,
@@ -115,7 +115,7 @@ pub struct Fitted {
 impl Fitted {
     /// The place of a value, 0 at the start of the axis and 1 at its end, clamped a little outside; `None` if it cannot
     /// be shown.
-    pub fn place(&self, value: f64) -> Option<f64> {
+    pub(crate) fn place(&self, value: f64) -> Option<f64> {
         let value = match self.log {
             true if value <= 0.0 => return None,
             true => value.log10(),
@@ -129,7 +129,7 @@ impl Fitted {
     }
 
     /// Place and text of each tick.
-    pub fn ticks(&self) -> impl Iterator<Item = (f64, &str)> {
+    pub(crate) fn ticks(&self) -> impl Iterator<Item = (f64, &str)> {
         self.ticks
             .iter()
             .map(|(v, text)| (self.share(*v), text.as_str()))

@@ -12,7 +12,7 @@ pub struct Beside {
 }
 
 /// True for a relative difference that counts as none: up to 5 %.
-pub fn is_near(difference: f64) -> bool {
+pub(crate) fn is_near(difference: f64) -> bool {
     difference.abs() <= 0.05 + 1e-9
 }
 

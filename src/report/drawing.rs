@@ -4,7 +4,7 @@ use super::colour::{Colour, INK};
 
 /// The place of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
+pub(crate) enum Anchor {
     /// The point is its left end (or its lower end when vertical).
     Start,
     /// The point is its middle.
@@ -15,7 +15,7 @@ pub enum Anchor {
 
 /// A text with its place.
 #[derive(Debug, Clone)]
-pub struct Text {
+pub(crate) struct Text {
     /// The point.
     pub at: (f64, f64),
     /// The words.
@@ -34,7 +34,7 @@ pub struct Text {
 
 /// One mark.
 #[derive(Debug, Clone)]
-pub enum Mark {
+pub(crate) enum Mark {
     /// An open line.
     Path {
         /// Its points.
@@ -66,7 +66,7 @@ pub enum Mark {
 
 /// A picture.
 #[derive(Debug, Clone)]
-pub struct Drawing {
+pub(crate) struct Drawing {
     /// Width in logical pixels.
     pub width: f64,
     /// Height in logical pixels.
@@ -77,7 +77,7 @@ pub struct Drawing {
 
 /// A rectangle of the drawing: left, top, width, height.
 #[derive(Debug, Clone, Copy)]
-pub struct Area {
+pub(crate) struct Area {
     /// Left.
     pub x: f64,
     /// Top.
@@ -90,7 +90,7 @@ pub struct Area {
 
 impl Area {
     /// The area inside margins.
-    pub fn inside(self, left: f64, top: f64, right: f64, bottom: f64) -> Self {
+    pub(crate) fn inside(self, left: f64, top: f64, right: f64, bottom: f64) -> Self {
         Self {
             x: self.x + left,
             y: self.y + top,
@@ -100,19 +100,19 @@ impl Area {
     }
 
     /// Right edge.
-    pub fn right(self) -> f64 {
+    pub(crate) fn right(self) -> f64 {
         self.x + self.width
     }
 
     /// Bottom edge.
-    pub fn bottom(self) -> f64 {
+    pub(crate) fn bottom(self) -> f64 {
         self.y + self.height
     }
 }
 
 impl Drawing {
     /// An empty picture.
-    pub fn new(width: f64, height: f64) -> Self {
+    pub(crate) fn new(width: f64, height: f64) -> Self {
         Self {
             width,
             height,
@@ -121,7 +121,7 @@ impl Drawing {
     }
 
     /// Adds a line.
-    pub fn path(&mut self, points: Vec<(f64, f64)>, width: f64, colour: Colour) {
+    pub(crate) fn path(&mut self, points: Vec<(f64, f64)>, width: f64, colour: Colour) {
         if points.len() > 1 {
             self.marks.push(Mark::Path {
                 points,
@@ -132,7 +132,7 @@ impl Drawing {
     }
 
     /// Adds a dashed line.
-    pub fn dashes(&mut self, points: &[(f64, f64)], width: f64, colour: Colour) {
+    pub(crate) fn dashes(&mut self, points: &[(f64, f64)], width: f64, colour: Colour) {
         const ON: f64 = 5.0;
         const OFF: f64 = 3.5;
         let mut phase = 0.0;
@@ -170,17 +170,17 @@ impl Drawing {
     }
 
     /// Adds a filled polygon.
-    pub fn fill(&mut self, points: Vec<(f64, f64)>, colour: Colour) {
+    pub(crate) fn fill(&mut self, points: Vec<(f64, f64)>, colour: Colour) {
         self.marks.push(Mark::Fill { points, colour });
     }
 
     /// Adds a filled rectangle.
-    pub fn rect(&mut self, area: Area, colour: Colour) {
+    pub(crate) fn rect(&mut self, area: Area, colour: Colour) {
         self.fill(corners(area), colour);
     }
 
     /// Adds the outline of a rectangle.
-    pub fn outline(&mut self, area: Area, width: f64, colour: Colour) {
+    pub(crate) fn outline(&mut self, area: Area, width: f64, colour: Colour) {
         let mut points = corners(area);
         // Closed by hand; the start reaches over the corner that the end leaves open.
         points.push(points[0]);
@@ -189,12 +189,12 @@ impl Drawing {
     }
 
     /// Adds a disc.
-    pub fn disc(&mut self, at: (f64, f64), radius: f64, colour: Colour) {
+    pub(crate) fn disc(&mut self, at: (f64, f64), radius: f64, colour: Colour) {
         self.marks.push(Mark::Disc { at, radius, colour });
     }
 
     /// Adds a text in ink.
-    pub fn text(&mut self, at: (f64, f64), text: &str, size: f64, anchor: Anchor) {
+    pub(crate) fn text(&mut self, at: (f64, f64), text: &str, size: f64, anchor: Anchor) {
         self.label(Text {
             at,
             text: text.to_string(),
@@ -207,7 +207,7 @@ impl Drawing {
     }
 
     /// Adds a text with everything said.
-    pub fn label(&mut self, text: Text) {
+    pub(crate) fn label(&mut self, text: Text) {
         if !text.text.is_empty() {
             self.marks.push(Mark::Text(text));
         }

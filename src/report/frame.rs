@@ -24,14 +24,14 @@ pub enum Corner {
 }
 
 /// Height of tick labels and legends.
-pub const SMALL: f64 = 11.5;
+pub(crate) const SMALL: f64 = 11.5;
 /// Height of axis labels.
-pub const LABEL: f64 = 12.5;
+pub(crate) const LABEL: f64 = 12.5;
 /// Height of panel titles.
-pub const TITLE: f64 = 14.0;
+pub(crate) const TITLE: f64 = 14.0;
 
 /// Draws the title and gives back the area below it.
-pub fn title(out: &mut Drawing, area: Area, text: &str) -> Area {
+pub(crate) fn title(out: &mut Drawing, area: Area, text: &str) -> Area {
     if text.is_empty() {
         return area.inside(0.0, 6.0, 0.0, 0.0);
     }
@@ -48,7 +48,7 @@ pub fn title(out: &mut Drawing, area: Area, text: &str) -> Area {
 }
 
 /// Draws grid, ticks and labels of both axes; gives back the plotting area.
-pub fn axes(
+pub(crate) fn axes(
     out: &mut Drawing,
     area: Area,
     (x, x_scale): (&Fitted, &Scale),
@@ -66,7 +66,7 @@ pub fn axes(
 }
 
 /// Draws ticks, their labels and the axis label below the plot; grid lines when wanted.
-pub fn x_ticks(out: &mut Drawing, plot: Area, x: &Fitted, label: &str, grid: bool) {
+pub(crate) fn x_ticks(out: &mut Drawing, plot: Area, x: &Fitted, label: &str, grid: bool) {
     for (place, text) in x.ticks() {
         let at = plot.x + place * plot.width;
         if grid {
@@ -84,7 +84,7 @@ pub fn x_ticks(out: &mut Drawing, plot: Area, x: &Fitted, label: &str, grid: boo
 }
 
 /// Draws grid lines, ticks, their labels and the axis label left of the plot.
-pub fn y_ticks(out: &mut Drawing, plot: Area, y: &Fitted, label: &str) {
+pub(crate) fn y_ticks(out: &mut Drawing, plot: Area, y: &Fitted, label: &str) {
     let mut widest = 0.0_f64;
     for (place, text) in y.ticks() {
         let at = plot.bottom() - place * plot.height;
@@ -106,7 +106,7 @@ pub fn y_ticks(out: &mut Drawing, plot: Area, y: &Fitted, label: &str) {
 
 /// The mark of an entry in a legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Key {
+pub(crate) enum Key {
     /// A piece of line.
     Line,
     /// A piece of dashed line.
@@ -118,10 +118,10 @@ pub enum Key {
 }
 
 /// An entry of a legend.
-pub type Entry<'a> = (Key, Colour, &'a str);
+pub(crate) type Entry<'a> = (Key, Colour, &'a str);
 
 /// Draws a legend in a corner of the plot, on a ground that lets what lies below shine through.
-pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[Entry]) {
+pub(crate) fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[Entry]) {
     let entries: Vec<_> = entries.iter().filter(|e| !e.2.is_empty()).collect();
     const LINE: f64 = 17.0;
     let text = entries
@@ -155,7 +155,12 @@ pub fn legend(out: &mut Drawing, plot: Area, corner: Corner, entries: &[Entry]) 
 }
 
 /// Draws a legend in rows above the plot, when it belongs there; gives back the area below it.
-pub fn legend_above(out: &mut Drawing, area: Area, corner: Corner, entries: &[Entry]) -> Area {
+pub(crate) fn legend_above(
+    out: &mut Drawing,
+    area: Area,
+    corner: Corner,
+    entries: &[Entry],
+) -> Area {
     let entries = entries.iter().filter(|e| !e.2.is_empty());
     if corner != Corner::Above {
         return area;
@@ -194,7 +199,7 @@ fn legend_entry(out: &mut Drawing, (x, y): (f64, f64), (key, colour, name): &Ent
 }
 
 /// A text in muted colour.
-pub fn muted(out: &mut Drawing, at: (f64, f64), text: &str, size: f64, anchor: Anchor) {
+pub(crate) fn muted(out: &mut Drawing, at: (f64, f64), text: &str, size: f64, anchor: Anchor) {
     out.label(Text {
         at,
         text: text.to_string(),

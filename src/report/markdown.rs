@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 /// The targets of the links of a page.
 #[derive(Clone, Copy)]
-pub struct Place<'a> {
+pub(crate) struct Place<'a> {
     /// Folder that links and pictures are relative to.
     pub folder: &'a str,
     /// Files in it: a picture links to its vector form where there is one.
@@ -12,7 +12,7 @@ pub struct Place<'a> {
 }
 
 /// Renders the page of an artefact. The first heading is left out, since the index has its own.
-pub fn html(text: &str, place: Place) -> Markup {
+pub(crate) fn html(text: &str, place: Place) -> Markup {
     let blocks: Vec<&str> = text
         .split("\n\n")
         .map(str::trim)

@@ -35,7 +35,7 @@ fn fonts() {
 }
 
 /// Width of a text of the regular face, in the unit of `size`.
-pub fn text_width(text: &str, size: f64) -> f64 {
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     fonts();
     // Measured large, since plotters answers in whole pixels.
     let font = (FAMILY, 100.0).into_font();
@@ -49,7 +49,7 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 ///
 /// # Errors
 /// [`Error::Method`] when plotters cannot draw it.
-pub fn svg(drawing: &Drawing) -> Result<String> {
+pub(crate) fn svg(drawing: &Drawing) -> Result<String> {
     let (width, height) = pixels(drawing, SVG_SCALE);
     let mut text = String::new();
     {
@@ -72,7 +72,7 @@ pub fn svg(drawing: &Drawing) -> Result<String> {
 ///
 /// # Errors
 /// [`Error::Method`] when plotters cannot draw it.
-pub fn png(drawing: &Drawing) -> Result<Vec<u8>> {
+pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>> {
     let (width, height) = pixels(drawing, PNG_SCALE);
     let fine = (width * PNG_SAMPLES, height * PNG_SAMPLES);
     let mut buffer = vec![0u8; fine.0 as usize * fine.1 as usize * 3];

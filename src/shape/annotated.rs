@@ -31,6 +31,7 @@ pub struct AnnotatedFacade {
 
 /// Why annotations do not fit their layout.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AnnotationError {
     /// A probability is not a number from 0 to 1.
     #[error("regions[{index}].probability is {value}, expected a number from 0 to 1")]

@@ -2,6 +2,7 @@
 
 /// One variant per way to be wrong, with the culprit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BuildingError {
     /// A unit of length that nobody knows.
     #[error("unit is {unit:?}, expected m, cm, mm, ft or in")]

@@ -32,6 +32,7 @@ pub struct Facade {
 
 /// Why a list of rectangles is not a layout, or a layout not a tiling.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LayoutError {
     /// Width or height of the facade is not a positive number.
     #[error("facade {dimension} is {value}, expected a positive number")]

@@ -30,6 +30,7 @@ pub struct LabelGrid {
 
 /// Why numbers do not make a label grid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
     /// Fewer than two boundaries along an axis.
     #[error("no {} at all", if *.axis == Axis::X { "columns" } else { "rows" })]

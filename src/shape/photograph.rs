@@ -28,6 +28,7 @@ pub struct Photograph {
 
 /// Why a picture is not taken.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PhotographError {
     /// Its file is too large.
     #[error("the picture has {bytes} bytes, at most {MOST} are kept with a drawing")]

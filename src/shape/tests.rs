@@ -3,7 +3,7 @@
 use super::{Facade, Rect, Region};
 
 /// A square facade of regions `(x, y, width, height)`, all with one label.
-pub fn facade(size: f64, rects: &[(f64, f64, f64, f64)]) -> Facade {
+pub(crate) fn facade(size: f64, rects: &[(f64, f64, f64, f64)]) -> Facade {
     let regions = rects
         .iter()
         .map(|&(x, y, w, h)| Region {

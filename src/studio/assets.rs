@@ -33,7 +33,7 @@ const FILES: &[(&str, &str, &[u8])] = &[
 ];
 
 /// A file of the page.
-pub async fn asset(method: Method, uri: Uri) -> Response {
+pub(crate) async fn asset(method: Method, uri: Uri) -> Response {
     let found = FILES.iter().find(|(path, _, _)| *path == uri.path());
     match (found, method) {
         (Some((_, kind, bytes)), Method::GET) => {

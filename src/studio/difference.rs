@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 /// The difference between two views, both objects: `set` has the keys whose values are new, `at` for lists of the same length the
 /// entries that are new by their index, `gone` the keys that are no more.
-pub fn difference(old: &Value, new: &Value) -> Value {
+pub(crate) fn difference(old: &Value, new: &Value) -> Value {
     let none = Map::new();
     let [old, new] = [old, new].map(|v| v.as_object().unwrap_or(&none));
     let (mut set, mut at) = (Map::new(), Map::new());

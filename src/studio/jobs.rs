@@ -85,13 +85,13 @@ impl Job {
 
 /// All jobs.
 #[derive(Default)]
-pub struct Jobs {
+pub(crate) struct Jobs {
     begun: Mutex<(u64, Vec<Arc<Job>>)>,
 }
 
 impl Jobs {
     /// Begins a job, for a document that is there already or for one to be opened.
-    pub fn begin(&self, document: Option<&str>) -> Arc<Job> {
+    pub(crate) fn begin(&self, document: Option<&str>) -> Arc<Job> {
         let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
         let (count, list) = &mut *begun;
         *count += 1;
@@ -115,7 +115,7 @@ impl Jobs {
     }
 
     /// The job of an id.
-    pub fn get(&self, id: &str) -> Option<Arc<Job>> {
+    pub(crate) fn get(&self, id: &str) -> Option<Arc<Job>> {
         let begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
         begun.1.iter().find(|j| j.id == id).cloned()
     }

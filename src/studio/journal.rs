@@ -17,7 +17,7 @@ use super::private;
 use edifice_base::{Error, Result};
 
 /// Ending of the names of journals.
-pub const ENDING: &str = ".journal.jsonl";
+pub(crate) const ENDING: &str = ".journal.jsonl";
 /// Ending of the copies of the files that documents began from.
 const START: &str = ".start";
 const FORMAT: &str = "edifice/studio-journal";
@@ -27,7 +27,7 @@ const MOST_KEPT: usize = 16 << 20;
 
 /// The first line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Head {
+pub(crate) struct Head {
     format: String,
     version: u32,
     /// Kind of document.
@@ -45,7 +45,7 @@ pub struct Head {
 /// The origin of a document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Start {
+pub(crate) enum Start {
     /// An example by its id.
     Example(String),
     /// A file.
@@ -62,7 +62,7 @@ pub enum Start {
 /// A further line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Line {
+pub(crate) enum Line {
     /// Commands that were done at once.
     Did(Vec<Value>),
     /// An edit was taken back.
@@ -75,7 +75,7 @@ pub enum Line {
 
 /// The origin of a document, with the content of its file.
 #[derive(Debug, Clone)]
-pub enum Source {
+pub(crate) enum Source {
     /// An example by its id.
     Example(String),
     /// A file, and what was read of it.
@@ -83,13 +83,13 @@ pub enum Source {
 }
 
 /// A journal that is written.
-pub struct Journal {
+pub(crate) struct Journal {
     path: PathBuf,
     file: File,
 }
 
 /// A journal that was read.
-pub struct Found {
+pub(crate) struct Found {
     /// The journal, to go on with.
     pub journal: Journal,
     /// Its first line.
@@ -101,7 +101,7 @@ pub struct Found {
 }
 
 /// Length and time of change of a file, as [`Start::File`] remembers them.
-pub fn state_of(path: &Path) -> Result<(u64, f64)> {
+pub(crate) fn state_of(path: &Path) -> Result<(u64, f64)> {
     let meta = std::fs::metadata(path).map_err(|e| Error::io(path, "read", e))?;
     let changed = meta.modified().ok();
     let since = changed.and_then(|t| t.duration_since(SystemTime::UNIX_EPOCH).ok());
@@ -113,7 +113,7 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be written for this user alone.
-    pub fn begin(
+    pub(crate) fn begin(
         folder: &Path,
         source: &Source,
         kind: &str,
@@ -172,7 +172,7 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn add(&mut self, line: &Line) -> Result<()> {
+    pub(crate) fn add(&mut self, line: &Line) -> Result<()> {
         self.line(line)
     }
 
@@ -184,25 +184,25 @@ impl Journal {
     }
 
     /// Place of the copy of the file that the document began from.
-    pub fn copy(&self) -> PathBuf {
+    pub(crate) fn copy(&self) -> PathBuf {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
         let stem = name.strip_suffix(ENDING).unwrap_or(&name);
         self.path.with_file_name(format!("{stem}{START}"))
     }
 
     /// The folder that it is in.
-    pub fn folder(&self) -> PathBuf {
+    pub(crate) fn folder(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).to_path_buf()
     }
 
     /// Its name, by which it is asked for.
-    pub fn id(&self) -> String {
+    pub(crate) fn id(&self) -> String {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
         name.strip_suffix(ENDING).unwrap_or(&name).to_owned()
     }
 
     /// Removes it with what it kept.
-    pub fn remove(self) {
+    pub(crate) fn remove(self) {
         // What cannot be removed is offered once more.
         let _ = std::fs::remove_file(self.copy());
         let _ = std::fs::remove_file(&self.path);
@@ -210,7 +210,7 @@ impl Journal {
 
     /// Takes up a journal that no running studio holds; `None` if one does, if it cannot be read, or if it is of a later
     /// version. What stands behind the last whole line is cut off.
-    pub fn take(path: &Path) -> Option<Found> {
+    pub(crate) fn take(path: &Path) -> Option<Found> {
         let mut file = private::take_file(path)?;
         let mut text = Vec::new();
         file.read_to_end(&mut text).ok()?;
@@ -250,12 +250,12 @@ impl Journal {
 
 impl Found {
     /// True if there is something in it that was not saved.
-    pub fn has_unsaved(&self) -> bool {
+    pub(crate) fn has_unsaved(&self) -> bool {
         self.lines.last().is_some_and(|l| *l != Line::Saved)
     }
 
     /// Number of edits.
-    pub fn edits(&self) -> usize {
+    pub(crate) fn edits(&self) -> usize {
         let did = |l: &&Line| matches!(l, Line::Did(_));
         self.lines.iter().filter(did).count()
     }

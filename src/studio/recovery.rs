@@ -15,7 +15,7 @@ use edifice_editing::work::Work;
 use edifice_io as io;
 
 /// Unsaved work that can be opened again.
-pub struct Offered {
+pub(crate) struct Offered {
     found: Found,
 }
 
@@ -28,7 +28,7 @@ enum RecoveryError {
 }
 
 /// The unsaved work in a folder; journals in which all is saved are removed.
-pub fn offered(folder: &Path) -> Vec<Offered> {
+pub(crate) fn offered(folder: &Path) -> Vec<Offered> {
     let paths = private::files(folder, ENDING);
     let found = paths.iter().filter_map(|path| Journal::take(path));
     let (unsaved, saved): (Vec<_>, Vec<_>) = found.partition(Found::has_unsaved);
@@ -40,12 +40,12 @@ pub fn offered(folder: &Path) -> Vec<Offered> {
 
 impl Offered {
     /// The name that it is asked for by.
-    pub fn id(&self) -> String {
+    pub(crate) fn id(&self) -> String {
         self.found.journal.id()
     }
 
     /// The entry of a page's list.
-    pub fn shown(&self) -> Value {
+    pub(crate) fn shown(&self) -> Value {
         let head = &self.found.head;
         let since = |t: SystemTime| SystemTime::now().duration_since(t).ok();
         let age = self.found.changed.and_then(since);
@@ -56,7 +56,7 @@ impl Offered {
     }
 
     /// Forgets it for good.
-    pub fn discard(self) {
+    pub(crate) fn discard(self) {
         self.found.journal.remove();
     }
 
@@ -65,7 +65,7 @@ impl Offered {
     ///
     /// # Errors
     /// With the offer itself, when the document cannot be opened or the work was stopped.
-    pub fn open(self, work: &Work) -> std::result::Result<Open, (Box<Self>, Error)> {
+    pub(crate) fn open(self, work: &Work) -> std::result::Result<Open, (Box<Self>, Error)> {
         let (mut open, refused) = match self.again(work) {
             Ok(done) => done,
             Err(error) => return Err((Box::new(self), error)),

@@ -33,6 +33,10 @@ interface View {
 }
 
 const four = (v: number) => tidy(v, 4);
+const area = (e: Rect) => Math.round(e.width * e.height * 1e6);
+
+/** Larger elements lie below smaller ones, and completed ones below given ones of the same size, so that what is given can be clicked. */
+const below = (a: Element_, b: Element_) => area(b) - area(a) || Number(a.observed) - Number(b.observed);
 
 /** A facade element as people draw one. */
 function picture(e: Rect & { class: string }): SVGGElement {
@@ -271,7 +275,7 @@ export function completion(session: Session<View>): Editor<View> {
       wall,
       ...(view.unknown ?? []).map(([x, y, width, height]) => s("rect", { class: "unknown", ...place({ x, y, width, height }) })),
       ...view.forbid.map(([x, y, width, height]) => s("rect", { class: "forbid", ...place({ x, y, width, height }) })),
-      ...view.elements.map(drawElement),
+      ...[...view.elements].sort(below).map(drawElement),
       ...[handle(view)].filter((n) => n !== null),
     );
     if (focused) (drawing.layer.querySelector(`[data-id="${CSS.escape(focused)}"]`) as SVGGElement | null)?.focus();

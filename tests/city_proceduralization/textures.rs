@@ -34,7 +34,7 @@ fn facade(path: &Path, [w, h]: [u32; 2], [columns, rows]: [u32; 2]) {
 }
 
 /// Boxes with facades of kinds `a` and `b` in turn, as OBJ.
-pub fn boxes(folder: &Path, count: usize) -> (std::path::PathBuf, Vec<usize>) {
+pub(crate) fn boxes(folder: &Path, count: usize) -> (std::path::PathBuf, Vec<usize>) {
     facade(&folder.join("a.png"), [6, 8], [10, 5]);
     facade(&folder.join("b.png"), [24, 10], [3, 4]);
     std::fs::write(folder.join("m.mtl"), MATERIALS).unwrap();

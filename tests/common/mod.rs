@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 ///
 /// Without it the test is skipped, said on standard error past the capture of the test harness.
 /// With `EDIFICE_REQUIRE_DATA` set, as `.ci/run` does where there is data, that is a failure.
-pub fn real_data(needed: &str) -> Option<PathBuf> {
+pub(crate) fn real_data(needed: &str) -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     let folder = std::env::var_os("EDIFICE_DATA")
         .filter(|named| !named.is_empty())

@@ -126,12 +126,12 @@ fn sweep(study: &str, ending: &str, text: &str) {
     assert_eq!(line["finished"], 1, "{study} on the example");
 }
 
-pub fn word(path: &Path) -> &str {
+pub(crate) fn word(path: &Path) -> &str {
     path.to_str().expect("a path of text")
 }
 
 /// The last line of standard output of a command, as JSON.
-pub fn line(words: &[&str]) -> serde_json::Value {
+pub(crate) fn line(words: &[&str]) -> serde_json::Value {
     let mut command = Command::cargo_bin("edifice").expect("the program");
     let output = command.current_dir(root()).args(words).assert().success();
     let text = String::from_utf8_lossy(&output.get_output().stdout).into_owned();
@@ -139,14 +139,14 @@ pub fn line(words: &[&str]) -> serde_json::Value {
     serde_json::from_str(&last).unwrap_or_else(|e| panic!("{words:?}: {e}: {text}"))
 }
 
-pub fn keys(words: &[&str]) -> BTreeSet<String> {
+pub(crate) fn keys(words: &[&str]) -> BTreeSet<String> {
     let line = line(words);
     let object = line.as_object().expect("an object");
     object.keys().cloned().collect()
 }
 
 /// The keys that the page lists for a command, those in brackets left out.
-pub fn listed(command: &str) -> BTreeSet<String> {
+pub(crate) fn listed(command: &str) -> BTreeSet<String> {
     let all = table();
     let cell = all
         .get(command)
@@ -173,7 +173,7 @@ pub fn listed(command: &str) -> BTreeSet<String> {
 }
 
 /// The rows of the table of lines: command, and the cell of its keys.
-pub fn table() -> BTreeMap<String, String> {
+pub(crate) fn table() -> BTreeMap<String, String> {
     let rows = PAGE.split("| command | keys |").nth(1).expect("the table");
     let rows = rows.lines().skip(2).take_while(|l| l.starts_with('|'));
     let mut table = BTreeMap::new();

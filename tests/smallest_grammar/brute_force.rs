@@ -9,7 +9,7 @@ use edifice::shape::Axis;
 use super::content::Content;
 
 /// The least cost of a grammar of `facades`: picks any type that waits for a rule, tries all its rules.
-pub fn brute_force(facades: &[Content], operations: Operations, costs: &Costs) -> f64 {
+pub(crate) fn brute_force(facades: &[Content], operations: Operations, costs: &Costs) -> f64 {
     let roots = facades.iter().filter(|facade| facade.label().is_none());
     cheapest(
         roots.cloned().collect(),

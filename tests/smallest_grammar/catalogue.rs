@@ -8,7 +8,7 @@ use super::content::Content;
 
 /// A successor of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Symbol {
+pub(super) enum Symbol {
     /// A label.
     Terminal(u8),
     /// Index of a type.
@@ -16,7 +16,7 @@ pub enum Symbol {
 }
 
 /// All types of several tiles.
-pub struct Catalogue {
+pub(super) struct Catalogue {
     /// The types, those with fewer tiles first: a part of a type comes before it.
     pub types: Vec<Content>,
     /// The symbol of each facade.
@@ -26,7 +26,7 @@ pub struct Catalogue {
 
 impl Catalogue {
     /// The types of `facades`; `None` when there are more than `most`.
-    pub fn new(facades: &[Content], most: usize) -> Option<Self> {
+    pub(super) fn new(facades: &[Content], most: usize) -> Option<Self> {
         let mut types: Vec<Content> = Vec::new();
         let mut index: HashMap<Content, usize> = HashMap::new();
         let mut waiting: Vec<Content> = facades.to_vec();
@@ -63,7 +63,7 @@ impl Catalogue {
     }
 
     /// The symbol of a content.
-    pub fn symbol(&self, content: &Content) -> Symbol {
+    pub(super) fn symbol(&self, content: &Content) -> Symbol {
         match content.label() {
             Some(label) => Symbol::Terminal(label),
             None => Symbol::Type(self.index[content]),

@@ -10,7 +10,7 @@ use super::network::Network;
 
 /// The decision on a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
+pub(super) enum Status {
     /// No decision yet.
     Open,
     /// It is a non-terminal of the grammar.
@@ -23,7 +23,7 @@ pub enum Status {
 const NOISE: f64 = 1e-10;
 
 /// The computation and its memory.
-pub struct Landmarks<'n> {
+pub(super) struct Landmarks<'n> {
     network: &'n Network,
     costs: Vec<f64>,
     /// The steps that grammars at hand can make, in order.
@@ -40,7 +40,7 @@ pub struct Landmarks<'n> {
 
 impl<'n> Landmarks<'n> {
     /// A computation on a network, before its first bound.
-    pub fn new(network: &'n Network) -> Self {
+    pub(super) fn new(network: &'n Network) -> Self {
         let (nodes, steps) = (network.nodes, network.steps.len());
         Self {
             network,
@@ -56,7 +56,7 @@ impl<'n> Landmarks<'n> {
 
     /// A lower bound on the cost of all grammars that agree with `status`, complete or just above `enough`.
     /// Infinite when there is none.
-    pub fn bound(&mut self, status: &[Status], enough: f64) -> f64 {
+    pub(super) fn bound(&mut self, status: &[Status], enough: f64) -> f64 {
         self.activate(status);
         let goals: Vec<usize> = (0..status.len())
             .filter(|&t| status[t] == Status::In)

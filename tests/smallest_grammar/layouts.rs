@@ -8,7 +8,12 @@ use rand::RngExt;
 use super::content::{Content, Tile, along};
 
 /// One to three layouts, each of `least` to `most` tiles. Later ones are often variants of the first.
-pub fn random_layouts(rng: &mut Stream, count: usize, least: usize, most: usize) -> Vec<Content> {
+pub(crate) fn random_layouts(
+    rng: &mut Stream,
+    count: usize,
+    least: usize,
+    most: usize,
+) -> Vec<Content> {
     let mut layouts: Vec<Content> = Vec::new();
     while layouts.len() < count {
         let new = match layouts.first() {

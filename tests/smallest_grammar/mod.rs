@@ -16,22 +16,22 @@
 
 mod brute_force;
 mod catalogue;
-pub mod compare;
+pub(crate) mod compare;
 mod content;
 mod landmarks;
-pub mod layouts;
+pub(crate) mod layouts;
 mod network;
 mod search;
 mod write;
 
-pub use brute_force::brute_force;
-pub use content::Content;
-pub use search::{Limits, smallest};
+pub(crate) use brute_force::brute_force;
+pub(crate) use content::Content;
+pub(crate) use search::{Limits, smallest};
 
 use edifice::methods::facade_grammar::Operations;
 
 /// Every set of operations: the split always, each other operation or not.
-pub fn operation_sets() -> impl Iterator<Item = Operations> {
+pub(crate) fn operation_sets() -> impl Iterator<Item = Operations> {
     (0..16).map(|bits| Operations {
         repeat: bits & 1 != 0,
         repeat_aba: bits & 2 != 0,

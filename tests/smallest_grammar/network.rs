@@ -16,7 +16,7 @@ use super::content::{Content, along};
 
 /// The operation of a rule on the successors on its path.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Way {
+pub(super) enum Way {
     Split(Axis),
     Repeat(Axis),
     RepeatAba(Axis),
@@ -30,7 +30,7 @@ pub enum Way {
 
 /// A step of a rule.
 #[derive(Debug)]
-pub struct Step {
+pub(super) struct Step {
     /// The node before it; none at the start of a rule.
     pub from: Option<usize>,
     /// The types that its successors need.
@@ -46,7 +46,7 @@ pub struct Step {
 }
 
 /// All rules. Nodes below the number of types are the types.
-pub struct Network {
+pub(super) struct Network {
     /// Steps in an order in which every step into a node comes before every step out of it.
     pub steps: Vec<Step>,
     /// The steps of each type's rules.
@@ -59,7 +59,7 @@ pub struct Network {
 
 impl Network {
     /// All rules of the types; `None` when they have more than `most` steps.
-    pub fn new(
+    pub(super) fn new(
         catalogue: &Catalogue,
         operations: Operations,
         costs: &Costs,

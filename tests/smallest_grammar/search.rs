@@ -11,7 +11,7 @@ use super::write;
 
 /// Beyond these the search gives up.
 #[derive(Debug, Clone, Copy)]
-pub struct Limits {
+pub(crate) struct Limits {
     /// Region types.
     pub types: usize,
     /// Steps of all rules.
@@ -22,7 +22,7 @@ pub struct Limits {
 
 /// A grammar of least cost.
 #[derive(Debug, Clone)]
-pub struct Smallest {
+pub(crate) struct Smallest {
     /// Its cost.
     pub cost: f64,
     /// The grammar.
@@ -37,7 +37,7 @@ const NOISE: f64 = 1e-7;
 const PASSES: usize = 2;
 
 /// The smallest grammar of some facades; `None` when `limits` do not suffice.
-pub fn smallest(
+pub(crate) fn smallest(
     facades: &[Content],
     operations: Operations,
     costs: &Costs,

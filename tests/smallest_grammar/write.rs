@@ -8,7 +8,7 @@ use super::content::Content;
 use super::network::{Network, Step, Way};
 
 /// The cheapest grammar whose non-terminals are `members`, of which those that no facade needs are left out.
-pub fn grammar(
+pub(super) fn grammar(
     catalogue: &Catalogue,
     network: &Network,
     members: &[bool],

@@ -7,36 +7,36 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-pub fn edifice(folder: &Path, words: &[&str]) -> Command {
+pub(crate) fn edifice(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::cargo_bin("edifice").expect("the program");
     command.current_dir(folder).args(words);
     command
 }
 
-pub fn output(folder: &Path, words: &[&str]) -> String {
+pub(crate) fn output(folder: &Path, words: &[&str]) -> String {
     let done = edifice(folder, words).assert().success();
     String::from_utf8_lossy(&done.get_output().stdout).into_owned()
 }
 
-pub fn messages(folder: &Path, words: &[&str]) -> String {
+pub(crate) fn messages(folder: &Path, words: &[&str]) -> String {
     let done = edifice(folder, words).assert().success();
     String::from_utf8_lossy(&done.get_output().stderr).into_owned()
 }
 
-pub fn complaint(folder: &Path, words: &[&str], code: i32) -> String {
+pub(crate) fn complaint(folder: &Path, words: &[&str], code: i32) -> String {
     let done = edifice(folder, words).assert().failure().code(code);
     String::from_utf8_lossy(&done.get_output().stderr).into_owned()
 }
 
-pub fn json(text: &str) -> serde_json::Value {
+pub(crate) fn json(text: &str) -> serde_json::Value {
     serde_json::from_str(text).expect("JSON")
 }
 
-pub fn read(path: &Path) -> serde_json::Value {
+pub(crate) fn read(path: &Path) -> serde_json::Value {
     json(&std::fs::read_to_string(path).expect("a file"))
 }
 
-pub fn shipped(name: &str) -> String {
+pub(crate) fn shipped(name: &str) -> String {
     format!(
         "{}/datasets/facade_grammar/layouts/{name}.facade.json",
         env!("CARGO_MANIFEST_DIR")
@@ -44,7 +44,7 @@ pub fn shipped(name: &str) -> String {
 }
 
 /// A partial layout of a few windows with ids; `extra` regions and keys are put in.
-pub fn partial(folder: &Path, regions: &str, keys: &str) {
+pub(crate) fn partial(folder: &Path, regions: &str, keys: &str) {
     let windows: Vec<String> = (0..9)
         .map(|k| {
             let (x, y) = (10.25 + 40.0 * f64::from(k % 3), 60.5 + 50.0 * f64::from(k / 3));

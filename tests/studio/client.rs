@@ -9,14 +9,14 @@ use serde_json::{Value, json};
 use tower::ServiceExt;
 
 /// A studio whose router is called.
-pub struct Api {
+pub(crate) struct Api {
     router: axum::Router,
     runtime: Option<tokio::runtime::Runtime>,
 }
 
 impl Api {
     /// Opens the files.
-    pub fn new(settings: &Settings) -> Self {
+    pub(crate) fn new(settings: &Settings) -> Self {
         let studio = Arc::new(Studio::new(settings).expect("opens"));
         let runtime = tokio::runtime::Builder::new_current_thread();
         Self {
@@ -26,12 +26,12 @@ impl Api {
     }
 
     /// The runtime of its requests.
-    pub fn runtime(&self) -> &tokio::runtime::Runtime {
+    pub(crate) fn runtime(&self) -> &tokio::runtime::Runtime {
         self.runtime.as_ref().expect("until it is dropped")
     }
 
     /// Status and answer of a request.
-    pub fn send(&self, verb: &str, path: &str, body: &Value) -> (StatusCode, Value) {
+    pub(crate) fn send(&self, verb: &str, path: &str, body: &Value) -> (StatusCode, Value) {
         let body = if body.is_null() {
             Body::empty()
         } else {
@@ -53,14 +53,14 @@ impl Api {
     }
 
     /// The answer to a request that must succeed.
-    pub fn get(&self, path: &str) -> Value {
+    pub(crate) fn get(&self, path: &str) -> Value {
         let (status, value) = self.send("GET", path, &Value::Null);
         assert_eq!(status, 200, "{path}: {value}");
         value
     }
 
     /// The same with a body; of a job, the document that it came to.
-    pub fn post(&self, path: &str, body: Value) -> Value {
+    pub(crate) fn post(&self, path: &str, body: Value) -> Value {
         let (status, value) = self.send("POST", path, &body);
         if status == 202 {
             let job = self.ended(&value["job"]);
@@ -73,7 +73,7 @@ impl Api {
     }
 
     /// Waits for a job.
-    pub fn ended(&self, job: &Value) -> Value {
+    pub(crate) fn ended(&self, job: &Value) -> Value {
         let path = format!("/api/jobs/{}", job["id"].as_str().expect("an id"));
         loop {
             let job = self.get(&path)["job"].clone();
@@ -85,7 +85,7 @@ impl Api {
     }
 
     /// Edits a document as it is now.
-    pub fn edit(&self, id: &str, commands: Value) -> Value {
+    pub(crate) fn edit(&self, id: &str, commands: Value) -> Value {
         let revision = self.get(&format!("/api/documents/{id}"))["revision"].clone();
         let body = json!({"commands": commands, "revision": revision});
         self.post(&format!("/api/documents/{id}/edit"), body)

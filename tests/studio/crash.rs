@@ -12,7 +12,7 @@ use edifice_editing::work::Work;
 use rand::RngExt;
 
 /// A studio in a process of its own.
-pub struct Process {
+pub(crate) struct Process {
     pub child: Child,
     port: u16,
     pub token: String,
@@ -22,7 +22,7 @@ pub struct Process {
 
 impl Process {
     /// Runs `prefix... edifice studio --no-open FILE`.
-    pub fn start(prefix: &[&str], file: &Path) -> Self {
+    pub(crate) fn start(prefix: &[&str], file: &Path) -> Self {
         let state = tempfile::tempdir().expect("a folder");
         let mut process = Self::start_in(prefix, file, state.path());
         process._state = Some(state);
@@ -30,7 +30,7 @@ impl Process {
     }
 
     /// The same with a folder of its state.
-    pub fn start_in(prefix: &[&str], file: &Path, state: &Path) -> Self {
+    pub(crate) fn start_in(prefix: &[&str], file: &Path, state: &Path) -> Self {
         let words = [
             prefix,
             &[env!("CARGO_BIN_EXE_edifice"), "studio", "--no-open"],
@@ -81,19 +81,19 @@ impl Process {
         Some(stream)
     }
 
-    pub fn post(&self, path: &str, body: &str) -> String {
+    pub(crate) fn post(&self, path: &str, body: &str) -> String {
         self.ask(&format!("/api/documents/d1/{path}"), body)
     }
 
     /// The answer to a request; GET without a body.
-    pub fn ask(&self, path: &str, body: &str) -> String {
+    pub(crate) fn ask(&self, path: &str, body: &str) -> String {
         let mut text = String::new();
         let mut stream = self.send_to(path, body).expect("connects");
         stream.read_to_string(&mut text).expect("answers");
         text
     }
 
-    pub fn edit(&self, revision: usize, edit: &str) -> String {
+    pub(crate) fn edit(&self, revision: usize, edit: &str) -> String {
         let body = format!(
             "{{\"commands\": [{{\"do\": \"edit\", \"edits\": [\"{edit}\"]}}], \"revision\": {revision}}}"
         );
@@ -109,7 +109,7 @@ impl Drop for Process {
 }
 
 /// A layout of `count` elements: its file takes a while to write.
-pub fn large(folder: &Path, count: usize) -> PathBuf {
+pub(crate) fn large(folder: &Path, count: usize) -> PathBuf {
     let region = |k: usize| {
         let (x, y) = (k % 100, k / 100);
         format!(

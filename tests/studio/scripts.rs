@@ -34,7 +34,7 @@ fn run(document: &Document, folder: &Path) -> Vec<u8> {
     std::fs::read(folder.join("made.file")).expect("made")
 }
 
-pub fn same_bytes(document: &Document) {
+pub(crate) fn same_bytes(document: &Document) {
     let folder = tempfile::tempdir().expect("a folder");
     let own = document.state().bytes().expect("a file");
     assert!(

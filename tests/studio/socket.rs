@@ -7,20 +7,20 @@ use std::time::Duration;
 use edifice_studio::{Settings, start};
 
 /// A running studio.
-pub struct Server {
+pub(crate) struct Server {
     pub port: u16,
     pub token: String,
 }
 
 /// An answer: status and everything sent.
-pub struct Answer {
+pub(crate) struct Answer {
     pub status: u16,
     pub text: String,
 }
 
 impl Server {
     /// Starts one; it ends with the process.
-    pub fn start(settings: &Settings) -> Self {
+    pub(crate) fn start(settings: &Settings) -> Self {
         let running = start(settings).expect("starts");
         let address = running.address().to_owned();
         let (place, token) = address.split_once("/#token=").expect("a token");
@@ -33,12 +33,12 @@ impl Server {
     }
 
     /// Sends bytes as they are, and nothing after them.
-    pub fn raw(&self, bytes: &[u8]) -> Answer {
+    pub(crate) fn raw(&self, bytes: &[u8]) -> Answer {
         self.send(bytes, true)
     }
 
     /// Sends bytes as they are, and stays.
-    pub fn raw_open(&self, bytes: &[u8]) -> Answer {
+    pub(crate) fn raw_open(&self, bytes: &[u8]) -> Answer {
         self.send(bytes, false)
     }
 
@@ -63,7 +63,7 @@ impl Server {
     }
 
     /// A request with these headers; without `host` among them the server's own.
-    pub fn ask(&self, line: &str, headers: &[(&str, &str)], body: &str) -> Answer {
+    pub(crate) fn ask(&self, line: &str, headers: &[(&str, &str)], body: &str) -> Answer {
         let mut text = format!("{line} HTTP/1.1\r\nConnection: close\r\n");
         if !headers.iter().any(|(n, _)| n.eq_ignore_ascii_case("host")) {
             text.push_str(&format!("Host: 127.0.0.1:{}\r\n", self.port));
@@ -78,7 +78,7 @@ impl Server {
     }
 
     /// A request as the page makes it.
-    pub fn page(&self, line: &str, body: &str) -> Answer {
+    pub(crate) fn page(&self, line: &str, body: &str) -> Answer {
         let own = format!("http://127.0.0.1:{}", self.port);
         let mut headers = vec![
             ("X-Edifice-Token", self.token.as_str()),

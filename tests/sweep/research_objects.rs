@@ -6,7 +6,7 @@ use super::running::edifice;
 
 /// A bundle that is a Research Object Crate: one entity for each file, all links lead to an entity, the same bytes on the same
 /// day, and still a bundle.
-pub fn crates(folder: &Path) {
+pub(crate) fn crates(folder: &Path) {
     let licence = "https://creativecommons.org/licenses/by/4.0/";
     let pack = |name: &str| {
         let sweep = ["bundle", "ablation.toml", "--out", "out", "-o", name];

@@ -29,7 +29,7 @@ metric = "cost"
 reference = "full"
 "#;
 
-pub fn edifice(folder: &Path, words: &[&str]) -> assert_cmd::assert::Assert {
+pub(crate) fn edifice(folder: &Path, words: &[&str]) -> assert_cmd::assert::Assert {
     let mut command = Command::cargo_bin("edifice").unwrap();
     command
         .current_dir(folder)

@@ -45,7 +45,7 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    pub fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.end - self.start
     }
 
@@ -53,7 +53,7 @@ impl Strip {
         self.width() * self.walls.len() as f64
     }
 
-    pub fn has_door(&self) -> bool {
+    pub(crate) fn has_door(&self) -> bool {
         self.walls.iter().any(|w| w.usage == Use::Door)
     }
 
@@ -63,7 +63,7 @@ impl Strip {
     }
 
     /// True if it has windows.
-    pub fn is_glazed(&self) -> bool {
+    pub(crate) fn is_glazed(&self) -> bool {
         let windows = |w: &Wall| w.usage == Use::Windows;
         self.width() >= NARROWEST && !self.has_door() && self.walls.iter().any(windows)
     }

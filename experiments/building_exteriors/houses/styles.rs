@@ -61,7 +61,7 @@ const PORCHES: usize = 4;
 
 impl Kinds {
     /// The kinds in the order of [`super::KINDS`]; garages and porches of mirrored plans are kinds of their own.
-    pub fn numbers(&self) -> [usize; super::KINDS.len()] {
+    pub(crate) fn numbers(&self) -> [usize; super::KINDS.len()] {
         let apart = |kind: usize, kinds: usize| match self.mirrored && kind > 0 {
             true => kind + kinds,
             false => kind,

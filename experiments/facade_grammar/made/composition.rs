@@ -11,7 +11,7 @@ use edifice_base::rng::Stream;
 type Cell = (usize, Option<Break>);
 
 /// Designs a facade.
-pub fn compose(draft: &mut Draft, rng: &mut Stream, theme: &Theme, style: &Style) -> Part {
+pub(crate) fn compose(draft: &mut Draft, rng: &mut Stream, theme: &Theme, style: &Style) -> Part {
     let style = match theme.balconies {
         0 => style.clone(),
         _ => style.clone().with_balconies(),
@@ -341,7 +341,7 @@ impl Designer<'_> {
 }
 
 /// The period (1 or 2 columns) with which the columns start over, and how often it stands there.
-pub fn run(columns: &[Part]) -> (usize, u32) {
+pub(crate) fn run(columns: &[Part]) -> (usize, u32) {
     let times = |period: usize| {
         let mut n = 1;
         while columns.len() >= (n + 1) * period

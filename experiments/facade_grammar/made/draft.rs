@@ -7,7 +7,7 @@ use edifice_shape::Axis;
 
 /// A symbol with its size in centimetres.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Part {
+pub(crate) struct Part {
     /// Terminal label or non-terminal symbol.
     pub symbol: String,
     /// True if it has no rule.
@@ -19,7 +19,7 @@ pub struct Part {
 }
 
 /// A terminal part.
-pub fn leaf(label: &str, width: u32, height: u32) -> Part {
+pub(crate) fn leaf(label: &str, width: u32, height: u32) -> Part {
     Part {
         symbol: label.to_string(),
         terminal: true,
@@ -42,7 +42,7 @@ type Content = (bool, Axis, Vec<Part>, u32);
 
 /// The rules so far.
 #[derive(Debug, Default)]
-pub struct Draft {
+pub(crate) struct Draft {
     rules: Vec<Rule>,
     known: FxHashMap<Content, Part>,
     names: FxHashMap<String, usize>,
@@ -50,12 +50,12 @@ pub struct Draft {
 
 impl Draft {
     /// Parts side by side, left to right, all of one height.
-    pub fn row(&mut self, name: &str, parts: Vec<Part>) -> Part {
+    pub(crate) fn row(&mut self, name: &str, parts: Vec<Part>) -> Part {
         self.split(name, Axis::X, parts)
     }
 
     /// Parts on top of each other, bottom to top, all of one width.
-    pub fn stack(&mut self, name: &str, parts: Vec<Part>) -> Part {
+    pub(crate) fn stack(&mut self, name: &str, parts: Vec<Part>) -> Part {
         self.split(name, Axis::Y, parts)
     }
 
@@ -80,7 +80,7 @@ impl Draft {
     }
 
     /// A period that stands `times` times along x.
-    pub fn repeat(&mut self, name: &str, period: Vec<Part>, times: u32) -> Part {
+    pub(crate) fn repeat(&mut self, name: &str, period: Vec<Part>, times: u32) -> Part {
         match times {
             0 | 1 => self.row(name, period),
             _ => self.rule(name, Axis::X, period, times),
@@ -88,7 +88,7 @@ impl Draft {
     }
 
     /// A period that stands `times` times along y.
-    pub fn repeat_up(&mut self, name: &str, period: Vec<Part>, times: u32) -> Part {
+    pub(crate) fn repeat_up(&mut self, name: &str, period: Vec<Part>, times: u32) -> Part {
         match times {
             0 | 1 => self.stack(name, period),
             _ => self.rule(name, Axis::Y, period, times),
@@ -140,7 +140,7 @@ impl Draft {
     }
 
     /// The grammar that starts at `root`, its rules from the whole to the parts.
-    pub fn finish(self, name: &str, root: &Part) -> Grammar {
+    pub(crate) fn finish(self, name: &str, root: &Part) -> Grammar {
         let mut reached = vec![root.symbol.clone()];
         let mut rules: Vec<Rule> = Vec::new();
         let mut next = 0;

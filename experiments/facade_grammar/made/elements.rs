@@ -7,7 +7,7 @@ use edifice_base::rng::Stream;
 
 /// The division of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Glazing {
+pub(crate) enum Glazing {
     /// One terminal.
     Plain,
     /// A frame around two panes.
@@ -24,7 +24,7 @@ pub enum Glazing {
 
 /// A kind of window with its surroundings.
 #[derive(Debug, Clone, Copy)]
-pub struct Kind {
+pub(crate) struct Kind {
     glazing: Glazing,
     height: u32,
     trim: u32,
@@ -35,7 +35,7 @@ pub struct Kind {
 
 /// Sizes that a whole facade shares, in centimetres.
 #[derive(Debug, Clone)]
-pub struct Style {
+pub(crate) struct Style {
     /// Height of a floor.
     pub floor: u32,
     /// Wall between two columns.
@@ -51,7 +51,7 @@ pub struct Style {
 
 /// A window that is not what the rhythm asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Break {
+pub(crate) enum Break {
     /// No window.
     Blank,
     /// Bricked up: another label.
@@ -64,7 +64,7 @@ pub enum Break {
 
 impl Style {
     /// Draws the sizes of a facade with these windows.
-    pub fn draw(rng: &mut Stream, glazing: &[Glazing]) -> Self {
+    pub(crate) fn draw(rng: &mut Stream, glazing: &[Glazing]) -> Self {
         let five = |rng: &mut Stream, low: u32, high: u32| 5 * rng.random_range(low..=high);
         let column = five(rng, 22, 28);
         let below = five(rng, 13, 18);
@@ -96,12 +96,12 @@ impl Style {
     }
 
     /// Number of kinds of windows.
-    pub fn kinds(&self) -> usize {
+    pub(crate) fn kinds(&self) -> usize {
         self.kinds.len()
     }
 
     /// Gives every second kind a balcony.
-    pub fn with_balconies(mut self) -> Self {
+    pub(crate) fn with_balconies(mut self) -> Self {
         for kind in self.kinds.iter_mut().skip(1).step_by(2) {
             kind.balcony = true;
         }
@@ -116,7 +116,13 @@ impl Style {
     }
 
     /// A column of the wall, `height` high, with a window of kind `k` in it.
-    pub fn column(&self, draft: &mut Draft, k: usize, height: u32, change: Option<Break>) -> Part {
+    pub(crate) fn column(
+        &self,
+        draft: &mut Draft,
+        k: usize,
+        height: u32,
+        change: Option<Break>,
+    ) -> Part {
         let kind = self.kinds[k % self.kinds.len()];
         if change == Some(Break::Blank) {
             return leaf("wall", self.column, height);
@@ -158,7 +164,13 @@ impl Style {
     }
 
     /// The window proper.
-    pub fn glazing(&self, draft: &mut Draft, glazing: Glazing, width: u32, height: u32) -> Part {
+    pub(crate) fn glazing(
+        &self,
+        draft: &mut Draft,
+        glazing: Glazing,
+        width: u32,
+        height: u32,
+    ) -> Part {
         let f = self.frame;
         let panes = |draft: &mut Draft, high: u32| {
             let pane = (width - 3 * f) / 2;
@@ -226,7 +238,7 @@ impl Style {
 }
 
 /// A door with its light, `width` by `height`.
-pub fn door(draft: &mut Draft, width: u32, height: u32) -> Part {
+pub(crate) fn door(draft: &mut Draft, width: u32, height: u32) -> Part {
     let leaves = (height * 2 / 3).max(60).min(height - 30);
     let wing = leaf("door", (width - 30) / 2, leaves);
     let jamb = leaf("trim", 10, leaves);
@@ -247,7 +259,7 @@ pub fn door(draft: &mut Draft, width: u32, height: u32) -> Part {
 }
 
 /// A shop: base, panes between mullions, sign, awning.
-pub fn shop(draft: &mut Draft, width: u32, height: u32, panes: u32, awning: bool) -> Part {
+pub(crate) fn shop(draft: &mut Draft, width: u32, height: u32, panes: u32, awning: bool) -> Part {
     let (base, sign, shade) = (40, 45, if awning { 30 } else { 0 });
     let glass = height - base - sign - shade;
     let panes = panes.max(1);
@@ -275,7 +287,7 @@ pub fn shop(draft: &mut Draft, width: u32, height: u32, panes: u32, awning: bool
 }
 
 /// A pilaster with base and capital.
-pub fn pilaster(draft: &mut Draft, width: u32, height: u32) -> Part {
+pub(crate) fn pilaster(draft: &mut Draft, width: u32, height: u32) -> Part {
     draft.stack(
         "Pilaster",
         vec![
@@ -287,7 +299,13 @@ pub fn pilaster(draft: &mut Draft, width: u32, height: u32) -> Part {
 }
 
 /// A dormer: cheeks, a window, a small roof.
-pub fn dormer(draft: &mut Draft, style: &Style, glazing: Glazing, width: u32, height: u32) -> Part {
+pub(crate) fn dormer(
+    draft: &mut Draft,
+    style: &Style,
+    glazing: Glazing,
+    width: u32,
+    height: u32,
+) -> Part {
     let glass = style.glazing(draft, glazing, width - 30, height * 3 / 5);
     let cheek = leaf("dormer", 15, glass.height);
     let middle = draft.row("DormerWindow", vec![cheek.clone(), glass, cheek]);

@@ -4,7 +4,7 @@ use super::elements::Glazing;
 
 /// The order of the kinds of windows along a floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rhythm {
+pub(crate) enum Rhythm {
     /// A A A A.
     Same,
     /// A B A B.
@@ -21,7 +21,7 @@ pub enum Rhythm {
 
 impl Rhythm {
     /// The kind that stands at place `i` of `n`, from 0 for A.
-    pub fn kind(self, i: usize, n: usize) -> usize {
+    pub(crate) fn kind(self, i: usize, n: usize) -> usize {
         let last = n - 1;
         match self {
             Rhythm::Same => 0,
@@ -36,7 +36,7 @@ impl Rhythm {
 
 /// The division of the body before its floors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Body {
+pub(crate) enum Body {
     /// One piece.
     Plain,
     /// A middle part whose floors differ, between two wings.
@@ -51,7 +51,7 @@ pub enum Body {
 
 /// The ground floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ground {
+pub(crate) enum Ground {
     /// As the floors above, with a door in one column.
     Door,
     /// Shop windows with another rhythm.
@@ -62,7 +62,7 @@ pub enum Ground {
 
 /// The part above the cornice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Attic {
+pub(crate) enum Attic {
     /// Nothing.
     None,
     /// Dormers in a roof, with another spacing than the windows below.
@@ -73,7 +73,7 @@ pub enum Attic {
 
 /// A kind of building.
 #[derive(Debug, Clone, Copy)]
-pub struct Theme {
+pub(crate) struct Theme {
     /// Its name, which facades carry.
     pub name: &'static str,
     /// Fewest and most floors, without ground floor and attic.
@@ -221,7 +221,7 @@ const WAREHOUSE: Theme = Theme {
 
 /// Every theme with the number of terminals wanted: the ten of Table 1, three times, with other
 /// buildings.
-pub const PLAN: &[(&Theme, usize)] = &[
+pub(crate) const PLAN: &[(&Theme, usize)] = &[
     (&PALACE, 1085),
     (&BOULEVARD, 523),
     (&TENEMENT, 595),
@@ -283,7 +283,7 @@ const TERRACES: [Theme; 4] = [
 ];
 
 /// Four facades with the same windows and few ornaments (Fig. 13).
-pub const FAMILY: &[(&Theme, usize)] = &[
+pub(crate) const FAMILY: &[(&Theme, usize)] = &[
     (&TERRACES[0], 75),
     (&TERRACES[1], 100),
     (&TERRACES[2], 140),
@@ -291,7 +291,7 @@ pub const FAMILY: &[(&Theme, usize)] = &[
 ];
 
 /// A boulevard house with as many floors and columns as give about this number of terminals.
-pub fn scaled(terminals: usize) -> Theme {
+pub(crate) fn scaled(terminals: usize) -> Theme {
     // About a dozen terminals to a window.
     let windows = (terminals as f64 / 12.0).max(4.0);
     let floors = (windows / 1.5).sqrt().max(1.5);

@@ -13,7 +13,7 @@ use edifice_procedural_logic::Parameters;
 use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// The artefact.
-pub const RANGES: Artefact = Artefact {
+pub(crate) const RANGES: Artefact = Artefact {
     name: "baseline_ranges",
     title: "procedural logic of Table 2 over the ranges of its parameters",
     run,

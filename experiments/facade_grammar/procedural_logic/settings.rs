@@ -12,14 +12,14 @@ use edifice_procedural_logic::{Joining, Parameters, baseline_grammar_joining, se
 use edifice_shape::Facade;
 
 /// The ways in which binary splits become n-ary, with their names in tables; that of Table 2 first.
-pub const JOININGS: [(&str, Joining); 3] = [
+pub(crate) const JOININGS: [(&str, Joining); 3] = [
     ("procedural_logic", Joining::All),
     ("procedural_logic_used_once", Joining::UsedOnce),
     ("procedural_logic_binary", Joining::Binary),
 ];
 
 /// Every setting: the values over which Weissenberg et al. search (Eq. 12), with both settings of their text among them.
-pub fn settings() -> Vec<Parameters> {
+pub(crate) fn settings() -> Vec<Parameters> {
     let [alphas, parental, horizontal] = search_axes();
     let mut all = Vec::new();
     for &alpha in &alphas {
@@ -37,7 +37,7 @@ pub fn settings() -> Vec<Parameters> {
 
 /// The costs of the methods on one facade, splits only.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Measured {
+pub(crate) struct Measured {
     /// `costs[joining][setting]`.
     pub costs: [Vec<f64>; 3],
     /// BGL.
@@ -52,7 +52,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// Those of the methods, or of a grammar that does not derive its facade.
-pub fn measure(facade: &Facade, iterations: u64, seed: u64) -> Result<Measured> {
+pub(crate) fn measure(facade: &Facade, iterations: u64, seed: u64) -> Result<Measured> {
     let one = std::slice::from_ref(facade);
     let question = |method, iterations| Question {
         operations: Operations::split_only(),
@@ -82,7 +82,7 @@ pub fn measure(facade: &Facade, iterations: u64, seed: u64) -> Result<Measured> 
 
 /// The number that is picked from the costs of all settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pick {
+pub(crate) enum Pick {
     /// The least over the settings.
     Least,
     /// Their mean.
@@ -95,7 +95,7 @@ pub enum Pick {
 
 impl Pick {
     /// The number taken.
-    pub fn of(self, costs: &[f64]) -> f64 {
+    pub(crate) fn of(self, costs: &[f64]) -> f64 {
         match self {
             Pick::Least => costs.iter().copied().fold(f64::INFINITY, f64::min),
             Pick::Mean => mean(costs),
@@ -106,13 +106,13 @@ impl Pick {
 }
 
 /// Place of a setting; both settings of Weissenberg et al. are on the axes.
-pub fn place(parameters: &Parameters) -> Result<usize> {
+pub(crate) fn place(parameters: &Parameters) -> Result<usize> {
     let at = settings().iter().position(|s| s == parameters);
     at.ok_or_else(|| Error::method("the setting is not on the axes of the search"))
 }
 
 /// `alpha, b_p, b_h` as text.
-pub fn text(parameters: &Parameters) -> String {
+pub(crate) fn text(parameters: &Parameters) -> String {
     format!(
         "{}, {}, {}",
         parameters.alpha, parameters.parental_bias, parameters.horizontal_bias

@@ -29,11 +29,11 @@ struct Margin {
 type ByFacade<'a> = BTreeMap<(&'a str, &'a str, &'a str), BTreeMap<&'a str, f64>>;
 
 /// All comparisons.
-pub struct Margins<'a>(&'a [Measured]);
+pub(crate) struct Margins<'a>(&'a [Measured]);
 
 impl<'a> Margins<'a> {
     /// Of measured cases.
-    pub fn new(cases: &'a [Measured]) -> Self {
+    pub(crate) fn new(cases: &'a [Measured]) -> Self {
         Self(cases)
     }
 
@@ -76,7 +76,7 @@ impl<'a> Margins<'a> {
     }
 
     /// Writes how often the default model is significantly above and below, and each cell in which it is below.
-    pub fn tables(&self, ctx: &mut Context) {
+    pub(crate) fn tables(&self, ctx: &mut Context) {
         let title =
             "The default model against the baselines (signed-rank test, Holm's correction, 5 %)";
         let mut summary = Table::new(title)

@@ -19,7 +19,7 @@ const ANSWERS: usize = 5;
 
 /// The values of one facade, one part hidden and one method or model.
 #[derive(Clone, Serialize, Deserialize)]
-pub struct Measured {
+pub(crate) struct Measured {
     /// Set, name of the facade, part hidden.
     pub case: [String; 3],
     /// Method or model.
@@ -34,14 +34,14 @@ pub struct Measured {
 
 impl Measured {
     /// The value of a measure.
-    pub fn value(&self, measure: &str) -> Option<f64> {
+    pub(crate) fn value(&self, measure: &str) -> Option<f64> {
         let found = self.values.iter().find(|v| v.0 == measure);
         found.map(|v| v.1)
     }
 }
 
 /// The elements that a completion adds.
-pub fn added(completion: Option<&Completion>) -> Vec<Element> {
+pub(crate) fn added(completion: Option<&Completion>) -> Vec<Element> {
     let all = completion.into_iter().flat_map(|c| &c.added);
     all.map(|a| a.element).collect()
 }
@@ -60,7 +60,7 @@ fn share(part: usize, of: usize) -> f64 {
 }
 
 /// Completes a partial layout by a method and measures it against what is hidden.
-pub fn measured(
+pub(crate) fn measured(
     case: [String; 3],
     (column, method, model): (&str, Method, &Model),
     layout: &Layout,
@@ -182,7 +182,7 @@ impl Counts {
 
 /// Expected calibration error of ten bins of equal width: the mean over all of the distance between the mean mass of a bin and
 /// the share of it that is right; and how many there are.
-pub fn calibration_error(masses: &[(f64, bool)]) -> (f64, usize) {
+pub(crate) fn calibration_error(masses: &[(f64, bool)]) -> (f64, usize) {
     const BINS: usize = 10;
     let mut bins = [(0.0, 0.0, 0usize); BINS];
     for &(mass, right) in masses {
@@ -196,7 +196,11 @@ pub fn calibration_error(masses: &[(f64, bool)]) -> (f64, usize) {
 }
 
 /// The share of the first over the sum of the second, over cases.
-pub fn ratio<'a>(cases: impl Iterator<Item = &'a &'a Measured>, part: &str, of: &str) -> f64 {
+pub(crate) fn ratio<'a>(
+    cases: impl Iterator<Item = &'a &'a Measured>,
+    part: &str,
+    of: &str,
+) -> f64 {
     let (mut a, mut b) = (0.0, 0.0);
     for case in cases {
         a += case.value(part).unwrap_or(0.0);
@@ -206,7 +210,7 @@ pub fn ratio<'a>(cases: impl Iterator<Item = &'a &'a Measured>, part: &str, of: 
 }
 
 /// Share of made grids that are completed perfectly, as text.
-pub fn perfect(count: usize, of: usize) -> String {
+pub(crate) fn perfect(count: usize, of: usize) -> String {
     format!("{count} of {of} ({:.0} %)", 100.0 * share(count, of))
 }
 

@@ -53,7 +53,7 @@ struct Unit<'a> {
 }
 
 /// Runs the benchmark.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let models = models::models(ctx)?;
     sanity::run(ctx, &models)?;
     let mut units: Vec<Unit> = Vec::new();

@@ -18,10 +18,10 @@ use edifice_structure_completion::made::facades;
 use edifice_structure_completion::model::{Model, shipped_model};
 
 /// The set of generated facades, of which only the default model has learnt the like.
-pub const MADE: &str = "made";
+pub(crate) const MADE: &str = "made";
 
 /// A facade that is tested.
-pub struct Tested {
+pub(crate) struct Tested {
     /// Its set.
     pub set: &'static str,
     /// Its elements.
@@ -31,7 +31,7 @@ pub struct Tested {
 }
 
 /// The models and what they are tested on.
-pub struct Models {
+pub(crate) struct Models {
     /// The models, the default one first.
     pub all: Vec<Model>,
     /// The facades, set by set.
@@ -67,7 +67,7 @@ fn learnt(lesson: &Lesson, seed: u64) -> Result<String> {
 ///
 /// # Errors
 /// Those of reading and learning.
-pub fn models(ctx: &mut Context) -> Result<Models> {
+pub(crate) fn models(ctx: &mut Context) -> Result<Models> {
     let tested = ctx.budget().choose(2, 16, usize::MAX);
     let taught = ctx.budget().choose(0, 16, usize::MAX);
     let parts = ctx.budget().choose(2, 2, 5);

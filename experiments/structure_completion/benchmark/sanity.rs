@@ -20,7 +20,7 @@ struct Unit {
 }
 
 /// Completes made grids by the default model, a model of real facades and the quick baselines.
-pub fn run(ctx: &mut Context, models: &Models) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context, models: &Models) -> Result<()> {
     let mut columns: Vec<(&str, Method, &Model)> = vec![(COLUMNS[0], Method::Best, &models.all[0])];
     columns.extend(
         models

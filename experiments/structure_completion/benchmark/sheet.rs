@@ -16,7 +16,7 @@ use edifice_structure_completion::method::{Method, complete};
 const SHOWN: usize = 12;
 
 /// Draws one row for each part: what is added is outlined. Real facades where there are some.
-pub fn draw(ctx: &mut Context, models: &Models) -> Result<()> {
+pub(crate) fn draw(ctx: &mut Context, models: &Models) -> Result<()> {
     let real = models.tested.iter().any(|t| t.set != MADE);
     let mut order: Vec<usize> = (0..models.tested.len())
         .filter(|&k| (models.tested[k].set != MADE) == real)

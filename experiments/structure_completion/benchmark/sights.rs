@@ -29,7 +29,7 @@ enum Part {
 
 /// A part that is hidden, with or without a mask.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
+pub(crate) struct Sight {
     part: Part,
     masked: bool,
 }
@@ -39,7 +39,7 @@ const STRIPS: usize = 5;
 
 impl Sight {
     /// All of them, each region first with and then without a mask.
-    pub fn all() -> Vec<Self> {
+    pub(crate) fn all() -> Vec<Self> {
         let tasks = Task::ALL.into_iter().map(Part::Task);
         let parts = tasks.chain([Part::Tree, Part::Car, Part::Cut]);
         let both = |part: Part| match part {
@@ -50,7 +50,7 @@ impl Sight {
     }
 
     /// Its name in tables and rows.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         let part = match self.part {
             Part::Task(task) => task.name(),
             Part::Tree => "tree",
@@ -62,7 +62,7 @@ impl Sight {
     }
 
     /// A whole layout as a partial one, and the elements that are hidden.
-    pub fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
+    pub(crate) fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
         let (w, h) = (layout.width, layout.height);
         let regions = match self.part {
             Part::Task(task) => {

@@ -16,7 +16,7 @@ use edifice_report::{Align, Table};
 const PAIRS: usize = 20;
 
 /// All measured cases.
-pub struct Cases<'a>(pub &'a [Measured]);
+pub(crate) struct Cases<'a>(pub &'a [Measured]);
 
 impl Cases<'_> {
     /// Names of the real sets; without real data that of the made facades.
@@ -183,7 +183,7 @@ impl Cases<'_> {
     }
 
     /// Writes all tables.
-    pub fn tables(&self, ctx: &mut Context) -> Result<()> {
+    pub(crate) fn tables(&self, ctx: &mut Context) -> Result<()> {
         self.agreement(ctx, "f1_50", "F1 at an intersection over union of 0.5");
         self.agreement(ctx, "f1_75", "F1 at 0.75");
         self.agreement(ctx, "f1_50_95", "F1 at 0.5 to 0.95, mean of ten");

@@ -52,7 +52,7 @@ fn observe(layout: &Layout, share: f64, seed: u64, k: u64) -> (PartialLayout, Ve
 }
 
 /// Observes ever fewer of the same elements.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, ctx.budget().choose(3, 16, 100));
     let model = folds::model(&rest, ctx.seed(), |_| true)?;

@@ -43,7 +43,7 @@ struct Found {
 }
 
 /// Completes between two known regions.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, ctx.budget().choose(3, 16, 100));
     let model = folds::model(&rest, ctx.seed(), |_| true)?;

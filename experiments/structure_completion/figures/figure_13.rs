@@ -34,7 +34,7 @@ struct Found {
 }
 
 /// Completes the least and the most regular facades of the data.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let mut items = data::items(ctx)?;
     items.retain(|i| i.layout.count(Class::Window) >= 8 && i.layout.elements.len() <= 90);
     let seed = ctx.seed();

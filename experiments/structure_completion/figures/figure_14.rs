@@ -28,7 +28,7 @@ struct Found {
 }
 
 /// Completes known halves by annealing, by the paper's policies and by the default method.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, ctx.budget().choose(1, 10, 60));
     let model = folds::model(&rest, ctx.seed(), |_| true)?;

@@ -42,7 +42,7 @@ fn steps() -> [Step; 4] {
 }
 
 /// Completes each step as `facade complete` does.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let model = shipped_model().map_err(Error::method)?;
     let mut figure = Figure::new(
         "Sketch, and completions of it and of three edits (added elements outlined)",

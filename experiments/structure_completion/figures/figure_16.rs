@@ -18,7 +18,7 @@ use edifice_structure_completion::score::{TERMS, Term};
 const WHOLE: usize = 100;
 
 /// Learns the weights three times for each size.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let printed = Published::read(ctx)?;
     let mut layouts: Vec<Layout> = facades(ctx)?.into_iter().map(|i| i.layout).collect();
     layouts.shuffle(&mut stream(ctx.seed(), "figure 16", 0));

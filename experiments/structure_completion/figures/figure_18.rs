@@ -36,7 +36,7 @@ fn title(left_out: usize) -> String {
 
 /// The random numbers that decide which part of a layout is hidden: the same in these figures and in sweeps, whatever
 /// other facades are completed.
-pub fn drawn(layout: &Layout, seed: u64) -> Stream {
+pub(crate) fn drawn(layout: &Layout, seed: u64) -> Stream {
     stream(seed, &format!("figure 18, {}", layout.name), 0)
 }
 
@@ -61,7 +61,7 @@ fn complete(
 }
 
 /// The elements that the paper's method adds when some scoring functions, by index, weigh nothing.
-pub fn without(
+pub(crate) fn without(
     partial: &PartialLayout,
     left_out: &[usize],
     model: &PaperModel,
@@ -86,7 +86,7 @@ fn shown(item: &Item, seed: u64, title: String, added: &[Element]) -> Tiles {
 }
 
 /// Fig. 17: with and without the symmetry term.
-pub fn figure_17(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_17(ctx: &mut Context) -> Result<()> {
     let symmetry = Term::Symmetry as usize;
     let (_, items, found) = measure(ctx, &[TERMS, symmetry])?;
     let seed = ctx.seed();
@@ -110,7 +110,7 @@ pub fn figure_17(ctx: &mut Context) -> Result<()> {
 }
 
 /// Fig. 18: each term left out.
-pub fn figure_18(ctx: &mut Context) -> Result<()> {
+pub(crate) fn figure_18(ctx: &mut Context) -> Result<()> {
     // All terms first.
     let terms: Vec<usize> = std::iter::once(TERMS).chain(0..TERMS).collect();
     let (_, items, found) = measure(ctx, &terms)?;

@@ -25,7 +25,7 @@ const DEPTH: f64 = 11.0;
 const APART: f32 = 5.0;
 
 /// Three boxes: what is observed, its completion, the truth.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, 1);
     let model = folds::model(&rest, ctx.seed(), |_| true)?;

@@ -27,7 +27,7 @@ struct Found {
 }
 
 /// Completes known halves by as many candidates of either kind; the best by score counts.
-pub fn run(ctx: &mut Context) -> Result<()> {
+pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, ctx.budget().choose(2, 12, 60));
     let model = paper(&rest, ctx.seed())?;

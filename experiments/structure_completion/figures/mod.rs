@@ -1,16 +1,16 @@
 //! The paper's figures, each with the numbers that the paper lacks.
 
-pub mod figure_10;
-pub mod figure_11;
-pub mod figure_13;
-pub mod figure_14;
-pub mod figure_15;
-pub mod figure_16;
-pub mod figure_18;
-pub mod figure_20;
-pub mod figure_8;
+pub(crate) mod figure_10;
+pub(crate) mod figure_11;
+pub(crate) mod figure_13;
+pub(crate) mod figure_14;
+pub(crate) mod figure_15;
+pub(crate) mod figure_16;
+pub(crate) mod figure_18;
+pub(crate) mod figure_20;
+pub(crate) mod figure_8;
 
-pub use figure_18::{drawn, without};
+pub(crate) use figure_18::{drawn, without};
 
 use super::data::{self, Item};
 use crate::Context;
@@ -24,7 +24,7 @@ use edifice_structure_completion::policy::PaperModel;
 const ELEMENTS: std::ops::RangeInclusive<usize> = 8..=90;
 
 /// Facades with at least eight windows and at most 90 elements; those in scope only, where there are enough.
-pub fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
+pub(crate) fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
     let mut items = data::items(ctx)?;
     items.retain(in_size);
     if items.iter().filter(|i| i.in_scope).count() > items.len() / 2 {
@@ -34,7 +34,7 @@ pub fn facades(ctx: &mut Context) -> Result<Vec<Item>> {
 }
 
 /// True if a facade has at least eight windows and at most 90 elements.
-pub fn in_size(item: &Item) -> bool {
+pub(crate) fn in_size(item: &Item) -> bool {
     item.layout.count(Class::Window) >= 8 && ELEMENTS.contains(&item.layout.elements.len())
 }
 

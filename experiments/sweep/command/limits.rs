@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Bytes of all files below a folder; what goes while it is looked at counts as nothing.
-pub fn bytes_below(folder: &Path) -> u64 {
+pub(crate) fn bytes_below(folder: &Path) -> u64 {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return 0;
     };
@@ -16,7 +16,7 @@ pub fn bytes_below(folder: &Path) -> u64 {
 }
 
 /// Resident bytes of all processes of a group, by `/proc`; 0 where there is none.
-pub fn resident(group: u32) -> u64 {
+pub(crate) fn resident(group: u32) -> u64 {
     /// Bytes of a page; larger ones only make the limit more generous.
     const PAGE: u64 = 4096;
     let Ok(processes) = std::fs::read_dir("/proc") else {
@@ -37,7 +37,7 @@ pub fn resident(group: u32) -> u64 {
 }
 
 /// Bytes of a size as Slurm writes it: `500M`, `2G`, megabytes without a letter.
-pub fn bytes(size: &str) -> u64 {
+pub(crate) fn bytes(size: &str) -> u64 {
     let digits = size.trim_end_matches(['K', 'M', 'G', 'T']);
     let number: u64 = digits.parse().unwrap_or(u64::MAX);
     let factor = match &size[digits.len()..] {

@@ -51,7 +51,7 @@ impl Question {
 }
 
 /// Values of the metric: `[arm][unit]`, by seed.
-pub type Values = Vec<Vec<BTreeMap<u64, f64>>>;
+pub(crate) type Values = Vec<Vec<BTreeMap<u64, f64>>>;
 
 /// The results of one arm.
 #[derive(Debug, Clone, PartialEq)]

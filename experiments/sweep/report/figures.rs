@@ -8,7 +8,7 @@ use crate::sweep::study::{Better, Study};
 use edifice_report::{Chart, Corner, Figure, Ranking, Scale, Series};
 
 /// Critical-difference diagram; none with fewer than two arms.
-pub fn ranking(plan: &Plan, comparison: &Comparison) -> Option<Figure> {
+pub(crate) fn ranking(plan: &Plan, comparison: &Comparison) -> Option<Figure> {
     let ranks = comparison.ranks.as_ref()?;
     let names = plan.head.arms.iter().map(|arm| arm.name.clone());
     let entries = names.zip(ranks.means.iter().copied()).collect();
@@ -23,7 +23,7 @@ pub fn ranking(plan: &Plan, comparison: &Comparison) -> Option<Figure> {
 }
 
 /// Performance profiles; none where larger values are better or some are not positive.
-pub fn profiles(plan: &Plan, comparison: &Comparison) -> Option<Figure> {
+pub(crate) fn profiles(plan: &Plan, comparison: &Comparison) -> Option<Figure> {
     if comparison.question.better == Better::Higher {
         return None;
     }
@@ -99,7 +99,7 @@ fn best_known(
 
 /// Median over the runs of an arm of the best value so far over the best known, by evaluations; none without traces, or where a best
 /// value is not positive.
-pub fn anytime(
+pub(crate) fn anytime(
     plan: &Plan,
     study: &Study,
     comparison: &Comparison,
@@ -154,7 +154,7 @@ pub fn anytime(
 const POINTS: usize = 80;
 
 /// Shares of runs that reached each target, by evaluations; none without traces.
-pub fn targets(
+pub(crate) fn targets(
     plan: &Plan,
     study: &Study,
     comparison: &Comparison,

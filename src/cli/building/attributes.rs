@@ -6,7 +6,7 @@ use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     input: Input,
     #[command(flatten)]
@@ -14,6 +14,6 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice_base::Result<()> {
+pub(super) fn run(args: &Args) -> edifice_base::Result<()> {
     print_table(&args.input.read()?.table, args.json)
 }

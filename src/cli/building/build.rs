@@ -21,7 +21,7 @@ use crate::print;
 
 /// Options of `build`.
 #[derive(clap::Args)]
-pub struct BuildArgs {
+pub(crate) struct BuildArgs {
     /// Attributes, one house a row, as `building attributes` and `building sample` print them. An empty cell, and a
     /// column that is not there, is what the model says given the others.
     attributes: PathBuf,
@@ -37,7 +37,7 @@ pub struct BuildArgs {
 
 /// Options of `generate`.
 #[derive(clap::Args)]
-pub struct GenerateArgs {
+pub(crate) struct GenerateArgs {
     /// The model (`*.houses.json`); by default the one that ships, learnt from real houses. `made` is that of the made
     /// houses. Attributes that a model does not know are those of the one that ships.
     model: Option<PathBuf>,
@@ -65,7 +65,7 @@ pub struct GenerateArgs {
 }
 
 /// Runs `build`.
-pub fn build(args: &BuildArgs) -> Result<()> {
+pub(super) fn build(args: &BuildArgs) -> Result<()> {
     let table = building_csv::read(&args.attributes)?;
     let orders = orders(&table, args)?;
     let database = args.output.making.database()?;
@@ -132,7 +132,7 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
 }
 
 /// Runs `generate`.
-pub fn generate(args: &GenerateArgs) -> Result<()> {
+pub(super) fn generate(args: &GenerateArgs) -> Result<()> {
     let own = args.model.as_deref().map(data::model).transpose()?;
     let file = match &own {
         Some(file) => file,

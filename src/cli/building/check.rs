@@ -14,7 +14,7 @@ use crate::print::{self, Json};
 
 /// Options of `check`.
 #[derive(clap::Args)]
-pub struct CheckArgs {
+pub(crate) struct CheckArgs {
     /// Houses (`*.building.json`, `*.buildings.jsonl`) or surfaces (`*.obj`).
     #[arg(required = true)]
     files: Vec<PathBuf>,
@@ -32,7 +32,7 @@ pub struct CheckArgs {
 
 /// Options of `draw`.
 #[derive(clap::Args)]
-pub struct DrawArgs {
+pub(crate) struct DrawArgs {
     /// Houses (`*.building.json`, `*.buildings.jsonl`).
     #[arg(required = true)]
     files: Vec<PathBuf>,
@@ -55,7 +55,7 @@ struct Faults {
 }
 
 /// Runs `check`.
-pub fn check(args: &CheckArgs) -> Result<()> {
+pub(super) fn check(args: &CheckArgs) -> Result<()> {
     let (mut all, mut bad) = (0, 0);
     for path in &args.files {
         if path.extension().is_some_and(|e| e == "obj") {
@@ -110,7 +110,7 @@ fn tell(name: &str, faults: &[String], json: bool) -> Result<()> {
 }
 
 /// Runs `draw`.
-pub fn draw(args: &DrawArgs) -> Result<()> {
+pub(super) fn draw(args: &DrawArgs) -> Result<()> {
     let mut houses: Vec<(Building, Model)> = Vec::new();
     for path in &args.files {
         for building in building_json::read(path)? {

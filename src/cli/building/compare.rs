@@ -20,7 +20,7 @@ use crate::print;
 
 Houses are paired in the order of the files. A difference is told in standard deviations of the attribute over TRUTH, in its own unit where
 TRUTH is one house or the attribute does not vary.")]
-pub struct Args {
+pub(crate) struct Args {
     /// True houses (`*.building.json`, `*.buildings.jsonl`)
     truth: PathBuf,
     /// Houses to judge, as many
@@ -42,7 +42,7 @@ struct Count {
 }
 
 /// Runs `compare`.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let truth = building_json::read(&args.truth)?;
     let predicted = building_json::read(&args.predicted)?;
     let (found, wanted) = (predicted.len(), truth.len());

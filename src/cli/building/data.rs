@@ -15,7 +15,7 @@ use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 
 /// The source of houses.
 #[derive(clap::Args)]
-pub struct Input {
+pub(super) struct Input {
     /// Database (`*.buildings.jsonl`), one building (`*.building.json`), or CSV (`*.csv`); each also as `.gz`. A CSV
     /// whose columns are attributes, as `building attributes` prints them, needs no schema; empty cells are missing.
     pub input: PathBuf,
@@ -29,7 +29,7 @@ pub struct Input {
 
 impl Input {
     /// The houses with all attributes of the paper, or with those of the schema.
-    pub fn read(&self) -> Result<Dataset> {
+    pub(super) fn read(&self) -> Result<Dataset> {
         match &self.schema {
             Some(schema) => self.by_schema(schema),
             None => {
@@ -42,7 +42,7 @@ impl Input {
 
     /// The same without columns of which nothing is known. A schema names the columns that are wanted: of one that has
     /// no value the learner complains by its name.
-    pub fn known(&self) -> Result<Dataset> {
+    pub(super) fn known(&self) -> Result<Dataset> {
         if self.schema.is_some() {
             return self.read();
         }
@@ -50,7 +50,7 @@ impl Input {
     }
 
     /// The houses as a coded model reads them; those read by a schema are as they are.
-    pub fn coded(&self) -> Result<Dataset> {
+    pub(super) fn coded(&self) -> Result<Dataset> {
         match &self.schema {
             Some(schema) => self.by_schema(schema),
             None => coded(&self.observed()?).map_err(|e| Error::content(&self.input, e)),
@@ -99,7 +99,7 @@ impl Input {
 }
 
 /// Reads a learned model; `made` is that of the made houses, which ships.
-pub fn model(path: &Path) -> Result<ModelFile> {
+pub(super) fn model(path: &Path) -> Result<ModelFile> {
     if path.as_os_str() == MADE {
         return made_model().cloned();
     }

@@ -15,7 +15,7 @@ use crate::print;
 
 /// Options of `variations`.
 #[derive(clap::Args)]
-pub struct VariationsArgs {
+pub(crate) struct VariationsArgs {
     /// The house (`*.building.json`).
     house: PathBuf,
     /// Houses to make.
@@ -36,7 +36,7 @@ pub struct VariationsArgs {
 
 /// Options of `edit`.
 #[derive(clap::Args)]
-pub struct EditArgs {
+pub(crate) struct EditArgs {
     /// The house (`*.building.json`).
     house: PathBuf,
     /// Adds a box: STYLE@X,Y,W,D,H with style main, garage or porch, centre, width, depth and height in metres.
@@ -72,7 +72,7 @@ pub struct EditArgs {
 
 /// Options of `wish`.
 #[derive(clap::Args)]
-pub struct WishArgs {
+pub(crate) struct WishArgs {
     /// The house (`*.building.json`).
     house: PathBuf,
     /// A wish: COLUMN=VALUE, for example bbox.w=14 or roof.hip=yes; repeatable.
@@ -113,7 +113,7 @@ fn house(path: &Path) -> Result<Building> {
 }
 
 /// Runs `variations`.
-pub fn variations(args: &VariationsArgs) -> Result<()> {
+pub(super) fn variations(args: &VariationsArgs) -> Result<()> {
     if args.count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
@@ -131,7 +131,7 @@ pub fn variations(args: &VariationsArgs) -> Result<()> {
 }
 
 /// Runs `edit`.
-pub fn edit(args: &EditArgs) -> Result<()> {
+pub(super) fn edit(args: &EditArgs) -> Result<()> {
     let mut edits: Vec<Edit> = Vec::new();
     for own in [&args.add, &args.shift, &args.resize] {
         edits.extend(own);
@@ -155,7 +155,7 @@ pub fn edit(args: &EditArgs) -> Result<()> {
 }
 
 /// Runs `wish`.
-pub fn wish(args: &WishArgs) -> Result<()> {
+pub(super) fn wish(args: &WishArgs) -> Result<()> {
     let given = editing::given(&args.given);
     let wishes = Wishes {
         given: given.map_err(|e| Error::option("--given", e.to_string()))?,

@@ -23,7 +23,7 @@ const COMPLETED: usize = 5;
 
 /// The number of houses to draw, and the choice among them.
 #[derive(clap::Args)]
-pub struct Draw {
+pub(super) struct Draw {
     /// Houses to draw [default: 10; completed houses: 5]
     #[arg(short = 'n', long)]
     count: Option<usize>,
@@ -54,7 +54,7 @@ impl Draw {
 
 /// Options of `sample`.
 #[derive(clap::Args)]
-pub struct SampleArgs {
+pub(crate) struct SampleArgs {
     /// The model (`*.houses.json`).
     model: PathBuf,
     /// Evidence: COLUMN=VALUE, ATTRIBUTE=VALUE,VALUE,... or ATTRIBUTE=none (all zero); repeatable.
@@ -71,7 +71,7 @@ pub struct SampleArgs {
 
 /// Options of `complete`.
 #[derive(clap::Args)]
-pub struct CompleteArgs {
+pub(crate) struct CompleteArgs {
     /// The model (`*.houses.json`).
     model: PathBuf,
     #[command(flatten)]
@@ -96,7 +96,7 @@ pub struct CompleteArgs {
 }
 
 /// Runs `sample`.
-pub fn sample(args: &SampleArgs) -> Result<()> {
+pub(super) fn sample(args: &SampleArgs) -> Result<()> {
     let file = data::model(&args.model)?;
     let mut rng = stream(args.draw.seed, "building/sample", 0);
     if args.draw.count() == 0 {
@@ -114,7 +114,7 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
 }
 
 /// Runs `complete`.
-pub fn complete(args: &CompleteArgs) -> Result<()> {
+pub(super) fn complete(args: &CompleteArgs) -> Result<()> {
     let file = data::model(&args.model)?;
     if let Some(folder) = &args.output {
         return complete_houses(args, &file, folder);

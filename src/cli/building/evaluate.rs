@@ -9,7 +9,7 @@ use crate::model::evaluate::Splits;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     input: Input,
     #[command(flatten)]
@@ -17,7 +17,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice_base::Result<()> {
+pub(super) fn run(args: &Args) -> edifice_base::Result<()> {
     let begun = Instant::now();
     let data = args.input.known()?;
     // The rows are those of the model as published.

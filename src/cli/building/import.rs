@@ -12,7 +12,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// City models, in every format that `edifice city` reads; several are tiles of one city.
     #[arg(required = true)]
     cities: Vec<PathBuf>,
@@ -59,7 +59,7 @@ impl Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let limits = args.limits()?;
     let mut all = City::default();
     for (k, path) in args.cities.iter().enumerate() {

@@ -13,7 +13,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     input: Input,
     /// File of the model (`*.houses.json`).
@@ -31,7 +31,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice_base::Result<()> {
+pub(super) fn run(args: &Args) -> edifice_base::Result<()> {
     let begun = Instant::now();
     let (data, coding) = match args.as_published || args.input.schema.is_some() {
         true => (args.input.known()?, Coding::Published),

@@ -21,7 +21,7 @@ const BETWEEN: f64 = 5.0;
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Format {
+pub(super) enum Format {
     /// `NAME.building.json`
     Json,
     /// `NAME.obj`, z up, in metres
@@ -35,7 +35,7 @@ pub enum Format {
 }
 
 /// Reads the database of donors: a file, or the shipped houses.
-pub fn database(path: Option<&Path>) -> Result<Database> {
+pub(super) fn database(path: Option<&Path>) -> Result<Database> {
     let Some(path) = path else {
         return shipped_database().cloned();
     };
@@ -48,7 +48,7 @@ fn colours(building: &Building) -> usize {
 }
 
 /// Houses side by side without anything around them.
-pub fn row(houses: &[(Building, Model)]) -> Scene {
+pub(super) fn row(houses: &[(Building, Model)]) -> Scene {
     let mut x = 0.0;
     let mut all = Vec::new();
     for (building, model) in houses {
@@ -65,7 +65,7 @@ pub fn row(houses: &[(Building, Model)]) -> Scene {
 }
 
 /// Houses on plots along streets; a single one stands alone. `seed` says where trees stand.
-pub fn street(houses: &[(Building, Model)], seed: u64) -> Scene {
+pub(super) fn street(houses: &[(Building, Model)], seed: u64) -> Scene {
     if let [(building, model)] = houses {
         return scene_of(building, model);
     }
@@ -78,7 +78,7 @@ pub fn street(houses: &[(Building, Model)], seed: u64) -> Scene {
 }
 
 /// Writes a scene as a picture; one of several groups is a street.
-pub fn write_png(scene: &Scene, path: &Path) -> Result<()> {
+pub(super) fn write_png(scene: &Scene, path: &Path) -> Result<()> {
     let is_street = scene.groups.len() > 1;
     let ([w, h], direction) = match is_street {
         true => (STREET, street::DIRECTION),
@@ -91,7 +91,12 @@ pub fn write_png(scene: &Scene, path: &Path) -> Result<()> {
 }
 
 /// Writes a house in all formats asked for, named after it.
-pub fn write(building: &Building, model: &Model, folder: &Path, formats: &[Format]) -> Result<()> {
+pub(super) fn write(
+    building: &Building,
+    model: &Model,
+    folder: &Path,
+    formats: &[Format],
+) -> Result<()> {
     let file = |ending: &str| folder.join(format!("{}.{ending}", building.name));
     for format in formats {
         match format {
@@ -112,6 +117,6 @@ pub fn write(building: &Building, model: &Model, folder: &Path, formats: &[Forma
 }
 
 /// Makes the folder of the output.
-pub fn folder(path: &Path) -> Result<()> {
+pub(super) fn folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).map_err(|e| Error::io(path, "create", e))
 }

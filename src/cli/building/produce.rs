@@ -21,7 +21,7 @@ const CHUNK: usize = 64;
 
 /// The folder of the houses, and their form.
 #[derive(clap::Args)]
-pub struct Output {
+pub(super) struct Output {
     /// Folder of the output; it is made when it does not exist.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
@@ -40,7 +40,7 @@ pub struct Output {
 
 /// The making of houses, and the files of them that are written.
 #[derive(clap::Args)]
-pub struct Making {
+pub(super) struct Making {
     /// Files for each house.
     #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Format::Json, Format::Glb])]
     pub format: Vec<Format>,
@@ -60,7 +60,7 @@ pub struct Making {
 
 /// The joining of roofs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum RoofOption {
+pub(super) enum RoofOption {
     /// Each box has its own.
     Boxes,
     /// One for all boxes of a height.
@@ -69,7 +69,7 @@ pub enum RoofOption {
 
 impl RoofOption {
     /// As the library knows it.
-    pub fn joining(self) -> Joining {
+    pub(super) fn joining(self) -> Joining {
         match self {
             Self::Boxes => Joining::Boxes,
             Self::Merged => Joining::Merged,
@@ -79,7 +79,7 @@ impl RoofOption {
 
 /// The method for mass models and facades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum MethodOption {
+pub(super) enum MethodOption {
     /// Boxes of similar houses fitted by least squares, facades side by side: reaches the attributes in milliseconds.
     Best,
     /// Simulated annealing and a genetic algorithm as in the paper: seconds a house.
@@ -88,12 +88,12 @@ pub enum MethodOption {
 
 impl Making {
     /// The database of donors.
-    pub fn database(&self) -> Result<Database> {
+    pub(super) fn database(&self) -> Result<Database> {
         output::database(self.database.as_deref())
     }
 
     /// Writes houses with their reports into a folder, in their order; with `json`, prints a line for each.
-    pub fn write(&self, houses: &[Generated], folder: &Path, json: bool) -> Result<()> {
+    pub(super) fn write(&self, houses: &[Generated], folder: &Path, json: bool) -> Result<()> {
         output::folder(folder)?;
         for house in houses {
             output::write(&house.building, &house.model, folder, &self.format)?;
@@ -108,7 +108,7 @@ impl Making {
     }
 
     /// The settings of generation.
-    pub fn options(&self) -> Options {
+    pub(super) fn options(&self) -> Options {
         Options {
             joining: self.roof.joining(),
             no_cuts: self.no_cuts,
@@ -139,7 +139,7 @@ impl Output {
 /// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same
 /// attributes are left as they are. With `redraws`, a house that misses its row or that one would not believe gives way to
 /// one of another row.
-pub fn produce(
+pub(super) fn produce(
     orders: &[Order],
     database: &Database,
     options: &Options,

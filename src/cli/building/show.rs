@@ -9,7 +9,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The model (`*.houses.json`).
     model: PathBuf,
     /// Draw the network into this file.
@@ -21,7 +21,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> edifice_base::Result<()> {
+pub(super) fn run(args: &Args) -> edifice_base::Result<()> {
     let file = data::model(&args.model)?;
     let model = &file.model;
     if let Some(path) = &args.svg {

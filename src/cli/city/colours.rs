@@ -13,7 +13,7 @@ use super::data;
 
 /// A property of buildings that their colours tell.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
+pub(super) enum Colour {
     /// Nothing: buildings are light, textures are shown.
     Plain,
     /// The type of building, of a grammar: the most frequent ones have colours of their own.
@@ -52,7 +52,7 @@ const RAMP: [[u8; 3]; 6] = [
 ];
 
 /// A city that was read, and the grammar that it was derived from.
-pub struct Read {
+pub(super) struct Read {
     /// The city.
     pub city: City,
     grammar: Option<InstanceGrammar>,
@@ -60,7 +60,7 @@ pub struct Read {
 
 impl Read {
     /// Reads a city or a grammar.
-    pub fn new(path: &Path) -> Result<Self> {
+    pub(super) fn new(path: &Path) -> Result<Self> {
         let grammar = match data::is_grammar(path) {
             true => Some(data::grammar(path)?),
             false => None,
@@ -75,7 +75,7 @@ impl Read {
 
 /// Colours of a city's buildings, of those of the city beside it, and what they stand for.
 #[derive(Default)]
-pub struct Colouring {
+pub(super) struct Colouring {
     /// Of the city.
     pub colours: Option<Vec<[u8; 3]>>,
     /// Of the city beside it.
@@ -85,7 +85,7 @@ pub struct Colouring {
 }
 
 /// The colours that a picture of `shown`, with `beside` to its left, has.
-pub fn colouring(colour: Colour, shown: &Read, beside: Option<&Read>) -> Result<Colouring> {
+pub(super) fn colouring(colour: Colour, shown: &Read, beside: Option<&Read>) -> Result<Colouring> {
     let option = |text: &str| Error::option("--colour", text);
     let symbols = |read: &Read| -> Result<Vec<String>> {
         let grammar = read.grammar.as_ref();

@@ -17,7 +17,7 @@ const SAMPLES: usize = 20_000;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A city or a grammar.
     first: PathBuf,
     /// Another city or grammar.
@@ -34,7 +34,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let size = args.resolution;
     if !(size.is_finite() && (0.01..=100.0).contains(&size)) {
         return Err(Error::option(

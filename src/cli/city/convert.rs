@@ -10,7 +10,7 @@ use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A city in any format, or a grammar.
     input: PathBuf,
     /// The city to write: `.obj` or `.city.json`.
@@ -21,7 +21,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let extension = args.output.extension().and_then(|e| e.to_str());
     if !matches!(extension, Some("obj" | "json")) {
         let text = "expected a name with .obj or .city.json";

@@ -5,18 +5,18 @@ use std::path::Path;
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
 use edifice_io::city;
-pub use edifice_io::city::grammar_file::is_grammar;
+pub(super) use edifice_io::city::grammar_file::is_grammar;
 use edifice_shape::triangles::City;
 
 use crate::print;
 
 /// Reads a grammar.
-pub fn grammar(path: &Path) -> Result<InstanceGrammar> {
+pub(super) fn grammar(path: &Path) -> Result<InstanceGrammar> {
     city::grammar_file::read(path)
 }
 
 /// Reads a city, or derives it from a grammar.
-pub fn city(path: &Path) -> Result<City> {
+pub(super) fn city(path: &Path) -> Result<City> {
     if !is_grammar(path) {
         let city = city::read(path)?;
         city.notes.iter().for_each(|note| print::message(note));
@@ -26,7 +26,7 @@ pub fn city(path: &Path) -> Result<City> {
 }
 
 /// Derives the city of a grammar that was read from `path`.
-pub fn derived(grammar: &InstanceGrammar, path: &Path) -> Result<City> {
+pub(super) fn derived(grammar: &InstanceGrammar, path: &Path) -> Result<City> {
     let derivation = grammar.derive().map_err(|e| Error::content(path, e))?;
     let mut city = derivation.city(grammar);
     city::paint_parts(&mut city).map_err(|e| Error::content(path, e))?;

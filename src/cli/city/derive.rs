@@ -11,7 +11,7 @@ use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The grammar.
     grammar: PathBuf,
     /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
@@ -28,7 +28,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let is_grammar = data::is_grammar(&args.output);
     if !is_grammar {
         check_output(&args.output)?;
@@ -52,7 +52,7 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Refuses a name of no format before the work begins.
-pub fn check_output(path: &Path) -> Result<()> {
+pub(super) fn check_output(path: &Path) -> Result<()> {
     match path.extension().and_then(|e| e.to_str()) {
         Some("glb" | "obj" | "json") => Ok(()),
         _ => Err(Error::option(
@@ -63,7 +63,7 @@ pub fn check_output(path: &Path) -> Result<()> {
 }
 
 /// Writes a derived city; the extension tells the format.
-pub fn write(
+pub(super) fn write(
     grammar: &InstanceGrammar,
     derivation: &InstanceDerivation,
     path: &Path,

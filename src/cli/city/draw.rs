@@ -13,7 +13,7 @@ const MOST: usize = 8192;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A city or a grammar.
     file: PathBuf,
     /// Another, drawn to its left from the same place.
@@ -45,7 +45,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let [width, height] = size(args)?;
     let around = match &args.at {
         None => None,

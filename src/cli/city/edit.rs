@@ -13,7 +13,7 @@ use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The grammar.
     grammar: PathBuf,
     /// Edits.
@@ -34,7 +34,7 @@ fn parse(text: &str) -> std::result::Result<CityEdit, String> {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let grammar = data::grammar(&args.grammar)?;
     let carry = args.residuals == Residuals::Keep;
     let edited =

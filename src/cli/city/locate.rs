@@ -14,7 +14,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The grammar, or a city.
     grammar: PathBuf,
     /// The view: buildings that one sees (`edifice/city-view`), or rectified photographs of the facades of neighbours, each
@@ -30,7 +30,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let city = data::city(&args.grammar)?;
     let (landmarks, building) = landmarks(&city);
     let places = match &args.view[..] {

@@ -10,18 +10,14 @@ use clap::ValueEnum;
 use edifice_base::{Error, Progress, Result, unwatched};
 use edifice_city_proceduralization as method;
 use edifice_city_proceduralization::{
-    Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
+    Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings, judge,
 };
 use edifice_grammar::instance::{InstanceGrammar, Kept};
 use edifice_io::city::{self, glb, grammar_file};
-use edifice_shape::triangles::MeshFaults;
-use edifice_shape::triangles::{City, TriangleMesh, VolumeRaster, repair};
+use edifice_shape::triangles::{City, MeshFaults};
 
 use super::residuals::Residuals;
 use crate::print;
-
-/// Cells of the raster that judges the result, in metres.
-const RESOLUTION: f64 = 1.0;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Mode {
@@ -63,7 +59,7 @@ enum Keep {
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Cities; buildings of several files are put together.
     #[arg(required = true)]
     input: Vec<PathBuf>,
@@ -120,7 +116,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let settings = settings(args)?;
     let start = Instant::now();
     print::message("reading");
@@ -141,7 +137,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
         (_, Some(least)) => {
             let good = |g: &InstanceGrammar| {
-                let found = iou(&input, &args.said(g))?;
+                let found = judge::iou(&input, &args.said(g))?;
                 print::message(&format!("{} templates: IoU {found:.4}", g.templates.len()));
                 Ok(found >= least)
             };
@@ -195,7 +191,7 @@ pub fn run(args: &Args) -> Result<()> {
     edifice_io::write_atomic(&args.output, &bytes)?;
     let bytes = bytes.len();
     print::message("measuring");
-    let iou = iou(&input, &made.grammar).map_err(|e| failure(e, args))?;
+    let iou = judge::iou(&input, &made.grammar).map_err(|e| failure(e.into(), args))?;
     let rules = made.grammar.rules.len();
     let escapes = made.grammar.escapes();
     let residuals = made.grammar.residuals();
@@ -325,17 +321,6 @@ fn read(paths: &[PathBuf]) -> Result<City> {
     let mut all = all.unwrap_or_default();
     all.number_duplicates();
     Ok(all)
-}
-
-/// Volumetric intersection over union of the derived triangles with the input's.
-fn iou(input: &City, grammar: &InstanceGrammar) -> Result<f64, edifice_base::error::Cause> {
-    let derived = grammar.derive()?.city(grammar);
-    let repaired: Vec<TriangleMesh> = input.buildings.iter().map(|b| repair(&b.mesh).0).collect();
-    let first: Vec<&TriangleMesh> = repaired.iter().collect();
-    let second: Vec<&TriangleMesh> = derived.buildings.iter().map(|b| &b.mesh).collect();
-    Ok(VolumeRaster { size: RESOLUTION }
-        .compare(&first, &second)
-        .iou())
 }
 
 fn failure(error: edifice_base::error::Cause, args: &Args) -> Error {

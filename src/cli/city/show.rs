@@ -16,7 +16,7 @@ const PARTS: usize = 6;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The grammar.
     grammar: PathBuf,
     /// Print a line of JSON instead of text.
@@ -25,7 +25,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let grammar = data::grammar(&args.grammar)?;
     let derivation = grammar
         .derive()

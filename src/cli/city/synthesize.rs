@@ -12,7 +12,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The grammar.
     grammar: PathBuf,
     /// The shape to fill: a polygon in metres (GeoJSON).
@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let is_grammar = data::is_grammar(&args.output);
     if !is_grammar {
         derive::check_output(&args.output)?;

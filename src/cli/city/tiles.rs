@@ -10,7 +10,7 @@ use crate::print::Json;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The grammar.
     grammar: PathBuf,
     /// The folder to write `tileset.json` and its tiles to.
@@ -24,7 +24,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     if args.instances == 0 {
         return Err(Error::option("--instances", "a tile has at least one"));
     }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::set::{Found, Set};
 
 /// The metadata of a set with the digests of its files.
-pub fn metadata(set: &Set, files: &[Found]) -> Value {
+pub(super) fn metadata(set: &Set, files: &[Found]) -> Value {
     let object = |file: &Found| {
         json!({
             "@type": "cr:FileObject", "@id": file.name, "name": file.name, "contentUrl": file.name,

@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 /// A data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Set {
+pub(super) struct Set {
     /// Name in commands and rows.
     pub name: String,
     /// Its title.
@@ -40,7 +40,7 @@ pub struct Set {
 
 /// A file of a set.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub(super) struct Found {
     /// Its path below the set's folder, with `/` between folders.
     pub name: String,
     /// Its size in bytes.
@@ -53,7 +53,7 @@ pub struct Found {
 ///
 /// # Errors
 /// [`Error::Content`] for a description that is none.
-pub fn described() -> Result<Vec<Set>> {
+pub(super) fn described() -> Result<Vec<Set>> {
     let files = edifice_datasets::files().into_iter();
     files
         .filter(|(name, _)| name.starts_with("sets/") && name.ends_with(".toml"))
@@ -77,13 +77,13 @@ impl Set {
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Input`] with line and column.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(super) fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", e))?;
         Self::parse(&text, path)
     }
 
     /// A description of a folder to begin with.
-    pub fn skeleton(folder: &Path, files: &[String]) -> Result<Self> {
+    pub(super) fn skeleton(folder: &Path, files: &[String]) -> Result<Self> {
         let absolute = std::path::absolute(folder).map_err(|e| Error::io(folder, "find", e))?;
         let name = absolute.file_name().unwrap_or_default().to_string_lossy();
         let mut set = Self {
@@ -109,7 +109,7 @@ impl Set {
     ///
     /// # Errors
     /// [`Error::Option`] for a pattern that is none.
-    pub fn find(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+    pub(super) fn find(&self, folder: &Path) -> Result<Vec<PathBuf>> {
         let mut files = Vec::new();
         for pattern in &self.files {
             let place = folder.join(pattern);
@@ -125,7 +125,7 @@ impl Set {
     }
 
     /// Reads a file as its kind; the error says why it cannot be read.
-    pub fn check(&self, path: &Path) -> std::result::Result<(), String> {
+    pub(super) fn check(&self, path: &Path) -> std::result::Result<(), String> {
         let told = |e: Error| e.to_string();
         match self.kind.as_str() {
             "facades" => read_source(path, &ReadOptions::default())
@@ -158,7 +158,7 @@ impl Set {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub fn digests(&self, folder: &Path) -> Result<Vec<Found>> {
+    pub(super) fn digests(&self, folder: &Path) -> Result<Vec<Found>> {
         let mut all = Vec::new();
         for path in self.find(folder)? {
             let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, "read", e))?;

@@ -18,7 +18,7 @@ use crate::reading::Reading;
 
 Elements of one label are paired one to one by falling intersection over union (IoU). F1 is told at IoU 0.5, 0.75 and as the mean
 over 0.5, 0.55, ..., 0.95. Of predictions with the key \"unknown\" only elements are compared whose centre lies in it.")]
-pub struct Args {
+pub(crate) struct Args {
     /// True layout: .facade.json, COCO, LabelMe, or any other format that `facade convert` reads
     #[arg(value_name = "TRUTH")]
     truth: PathBuf,
@@ -36,7 +36,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let truth = input::annotated(&args.truth, &args.reading)?;
     let mut told = Vec::new();
     print::line("f1@.5   f1@.75  mean f1  iou     true  pred  overlap  prediction")?;

@@ -24,7 +24,7 @@ use crate::reading::Reading;
 
 Everything that is not observed is unknown, unless the file (key \"unknown\"), --unknown or --mask says what is. Elements
 of an earlier completion (\"observed\": false) are dropped, but for those that --pin names.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Partial layout: .facade.json, or any other format that `facade convert` reads
     #[arg(value_name = "PARTIAL")]
     input: PathBuf,
@@ -72,7 +72,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let start = Instant::now();
     let Some(method) = Method::of_option(&args.method) else {
         return Err(Error::option("--method", "unknown method"));

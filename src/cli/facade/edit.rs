@@ -20,7 +20,7 @@ use crate::reading::Reading;
 Edits, made in turn: add LABEL@X,Y,W,H; move ID=X,Y; resize ID=W,H; relabel ID=LABEL; remove ID; unknown X,Y,W,H;
 known INDEX (of the unknown rectangles, from 0); outline W,H. ID is an element's id, or #K for the K-th in the file, from 0.
 An element that is added, moved, resized or relabelled is observed: `facade complete` keeps it.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Layout to read
     #[arg(value_name = "LAYOUT")]
     input: PathBuf,
@@ -48,7 +48,7 @@ fn parse(text: &str) -> std::result::Result<FacadeEdit, String> {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let layout = input::annotated(&args.input, &args.reading)?;
     let mut edited = edit(&layout, &args.edits).map_err(|e| Error::content(&args.input, e))?;
     if let Some(path) = &args.photograph {

@@ -14,7 +14,7 @@ use crate::reading::Reading;
 
 /// Options of `facade hide`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Whole facade: any format that `facade convert` reads
     input: PathBuf,
     /// The part to hide: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let Some(task) = Task::named(&args.task) else {
         return Err(Error::option("--task", "unknown task"));
     };

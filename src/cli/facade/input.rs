@@ -12,7 +12,7 @@ use edifice_structure_completion::layout::extract;
 use crate::reading::{self, Reading};
 
 /// A rectangle `x,y,w,h` as an argument.
-pub fn rect(text: &str) -> std::result::Result<Rect, String> {
+pub(super) fn rect(text: &str) -> std::result::Result<Rect, String> {
     let numbers: Vec<f64> = text
         .split(',')
         .map(|part| {
@@ -35,13 +35,13 @@ pub fn rect(text: &str) -> std::result::Result<Rect, String> {
 
 /// A layout of elements with its annotations. Layouts of elements stay as they are; elements are taken out of
 /// tilings, label pictures and CMP files.
-pub fn annotated(path: &Path, reading: &Reading) -> Result<AnnotatedFacade> {
+pub(super) fn annotated(path: &Path, reading: &Reading) -> Result<AnnotatedFacade> {
     let source = reading::source(path, &reading.options()?)?;
     structure_completion::annotated(source, &io::read_bytes(path)?, path)
 }
 
 /// Whole layouts to learn from: files, and the facade files of folders.
-pub fn layouts(inputs: &[PathBuf], reading: &Reading) -> Result<Vec<Layout>> {
+pub(super) fn layouts(inputs: &[PathBuf], reading: &Reading) -> Result<Vec<Layout>> {
     let options = reading.options()?;
     let mut layouts = Vec::new();
     for input in inputs {

@@ -13,7 +13,7 @@ const CELLS: usize = 128;
 
 /// The light part of an image, laid over an outline, as rectangles: cells of at most 128 a side are unknown where the
 /// pixel at their centre is at least half as light as the lightest one; runs of one row and equal runs of neighbouring rows are joined.
-pub fn unknown(path: &Path, width: f64, height: f64) -> Result<Vec<Rect>> {
+pub(super) fn unknown(path: &Path, width: f64, height: f64) -> Result<Vec<Rect>> {
     let pixels = Pixels::decode(&io::read_bytes(path)?).map_err(|e| Error::content(path, e))?;
     let (columns, rows) = (pixels.width.min(CELLS), pixels.height.min(CELLS));
     let grey: Vec<u32> = (0..rows * columns)

@@ -11,7 +11,7 @@ const PANEL: f64 = 360.0;
 const MARGIN: f64 = 16.0;
 
 /// Panels with their titles. Observed elements are solid, added ones as opaque as they are probable, unknown parts grey.
-pub fn svg(panels: &[(String, &AnnotatedFacade)]) -> String {
+pub(super) fn svg(panels: &[(String, &AnnotatedFacade)]) -> String {
     let labels = panels
         .iter()
         .flat_map(|(_, p)| p.facade.regions.iter().map(|r| r.label.as_str()));

@@ -19,7 +19,7 @@ use crate::reading::Reading;
 
 Each scoring function is at most 0, which is what at least half of the facades of the database reach or fall short of. The
 last column says which grid, pair of grids or side of the facade is the least typical.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Whole facade: .facade.json, or any other format that `facade convert` reads
     #[arg(value_name = "LAYOUT")]
     input: PathBuf,
@@ -34,7 +34,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let start = Instant::now();
     let model = match &args.model {
         Some(path) => read_model(path)?,

@@ -18,7 +18,7 @@ use crate::reading::Reading;
 #[command(
     after_help = "Examples:\n  edifice facade train datasets/facade_grammar/layouts -o mine.completion.json\n  edifice facade train datasets/facade_grammar/layouts/terrace_*.facade.json --made 100 -o few.completion.json\n  edifice facade train datasets/examples/facade.png datasets/examples/facade_2.png datasets/examples/grid.txt -o two.completion.json"
 )]
-pub struct Args {
+pub(crate) struct Args {
     /// Whole facades, and folders of them (.facade.json, .xml, .png)
     #[arg(required_unless_present = "made", value_name = "LAYOUT")]
     inputs: Vec<PathBuf>,
@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let start = std::time::Instant::now();
     let mut layouts = input::layouts(&args.inputs, &args.reading)?;
     layouts.extend(facades::several(args.made.into(), args.seed));

@@ -23,7 +23,7 @@ such as window frames, and repeats fill the space. Absolute sizes give way last 
 with a warning. Then edges are aligned, and terminals that are equal at the grammar's own size
 become equal again; --no-align leaves them where the rules put them.
 In a stochastic grammar the seed picks among the rules of each symbol.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Grammar to read: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Width to derive at, in the grammar's unit [default: its own]
@@ -49,7 +49,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let facade = derive(args)?;
     let extension = args.output.extension().unwrap_or_default();
     match extension.eq_ignore_ascii_case("glb") {

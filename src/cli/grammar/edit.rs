@@ -24,7 +24,7 @@ or a period goes, the facade shrinks); repeat RULE (a split of equal periods); w
 counted from 0, as in the file; of a repeat A B A, A is part 0 and B part 1. The columns of a grid are RULE.c0, RULE.c1, ... from the left, its
 rows RULE.r0, ... from the bottom, and its cells RULE.0, ... row by row, for symbol. Sizes are made relative first, so that what is inside an
 edited region follows it.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Grammar to read: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Edits
@@ -42,7 +42,7 @@ fn parse(text: &str) -> std::result::Result<GrammarEdit, String> {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let path = &args.grammar;
     let grammar = read_grammar(path)?;
     let edited = edit(&grammar, &args.edits).map_err(|e| Error::content(path, e))?;

@@ -17,7 +17,7 @@ use crate::reading::{self, Reading};
   edifice grammar evaluate fig9.grammar.json datasets/facade_grammar/wu2014_fig9.facade.json --bound --json
 
 Exit code 1 when the grammar does not derive exactly the facades; the cost and the pixel error are told first.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Grammar to judge: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Facades that it should derive, in the order of its starts
@@ -40,7 +40,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let grammar = read_grammar(&args.grammar)?;
     let options = args.reading.options()?;
     let facades: Result<Vec<Facade>> = (args.facades.iter())

@@ -31,7 +31,7 @@ Several facades give one joint grammar, with the rules that they share written o
 counts of repeats are parameters of the rules, so that different facades share them: a library, which draws new facades
 and tells how like them others are.
 Without -o the grammar is listed on standard output.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles or annotations (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
@@ -103,7 +103,7 @@ enum MethodName {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let costs = Costs::of(args.split_cost, args.repeat_cost);
     let facades = read(args, costs)?;
     if args.sizes == Sizes::Free {

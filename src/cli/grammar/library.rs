@@ -15,7 +15,12 @@ use crate::print::{self, Json};
 use crate::reading::{self, Reading};
 
 /// Makes the library of some facades and writes or lists it.
-pub fn infer(facades: &[Facade], costs: &Costs, output: Option<&Path>, json: bool) -> Result<()> {
+pub(super) fn infer(
+    facades: &[Facade],
+    costs: &Costs,
+    output: Option<&Path>,
+    json: bool,
+) -> Result<()> {
     let started = Instant::now();
     let library = Library::learn(facades).map_err(Error::method)?;
     let sharing = library.sharing(costs);
@@ -80,7 +85,7 @@ fn write(library: &Library, sharing: &Sharing, path: &Path) -> Result<()> {
 }
 
 /// Lists a library with what it costs.
-pub fn show(path: &Path, bytes: &[u8], costs: &Costs, json: bool) -> Result<()> {
+pub(super) fn show(path: &Path, bytes: &[u8], costs: &Costs, json: bool) -> Result<()> {
     let library = library_json::parse(bytes, path)?;
     library
         .listing()
@@ -113,7 +118,7 @@ pub fn show(path: &Path, bytes: &[u8], costs: &Costs, json: bool) -> Result<()> 
   edifice grammar infer datasets/facade_grammar/layouts/terrace_*.facade.json --sizes free -o street.library.json
   edifice grammar draw street.library.json --seed 7 -o new.facade.json
   edifice grammar draw street.library.json --count 12 -o draws")]
-pub struct Draw {
+pub(crate) struct Draw {
     /// Library to draw from: .library.json, also as .gz
     library: PathBuf,
     /// Seed of all randomness
@@ -130,7 +135,7 @@ pub struct Draw {
 }
 
 /// Runs `grammar draw`.
-pub fn draw(args: &Draw) -> Result<()> {
+pub(super) fn draw(args: &Draw) -> Result<()> {
     let library = library_json::read(&args.library)?;
     let wrong = |error: LibraryError| Error::content(&args.library, error);
     if args.count == 1 && !args.output.is_dir() {
@@ -163,7 +168,7 @@ pub fn draw(args: &Draw) -> Result<()> {
   edifice grammar score street.library.json new.facade.json draws/*.facade.json
 
 The bits that a facade costs given the library: the fewer, the more it is like the library's facades.")]
-pub struct Score {
+pub(crate) struct Score {
     /// Library: .library.json, also as .gz
     library: PathBuf,
     /// Facades to score
@@ -177,7 +182,7 @@ pub struct Score {
 }
 
 /// Runs `grammar score`.
-pub fn score(args: &Score) -> Result<()> {
+pub(super) fn score(args: &Score) -> Result<()> {
     let library = library_json::read(&args.library)?;
     let options = args.reading.options()?;
     let mut scores = serde_json::Map::new();
@@ -197,7 +202,7 @@ pub fn score(args: &Score) -> Result<()> {
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   edifice grammar encode street.library.json new.facade.json -o new.encoded.json")]
-pub struct Encode {
+pub(crate) struct Encode {
     /// Library: .library.json, also as .gz
     library: PathBuf,
     /// Facade to write with it
@@ -212,7 +217,7 @@ pub struct Encode {
 }
 
 /// Runs `grammar encode`.
-pub fn encode(args: &Encode) -> Result<()> {
+pub(super) fn encode(args: &Encode) -> Result<()> {
     let library = library_json::read(&args.library)?;
     let path = &args.facade;
     let facade = reading::source(path, &args.reading.options()?)?.facade(path)?;
@@ -237,7 +242,7 @@ pub fn encode(args: &Encode) -> Result<()> {
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   edifice grammar decode street.library.json new.encoded.json -o new.facade.json")]
-pub struct Decode {
+pub(crate) struct Decode {
     /// Library that the facade was written with: .library.json, also as .gz
     library: PathBuf,
     /// Encoded facade: .encoded.json, also as .gz
@@ -250,7 +255,7 @@ pub struct Decode {
 }
 
 /// Runs `grammar decode`.
-pub fn decode(args: &Decode) -> Result<()> {
+pub(super) fn decode(args: &Decode) -> Result<()> {
     let library = library_json::read(&args.library)?;
     let encoded = library_json::read_code(&args.encoded)?;
     if encoded.library != library_json::digest(&library)? {
@@ -275,7 +280,7 @@ pub fn decode(args: &Decode) -> Result<()> {
 
 Parts that play the same role (floors over floors, ground floors over ground floors) become one symbol with a rule from
 each grammar (Wu et al. 2014, Sec. 5); the seed of derive picks among them.")]
-pub struct Combine {
+pub(crate) struct Combine {
     /// Grammars to combine: .grammar.json or .cga, also as .gz
     #[arg(required = true, value_name = "GRAMMAR")]
     grammars: Vec<PathBuf>,
@@ -287,7 +292,7 @@ pub struct Combine {
 }
 
 /// Runs `grammar combine`.
-pub fn combine(args: &Combine) -> Result<()> {
+pub(super) fn combine(args: &Combine) -> Result<()> {
     let grammars = args
         .grammars
         .iter()

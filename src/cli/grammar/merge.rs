@@ -18,7 +18,7 @@ use crate::print::Json;
 
 The facades of the grammar are derived at their own sizes; of them and the further ones one grammar is inferred, in which
 the rules that they share are written once. `grammar derive --facade NAME` derives one of them.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Grammar to begin with: .grammar.json or .cga, also as .gz
     grammar: PathBuf,
     /// Further facades, whole ones
@@ -32,7 +32,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let grammar = read_grammar(&args.grammar)?;
     let checked = |path: &PathBuf| {
         let facade = read_facade(path, &Default::default())?;

@@ -17,7 +17,7 @@ use crate::print;
 
 The cost of a rule is that of its operation plus the number of symbols written in it; the cost of a
 grammar is the sum over its rules.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Grammar or library to read: .grammar.json, .cga or .library.json, also as .gz
     grammar: PathBuf,
     /// Write the sizes into the rules; ~ marks relative ones
@@ -35,7 +35,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let path = &args.grammar;
     let costs = Costs::of(args.split_cost, args.repeat_cost);
     let bytes = edifice_io::read_bytes(path)?;

@@ -18,7 +18,7 @@ use crate::print::{self, Json};
 #[command(
     after_help = "Examples:\n  edifice logic cluster datasets/facade_grammar/layouts/terrace_*.facade.json datasets/facade_grammar/layouts/hotel_*.facade.json --clusters 2\n  edifice logic cluster datasets/facade_grammar/layouts --clusters 2 -o styles.svg"
 )]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     facades: Facades,
     /// Model whose facades to cluster too, with its parameters.
@@ -43,7 +43,7 @@ pub struct Args {
 }
 
 /// Runs the command: one line per facade, in the order of the dendrogram.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let model = model(args.model.as_deref(), &args.facades, &args.energy)?;
     let profiles = model.profiles().map_err(Error::method)?;
     let distances = procedural_logic::Measure::from(args.measure).matrix(&profiles);

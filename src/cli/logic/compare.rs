@@ -16,7 +16,7 @@ use crate::print;
 #[command(
     after_help = "Examples:\n  edifice logic compare datasets/facade_grammar/layouts --query office_1 --top 5\n  edifice logic compare --model terraces.logic.json datasets/examples/facade.png --query facade\n  edifice logic compare datasets/facade_grammar/layouts -o distances.csv\n\n'=' joins facades at equal distance; what stands first of them means nothing."
 )]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     facades: Facades,
     /// Model whose facades to compare too, with its parameters.
@@ -42,7 +42,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let model = model(args.model.as_deref(), &args.facades, &args.energy)?;
     let profiles = model.profiles().map_err(Error::method)?;
     if let Some(wanted) = &args.query

@@ -17,7 +17,7 @@ RANKING is a CSV file with the columns query, facade and distance: from every qu
 are called as their files up to the first dot. Found is any facade of the same architecture (floors, window columns, doors,
 running balconies, read off the labels); facades at equal distance come in random order, and the rates are exact
 expectations over it; facades that no other equals are no queries.")]
-pub struct Args {
+pub(crate) struct Args {
     /// Distances to judge
     #[arg(value_name = "RANKING")]
     ranking: PathBuf,
@@ -29,7 +29,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let found = evaluate(args.facades.read()?, &args.ranking)?;
     for (name, value) in &found {
         print::line(&format!("{name} {value}"))?;

@@ -19,7 +19,7 @@ const MANY_RULES: usize = 10;
 #[command(
     after_help = "Examples:\n  edifice logic fit datasets/facade_grammar/layouts/terrace_*.facade.json -o terraces.logic.json\n  edifice logic fit datasets/facade_grammar/layouts/t*.facade.json --search -o found.logic.json\n  edifice logic fit datasets/examples/facade.png datasets/examples/facade_2.png --clean -o clean.logic.json\n  edifice logic fit datasets/examples/facade.png --into clean.logic.json -o more.logic.json"
 )]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     facades: Facades,
     /// Model to add the facades to, with its parameters and affinities as they are.
@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let grids = args.facades.read()?;
     let model = match &args.into {
         Some(path) => {

@@ -17,7 +17,7 @@ use crate::reading::{self, Reading};
 
 /// Facades to read.
 #[derive(clap::Args)]
-pub struct Facades {
+pub(super) struct Facades {
     /// Facade files (.png, .facade.json, .xml, .txt, text also as .gz), and folders of .png and .facade.json files.
     #[arg(value_name = "IN")]
     pub inputs: Vec<PathBuf>,
@@ -30,7 +30,7 @@ pub struct Facades {
 impl Facades {
     /// Reads all facades as label pictures, folders in the order of their file names, and cleans them if
     /// asked.
-    pub fn read(&self) -> Result<Vec<LabelGrid>> {
+    pub(super) fn read(&self) -> Result<Vec<LabelGrid>> {
         let options = self.reading.options()?;
         let mut grids = Vec::new();
         for input in &self.inputs {
@@ -45,7 +45,7 @@ impl Facades {
     }
 
     /// True if the facades are cleaned.
-    pub fn is_clean(&self) -> bool {
+    pub(super) fn is_clean(&self) -> bool {
         self.cleaning.is_asked()
     }
 }
@@ -100,7 +100,7 @@ struct NoFacades;
 
 /// Parameters of the energy of Eq. 3.
 #[derive(clap::Args)]
-pub struct Energy {
+pub(super) struct Energy {
     /// Weight of the edge term against the affinity term, 0 to 1.
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha: Option<f64>,
@@ -114,7 +114,7 @@ pub struct Energy {
 
 impl Energy {
     /// The parameters given, the others from `defaults`.
-    pub fn parameters(&self, defaults: Parameters) -> Result<Parameters> {
+    pub(super) fn parameters(&self, defaults: Parameters) -> Result<Parameters> {
         let parameters = Parameters {
             alpha: self.alpha.unwrap_or(defaults.alpha),
             parental_bias: self.parental_bias.unwrap_or(defaults.parental_bias),
@@ -132,13 +132,13 @@ impl Energy {
     }
 
     /// True if any parameter is given.
-    pub fn is_given(&self) -> bool {
+    pub(super) fn is_given(&self) -> bool {
         self.alpha.is_some() || self.parental_bias.is_some() || self.horizontal_bias.is_some()
     }
 }
 
 /// Reads a model file.
-pub fn read_model(path: &Path) -> Result<Model> {
+pub(super) fn read_model(path: &Path) -> Result<Model> {
     let bytes = io::read_bytes(path)?;
     json::check_header(&bytes, path, MODEL_FORMAT, MODEL_VERSION)?;
     let file: ModelFile = json::parse_json(&bytes, path)?;
@@ -146,7 +146,7 @@ pub fn read_model(path: &Path) -> Result<Model> {
 }
 
 /// Writes a model file.
-pub fn write_model(model: &Model, path: &Path) -> Result<()> {
+pub(super) fn write_model(model: &Model, path: &Path) -> Result<()> {
     let mut bytes = serde_json::to_vec(&ModelFile::from(model)).map_err(Error::method)?;
     bytes.push(b'\n');
     io::write_atomic(path, &bytes)
@@ -154,7 +154,7 @@ pub fn write_model(model: &Model, path: &Path) -> Result<()> {
 
 /// The facades of a model file and of other files together, under the model's parameters; without
 /// a model file, a model fitted to the facades with the parameters of Sec. 5.4.
-pub fn model(path: Option<&Path>, facades: &Facades, energy: &Energy) -> Result<Model> {
+pub(super) fn model(path: Option<&Path>, facades: &Facades, energy: &Energy) -> Result<Model> {
     let grids = facades.read()?;
     let Some(path) = path else {
         let parameters = energy.parameters(Parameters::RETRIEVAL)?;

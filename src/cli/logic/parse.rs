@@ -17,7 +17,7 @@ use crate::print::{self, Json};
 #[command(
     after_help = "Examples:\n  edifice logic parse datasets/examples/facade.png -o parsed.grammar.json\n  edifice logic parse datasets/examples/facade.png --model terraces.logic.json -o parsed.cga\n  edifice logic parse datasets/facade_grammar/layouts -o grammars"
 )]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     facades: Facades,
     /// Model whose affinities and parameters to use; without one, those of the facades given.
@@ -33,7 +33,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let grids = args.facades.read()?;
     let mut model = match &args.model {
         Some(path) => read_model(path)?,

@@ -9,7 +9,7 @@ use edifice_procedural_logic::{MODEL_FORMAT, Model, ModelFile};
 use crate::model::Shown;
 
 /// Labels, rules and facades of a logic model.
-pub const LOGIC: Shown = Shown {
+pub(crate) const LOGIC: Shown = Shown {
     format: MODEL_FORMAT,
     show,
 };

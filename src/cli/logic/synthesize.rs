@@ -15,7 +15,7 @@ use crate::print::Json;
 #[command(
     after_help = "Examples:\n  edifice logic synthesize terraces.logic.json --count 10 --sigma 1 -o virtual\n  edifice logic synthesize terraces.logic.json --start 2 --format svg -o virtual"
 )]
-pub struct Args {
+pub(crate) struct Args {
     /// Model file.
     model: PathBuf,
     /// Facades to draw.
@@ -46,7 +46,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let model = read_model(&args.model)?;
     let starts = starting_rules(&model);
     let Some(&(start, _)) = args.start.checked_sub(1).and_then(|k| starts.get(k)) else {

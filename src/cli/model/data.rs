@@ -15,7 +15,7 @@ use crate::print::{self, Json};
 
 /// A table, and how to read it.
 #[derive(clap::Args)]
-pub struct TableInput {
+pub(crate) struct TableInput {
     /// The table (`*.csv`, `*.csv.gz`), a header line first.
     pub table: PathBuf,
     /// Which columns are which attributes (`*.schema.json`); guessed without.
@@ -25,7 +25,7 @@ pub struct TableInput {
 
 impl TableInput {
     /// Reads the table; the schema is returned besides.
-    pub fn read(&self) -> Result<(Dataset, Schema)> {
+    pub(crate) fn read(&self) -> Result<(Dataset, Schema)> {
         let text = read_table(&self.table)?;
         let at = |e| Error::content(&self.table, e);
         let schema = match &self.schema {
@@ -37,7 +37,7 @@ impl TableInput {
     }
 
     /// The guessed schema, of the columns that can be in one, and why others are left out, which is said.
-    pub fn guess(&self) -> Result<(Schema, Vec<String>)> {
+    pub(crate) fn guess(&self) -> Result<(Schema, Vec<String>)> {
         let text = read_table(&self.table)?;
         let (schema, left_out) = Schema::guess_some(&text.header, &text.rows);
         let left_out: Vec<String> = left_out.iter().map(ToString::to_string).collect();
@@ -49,7 +49,7 @@ impl TableInput {
 }
 
 /// Reads a table, and says how it was read where that was not as plain CSV.
-pub fn read_table(path: &Path) -> Result<TextTable> {
+pub(crate) fn read_table(path: &Path) -> Result<TextTable> {
     let table = building_csv::read(path)?;
     for note in &table.notes {
         print::message(&format!("{}: {note}", path.display()));
@@ -58,26 +58,26 @@ pub fn read_table(path: &Path) -> Result<TextTable> {
 }
 
 /// Reads a schema.
-pub fn read_schema(path: &Path) -> Result<Schema> {
+pub(crate) fn read_schema(path: &Path) -> Result<Schema> {
     let bytes = read_bytes(path)?;
     json::check_header(&bytes, path, FORMAT, VERSION)?;
     json::parse_json(&bytes, path)
 }
 
 /// Reads a model of a table.
-pub fn read_model(path: &Path) -> Result<TableModel> {
+pub(crate) fn read_model(path: &Path) -> Result<TableModel> {
     let bytes = read_bytes(path)?;
     let text = std::str::from_utf8(&bytes).map_err(|e| Error::content(path, e))?;
     TableModel::from_json(text).map_err(|e| Error::content(path, e))
 }
 
 /// Reads a table by a model's schema. Of the schema's columns the table may lack some: they are missing.
-pub fn read_rows(model: &TableModel, path: &Path) -> Result<Dataset> {
+pub(crate) fn read_rows(model: &TableModel, path: &Path) -> Result<Dataset> {
     rows(model, &read_table(path)?, path)
 }
 
 /// The rows of a table that was read, by a model's schema; `path` names it in errors.
-pub fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset> {
+pub(crate) fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset> {
     let mut schema = model.schema.clone();
     for group in &mut schema.groups {
         group.columns.retain(|column| text.header.contains(column));
@@ -88,7 +88,7 @@ pub fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset
 }
 
 /// Prints a table as CSV, or as one line of JSON: numbers, categories by name, missing cells null.
-pub fn print_table(table: &Table, json: Json) -> Result<()> {
+pub(crate) fn print_table(table: &Table, json: Json) -> Result<()> {
     match json.is_asked() {
         true => json.end(&json_of(table)),
         false => print::line(&csv_lines(table).join("\n")),
@@ -96,7 +96,7 @@ pub fn print_table(table: &Table, json: Json) -> Result<()> {
 }
 
 /// A table as `columns`, their names, and `rows`.
-pub fn json_of(table: &Table) -> Value {
+pub(crate) fn json_of(table: &Table) -> Value {
     let names: Vec<&str> = table.columns().iter().map(|c| c.name()).collect();
     let cell = |column: &Column, row: usize| match column.cell(row) {
         Cell::Missing => Value::Null,
@@ -121,7 +121,7 @@ pub fn json_of(table: &Table) -> Value {
 
 /// Completed rows for programs, gathered.
 #[derive(Default)]
-pub struct Completed {
+pub(crate) struct Completed {
     columns: Value,
     rows: Vec<Value>,
     of: Vec<usize>,
@@ -129,7 +129,7 @@ pub struct Completed {
 
 impl Completed {
     /// Adds rows; `of` says which row of the table, from 0, each of them completes.
-    pub fn add(&mut self, drawn: &Table, of: impl Fn(usize) -> usize) {
+    pub(crate) fn add(&mut self, drawn: &Table, of: impl Fn(usize) -> usize) {
         let mut value = json_of(drawn);
         self.columns = value["columns"].take();
         if let Value::Array(rows) = value["rows"].take() {
@@ -139,13 +139,13 @@ impl Completed {
     }
 
     /// Prints the line, if it was asked for.
-    pub fn end(self, json: Json) -> Result<()> {
+    pub(crate) fn end(self, json: Json) -> Result<()> {
         json.end(&serde_json::json!({ "columns": self.columns, "rows": self.rows, "of": self.of }))
     }
 }
 
 /// A table as lines of CSV, the header first; categories by name, missing cells empty.
-pub fn csv_lines(table: &Table) -> Vec<String> {
+pub(crate) fn csv_lines(table: &Table) -> Vec<String> {
     let quoted = |text: &str| {
         if text.contains([',', '"', '\n']) {
             format!("\"{}\"", text.replace('"', "\"\""))

@@ -42,7 +42,11 @@ impl Box {
 ///
 /// # Errors
 /// As [`Network::marginal`].
-pub fn svg(network: &Network, evidence: &Evidence, given: &[String]) -> Result<String, ModelError> {
+pub(super) fn svg(
+    network: &Network,
+    evidence: &Evidence,
+    given: &[String],
+) -> Result<String, ModelError> {
     let marginals = network.marginals(evidence)?.into_iter();
     let mut marginals: BTreeMap<String, Vec<f64>> =
         marginals.map(|a| (a.name, a.probabilities)).collect();

@@ -20,7 +20,7 @@ const ASKED: Duration = Duration::from_millis(100);
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     input: TableInput,
     #[command(flatten)]
@@ -29,7 +29,7 @@ pub struct Args {
 
 /// The models and the splits of an evaluation.
 #[derive(clap::Args)]
-pub struct Splits {
+pub(crate) struct Splits {
     /// Random splits.
     #[arg(long, default_value_t = 5)]
     splits: u64,
@@ -54,7 +54,7 @@ pub struct Splits {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let begun = Instant::now();
     let (data, _) = args.input.read()?;
     args.splits
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<()> {
 impl Splits {
     /// `learned` is the model that `ours` names. Prints the mean negative log-likelihood of unseen rows by model and split as CSV; means, standard errors and paired
     /// differences go to standard error. `path` names the data in errors; the limit of time counts from `begun`.
-    pub fn evaluate(
+    pub(crate) fn evaluate(
         &self,
         data: &Dataset,
         path: &Path,

@@ -18,7 +18,7 @@ const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
 
 /// Options of `fit`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The network (`*.bif`, `*.xmlbif`, or as JSON): its structure, and its categories.
     network: PathBuf,
     /// The table (`*.csv`, `*.csv.gz`), columns named as the variables; a variable without a column is hidden, empty cells are
@@ -42,7 +42,7 @@ pub struct Args {
 }
 
 /// Runs `fit`.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let own = network::network(&args.network)?;
     let text = read_table(&args.table)?;
     let table = table(&own, &text).map_err(|e| Error::content(&args.table, e))?;
@@ -132,7 +132,7 @@ fn table(network: &Network, text: &TextTable) -> Result<Table, ModelError> {
 }
 
 /// Runs `sample` of a network.
-pub fn sample(
+pub(super) fn sample(
     network: &Network,
     given: &[String],
     count: usize,
@@ -147,7 +147,7 @@ pub fn sample(
 }
 
 /// Runs `score` of a network.
-pub fn score(network: &Network, path: &Path, json: Json) -> Result<()> {
+pub(super) fn score(network: &Network, path: &Path, json: Json) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
     let parts = parts(network, &table(network, &text).map_err(at)?).map_err(at)?;
@@ -172,7 +172,7 @@ fn parts(network: &Network, table: &Table) -> std::result::Result<LogParts, Mode
 }
 
 /// Prints the parts of every row, as CSV or for programs, and their means.
-pub fn print_parts(parts: &LogParts, json: Json) -> Result<()> {
+pub(super) fn print_parts(parts: &LogParts, json: Json) -> Result<()> {
     if json.is_asked() {
         return json.end(&serde_json::json!({
             "log_probability_mass": parts.log_probability_mass, "log_density": parts.log_density,
@@ -198,7 +198,13 @@ fn means(parts: &LogParts) -> String {
 }
 
 /// Runs `complete` of a network: other columns of the table pass through, before its own.
-pub fn complete(network: &Network, path: &Path, count: usize, seed: u64, json: Json) -> Result<()> {
+pub(super) fn complete(
+    network: &Network,
+    path: &Path,
+    count: usize,
+    seed: u64,
+    json: Json,
+) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
     let table = table(network, &text).map_err(at)?;
@@ -226,14 +232,14 @@ pub fn complete(network: &Network, path: &Path, count: usize, seed: u64, json: J
 }
 
 /// Columns of a table that a model does not know, as CSV.
-pub struct Passed<'t> {
+pub(super) struct Passed<'t> {
     text: &'t TextTable,
     columns: Vec<usize>,
 }
 
 impl<'t> Passed<'t> {
     /// Those that are not among `known`.
-    pub fn new(text: &'t TextTable, known: &[String]) -> Self {
+    pub(super) fn new(text: &'t TextTable, known: &[String]) -> Self {
         let columns = (0..text.header.len()).filter(|&c| !known.contains(&text.header[c]));
         Self {
             text,
@@ -242,12 +248,12 @@ impl<'t> Passed<'t> {
     }
 
     /// Their names before a header.
-    pub fn header(&self, line: &str) -> String {
+    pub(super) fn header(&self, line: &str) -> String {
         self.before(&self.text.header, line)
     }
 
     /// Their cells in a row before a line.
-    pub fn line(&self, row: usize, line: &str) -> String {
+    pub(super) fn line(&self, row: usize, line: &str) -> String {
         match self.text.rows.get(row) {
             Some(cells) => self.before(cells, line),
             None => line.to_owned(),

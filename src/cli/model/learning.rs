@@ -27,7 +27,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Options of learning one model.
 #[derive(clap::Args)]
-pub struct Learning {
+pub(crate) struct Learning {
     #[command(flatten)]
     pub search: Search,
     /// Seconds after which to end with the best model so far (as Ctrl-C does).
@@ -48,7 +48,7 @@ pub struct Learning {
 }
 
 /// The result of learning.
-pub struct Found {
+pub(crate) struct Found {
     /// The model.
     pub model: Hierarchy,
     /// Cheeseman-Stutz score, nats.
@@ -66,7 +66,7 @@ pub struct Found {
 impl Learning {
     /// Learns from `data`, going on from `start` if there is one. `path` names the table in errors; the limit of time
     /// counts from `begun`.
-    pub fn learn(
+    pub(crate) fn learn(
         &self,
         data: &Dataset,
         settings: &Settings,
@@ -99,7 +99,7 @@ impl Learning {
     }
 
     /// True while there is time to prepare columns: half of the limit is left to the search.
-    pub fn prepares(&self, begun: Instant) -> bool {
+    pub(crate) fn prepares(&self, begun: Instant) -> bool {
         let limit = self.time_limit.filter(|l| *l > 0.0).map(seconds);
         !interrupted() && limit.is_none_or(|limit| begun.elapsed() < limit / 2)
     }
@@ -164,7 +164,7 @@ impl Learning {
 }
 
 /// Ctrl-C ends what is running with the best so far; a second one ends the process.
-pub fn heed_interrupts() {
+pub(crate) fn heed_interrupts() {
     // Set once per process; a second command in the same process keeps the first handler, which does the same.
     let _ = ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {
@@ -175,12 +175,12 @@ pub fn heed_interrupts() {
 }
 
 /// True once Ctrl-C was pressed.
-pub fn interrupted() -> bool {
+pub(crate) fn interrupted() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
 /// A time limit; one beyond what a clock counts is none.
-pub fn seconds(limit: f64) -> Duration {
+pub(crate) fn seconds(limit: f64) -> Duration {
     Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX)
 }
 

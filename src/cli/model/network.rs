@@ -32,7 +32,7 @@ fn format(path: &Path) -> Option<Format> {
 }
 
 /// A network in a format of its own extension; `None` for JSON, which may be any model.
-pub fn by_extension(path: &Path) -> Result<Option<Network>> {
+pub(super) fn by_extension(path: &Path) -> Result<Option<Network>> {
     let parse = match format(path) {
         Some(Format::Bif) => Network::from_bif,
         Some(Format::XmlBif) => Network::from_xmlbif,
@@ -44,7 +44,7 @@ pub fn by_extension(path: &Path) -> Result<Option<Network>> {
 }
 
 /// Reads a Bayesian network.
-pub fn network(path: &Path) -> Result<Network> {
+pub(super) fn network(path: &Path) -> Result<Network> {
     match read(path)? {
         Any::Network(network) => Ok(network),
         Any::Other(..) => Err(Error::content(path, NotANetwork)),
@@ -52,12 +52,17 @@ pub fn network(path: &Path) -> Result<Network> {
 }
 
 /// Writes a network in the format of the extension; a drawing shows the posteriors without evidence.
-pub fn write(network: &Network, path: &Path) -> Result<()> {
+pub(super) fn write(network: &Network, path: &Path) -> Result<()> {
     write_given(network, path, &Evidence::new(), &[])
 }
 
 /// Converts a file; `given` are the variables of `evidence`, which a drawing shows posteriors of.
-pub fn convert(network: &Network, to: &Path, evidence: &Evidence, given: &[String]) -> Result<()> {
+pub(super) fn convert(
+    network: &Network,
+    to: &Path,
+    evidence: &Evidence,
+    given: &[String],
+) -> Result<()> {
     if !given.is_empty() && format(to) != Some(Format::Svg) {
         return Err(Error::option(
             "--given",
@@ -89,7 +94,7 @@ fn write_given(
 }
 
 /// The variables of a network, a line each, or as JSON.
-pub fn show(network: &Network, json: bool) -> Result<Vec<String>, ModelError> {
+pub(super) fn show(network: &Network, json: bool) -> Result<Vec<String>, ModelError> {
     let mut lines = Vec::new();
     let mut variables = Vec::new();
     for name in network.names() {

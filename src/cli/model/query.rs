@@ -11,7 +11,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The network (`*.bif`, or as JSON).
     network: PathBuf,
     /// Evidence: VARIABLE=CATEGORY, or VARIABLE=NUMBER,NUMBER,... for a real vector; repeatable.
@@ -54,7 +54,7 @@ enum Method {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let network = super::network::network(&args.network)?;
     let evidence = evidence(&network, args)?;
     let at = super::at(&args.network);
@@ -148,7 +148,11 @@ fn answers(
 
 /// Reads `--given` and `--likely`.
 /// Evidence in words: VARIABLE=CATEGORY, or VARIABLE=NUMBER,... for a real vector.
-pub fn hard(network: &Network, given: &[String], mut evidence: Evidence) -> Result<Evidence> {
+pub(super) fn hard(
+    network: &Network,
+    given: &[String],
+    mut evidence: Evidence,
+) -> Result<Evidence> {
     for text in given {
         let bad = |problem: String| Error::option("--given", format!("{text:?}: {problem}"));
         let (name, value) = text

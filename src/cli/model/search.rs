@@ -6,7 +6,7 @@ use edifice_model::{Cell, Table};
 
 /// The options of learning.
 #[derive(clap::Args)]
-pub struct Search {
+pub(crate) struct Search {
     /// Fewest styles tried.
     #[arg(long, default_value_t = 2)]
     min_styles: usize,
@@ -37,7 +37,7 @@ pub struct Search {
 
 impl Search {
     /// The settings of the model layer; `background` is the share that is meant where none is given.
-    pub fn settings(&self, background: f64) -> edifice_base::Result<Settings> {
+    pub(crate) fn settings(&self, background: f64) -> edifice_base::Result<Settings> {
         let background = self.background.unwrap_or(background);
         if !(0.0..1.0).contains(&background) {
             return Err(Error::option(
@@ -80,7 +80,7 @@ impl Search {
 }
 
 /// Warnings of parts of the data that were learned but say little: constant columns, fewer rows than parameters.
-pub fn warnings(table: &Table, parameters: usize) -> Vec<String> {
+pub(crate) fn warnings(table: &Table, parameters: usize) -> Vec<String> {
     let mut warnings = Vec::new();
     for column in table.columns() {
         let cells = (0..table.rows()).map(|row| column.cell(row));

@@ -13,7 +13,7 @@ use crate::print;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     input: TableInput,
     /// The file to write: `*.bif`, `*.xmlbif`, `*.json`, `*.dot` or `*.svg`.
@@ -61,7 +61,7 @@ enum Kind {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     if let Some(limit) = args.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
         let problem = format!("{limit} is not a positive number of seconds");
         return Err(Error::option("--time-limit", problem));

@@ -23,7 +23,7 @@ use crate::print::{self, Json};
 
 /// Options of `learn`.
 #[derive(clap::Args)]
-pub struct LearnArgs {
+pub(crate) struct LearnArgs {
     #[command(flatten)]
     input: TableInput,
     /// File of the model (`*.table-model.json`).
@@ -42,7 +42,7 @@ pub struct LearnArgs {
 
 /// Options of `schema`.
 #[derive(clap::Args)]
-pub struct SchemaArgs {
+pub(crate) struct SchemaArgs {
     #[command(flatten)]
     input: TableInput,
     #[command(flatten)]
@@ -51,7 +51,7 @@ pub struct SchemaArgs {
 
 /// Options of `score`.
 #[derive(clap::Args)]
-pub struct ScoreArgs {
+pub(crate) struct ScoreArgs {
     /// The model (`*.table-model.json`), or a Bayesian network (`*.bif`, `*.xmlbif`, or as JSON).
     model: PathBuf,
     /// The table.
@@ -62,7 +62,7 @@ pub struct ScoreArgs {
 
 /// Options of `sample`.
 #[derive(clap::Args)]
-pub struct SampleArgs {
+pub(crate) struct SampleArgs {
     /// The model (`*.table-model.json`), or a Bayesian network (`*.bif`, `*.xmlbif`, or as JSON).
     model: PathBuf,
     /// Rows to draw.
@@ -80,7 +80,7 @@ pub struct SampleArgs {
 
 /// Options of `complete`.
 #[derive(clap::Args)]
-pub struct CompleteArgs {
+pub(crate) struct CompleteArgs {
     /// The model (`*.table-model.json`), or a Bayesian network (`*.bif`, `*.xmlbif`, or as JSON).
     model: PathBuf,
     /// The table; empty cells and columns that it lacks are completed.
@@ -96,7 +96,7 @@ pub struct CompleteArgs {
 }
 
 /// Runs `schema`.
-pub fn schema(args: &SchemaArgs) -> Result<()> {
+pub(super) fn schema(args: &SchemaArgs) -> Result<()> {
     let (schema, left_out) = args.input.guess()?;
     let text = schema.to_json().map_err(Error::method)?;
     if !args.json.is_asked() {
@@ -108,7 +108,7 @@ pub fn schema(args: &SchemaArgs) -> Result<()> {
 }
 
 /// Runs `learn`.
-pub fn learn(args: &LearnArgs) -> Result<()> {
+pub(super) fn learn(args: &LearnArgs) -> Result<()> {
     let begun = Instant::now();
     heed_interrupts();
     let (data, schema) = args.input.read()?;
@@ -212,7 +212,7 @@ fn mixed(model: &TableModel) -> Option<String> {
 }
 
 /// Runs `score`: the log probability mass and the log density of every row, missing cells integrated out.
-pub fn score(args: &ScoreArgs) -> Result<()> {
+pub(super) fn score(args: &ScoreArgs) -> Result<()> {
     if let Some(network) = network_of(&args.model)? {
         return fit::score(&network, &args.table, args.json);
     }
@@ -224,7 +224,7 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
 }
 
 /// Runs `sample`.
-pub fn sample(args: &SampleArgs) -> Result<()> {
+pub(super) fn sample(args: &SampleArgs) -> Result<()> {
     if args.count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
@@ -245,7 +245,7 @@ pub fn sample(args: &SampleArgs) -> Result<()> {
 }
 
 /// Runs `complete`.
-pub fn complete(args: &CompleteArgs) -> Result<()> {
+pub(super) fn complete(args: &CompleteArgs) -> Result<()> {
     if let Some(network) = network_of(&args.model)? {
         return fit::complete(&network, &args.table, args.count, args.seed, args.json);
     }
@@ -280,7 +280,7 @@ pub fn complete(args: &CompleteArgs) -> Result<()> {
 }
 
 /// The display of a model of a table by `model show`.
-pub const TABLE_MODEL: Shown = Shown {
+pub(crate) const TABLE_MODEL: Shown = Shown {
     format: FORMAT,
     show,
 };

@@ -15,7 +15,7 @@ use super::super::print;
 #[command(
     after_help = "Example, an arm that is a built-in method run as a foreign one would be:\n  [[arm]]\n  name = \"as a command\"\n  command = \"edifice sweep candidate structure_completion/complete {input} {output} --learn {learn} --seed {seed} --settings {settings}\""
 )]
-pub struct Options {
+pub(crate) struct Options {
     /// Study
     study: String,
     /// File of the question: {input} of a command
@@ -40,7 +40,7 @@ pub struct Options {
 }
 
 /// Answers one question by the study's built-in method.
-pub fn answer(options: &Options, studies: &[Study]) -> Result<()> {
+pub(super) fn answer(options: &Options, studies: &[Study]) -> Result<()> {
     let named = &options.study;
     let Some(study) = studies.iter().find(|study| study.name == named) else {
         let near = suggestion(named, studies.iter().map(|study| study.name));

@@ -10,7 +10,7 @@ use super::super::print;
 /// Options of `examples`.
 #[derive(Args)]
 #[command(after_help = "Example: edifice sweep examples ablation > ablation.toml")]
-pub struct Options {
+pub(crate) struct Options {
     /// Print this one; all are listed without a name
     name: Option<String>,
     /// Print one JSON object as the last line
@@ -19,7 +19,7 @@ pub struct Options {
 }
 
 /// Lists the sweep files that ship, or prints one.
-pub fn show(options: &Options) -> Result<()> {
+pub(super) fn show(options: &Options) -> Result<()> {
     let all = examples();
     let Some(name) = &options.name else {
         if options.json {

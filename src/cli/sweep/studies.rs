@@ -8,14 +8,14 @@ use super::super::print;
 
 /// Options of `studies`.
 #[derive(Args)]
-pub struct Options {
+pub(crate) struct Options {
     /// Print one JSON object as the last line
     #[arg(long)]
     json: bool,
 }
 
 /// Prints all studies.
-pub fn list(studies: &[Study], options: &Options) -> Result<()> {
+pub(super) fn list(studies: &[Study], options: &Options) -> Result<()> {
     if options.json {
         let study = |study: &Study| {
             serde_json::json!({

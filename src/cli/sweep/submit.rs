@@ -25,7 +25,7 @@ enum Engine {
 #[command(
     after_help = "Example: edifice sweep submit ablation.toml --out ablation --engine slurm --dry-run"
 )]
-pub struct Options {
+pub(crate) struct Options {
     #[command(flatten)]
     common: Common,
     /// Who runs the jobs
@@ -37,7 +37,7 @@ pub struct Options {
 }
 
 /// Writes the scripts, and starts them.
-pub fn submit(options: &Options, studies: &[Study]) -> Result<()> {
+pub(super) fn submit(options: &Options, studies: &[Study]) -> Result<()> {
     let common = &options.common;
     let plan = Plan::of(&common.sweep, &common.out, studies)?;
     let absolute = |path: &Path| std::path::absolute(path).map_err(|e| Error::io(path, "find", e));

@@ -24,7 +24,7 @@ pub fn scene_of(building: &Building, model: &Model) -> Scene {
 
 /// Which boxes of the house after the edits are those that were added, moved or resized: they have the size and place
 /// that the edits gave them.
-pub fn touched(before: &Building, edits: &[Edit], after: &Building) -> Vec<bool> {
+pub(super) fn touched(before: &Building, edits: &[Edit], after: &Building) -> Vec<bool> {
     let mut known: Vec<Option<[f64; 5]>> = (before.boxes.iter()).map(|_| None).collect();
     let mut boxes: Vec<[f64; 5]> = before.boxes.iter().map(place).collect();
     for edit in edits {
@@ -57,7 +57,7 @@ fn place(b: &MassBox) -> [f64; 5] {
 }
 
 /// Everything there is to show.
-pub fn view(house: &House) -> Result<Value> {
+pub(super) fn view(house: &House) -> Result<Value> {
     let b = &house.building;
     let row = attributes(b).map_err(Error::method)?;
     let (ranges, wished) = (ranges()?, given(&house.wishes)?);

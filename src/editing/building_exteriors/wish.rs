@@ -18,7 +18,7 @@ use edifice_model::ModelError;
 use edifice_shape::Building;
 
 /// First column that is yes or no.
-pub const FIRST_FLAG: usize = 39;
+pub(super) const FIRST_FLAG: usize = 39;
 /// Draws of the model for an answer, those of them that are built, and draws for the ranges.
 const POOL: usize = 500;
 const TRIES: usize = 4;

@@ -12,14 +12,14 @@ use edifice_grammar::instance::InstanceGrammar;
 use edifice_shape::triangles::{City, OrientedBox, TriangleMesh};
 
 /// The name of the format of [`Original::packed`].
-pub const FORMAT: &str = "original";
+pub(super) const FORMAT: &str = "original";
 /// Corners of a packed part at most, so that an index has 16 bits.
 const CORNERS: usize = 65_535;
 /// Steps of a packed coordinate.
 const STEPS: f64 = 65_535.0;
 
 /// A city of triangles and the file that it is in.
-pub struct Original {
+pub(super) struct Original {
     /// The city; no two buildings have one identifier.
     pub city: City,
     /// Name of its file.
@@ -29,7 +29,7 @@ pub struct Original {
 
 impl Original {
     /// A city that was read from a file.
-    pub fn new(mut city: City, path: &Path) -> Self {
+    pub(super) fn new(mut city: City, path: &Path) -> Self {
         city.number_duplicates();
         if city.name.is_empty() {
             let file = path.file_name().unwrap_or_default().to_string_lossy();
@@ -50,7 +50,7 @@ impl Original {
     ///
     /// # Errors
     /// When there is nothing to proceduralize, or the work is stopped.
-    pub fn proceduralized(&self, level: u32, work: &Work) -> Result<InstanceGrammar> {
+    pub(super) fn proceduralized(&self, level: u32, work: &Work) -> Result<InstanceGrammar> {
         let count = self.city.buildings.len();
         work.tell(
             &format!("cutting {count} buildings into components"),
@@ -79,14 +79,14 @@ impl Original {
     /// The triangles in 16 bits a number, little-endian: parts, each with the index of its building (u32), its lower corner and
     /// the length of a step (4 x f32, metres), corners and triangles (2 x u32), corners in steps (3 x u16 each), indices (3 x
     /// u16 each). A part has at most 65,535 corners.
-    pub fn packed(&self) -> Vec<u8> {
+    pub(super) fn packed(&self) -> Vec<u8> {
         let buildings = self.city.buildings.par_iter().enumerate();
         let parts: Vec<Vec<u8>> = buildings.map(|(k, b)| packed(k as u32, &b.mesh)).collect();
         parts.concat()
     }
 
     /// The difference of each building's volume from that in another city, as a share of its own; by identifier.
-    pub fn volume_errors(&self, derived: &City) -> rustc_hash::FxHashMap<String, f64> {
+    pub(super) fn volume_errors(&self, derived: &City) -> rustc_hash::FxHashMap<String, f64> {
         let volumes = |city: &City| -> rustc_hash::FxHashMap<String, f64> {
             let one = |b: &edifice_shape::triangles::CityBuilding| {
                 let base = OrientedBox::around(&b.mesh)?.base[2];

@@ -6,7 +6,7 @@ use edifice_grammar::instance::{InstanceGrammar, Placement};
 
 /// A rule that was applied, and which of its successors was followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-pub struct Turn {
+pub(super) struct Turn {
     /// Index of the rule.
     pub rule: usize,
     /// Index of the successor.
@@ -15,7 +15,7 @@ pub struct Turn {
 
 /// The origins of the buildings and the placed templates of a derivation.
 #[derive(Debug, Clone, Default)]
-pub struct Paths {
+pub(super) struct Paths {
     /// Of each placed template, in the order of the derivation: rules applied, one inside another.
     pub depths: Vec<usize>,
     /// The symbol that stands for each building, by identifier.
@@ -25,7 +25,7 @@ pub struct Paths {
 }
 
 /// Walks a checked grammar as its derivation does; `building` is asked for its path.
-pub fn paths(grammar: &InstanceGrammar, building: Option<&str>) -> Paths {
+pub(super) fn paths(grammar: &InstanceGrammar, building: Option<&str>) -> Paths {
     let mut rules: FxHashMap<&str, usize> = FxHashMap::default();
     for (k, rule) in grammar.rules.iter().enumerate() {
         rules.entry(rule.symbol.as_str()).or_insert(k);

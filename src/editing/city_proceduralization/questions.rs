@@ -26,7 +26,7 @@ enum Question {
 ///
 /// # Errors
 /// [`CommandError::Form`] for none, [`CommandError::Answer`] for a building that is not there.
-pub fn answer(city: &City, question: &Value) -> Result<Value> {
+pub(super) fn answer(city: &City, question: &Value) -> Result<Value> {
     match parse(question)? {
         Question::Building { building } => of_building(city, building),
         Question::Locate { buildings } => places(city, &buildings),

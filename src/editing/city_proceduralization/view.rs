@@ -7,7 +7,7 @@ use super::{City, Made};
 use edifice_base::Result;
 
 /// Everything there is to show: lengths in metres to the centimetre, corners of templates in thousandths of their box.
-pub fn view(city: &City) -> Result<Value> {
+pub(super) fn view(city: &City) -> Result<Value> {
     let original = city.original.as_ref().map(|o| {
         json!({"buildings": o.city.buildings.len(), "triangles": o.city.triangles(), "file": o.file})
     });

@@ -60,7 +60,7 @@ struct MergeError(String);
 ///
 /// # Errors
 /// Those of [`infer`], and when the work is stopped.
-pub fn watched(facades: &[Facade], work: &Work) -> Result<Outcome> {
+pub(super) fn watched(facades: &[Facade], work: &Work) -> Result<Outcome> {
     let watch = |progress: Progress| {
         if let Some(best) = progress.best {
             let step = format!("inferring the grammar, cost {best:.1}");
@@ -78,7 +78,7 @@ pub fn watched(facades: &[Facade], work: &Work) -> Result<Outcome> {
 ///
 /// # Errors
 /// Names the facade, from 1, that cannot be read or is no tiling.
-pub fn facades(texts: &[String]) -> Result<Vec<Facade>> {
+pub(super) fn facades(texts: &[String]) -> Result<Vec<Facade>> {
     let read = |(k, text): (usize, &String)| {
         let name = format!("facade {}", k + 1);
         let path = Path::new(&name);

@@ -61,7 +61,7 @@ impl Laid {
     }
 
     /// The length of the region that these sizes would fill, at the present units.
-    pub fn length(&self, [absolute, relative]: [f64; 2]) -> f64 {
+    pub(super) fn length(&self, [absolute, relative]: [f64; 2]) -> f64 {
         self.units[0] * absolute + self.units[1] * relative
     }
 

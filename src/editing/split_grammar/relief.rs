@@ -20,7 +20,7 @@ pub fn glb(facade: &Facade) -> Result<Vec<u8>> {
 }
 
 /// The scene; a facade in other units is scaled to a height of 14 m.
-pub fn scene(facade: &Facade) -> Scene {
+pub(super) fn scene(facade: &Facade) -> Scene {
     let factor = match facade.unit.as_str() {
         "m" => 1.0,
         "dm" => 0.1,

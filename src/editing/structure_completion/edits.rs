@@ -51,7 +51,7 @@ pub enum FacadeEditError {
 }
 
 /// The name of an element in edits.
-pub fn reference(note: &Note, index: usize) -> String {
+pub(super) fn reference(note: &Note, index: usize) -> String {
     note.id.clone().unwrap_or_else(|| format!("#{index}"))
 }
 

@@ -12,7 +12,7 @@ use edifice_structure_completion::layout::Class;
 const LABELS: [&str; 4] = ["window", "door", "balcony", "shop"];
 
 /// Everything there is to show.
-pub fn view(sketch: &Sketch) -> Value {
+pub(super) fn view(sketch: &Sketch) -> Value {
     let facade = &sketch.layout.facade;
     let answers: Vec<Value> = sketch
         .answers

@@ -4,6 +4,7 @@ use super::limits::{DEEPEST, INSTANCE_LIMIT};
 
 /// Why a grammar cannot be derived.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InstanceGrammarError {
     /// A symbol is neither template nor non-terminal.
     #[error("rules[{rule}].successors[{successor}]: unknown symbol {symbol:?}")]

@@ -17,7 +17,7 @@ const THINNEST: f64 = 0.012;
 
 /// Number of rows (along y) or columns (along x) of elements of a facade: spans along the axis of the regions of its most
 /// frequent label but the one of most area, those that overlap counted once; at least 1.
-pub fn levels(facade: &Facade, axis: Axis) -> u32 {
+pub(super) fn levels(facade: &Facade, axis: Axis) -> u32 {
     let mut labels: Vec<(&str, f64, usize)> = Vec::new();
     for region in &facade.regions {
         match labels.iter_mut().find(|known| known.0 == region.label) {
@@ -51,7 +51,7 @@ pub fn levels(facade: &Facade, axis: Axis) -> u32 {
 }
 
 /// The picture with one band more or less along an axis; none where no band fits.
-pub fn with_band<R: Rng>(
+pub(super) fn with_band<R: Rng>(
     grid: &LabelGrid,
     axis: Axis,
     more: bool,

@@ -49,7 +49,7 @@ impl Tables {
 }
 
 /// Walks a parse; tells each count and each size with the question it answers.
-pub fn questions(
+pub(super) fn questions(
     parse: &Parse,
     rules: &Rules,
     mut tell_count: impl FnMut(counts::Repeat, Axis, u32),
@@ -106,7 +106,7 @@ pub fn questions(
 /// Walks one facade with a coder: `rules` are those of the library and grow by new ones; `known` is the facade
 /// that is written, with its own rules. `trust` is learnt from as the walk goes. None where the coder has no
 /// choice, or a code is not one of a facade.
-pub fn walk<C: Coder>(
+pub(super) fn walk<C: Coder>(
     coder: &mut C,
     tables: &Tables,
     (trust, count_trust): (&mut Trust, &mut CountTrust),

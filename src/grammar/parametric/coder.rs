@@ -9,7 +9,7 @@
 use rand::{Rng, RngExt};
 
 /// The frequencies of one choice add up to `2^TOTAL_BITS`.
-pub const TOTAL_BITS: u32 = 28;
+pub(super) const TOTAL_BITS: u32 = 28;
 
 const TOTAL: u64 = 1 << TOTAL_BITS;
 

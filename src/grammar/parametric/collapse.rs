@@ -17,7 +17,7 @@ const PERIOD: f64 = 0.6;
 const LONGEST: usize = 24;
 
 /// The items of a string, and how often the period of each repeat stands. `O(n^2 p)` comparisons at most.
-pub fn collapse(symbols: &[Symbol]) -> (Vec<Item>, Vec<u32>) {
+pub(super) fn collapse(symbols: &[Symbol]) -> (Vec<Item>, Vec<u32>) {
     let n = symbols.len();
     // Least cost and number of items of each prefix, with the last item's period (0 a part) and count.
     let mut best: Vec<(f64, usize, usize, usize)> = vec![(f64::INFINITY, 0, 0, 0); n + 1];

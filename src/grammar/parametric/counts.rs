@@ -17,12 +17,12 @@ const PREDICTORS: usize = 5;
 const PRIOR: [f64; PREDICTORS] = [4.0, 1.0, 1.0, 0.5, 0.1];
 
 /// Largest count.
-pub const MOST: u32 = 4096;
+pub(super) const MOST: u32 = 4096;
 
 type Counts = BTreeMap<u32, u32>;
 
 /// A repeat: its rule and item.
-pub type Repeat = (u32, u32);
+pub(super) type Repeat = (u32, u32);
 
 /// Counts that were seen.
 #[derive(Debug, Clone, Default)]
@@ -63,7 +63,7 @@ pub struct CountTrust {
 }
 
 /// Chooses a count from 2 to `max`, and learns from it.
-pub fn choose<C: Coder>(
+pub(super) fn choose<C: Coder>(
     coder: &mut C,
     table: &CountTable,
     memory: &mut CountTable,

@@ -4,6 +4,7 @@ use edifice_shape::LayoutError;
 
 /// Why facades make no library, or a facade has no code in it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LibraryError {
     /// There is no facade to learn from.
     #[error("a library needs at least one facade")]

@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use edifice_shape::Axis;
 
 /// Gives names that no label has, numbered by kind in the order in which they are asked for.
-pub struct Namer<'l> {
+pub(super) struct Namer<'l> {
     labels: BTreeSet<&'l str>,
     given: [usize; 6],
 }
 
 /// The kind of rule that a name is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(super) enum Kind {
     /// A whole facade.
     Facade,
     /// A split of a direction.
@@ -25,7 +25,7 @@ pub enum Kind {
 
 impl<'l> Namer<'l> {
     /// Names that differ from the labels.
-    pub fn new(labels: &'l [String]) -> Self {
+    pub(super) fn new(labels: &'l [String]) -> Self {
         Self {
             labels: labels.iter().map(String::as_str).collect(),
             given: [0; 6],
@@ -33,7 +33,7 @@ impl<'l> Namer<'l> {
     }
 
     /// The next name of a kind.
-    pub fn next(&mut self, kind: Kind) -> String {
+    pub(super) fn next(&mut self, kind: Kind) -> String {
         let (at, stem) = match kind {
             Kind::Facade => (0, "Facade"),
             Kind::Split(Axis::X) => (1, "Row"),

@@ -45,7 +45,7 @@ struct Relaxed {
 }
 
 /// The cheapest choice found from a start, and a bound on all choices, without the operations of the bodies.
-pub fn branch_and_bound(texts: &Texts, start: Vec<bool>, split: f64) -> (Vec<bool>, f64) {
+pub(super) fn branch_and_bound(texts: &Texts, start: Vec<bool>, split: f64) -> (Vec<bool>, f64) {
     let count = texts.texts.len();
     let mut best = start;
     let mut cost = texts.cost(&best, split);

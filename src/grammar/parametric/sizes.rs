@@ -34,10 +34,10 @@ const PRIOR: [f64; PREDICTORS] = [
 ];
 
 /// The number of times that each size was seen.
-pub type Sizes = BTreeMap<u32, u32>;
+pub(super) type Sizes = BTreeMap<u32, u32>;
 
 /// A slot of a rule in any repetition.
-pub type Place = (u32, u32, u32);
+pub(super) type Place = (u32, u32, u32);
 
 /// Sizes that were seen, by what they belong to.
 #[derive(Debug, Clone, Default)]
@@ -103,7 +103,7 @@ impl Question {
 
 /// The sizes and cuts of the facade at hand so far.
 #[derive(Debug, Clone, Default)]
-pub struct SizeMemory {
+pub(super) struct SizeMemory {
     slot: FxHashMap<(Place, u32), Sizes>,
     place: FxHashMap<Place, Sizes>,
     symbol: FxHashMap<(Axis, Symbol), Sizes>,
@@ -113,7 +113,7 @@ pub struct SizeMemory {
 
 impl SizeMemory {
     /// Remembers a size.
-    pub fn add(&mut self, at: &Question, size: u32) {
+    pub(super) fn add(&mut self, at: &Question, size: u32) {
         change(
             self.slot
                 .entry((at.place(), at.slot.repetition))
@@ -259,7 +259,7 @@ fn predictions(table: &SizeTable, memory: &SizeMemory, at: &Question) -> [Predic
 }
 
 /// Chooses the size of a part, and learns from it.
-pub fn choose<C: Coder>(
+pub(super) fn choose<C: Coder>(
     coder: &mut C,
     table: &SizeTable,
     memory: &mut SizeMemory,

@@ -20,7 +20,7 @@ use edifice_shape::Axis;
 const BETA: f64 = 1.0;
 
 /// Longest label, in bytes.
-pub const LABEL_LIMIT: usize = 4096;
+pub(super) const LABEL_LIMIT: usize = 4096;
 
 /// Most items of a rule that is read from a code.
 const ITEM_LIMIT: usize = 1 << 16;
@@ -102,7 +102,7 @@ fn tokens(rule: &Rule) -> Vec<Token> {
 }
 
 /// Spells structures.
-pub struct Speller<'s, C> {
+pub(super) struct Speller<'s, C> {
     /// The coder that meets the choices.
     pub coder: &'s mut C,
     /// The tables of the library.
@@ -124,7 +124,7 @@ struct Names {
 
 impl<C: Coder> Speller<'_, C> {
     /// Chooses the root; `value` is the root in the known rules. The result is in [`Speller::rules`].
-    pub fn root(&mut self, value: Option<Symbol>) -> Option<Symbol> {
+    pub(super) fn root(&mut self, value: Option<Symbol>) -> Option<Symbol> {
         let roots: Vec<(Symbol, u32)> = self.table.roots.iter().map(|(&s, &n)| (s, n)).collect();
         let all: u32 = roots.iter().map(|root| root.1).sum();
         let once = roots.iter().filter(|root| root.1 == 1).count() as f64;

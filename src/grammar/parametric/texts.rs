@@ -23,7 +23,7 @@ pub(super) struct Texts {
 }
 
 impl Texts {
-    pub fn new(bodies: &[Body]) -> Self {
+    pub(super) fn new(bodies: &[Body]) -> Self {
         let mut found: FxHashMap<(Axis, &[Letter]), usize> = FxHashMap::default();
         for body in bodies {
             for from in 0..body.letters.len() {
@@ -79,7 +79,7 @@ impl Texts {
     }
 
     /// Fewest parts of a text with the open phrases, and the parts: places where they start and their text.
-    pub fn path(&self, text: usize, open: &[bool]) -> (usize, Vec<(usize, Option<usize>)>) {
+    pub(super) fn path(&self, text: usize, open: &[bool]) -> (usize, Vec<(usize, Option<usize>)>) {
         let Text { letters, arcs, .. } = &self.texts[text];
         let n = letters.len();
         let mut best: Vec<(usize, usize, Option<usize>)> = vec![(0, 0, None); n + 1];
@@ -114,7 +114,7 @@ impl Texts {
     }
 
     /// Cost of the open phrases and of all paths, without the operations of the bodies.
-    pub fn cost(&self, open: &[bool], split: f64) -> f64 {
+    pub(super) fn cost(&self, open: &[bool], split: f64) -> f64 {
         let texts = (0..self.texts.len()).filter(|&k| open[k]);
         texts
             .map(|k| self.path(k, open).0 as f64 + if k < self.bodies { 0.0 } else { split })
@@ -122,7 +122,7 @@ impl Texts {
     }
 
     /// Opens the phrase that saves the most until none saves, then closes those that save nothing.
-    pub fn greedy(&self, split: f64) -> Vec<bool> {
+    pub(super) fn greedy(&self, split: f64) -> Vec<bool> {
         let mut open: Vec<bool> = (0..self.texts.len()).map(|k| k < self.bodies).collect();
         let mut users: Vec<Vec<usize>> = vec![Vec::new(); self.texts.len()];
         for (k, text) in self.texts.iter().enumerate() {
@@ -166,7 +166,7 @@ impl Texts {
     }
 
     /// Closes the phrases that save nothing, one after another, and returns the cost.
-    pub fn close(&self, open: &mut [bool], split: f64) -> f64 {
+    pub(super) fn close(&self, open: &mut [bool], split: f64) -> f64 {
         let mut cost = self.cost(open, split);
         for phrase in self.bodies..self.texts.len() {
             if open[phrase] {

@@ -9,7 +9,7 @@ use super::rules::{Item, Rule, Rules, Symbol};
 use edifice_shape::{Axis, Facade, Rect, Region, Span};
 
 /// Deepest nesting of parts.
-pub const DEPTH_LIMIT: usize = 400;
+pub(super) const DEPTH_LIMIT: usize = 400;
 
 /// Most steps along a side.
 pub const STEP_LIMIT: u32 = 1 << 16;
@@ -38,7 +38,7 @@ struct Node {
 }
 
 /// The index of an axis in a pair.
-pub fn index(axis: Axis) -> usize {
+pub(super) fn index(axis: Axis) -> usize {
     match axis {
         Axis::X => 0,
         Axis::Y => 1,
@@ -50,7 +50,7 @@ pub fn index(axis: Axis) -> usize {
 /// # Errors
 /// [`LibraryError::Layout`] for a layout that full lines do not split into its regions, [`LibraryError::OffStep`],
 /// [`LibraryError::TooLarge`], [`LibraryError::TooDeep`].
-pub fn parse(facade: &Facade, step: f64, rules: &mut Rules) -> Result<Parse, LibraryError> {
+pub(super) fn parse(facade: &Facade, step: f64, rules: &mut Rules) -> Result<Parse, LibraryError> {
     edifice_shape::splittable(facade).map_err(|source| LibraryError::Layout {
         name: facade.name.clone(),
         source,
@@ -254,7 +254,7 @@ pub fn slots(rule: &Rule, counts: &[u32]) -> Vec<Slot> {
 ///
 /// # Errors
 /// [`LibraryError::Invalid`] for parameters that do not fit the rules.
-pub fn unfold(
+pub(super) fn unfold(
     parse: &Parse,
     rules: &[Rule],
     mut visit: impl FnMut(u32, [u32; 2], [u32; 2]),
@@ -327,7 +327,7 @@ pub fn unfold(
 ///
 /// # Errors
 /// [`LibraryError::Invalid`] for parameters that do not fit the rules.
-pub fn facade(
+pub(super) fn facade(
     parse: &Parse,
     rules: &[Rule],
     labels: &[String],

@@ -18,6 +18,7 @@ pub const BOX_MAPPED: &str = "box mapping";
 
 /// Why a city cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GlbError {
     /// Nothing to draw: glTF forbids empty meshes and accessors.
     #[error("no triangles to write")]

@@ -59,7 +59,11 @@ fn wrong(index: usize, problem: &str) -> CityError {
 
 impl Buffers<'_> {
     /// All numbers of an accessor of vectors of `width` components.
-    pub fn floats(&self, index: usize, width: usize) -> std::result::Result<Vec<f64>, CityError> {
+    pub(super) fn floats(
+        &self,
+        index: usize,
+        width: usize,
+    ) -> std::result::Result<Vec<f64>, CityError> {
         let (accessor, elements) = self.elements(index, width)?;
         let number = reader(accessor.component_type, accessor.normalized);
         let number = number.ok_or_else(|| wrong(index, "has an unknown type"))?;
@@ -72,7 +76,7 @@ impl Buffers<'_> {
     }
 
     /// All numbers of an accessor of indices.
-    pub fn indices(&self, index: usize) -> std::result::Result<Vec<u32>, CityError> {
+    pub(super) fn indices(&self, index: usize) -> std::result::Result<Vec<u32>, CityError> {
         let (accessor, elements) = self.elements(index, 1)?;
         if !matches!(accessor.component_type, 5121 | 5123 | 5125) {
             return Err(wrong(index, "has no unsigned integers"));
@@ -82,7 +86,7 @@ impl Buffers<'_> {
     }
 
     /// The bytes of a view, if it and its buffer have them.
-    pub fn view(&self, index: usize) -> Option<&[u8]> {
+    pub(super) fn view(&self, index: usize) -> Option<&[u8]> {
         let view = self.views.get(index)?;
         let end = view.byte_offset.checked_add(view.byte_length)?;
         self.data.get(view.buffer)?.get(view.byte_offset..end)

@@ -49,7 +49,11 @@ pub(super) struct Meshes<'a> {
 }
 
 impl<'a> Meshes<'a> {
-    pub fn new(meshes: &'a [Mesh], looks: Vec<Option<Looks>>, buffers: &'a Buffers<'a>) -> Self {
+    pub(super) fn new(
+        meshes: &'a [Mesh],
+        looks: Vec<Option<Looks>>,
+        buffers: &'a Buffers<'a>,
+    ) -> Self {
         Self {
             meshes,
             looks,
@@ -62,7 +66,7 @@ impl<'a> Meshes<'a> {
     ///
     /// # Errors
     /// The element that is wrong, and why.
-    pub fn mesh(&mut self, index: usize) -> Result<&MeshRead, (String, CityError)> {
+    pub(super) fn mesh(&mut self, index: usize) -> Result<&MeshRead, (String, CityError)> {
         let read = match self.read.remove(&index) {
             Some(known) => known,
             None => self.all_of(index)?,

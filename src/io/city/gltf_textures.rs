@@ -88,7 +88,7 @@ pub(super) struct Looks {
 
 impl Transform {
     /// Coordinates in the picture; v goes downwards.
-    pub fn applied(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn applied(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [u, v] = [u * self.scale[0], v * self.scale[1]];
         let (sin, cos) = self.rotation.sin_cos();
         [

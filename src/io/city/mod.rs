@@ -53,6 +53,7 @@ const NEAR: f64 = 20_000.0;
 
 /// Why a file holds no city.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CityError {
     /// There is no building, or none has a triangle.
     #[error("no buildings with triangles")]

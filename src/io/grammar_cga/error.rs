@@ -16,7 +16,7 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    pub fn new(span: SimpleSpan, message: impl Into<String>) -> Self {
+    pub(super) fn new(span: SimpleSpan, message: impl Into<String>) -> Self {
         let message = message.into();
         Self { span, message }
     }

@@ -33,7 +33,7 @@ pub(super) enum Note {
 
 impl Note {
     /// Reads a comment, `//@` included.
-    pub fn parse(text: &str, span: SimpleSpan) -> Result<Self, Fault> {
+    pub(super) fn parse(text: &str, span: SimpleSpan) -> Result<Self, Fault> {
         let wrong = |expected: &str| Fault::new(span, format!("expected {expected}"));
         let words = text.trim_start_matches("//@").trim();
         let (kind, rest) = words
@@ -68,7 +68,7 @@ impl Note {
     }
 
     /// True if the comment is about the whole text, and not about the rule below it.
-    pub fn is_header(&self) -> bool {
+    pub(super) fn is_header(&self) -> bool {
         matches!(
             self,
             Note::Unit(_) | Note::Facade { .. } | Note::Symbol { .. } | Note::SizesAbsolute

@@ -15,10 +15,10 @@ use edifice_shape::{
 };
 
 /// New positions of the cut lines along x and y.
-pub type Lines = (Vec<f64>, Vec<f64>);
+pub(super) type Lines = (Vec<f64>, Vec<f64>);
 
 /// Areas on an irregular grid: connected areas of equal label, or regions of a tiling.
-pub struct Areas<'a> {
+pub(super) struct Areas<'a> {
     grid: &'a LabelGrid,
     /// Area of each cell.
     of_cell: Vec<u32>,
@@ -38,7 +38,7 @@ impl<'a> Areas<'a> {
     ///
     /// # Errors
     /// [`GridError`] when the grid is not valid.
-    pub fn of_grid(grid: &'a LabelGrid) -> Result<Self, GridError> {
+    pub(super) fn of_grid(grid: &'a LabelGrid) -> Result<Self, GridError> {
         let mut of_cell = vec![0; grid.cells.len()];
         let areas = components(grid, whole(grid), &mut of_cell);
         let behind: Vec<bool> = grid.labels.iter().map(|l| is_background(l)).collect();
@@ -121,7 +121,7 @@ impl<'a> Areas<'a> {
     }
 
     /// The regions of a tiling, of which `grid` is the picture.
-    pub fn of_facade(facade: &Facade, layout: &IndexedLayout, grid: &'a LabelGrid) -> Self {
+    pub(super) fn of_facade(facade: &Facade, layout: &IndexedLayout, grid: &'a LabelGrid) -> Self {
         let columns = grid.columns();
         let mut of_cell = vec![0; grid.cells.len()];
         let mut labels = Vec::new();
@@ -150,7 +150,7 @@ impl<'a> Areas<'a> {
     }
 
     /// The same areas with `kinds` for labels: areas of one kind, and of no other, become equal.
-    pub fn with_kinds(self, kinds: &[u16]) -> Self {
+    pub(super) fn with_kinds(self, kinds: &[u16]) -> Self {
         Self {
             labels: kinds.to_vec(),
             ..self
@@ -162,7 +162,7 @@ impl<'a> Areas<'a> {
     ///
     /// # Errors
     /// [`RegularizeError::Qp`].
-    pub fn regularize(&self, limits: &Limits) -> Result<Option<Lines>, RegularizeError> {
+    pub(super) fn regularize(&self, limits: &Limits) -> Result<Option<Lines>, RegularizeError> {
         let grid = self.grid;
         let lattice = Lattice::of(&grid.xs, &grid.ys);
         let (xs, ys) = (lattice.positions(&grid.xs), lattice.positions(&grid.ys));
@@ -220,7 +220,7 @@ impl<'a> Areas<'a> {
     ///
     /// # Errors
     /// [`RegularizeError::Qp`].
-    pub fn align(&self, reach: f64, tolerance: f64) -> Result<Lines, RegularizeError> {
+    pub(super) fn align(&self, reach: f64, tolerance: f64) -> Result<Lines, RegularizeError> {
         let (xs, ys) = (&self.grid.xs, &self.grid.ys);
         let ((cells, yields), turned) = self.both();
         let axis = |cuts: &[f64], across: &[f64], strips: Strips| {

@@ -12,7 +12,7 @@ use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 const ELEMENT: f64 = 8.0;
 
 /// One axis of a layout; lengths are in units of the lattice.
-pub struct Axis<'a> {
+pub(super) struct Axis<'a> {
     /// Positions of the cut lines.
     pub cuts: Vec<f64>,
     /// Length of edge on each line.
@@ -32,7 +32,7 @@ pub struct Axis<'a> {
 impl Axis<'_> {
     /// New positions of all cut lines, in order, merged ones equal; `None` when no lines and no sizes
     /// become equal that were not.
-    pub fn solve(&self) -> Result<Option<Vec<f64>>, RegularizeError> {
+    pub(super) fn solve(&self) -> Result<Option<Vec<f64>>, RegularizeError> {
         if self.lattice.whole && self.reach + 1e-6 < 1.0 {
             return Ok(None);
         }
@@ -96,7 +96,7 @@ impl Axis<'_> {
     }
 
     /// Finds sizes for the clusters that leave a solution; whether there are any.
-    pub fn settle(&self, groups: &Groups, clusters: &mut [Cluster]) -> bool {
+    pub(super) fn settle(&self, groups: &Groups, clusters: &mut [Cluster]) -> bool {
         let mut system = self.system(groups, clusters);
         if system.solve().is_none() {
             // Once more, from what the merged lines make of the sizes.
@@ -161,7 +161,7 @@ impl Axis<'_> {
 
 /// Rounds all numbers at one threshold, which keeps every whole bound on their differences. The
 /// threshold is laid where no fraction is near, lest the solver's last digit decides.
-pub fn round_together(values: &[f64]) -> Vec<f64> {
+pub(super) fn round_together(values: &[f64]) -> Vec<f64> {
     let mut fractions: Vec<f64> = values.iter().map(|v| v - v.floor()).collect();
     fractions.extend([0.25, 0.75]);
     fractions.retain(|f| (0.25..=0.75).contains(f));

@@ -6,7 +6,7 @@ use edifice_shape::Span;
 
 /// Sizes along one axis that are equal, and stay so.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Class {
+pub(super) struct Class {
     /// Background is served after elements.
     pub behind: bool,
     /// Label number; only sizes of one label become equal.
@@ -23,7 +23,7 @@ pub struct Class {
 
 /// A rectangle between cut lines whose size counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
+pub(super) struct Extent {
     /// True if it is of the background.
     pub behind: bool,
     /// Label number.
@@ -36,7 +36,12 @@ pub struct Extent {
 }
 
 /// The classes along x and along y. `xs` and `ys` are in units; sizes that differ by less than `same` are equal.
-pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Class>, Vec<Class>) {
+pub(super) fn classes(
+    extents: &[Extent],
+    xs: &[f64],
+    ys: &[f64],
+    same: f64,
+) -> (Vec<Class>, Vec<Class>) {
     let width = |e: &Extent| xs[e.span.right] - xs[e.span.left];
     let height = |e: &Extent| ys[e.span.top] - ys[e.span.bottom];
     let widths = levels(extents.iter().map(width).collect(), same);
@@ -75,7 +80,7 @@ pub fn classes(extents: &[Extent], xs: &[f64], ys: &[f64], same: f64) -> (Vec<Cl
 }
 
 /// Numbers sizes so that those that differ by less than `same` from their neighbour have one number.
-pub fn levels(sizes: Vec<f64>, same: f64) -> Vec<usize> {
+pub(super) fn levels(sizes: Vec<f64>, same: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
     let mut level = vec![0; sizes.len()];

@@ -24,7 +24,7 @@ fn distinct(longer: f64, sizes: &[(&str, f64, f64)]) -> BTreeMap<String, usize> 
 
 /// Number of distinct sizes of the areas of each label; of those that are not rectangles, the sizes of
 /// the rectangles around them. And the number of areas of each label.
-pub fn of_areas(grid: &LabelGrid) -> (BTreeMap<String, usize>, BTreeMap<String, usize>) {
+pub(super) fn of_areas(grid: &LabelGrid) -> (BTreeMap<String, usize>, BTreeMap<String, usize>) {
     let (columns, rows) = (grid.columns(), grid.rows());
     let whole = Span {
         left: 0,
@@ -46,7 +46,7 @@ pub fn of_areas(grid: &LabelGrid) -> (BTreeMap<String, usize>, BTreeMap<String, 
 }
 
 /// Number of distinct sizes of the regions of each label.
-pub fn of_regions(facade: &Facade) -> BTreeMap<String, usize> {
+pub(super) fn of_regions(facade: &Facade) -> BTreeMap<String, usize> {
     let size = |r: &edifice_shape::Region| (r.rect.width, r.rect.height);
     let sizes: Vec<(&str, f64, f64)> = (facade.regions.iter())
         .map(|r| (r.label.as_str(), size(r).0, size(r).1))

@@ -16,7 +16,7 @@ const MAX_CHANGES: usize = 8;
 
 /// A size that all its spans have.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SharedSize {
+pub(super) struct SharedSize {
     /// Present value.
     pub value: f64,
     /// Value that it should have.
@@ -40,7 +40,7 @@ struct Edge {
 
 /// A system; see the [module](self).
 #[derive(Debug)]
-pub struct Differences {
+pub(super) struct Differences {
     /// Bounds of the positions.
     pub lower: Vec<f64>,
     /// Bounds of the positions.
@@ -58,7 +58,7 @@ pub struct Differences {
 
 impl Differences {
     /// A system of positions in order, each at least `gap` after the one before.
-    pub fn new(
+    pub(super) fn new(
         lower: Vec<f64>,
         upper: Vec<f64>,
         gap: &[f64],
@@ -107,7 +107,7 @@ impl Differences {
     }
 
     /// The least solution, after changes to the sizes where there is none; `None` when none is found.
-    pub fn solve(&mut self) -> Option<Vec<f64>> {
+    pub(super) fn solve(&mut self) -> Option<Vec<f64>> {
         let mut changes = vec![0u32; self.sizes.len()];
         for _ in 0..MAX_CHANGES {
             let chain = match self.least_solution() {
@@ -120,7 +120,7 @@ impl Differences {
     }
 
     /// The least solution with the sizes as they are, or a chain of edges that leaves none.
-    pub fn least_solution(&self) -> Result<Vec<f64>, Chain> {
+    pub(super) fn least_solution(&self) -> Result<Vec<f64>, Chain> {
         let n = self.lower.len();
         if let Some(k) = (0..n).find(|&k| self.lower[k] > self.upper[k]) {
             let excess = self.lower[k] - self.upper[k];
@@ -225,7 +225,7 @@ impl Differences {
     }
 
     /// True if positions satisfy every bound and constraint.
-    pub fn holds(&self, values: &[f64]) -> bool {
+    pub(super) fn holds(&self, values: &[f64]) -> bool {
         let bounds =
             |k: usize| self.lower[k] <= values[k] + 1e-6 && values[k] <= self.upper[k] + 1e-6;
         let edges = |e: &Edge| values[e.to] >= values[e.from] + self.least(e) - 1e-6;
@@ -235,7 +235,7 @@ impl Differences {
 
 /// Constraints that leave no room together.
 #[derive(Debug, Clone)]
-pub struct Chain {
+pub(super) struct Chain {
     edges: Vec<usize>,
     /// The room that is lacking.
     excess: f64,

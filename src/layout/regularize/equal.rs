@@ -10,7 +10,7 @@ const MAX_REFUSALS: usize = 60;
 impl Axis<'_> {
     /// Makes nearly equal sizes of one label equal. Leaders, those with most others within reach, keep
     /// their size as far as possible.
-    pub fn merge_sizes(&self, groups: &Groups, clusters: &mut Vec<Cluster>) {
+    pub(super) fn merge_sizes(&self, groups: &Groups, clusters: &mut Vec<Cluster>) {
         // Sizes that lines alone decide are what the lines have become.
         for cluster in clusters.iter_mut() {
             let class = &self.classes[cluster.classes[0]];

@@ -5,6 +5,7 @@ use edifice_shape::{GridError, LayoutError};
 
 /// Why a layout cannot be regularized.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RegularizeError {
     /// The tolerance is negative or not a number.
     #[error("the tolerance is {0}, expected a number from 0")]

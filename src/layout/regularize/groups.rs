@@ -1,7 +1,7 @@
 //! Lines that have become one, and sizes that have become equal.
 
 /// Cut lines, merged into groups that share a position.
-pub struct Groups {
+pub(super) struct Groups {
     /// Group of each line.
     pub of_line: Vec<usize>,
     /// The wanted position of the lines of each group.
@@ -18,7 +18,7 @@ pub struct Groups {
 
 /// Classes of sizes that have become one.
 #[derive(Debug, Clone)]
-pub struct Cluster {
+pub(super) struct Cluster {
     /// Their numbers.
     pub classes: Vec<usize>,
     /// Size that they should have.
@@ -29,7 +29,7 @@ pub struct Cluster {
 
 impl Cluster {
     /// The class that it began with.
-    pub fn lead(&self) -> usize {
+    pub(super) fn lead(&self) -> usize {
         self.classes[0]
     }
 }

@@ -1,7 +1,7 @@
 //! The grid of numbers that the coordinates of a layout lie on.
 
 /// Coordinates that differ by less, as a part of the longer side, are equal.
-pub const SAME: f64 = 1e-7;
+pub(super) const SAME: f64 = 1e-7;
 
 /// Most steps along the longer side of a layout that lies on a lattice.
 const MAX_STEPS: usize = 50_000;
@@ -11,7 +11,7 @@ const FINE: f64 = 1_048_576.0;
 
 /// The unit that positions are counted in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lattice {
+pub(super) struct Lattice {
     /// Longer side.
     longer: f64,
     /// Units along it.
@@ -22,7 +22,7 @@ pub struct Lattice {
 
 impl Lattice {
     /// The coarsest lattice that all coordinates lie on. It scales with them.
-    pub fn of(xs: &[f64], ys: &[f64]) -> Self {
+    pub(super) fn of(xs: &[f64], ys: &[f64]) -> Self {
         let last = |cuts: &[f64]| cuts[cuts.len() - 1];
         let longer = last(xs).max(last(ys));
         let on = |steps: usize| {
@@ -48,12 +48,12 @@ impl Lattice {
     }
 
     /// A length in units.
-    pub fn units(&self, length: f64) -> f64 {
+    pub(super) fn units(&self, length: f64) -> f64 {
         length / self.longer * self.steps
     }
 
     /// Coordinates in units.
-    pub fn positions(&self, cuts: &[f64]) -> Vec<f64> {
+    pub(super) fn positions(&self, cuts: &[f64]) -> Vec<f64> {
         let at = cuts.iter().map(|&c| self.units(c));
         match self.whole {
             true => at.map(f64::round).collect(),
@@ -62,12 +62,12 @@ impl Lattice {
     }
 
     /// A position as a coordinate.
-    pub fn coordinate(&self, position: f64) -> f64 {
+    pub(super) fn coordinate(&self, position: f64) -> f64 {
         position * self.longer / self.steps
     }
 
     /// Units below which positions are equal.
-    pub fn slack(&self) -> f64 {
+    pub(super) fn slack(&self) -> f64 {
         match self.whole {
             true => 0.0,
             false => 0.01 * SAME * FINE,
@@ -75,7 +75,7 @@ impl Lattice {
     }
 
     /// Units below which sizes are equal.
-    pub fn same(&self) -> f64 {
+    pub(super) fn same(&self) -> f64 {
         match self.whole {
             true => 0.5,
             false => 2.0 * SAME * FINE,

@@ -13,7 +13,7 @@ use edifice_shape::{
 
 /// A label picture.
 #[derive(Debug, Clone)]
-pub struct Picture {
+pub(super) struct Picture {
     /// The picture with as few cells as possible.
     pub grid: LabelGrid,
     /// Distinct sizes of the areas of each label; of background labels, of the pieces in the tiling.
@@ -29,7 +29,7 @@ impl Picture {
     ///
     /// # Errors
     /// [`RegularizeError`] for a grid that is not valid.
-    pub fn new(grid: &LabelGrid) -> Result<Self, RegularizeError> {
+    pub(super) fn new(grid: &LabelGrid) -> Result<Self, RegularizeError> {
         let grid = grid.merged();
         let (mut sizes, areas) = counts::of_areas(&grid);
         let tiling = decompose(&grid)?.facade;
@@ -85,7 +85,7 @@ impl Layout for Picture {
 
 /// A tiling.
 #[derive(Debug, Clone)]
-pub struct Tiling {
+pub(super) struct Tiling {
     /// The tiling.
     pub facade: Facade,
     /// The same on the grid of its cut lines.
@@ -101,7 +101,7 @@ impl Tiling {
     ///
     /// # Errors
     /// [`RegularizeError`] for a layout that is not a tiling.
-    pub fn new(facade: Facade) -> Result<Self, RegularizeError> {
+    pub(super) fn new(facade: Facade) -> Result<Self, RegularizeError> {
         Ok(Self {
             grid: LabelGrid::from_facade(&facade, None)?,
             layout: facade.indexed()?,
@@ -114,7 +114,7 @@ impl Tiling {
     ///
     /// # Errors
     /// [`LayoutError`] when lines that bound a region have met.
-    pub fn moved(&self, xs: &[f64], ys: &[f64]) -> Result<Facade, LayoutError> {
+    pub(super) fn moved(&self, xs: &[f64], ys: &[f64]) -> Result<Facade, LayoutError> {
         let regions = self.facade.regions.iter().zip(&self.layout.spans);
         let moved = |(region, s): (&Region, &edifice_shape::Span)| {
             let (x, y) = (xs[s.left], ys[s.bottom]);
@@ -197,13 +197,13 @@ fn moved_grid(grid: &LabelGrid, xs: &[f64], ys: &[f64]) -> LabelGrid {
 }
 
 /// The longest way of any line.
-pub fn largest(grid: &LabelGrid, xs: &[f64], ys: &[f64]) -> f64 {
+pub(super) fn largest(grid: &LabelGrid, xs: &[f64], ys: &[f64]) -> f64 {
     let old = grid.xs.iter().chain(&grid.ys);
     let moves = old.zip(xs.iter().chain(ys)).map(|(a, b)| (a - b).abs());
     moves.fold(0.0, f64::max)
 }
 
 /// Number of cut lines, both axes together.
-pub fn lines(grid: &LabelGrid) -> usize {
+pub(super) fn lines(grid: &LabelGrid) -> usize {
     grid.xs.len() + grid.ys.len()
 }

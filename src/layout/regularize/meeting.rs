@@ -6,7 +6,7 @@ use super::groups::{Cluster, Groups};
 impl Axis<'_> {
     /// Merges lines that can meet. Leaders, those with most edge within reach, stay where they are as far
     /// as possible; of the lines beside them, the nearest join first.
-    pub fn merge_lines(&self, clusters: &mut [Cluster]) -> Groups {
+    pub(super) fn merge_lines(&self, clusters: &mut [Cluster]) -> Groups {
         let cuts = &self.cuts;
         let end = cuts.len() - 1;
         let near = |a: usize, b: usize| (cuts[a] - cuts[b]).abs() <= self.reach + 1e-6;

@@ -24,7 +24,7 @@ const REACHES: [f64; 8] = [1.0, 0.9, 0.75, 0.6, 0.5, 0.4, 0.3, 0.15];
 const MAX_STEPS: usize = 12;
 
 /// A layout that steps can be taken from.
-pub trait Layout: Sized + Clone {
+pub(super) trait Layout: Sized + Clone {
     /// One step along the chosen axes, that leaves each line within its range; `None` when nothing more becomes
     /// equal.
     ///
@@ -44,7 +44,7 @@ pub trait Layout: Sized + Clone {
 
 /// The limits of a step.
 #[derive(Debug, Clone)]
-pub struct Limits {
+pub(super) struct Limits {
     /// Longest way of any line from where it is.
     pub reach: f64,
     /// Depth of the deepest nick that may be filled.
@@ -57,7 +57,7 @@ pub struct Limits {
 
 /// The result of one step.
 #[derive(Debug, Clone)]
-pub struct Step<L> {
+pub(super) struct Step<L> {
     /// The layout.
     pub layout: L,
     /// Lines along x and y before and after it.
@@ -70,7 +70,7 @@ pub struct Step<L> {
 
 /// The result of several steps.
 #[derive(Debug, Clone)]
-pub struct Made<L> {
+pub(super) struct Made<L> {
     /// The layout.
     pub layout: L,
     /// Longest way of any edge.
@@ -87,7 +87,10 @@ pub struct Made<L> {
 ///
 /// # Errors
 /// Those of the steps.
-pub fn project<L: Layout>(start: &L, tolerance: f64) -> Result<Option<Made<L>>, RegularizeError> {
+pub(super) fn project<L: Layout>(
+    start: &L,
+    tolerance: f64,
+) -> Result<Option<Made<L>>, RegularizeError> {
     if tolerance == 0.0 || is_regular(start, tolerance)? {
         return Ok(None);
     }

@@ -23,7 +23,7 @@ use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve as solve_qp};
 const LEAST_SHARE: f64 = 0.5;
 
 /// New positions of all cut lines; merged ones are equal.
-pub fn solve(
+pub(super) fn solve(
     cuts: &[f64],
     weights: &[f64],
     runs: &[Run],

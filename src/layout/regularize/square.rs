@@ -4,7 +4,7 @@ use edifice_shape::{LabelGrid, Span, components, is_background};
 
 /// The result of squaring.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Nicks {
+pub(super) struct Nicks {
     /// Areas that became rectangles.
     pub count: usize,
     /// Depth of the deepest nick that was filled.
@@ -14,7 +14,7 @@ pub struct Nicks {
 /// Fills the nicks of every area that is not background: where its smallest rectangle shows
 /// background not deeper than `tolerance` from a side. Areas with deeper nicks, or with other elements
 /// in them, stay as they are.
-pub fn square(grid: &LabelGrid, tolerance: f64) -> (LabelGrid, Nicks) {
+pub(super) fn square(grid: &LabelGrid, tolerance: f64) -> (LabelGrid, Nicks) {
     let mut grid = grid.merged();
     let columns = grid.columns();
     let whole = Span {

@@ -2,7 +2,7 @@
 
 /// A stretch of one area along a strip, between cut lines `from` and `to`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run {
+pub(super) struct Run {
     /// Background and odd shapes are served after elements.
     pub behind: bool,
     /// Label number; only runs of one label become equal.
@@ -17,7 +17,7 @@ pub struct Run {
 
 /// The areas of all cells, strip by strip.
 #[derive(Clone, Copy)]
-pub struct Strips<'a> {
+pub(super) struct Strips<'a> {
     /// Area of each cell.
     pub cells: &'a [u32],
     /// True for each cell that may vanish although its area does not continue beside it.
@@ -30,14 +30,14 @@ pub struct Strips<'a> {
 
 impl<'a> Strips<'a> {
     /// The strips.
-    pub fn rows(self) -> impl Iterator<Item = &'a [u32]> {
+    pub(super) fn rows(self) -> impl Iterator<Item = &'a [u32]> {
         self.cells.chunks_exact(self.length)
     }
 
     /// True if the cells between lines `first` and `last` can vanish: in each strip they continue the area before them,
     /// then the area behind them; a `narrow` stretch between the two may vanish when all of it yields and no two areas
     /// of one label come to touch.
-    pub fn can_vanish(
+    pub(super) fn can_vanish(
         self,
         first: usize,
         last: usize,

@@ -10,7 +10,7 @@ const LEAST_SHARE: f64 = 0.15;
 
 /// A region, or a part of one between two seams.
 #[derive(Debug, Clone, Copy)]
-pub struct Piece<'a> {
+pub(super) struct Piece<'a> {
     /// Its label.
     pub label: &'a str,
     /// Start and end along the axis.
@@ -20,7 +20,7 @@ pub struct Piece<'a> {
 }
 
 /// For each label of elements: the number below a next floor, and the share of them with their like in line there.
-pub fn shares<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str, (usize, f64)> {
+pub(super) fn shares<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str, (usize, f64)> {
     let mut by_label: BTreeMap<&str, Vec<&Piece>> = BTreeMap::new();
     for piece in pieces.iter().filter(|piece| !is_background(piece.label)) {
         by_label.entry(piece.label).or_default().push(piece);
@@ -53,7 +53,10 @@ pub fn shares<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str, (usize,
 }
 
 /// The greatest fall of a share.
-pub fn loss(before: &BTreeMap<&str, (usize, f64)>, after: &BTreeMap<&str, (usize, f64)>) -> f64 {
+pub(super) fn loss(
+    before: &BTreeMap<&str, (usize, f64)>,
+    after: &BTreeMap<&str, (usize, f64)>,
+) -> f64 {
     before
         .iter()
         .filter(|(_, (count, share))| *count >= FEWEST && *share >= LEAST_SHARE)

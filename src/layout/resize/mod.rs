@@ -39,6 +39,7 @@ pub struct Aligned {
 
 /// Why a resized facade cannot be aligned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AlignError {
     /// More kinds of terminals than can be told apart.
     #[error("the grammar writes {count} kinds of terminals, at most 65536 can be aligned")]

@@ -43,6 +43,7 @@ pub struct Retiled {
 
 /// Why a picture was not retiled.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RetileError<E: std::error::Error + 'static> {
     /// The tolerance is no share.
     #[error("the tolerance is {value}, expected a share of the area from 0 to below 1")]

@@ -7,7 +7,7 @@ const WIDEST: f64 = 0.04;
 
 /// The rule by which the next merge is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub(super) enum Order {
     /// The one that makes the least area wrong.
     Area,
     /// The one that makes the least area wrong for each label edge that it takes away.
@@ -16,7 +16,7 @@ pub enum Order {
 
 /// A picture on the path.
 #[derive(Debug, Clone)]
-pub struct State {
+pub(super) struct State {
     /// The picture.
     pub grid: LabelGrid,
     /// Area whose label differs from that of the first picture.
@@ -36,7 +36,7 @@ struct Merging {
 /// The pictures from the first one to the last whose wrong area is at most `limit`, after each merge.
 ///
 /// `O(c l)` for each of at most as many merges as there are lines, for `c` cells and `l` labels.
-pub fn merges(first: &LabelGrid, limit: f64, order: Order) -> Vec<State> {
+pub(super) fn merges(first: &LabelGrid, limit: f64, order: Order) -> Vec<State> {
     let first = first.merged();
     let labels = first.labels.len();
     let mut areas = vec![0.0; first.cells.len() * labels];

@@ -5,6 +5,7 @@ use super::coding::{FLOORS, Observation, THERE};
 
 /// Why a table does not tell of houses.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ObservationError {
     /// No column is an attribute.
     #[error("no column is an attribute of houses, for example `bbox.w`")]

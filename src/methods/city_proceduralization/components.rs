@@ -29,7 +29,7 @@ const LEAST_HEIGHT: f64 = 2.0;
 /// Most samples of A(z): 4 km.
 const MOST_SAMPLES: usize = 16_000;
 /// Cells along a side of the looks.
-pub const LOOKS: usize = 4;
+pub(crate) const LOOKS: usize = 4;
 /// Pixels along a cell of the looks.
 const DETAIL: usize = 8;
 /// Columns per cell along a side.
@@ -205,7 +205,7 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
 /// The heights at which a building is cut, increasing.
 ///
 /// With `S_i = A(z_i) - A(z_{i+1})`, a cut is where `|S_i - S_{i-1}|` exceeds 5 % of the largest area.
-pub fn cut_planes(mesh: &TriangleMesh) -> Vec<f64> {
+pub(crate) fn cut_planes(mesh: &TriangleMesh) -> Vec<f64> {
     let Some(profile) = SectionProfile::new(mesh, STEP, MOST_SAMPLES) else {
         return Vec::new();
     };

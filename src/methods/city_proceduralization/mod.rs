@@ -53,6 +53,7 @@ pub mod emission;
 pub mod facades;
 pub mod features;
 mod gain;
+pub mod judge;
 pub mod localization;
 mod medoids;
 mod nearest;

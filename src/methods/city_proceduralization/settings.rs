@@ -85,6 +85,7 @@ impl Default for Settings {
 
 /// Why a city cannot be proceduralized.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProceduralizeError {
     /// There is nothing to proceduralize.
     #[error("no building has a triangle with an area")]

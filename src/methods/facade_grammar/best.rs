@@ -29,7 +29,7 @@ impl Search<'_> {
     /// 4. annealing over the set of non-terminal types, from the cheapest grammar so far.
     ///
     /// Everything ends when a limit of memory is reached, or when the search is stopped.
-    pub fn best(&self, facades: &[Facade]) -> Result<Found, InferError> {
+    pub(crate) fn best(&self, facades: &[Facade]) -> Result<Found, InferError> {
         if !self.watched.goes_on(Progress::stage("Lagrangian bound")) {
             return Ok((self.cheapest(std::iter::empty()), self.few_rules(facades)));
         }

@@ -26,7 +26,7 @@ type Ruled = (f64, Rc<RuleCandidate>);
 impl Search<'_> {
     /// Rules of the union over the types of this search; `None` where equal sizes of one facade are told apart beside
     /// another facade, so that no rule over the union's types derives it.
-    pub fn union(&self, facades: &[Facade]) -> Result<Option<Vec<AddRule>>, InferError> {
+    pub(crate) fn union(&self, facades: &[Facade]) -> Result<Option<Vec<AddRule>>, InferError> {
         let mut members = FxHashSet::default();
         let mut known: FxHashMap<TypeId, Ruled> = FxHashMap::default();
         for (index, facade) in facades.iter().enumerate() {

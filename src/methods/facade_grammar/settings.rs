@@ -81,6 +81,7 @@ impl Default for Settings {
 
 /// Why no grammar was found.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum InferError {
     /// No facade was given.
     #[error("there is no facade to explain")]

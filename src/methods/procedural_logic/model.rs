@@ -44,6 +44,7 @@ pub struct Model {
 
 /// Why there is no model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// There are no facades to learn from.
     #[error("no facades to learn from")]
@@ -156,6 +157,7 @@ impl Model {
 
 /// Why a facade of a model has no profile.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProfileError {
     /// Its call does not fit the rules.
     #[error(transparent)]

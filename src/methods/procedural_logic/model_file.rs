@@ -64,6 +64,7 @@ struct FacadeRecord {
 
 /// Why a record is no model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelFileError {
     /// A parameter is out of range.
     #[error(transparent)]

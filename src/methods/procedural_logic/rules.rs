@@ -257,6 +257,7 @@ fn parameter_vector(tree: &NaryTree) -> Vec<f64> {
 
 /// A call that the rule set cannot answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InstanceError {
     /// There is no rule of this number.
     #[error("there is no rule {rule}")]

@@ -77,6 +77,7 @@ pub struct Trained {
 
 /// Why nothing can be learnt.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TrainError {
     /// No layout has a window.
     #[error("none of the layouts has a window: nothing to learn from")]

@@ -11,6 +11,7 @@ pub const VERSION: u64 = 1;
 
 /// Why the text of a model cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelFileError {
     /// Not JSON of this form; the message has line and column.
     #[error("{0}")]

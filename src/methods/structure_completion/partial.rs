@@ -22,6 +22,7 @@ pub struct PartialLayout {
 
 /// Why a partial layout cannot be completed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PartialError {
     /// An observed element reaches outside the outline.
     #[error("element {index} ({}) at ({}, {}) reaches outside the outline of {width} x {height}", class.name(), rect.x, rect.y)]

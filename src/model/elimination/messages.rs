@@ -17,7 +17,7 @@ pub(crate) struct Messages<'a> {
 }
 
 impl<'a> Messages<'a> {
-    pub fn new(factors: &'a [Factor], sizes: &'a [usize]) -> Self {
+    pub(crate) fn new(factors: &'a [Factor], sizes: &'a [usize]) -> Self {
         let mut around = vec![Vec::new(); sizes.len()];
         let mut to = Vec::with_capacity(factors.len());
         for (f, factor) in factors.iter().enumerate() {
@@ -39,7 +39,7 @@ impl<'a> Messages<'a> {
     }
 
     /// True if no factor speaks to a variable.
-    pub fn is_free(&self, v: usize) -> bool {
+    pub(crate) fn is_free(&self, v: usize) -> bool {
         self.around[v].is_empty()
     }
 
@@ -55,7 +55,7 @@ impl<'a> Messages<'a> {
     }
 
     /// Sends every message anew; the largest change of a probability.
-    pub fn round(&mut self) -> f64 {
+    pub(crate) fn round(&mut self) -> f64 {
         let mut moved: f64 = 0.0;
         for (f, factor) in self.factors.iter().enumerate() {
             let vars = &factor.vars;
@@ -96,7 +96,7 @@ impl<'a> Messages<'a> {
     }
 
     /// The belief of a variable; `None` when nothing is possible.
-    pub fn belief(&self, v: usize) -> Option<Vec<f64>> {
+    pub(crate) fn belief(&self, v: usize) -> Option<Vec<f64>> {
         let sum = self.without(v, usize::MAX);
         let total = log_sum_exp(&sum);
         (total > f64::NEG_INFINITY).then(|| sum.iter().map(|s| (s - total).exp()).collect())
@@ -104,7 +104,7 @@ impl<'a> Messages<'a> {
 
     /// Bethe's approximation of `log Σ Π f`: `Σ_f log Z_f - Σ_v (d_v - 1) log Z_v` by the messages as they are, with `Z_f` the sum of f times what
     /// its variables hear from elsewhere and `Z_v` of what they hear from all, messages normalised; exact on trees.
-    pub fn log_partition(&self) -> f64 {
+    pub(crate) fn log_partition(&self) -> f64 {
         let mut total = 0.0;
         // Σ_v log Z_v + Σ_f log Z_f - Σ_(f, v) log Z_fv, Z_fv of the products of both messages.
         for v in (0..self.sizes.len()).filter(|&v| !self.is_free(v)) {

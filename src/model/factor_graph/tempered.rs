@@ -26,7 +26,7 @@ pub(super) struct Ladder<S> {
 
 impl<S: Clone + Send + Sync> Ladder<S> {
     /// Chains at `temperatures - 1` further temperatures, which all start at the states given.
-    pub fn new(temperatures: usize, start: &[S]) -> Self {
+    pub(super) fn new(temperatures: usize, start: &[S]) -> Self {
         let count = temperatures.max(1);
         let betas: Vec<f64> = (1..count).map(|k| 1.0 - k as f64 / count as f64).collect();
         let states = start.iter().map(|s| vec![s.clone(); betas.len()]);
@@ -37,7 +37,7 @@ impl<S: Clone + Send + Sync> Ladder<S> {
     }
 
     /// Moves the hotter chains, then exchanges states down to `cold`, the chains of β = 1.
-    pub fn exchange<C: Chain<State = S>>(
+    pub(super) fn exchange<C: Chain<State = S>>(
         &mut self,
         chain: &C,
         cold: &mut [S],

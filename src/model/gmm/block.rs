@@ -24,7 +24,7 @@ pub(super) struct Work {
 
 impl Work {
     /// An accumulator for rows of `d` values and `k` components.
-    pub fn new(d: usize, k: usize) -> Self {
+    pub(super) fn new(d: usize, k: usize) -> Self {
         Self {
             x: vec![0.0; BLOCK * d],
             z: vec![0.0; BLOCK * d],

@@ -61,6 +61,7 @@ impl Parameters {
 
 /// Why a fit of [`Parameters`] has no result.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LinfaError {
     /// The model layer refuses the data or the settings.
     #[error(transparent)]

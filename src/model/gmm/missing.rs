@@ -24,7 +24,7 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    pub fn of(x: &[f64]) -> Self {
+    pub(super) fn of(x: &[f64]) -> Self {
         let (missing, observed) = (0..x.len()).partition(|&i| x[i].is_nan());
         Self { observed, missing }
     }
@@ -44,7 +44,7 @@ struct Marginal {
 }
 
 impl Marginals {
-    pub fn new(model: &Mixture, pattern: Pattern) -> Self {
+    pub(super) fn new(model: &Mixture, pattern: Pattern) -> Self {
         let (d, o) = (model.d, pattern.observed.len());
         let components = (0..model.components()).map(|k| {
             let mut l = submatrix(model.covariance(k), d, &pattern.observed, &pattern.observed);
@@ -62,13 +62,13 @@ impl Marginals {
         }
     }
 
-    pub fn fits(&self, x: &[f64]) -> bool {
+    pub(super) fn fits(&self, x: &[f64]) -> bool {
         self.pattern.observed.iter().all(|&i| !x[i].is_nan())
             && self.pattern.missing.iter().all(|&i| x[i].is_nan())
     }
 
     /// `log (w_k N(x_o; μ_k, Σ_k))` of every component.
-    pub fn log_joint(&self, model: &Mixture, x: &[f64]) -> Vec<f64> {
+    pub(super) fn log_joint(&self, model: &Mixture, x: &[f64]) -> Vec<f64> {
         let mut z = vec![0.0; self.pattern.observed.len()];
         (0..self.components.len())
             .map(|k| self.whiten(model, k, x, &mut z))

@@ -41,7 +41,7 @@ pub(crate) struct Moments {
 }
 
 impl<'a> Steps<'a> {
-    pub fn new(
+    pub(super) fn new(
         points: &'a Points<'a>,
         k: usize,
         settings: &'a Settings,
@@ -111,7 +111,7 @@ impl<'a> Steps<'a> {
     }
 
     /// When EM stops: the gain a row is one of all rows.
-    pub fn stopping(&self) -> Stopping {
+    pub(super) fn stopping(&self) -> Stopping {
         let stopping = self.settings.stopping;
         Stopping {
             gain: stopping.gain.max(self.settings.gain * self.points.total()),
@@ -120,7 +120,7 @@ impl<'a> Steps<'a> {
     }
 
     /// The mixture relative to the centre.
-    pub fn centred(&self, mixture: &Mixture) -> Mixture {
+    pub(super) fn centred(&self, mixture: &Mixture) -> Mixture {
         self.moved(mixture, -1.0)
     }
 
@@ -135,7 +135,7 @@ impl<'a> Steps<'a> {
     }
 
     /// The fit in the points' own origin.
-    pub fn result(&self, fit: Fit<Mixture>) -> Fitted {
+    pub(super) fn result(&self, fit: Fit<Mixture>) -> Fitted {
         Fitted {
             mixture: self.moved(&fit.model, 1.0),
             log_likelihood: fit.log_likelihood,
@@ -144,7 +144,7 @@ impl<'a> Steps<'a> {
         }
     }
 
-    pub fn empty(&self) -> Moments {
+    pub(super) fn empty(&self) -> Moments {
         let d = self.points.dimension();
         let size = match self.settings.covariance {
             Covariance::Diagonal => 2 * d + 1,

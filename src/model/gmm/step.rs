@@ -19,7 +19,7 @@ const CHUNK: usize = 2048;
 
 impl Steps<'_> {
     /// One k-means++ start.
-    pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Mixture, ModelError> {
+    pub(super) fn start<R: Rng>(&self, rng: &mut R) -> Result<Mixture, ModelError> {
         let d = self.points.dimension();
         let n = self.points.len();
         // Many rows are represented by a systematic sample.

@@ -31,7 +31,7 @@ pub(crate) struct Background {
 
 impl Background {
     /// For groups with `p` inputs (the leading 1 among them) and `d` columns; `None` for no share.
-    pub fn new(share: f64, p: &[usize], d: &[usize]) -> Option<Self> {
+    pub(crate) fn new(share: f64, p: &[usize], d: &[usize]) -> Option<Self> {
         let of = |(&p, &d): (&usize, &usize)| {
             let mut covariance = vec![0.0; d * d];
             (0..d).for_each(|i| covariance[i * d + i] = WIDTH * WIDTH);
@@ -43,7 +43,7 @@ impl Background {
 
     /// Mixes the background into the states of group `g` at `u`: log densities become densities over a common factor,
     /// whose log is returned, and `own` says which share of each the state's own Gaussian has.
-    pub fn mix(
+    pub(crate) fn mix(
         &self,
         g: usize,
         u: &[f64],

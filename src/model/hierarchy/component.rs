@@ -41,7 +41,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// Sorts the groups of a row; `real` has NaN for missing values.
-    pub fn of(shape: &Shape, real: &[f64]) -> Self {
+    pub(crate) fn of(shape: &Shape, real: &[f64]) -> Self {
         let groups = shape.groups();
         let own = |g: usize| shape.columns[g][shape.p[g] - 1..].iter();
         let mut active = vec![false; groups];
@@ -92,7 +92,7 @@ impl Pattern {
 
 impl Component {
     /// Enumerates the assignments of `groups` (in topological order) for one row.
-    pub fn new(
+    pub(crate) fn new(
         shape: &Shape,
         params: &Params,
         groups: &[usize],
@@ -144,7 +144,7 @@ impl Component {
     /// `P(states | s) exp(log p(observed values | particle) - most(s))`, particle by particle, and for every style the
     /// greatest log density of its particles, `most(s)`: a style of small densities may be the one that other groups
     /// of the row ask for.
-    pub fn by_style(&self, styles: usize) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn by_style(&self, styles: usize) -> (Vec<f64>, Vec<f64>) {
         let mut most = vec![f64::NEG_INFINITY; styles];
         let rows = || self.weights.chunks(styles).zip(self.particles.iter());
         for (weights, particle) in rows() {

@@ -39,7 +39,7 @@ pub(crate) struct Scored {
 }
 
 impl<'a> Problem<'a> {
-    pub fn new(
+    pub(crate) fn new(
         schema: &'a Schema,
         rows: &'a Rows,
         priors: &'a Priors,
@@ -56,7 +56,7 @@ impl<'a> Problem<'a> {
 
     /// Calls `visit` with every completion of row `i` (extended real values, codes), already inferred, and its
     /// probability given the row; returns `log p(row)`.
-    pub fn visit(
+    pub(crate) fn visit(
         &self,
         params: &Params,
         i: usize,
@@ -140,7 +140,7 @@ impl<'a> Problem<'a> {
     }
 
     /// EM as long as `goes_on`, then the Cheeseman-Stutz score.
-    pub fn fit_while(
+    pub(crate) fn fit_while(
         &self,
         start: Params,
         stopping: &Stopping,
@@ -150,7 +150,7 @@ impl<'a> Problem<'a> {
     }
 
     /// As [`Self::fit_while`], and why EM ended.
-    pub fn fit_told(
+    pub(crate) fn fit_told(
         &self,
         start: Params,
         stopping: &Stopping,
@@ -177,7 +177,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Parameters from hard assignments: style, and state per group, of the given rows.
-    pub fn assigned(
+    pub(crate) fn assigned(
         &self,
         rows: &[usize],
         styles: &[usize],
@@ -218,7 +218,7 @@ impl<'a> Problem<'a> {
 
     /// A start from k-means++ clusters: of whole rows for S, of each group for its hidden variable.
     /// Many rows are represented by a systematic sample.
-    pub fn start<R: Rng>(&self, rng: &mut R) -> Result<Params, ModelError> {
+    pub(crate) fn start<R: Rng>(&self, rng: &mut R) -> Result<Params, ModelError> {
         let n = self.rows.rows;
         let rows: Vec<usize> = (0..n).step_by(n.div_ceil(SAMPLE).max(1)).collect();
         let all: Vec<usize> = (0..self.rows.d).collect();

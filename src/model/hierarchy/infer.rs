@@ -37,7 +37,7 @@ pub(crate) struct Scratch {
 }
 
 impl Scratch {
-    pub fn new(shape: &Shape) -> Self {
+    pub(crate) fn new(shape: &Shape) -> Self {
         let styles = shape.structure.styles;
         let groups = 0..shape.groups();
         let widest = shape.columns.iter().map(Vec::len).max().unwrap_or(0) + 1;
@@ -61,7 +61,7 @@ impl Scratch {
     }
 
     /// Infers the posterior of a row whose parent categories are all known.
-    pub fn infer(&mut self, shape: &Shape, params: &Params, real: &[f64], codes: &[u32]) {
+    pub(crate) fn infer(&mut self, shape: &Shape, params: &Params, real: &[f64], codes: &[u32]) {
         let styles = shape.structure.styles;
         for (l, p) in self.style.iter_mut().zip(&params.style) {
             *l = p.ln();
@@ -177,7 +177,7 @@ impl Scratch {
     }
 
     /// Adds the expected statistics of the row just inferred, `weight` times.
-    pub fn accumulate(
+    pub(crate) fn accumulate(
         &mut self,
         shape: &Shape,
         params: &Params,

@@ -65,7 +65,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    pub fn new(schema: &Schema, structure: Structure) -> Result<Self, ModelError> {
+    pub(crate) fn new(schema: &Schema, structure: Structure) -> Result<Self, ModelError> {
         let order = structure.order(&schema.groups)?;
         let names: Vec<String> = schema.codes.iter().map(|c| c.name.clone()).collect();
         graph::order(&structure.code_parents, &names)?;
@@ -101,7 +101,12 @@ impl Shape {
 
     /// The row that linear Gaussians read: `real`, then an indicator of every category, where a category shifts a mean
     /// (1 for the category that the row has; all 0 for a missing one).
-    pub fn extended<'r>(&self, real: &'r [f64], codes: &[u32], row: &'r mut Vec<f64>) -> &'r [f64] {
+    pub(crate) fn extended<'r>(
+        &self,
+        real: &'r [f64],
+        codes: &[u32],
+        row: &'r mut Vec<f64>,
+    ) -> &'r [f64] {
         if self.structure.shifts.iter().all(Vec::is_empty) {
             return real;
         }
@@ -116,21 +121,21 @@ impl Shape {
         row
     }
 
-    pub fn groups(&self) -> usize {
+    pub(crate) fn groups(&self) -> usize {
         self.columns.len()
     }
 
-    pub fn states(&self, g: usize) -> usize {
+    pub(crate) fn states(&self, g: usize) -> usize {
         self.structure.states(g, &self.sizes)
     }
 
-    pub fn hidden(&self, g: usize) -> bool {
+    pub(crate) fn hidden(&self, g: usize) -> bool {
         matches!(self.structure.selectors[g], Selector::Hidden(_))
     }
 
     /// The state that a particle means by `state` of group `g`, and true if it is of the background instead (numbers
     /// from [`Self::states`] on; which state is then open but for categories that select it).
-    pub fn read(&self, g: usize, state: usize) -> (usize, bool) {
+    pub(crate) fn read(&self, g: usize, state: usize) -> (usize, bool) {
         let states = self.states(g);
         match state.checked_sub(states) {
             Some(state) => (state, true),
@@ -144,7 +149,7 @@ impl Shape {
     }
 
     /// All assignments of categories to `columns`, the first slowest.
-    pub fn configurations(&self, columns: &[usize]) -> Vec<Vec<usize>> {
+    pub(crate) fn configurations(&self, columns: &[usize]) -> Vec<Vec<usize>> {
         columns.iter().fold(vec![Vec::new()], |all, &c| {
             let longer =
                 |codes: Vec<usize>| (0..self.sizes[c]).map(move |v| [&codes[..], &[v]].concat());
@@ -152,7 +157,7 @@ impl Shape {
         })
     }
 
-    pub fn stats(&self) -> Stats {
+    pub(crate) fn stats(&self) -> Stats {
         let s = self.structure.styles;
         let groups = 0..self.groups();
         Stats {
@@ -181,7 +186,7 @@ impl Shape {
     }
 
     /// Parameters of highest expected complete-data posterior.
-    pub fn maximize(&self, stats: &Stats, priors: &Priors) -> Result<Params, ModelError> {
+    pub(crate) fn maximize(&self, stats: &Stats, priors: &Priors) -> Result<Params, ModelError> {
         let s = self.structure.styles;
         let mut linear = Vec::with_capacity(self.groups());
         for (g, states) in stats.scatter.iter().enumerate() {
@@ -206,7 +211,7 @@ impl Shape {
     }
 
     /// `log P(Θ)`.
-    pub fn log_prior(&self, params: &Params, priors: &Priors) -> f64 {
+    pub(crate) fn log_prior(&self, params: &Params, priors: &Priors) -> f64 {
         let s = self.structure.styles;
         let alpha = priors.dirichlet;
         let table = |t: &[f64], k: usize| -> f64 {
@@ -230,7 +235,7 @@ impl Shape {
 
     /// Cheeseman-Stutz score (Eq. 2 with a uniform P(G)):
     /// `log P(O* | G) + log P(O | G, Θ) - log P(O* | G, Θ)`, O* given by its expected statistics.
-    pub fn score(&self, params: &Params, stats: &Stats, priors: &Priors) -> Option<f64> {
+    pub(crate) fn score(&self, params: &Params, stats: &Stats, priors: &Priors) -> Option<f64> {
         let s = self.structure.styles;
         let alpha = priors.dirichlet;
         let table = |counts: &[f64], probabilities: &[f64], k: usize| -> f64 {
@@ -255,7 +260,7 @@ impl Shape {
     }
 
     /// Number of free parameters, for BIC.
-    pub fn free_parameters(&self) -> usize {
+    pub(crate) fn free_parameters(&self) -> usize {
         let s = self.structure.styles;
         let mut count = s - 1;
         for g in 0..self.groups() {
@@ -276,7 +281,7 @@ impl Shape {
 
 impl Stats {
     /// Adds the statistics of other rows.
-    pub fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         add(&mut self.style, &other.style);
         for (a, b) in self.tables.iter_mut().zip(&other.tables) {
             add(a, b);
@@ -298,7 +303,7 @@ impl Stats {
 
 impl Params {
     /// Largest absolute difference of a parameter.
-    pub fn movement(&self, other: &Self) -> f64 {
+    pub(crate) fn movement(&self, other: &Self) -> f64 {
         let far = |a: &[f64], b: &[f64]| {
             a.iter()
                 .zip(b)

@@ -70,7 +70,11 @@ pub(crate) struct Schema {
 
 impl Schema {
     /// Reads names, categories, means and scales from training data.
-    pub fn learn(data: &Table, groups: &[Group], constant: Constant) -> Result<Self, ModelError> {
+    pub(crate) fn learn(
+        data: &Table,
+        groups: &[Group],
+        constant: Constant,
+    ) -> Result<Self, ModelError> {
         let mut schema = Self {
             groups: Vec::new(),
             offsets: vec![0],
@@ -140,18 +144,18 @@ impl Schema {
     }
 
     /// Real columns of real group `g`.
-    pub fn columns(&self, g: usize) -> std::ops::Range<usize> {
+    pub(crate) fn columns(&self, g: usize) -> std::ops::Range<usize> {
         self.offsets[g]..self.offsets[g + 1]
     }
 
     /// Numbers of categories.
-    pub fn sizes(&self) -> Vec<usize> {
+    pub(crate) fn sizes(&self) -> Vec<usize> {
         self.codes.iter().map(|c| c.categories.len()).collect()
     }
 
     /// The index at which the indicators of each categorical column start in a row of real columns and indicators, and
     /// its length at the end.
-    pub fn indicators(&self) -> Vec<usize> {
+    pub(crate) fn indicators(&self) -> Vec<usize> {
         let mut starts = vec![self.reals.len()];
         for (i, size) in self.sizes().into_iter().enumerate() {
             starts.push(starts[i] + size);
@@ -160,7 +164,7 @@ impl Schema {
     }
 
     /// Standardised rows of `data`, columns found by name; a column that is absent is missing.
-    pub fn encode(&self, data: &Table) -> Result<Rows, ModelError> {
+    pub(crate) fn encode(&self, data: &Table) -> Result<Rows, ModelError> {
         let (rows, d, c) = (data.rows(), self.reals.len(), self.codes.len());
         let mut reals = vec![f64::NAN; rows * d];
         for (j, column) in self.reals.iter().enumerate() {
@@ -222,7 +226,7 @@ impl Schema {
     }
 
     /// A table of complete rows from standardised values.
-    pub fn decode(&self, rows: &Rows) -> Result<Table, ModelError> {
+    pub(crate) fn decode(&self, rows: &Rows) -> Result<Table, ModelError> {
         let mut table = Table::new();
         for (j, column) in self.reals.iter().enumerate() {
             let values = (0..rows.rows).map(|i| {
@@ -255,22 +259,22 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    pub fn real(&self, row: usize) -> &[f64] {
+    pub(crate) fn real(&self, row: usize) -> &[f64] {
         &self.reals[row * self.d..(row + 1) * self.d]
     }
 
-    pub fn code(&self, row: usize) -> &[u32] {
+    pub(crate) fn code(&self, row: usize) -> &[u32] {
         &self.codes[row * self.c..(row + 1) * self.c]
     }
 
     /// Number of values that a row lacks.
-    pub fn missing(&self, row: usize) -> usize {
+    pub(crate) fn missing(&self, row: usize) -> usize {
         let reals = self.real(row).iter().filter(|v| v.is_nan()).count();
         reals + self.code(row).iter().filter(|v| **v == MISSING).count()
     }
 
     /// The chosen rows, in the given order.
-    pub fn select(&self, chosen: &[usize]) -> Self {
+    pub(crate) fn select(&self, chosen: &[usize]) -> Self {
         Self {
             rows: chosen.len(),
             reals: chosen.iter().flat_map(|&i| self.real(i)).copied().collect(),

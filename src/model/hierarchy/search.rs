@@ -42,12 +42,12 @@ pub(crate) struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// True if the table is so large that work is saved by default.
-    pub fn large(&self) -> bool {
+    pub(super) fn large(&self) -> bool {
         self.rows.rows * self.rows.d > SMALL
     }
 
     /// Runs the search for every cardinality of S and keeps the first of highest score.
-    pub fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
+    pub(super) fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
         let styles = self.styles();
         type Found = Option<(Scored, Vec<Step>)>;
         let swept = self.swept(&styles);
@@ -95,7 +95,7 @@ impl<'a> Search<'a> {
     }
 
     /// Goes on from a structure and its parameters.
-    pub fn improve(
+    pub(super) fn improve(
         &self,
         structure: Structure,
         params: Params,

@@ -48,7 +48,7 @@ fn none(lists: &[Vec<usize>]) -> bool {
 
 impl Structure {
     /// Cardinalities of S and of every hidden variable as given, no lateral edges.
-    pub fn new(styles: usize, selector: &Selector, groups: usize, codes: usize) -> Self {
+    pub(crate) fn new(styles: usize, selector: &Selector, groups: usize, codes: usize) -> Self {
         Self {
             styles,
             selectors: vec![selector.clone(); groups],
@@ -60,7 +60,7 @@ impl Structure {
     }
 
     /// Categorical columns that are parents of something, ascending.
-    pub fn regressors(&self) -> Vec<usize> {
+    pub(crate) fn regressors(&self) -> Vec<usize> {
         let lists = self.code_parents.iter().chain(&self.shifts);
         let mut all: Vec<usize> = lists.flatten().copied().collect();
         for selector in &self.selectors {
@@ -74,13 +74,13 @@ impl Structure {
     }
 
     /// Number of lateral edges between groups and columns.
-    pub fn edges(&self) -> usize {
+    pub(crate) fn edges(&self) -> usize {
         let lists = self.parents.iter().chain(&self.code_parents);
         lists.chain(&self.shifts).map(Vec::len).sum()
     }
 
     /// Number of linear Gaussians of group `g`; `sizes` are the numbers of categories.
-    pub fn states(&self, g: usize, sizes: &[usize]) -> usize {
+    pub(crate) fn states(&self, g: usize, sizes: &[usize]) -> usize {
         match &self.selectors[g] {
             Selector::Hidden(k) => *k,
             Selector::Style => self.styles,
@@ -89,12 +89,12 @@ impl Structure {
     }
 
     /// Groups with every parent before its children; the name of a group on a cycle otherwise.
-    pub fn order(&self, names: &[String]) -> Result<Vec<usize>, ModelError> {
+    pub(crate) fn order(&self, names: &[String]) -> Result<Vec<usize>, ModelError> {
         order(&self.parents, names)
     }
 
     /// True if group `to` is reached from group `from` along lateral edges.
-    pub fn reaches(&self, from: usize, to: usize) -> bool {
+    pub(crate) fn reaches(&self, from: usize, to: usize) -> bool {
         reaches(&self.parents, from, to)
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    pub fn new(observer: &'a Observer<'a>) -> Self {
+    pub(super) fn new(observer: &'a Observer<'a>) -> Self {
         Self {
             observer,
             ended: AtomicBool::new(false),
@@ -25,17 +25,17 @@ impl<'a> Watch<'a> {
     }
 
     /// Asks the observer; true if the search shall go on. Once false, it stays false.
-    pub fn goes_on(&self) -> bool {
+    pub(super) fn goes_on(&self) -> bool {
         self.tell(None);
         !self.ended()
     }
 
     /// Tells of an accepted configuration.
-    pub fn accepted(&self, step: &Step) {
+    pub(super) fn accepted(&self, step: &Step) {
         self.tell(Some(step));
     }
 
-    pub fn ended(&self) -> bool {
+    pub(super) fn ended(&self) -> bool {
         self.ended.load(Ordering::Relaxed)
     }
 

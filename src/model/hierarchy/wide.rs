@@ -143,7 +143,7 @@ fn shares(problem: &Problem) -> Vec<f64> {
 impl Wide {
     /// Expected counts of a categorical column given `parents` and the style, in the layout of
     /// [`super::params::Stats::codes`]; rows that lack one of them are left out.
-    pub fn counts(&self, problem: &Problem, c: usize, parents: &[usize]) -> Vec<f64> {
+    pub(crate) fn counts(&self, problem: &Problem, c: usize, parents: &[usize]) -> Vec<f64> {
         let sizes = &problem.shape.sizes;
         let configurations: usize = parents.iter().map(|&p| sizes[p]).product();
         let mut counts = vec![0.0; configurations * sizes[c] * self.styles];

@@ -11,7 +11,7 @@ use super::super::error::ModelError;
 use super::{Cpd, Network, Stated, Variable};
 
 /// Most probabilities that the `default` lines of a file may stand for.
-pub const MOST_DEFAULTS: usize = 1 << 22;
+pub(super) const MOST_DEFAULTS: usize = 1 << 22;
 
 impl Network {
     /// Reads a discrete network.

@@ -76,7 +76,7 @@ pub(crate) struct Known {
 
 impl Known {
     /// Known categories, and the first category of every other node: an assignment to start from.
-    pub fn assignment(&self) -> Vec<usize> {
+    pub(crate) fn assignment(&self) -> Vec<usize> {
         self.discrete.iter().map(|v| v.unwrap_or(0)).collect()
     }
 }
@@ -117,7 +117,7 @@ pub(crate) struct Question {
 
 impl Question {
     /// The factors that node n is connected with.
-    pub fn component(&self, n: usize) -> Vec<Factor> {
+    pub(crate) fn component(&self, n: usize) -> Vec<Factor> {
         let mut reached = vec![n];
         let mut left: Vec<&Factor> = self.factors.iter().collect();
         let mut found = Vec::new();

@@ -83,7 +83,7 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    pub fn is_discrete(&self) -> bool {
+    pub(crate) fn is_discrete(&self) -> bool {
         !self.categories.is_empty()
     }
 }

@@ -29,7 +29,7 @@ use crate::network::{self, Network, Variable};
 use edifice_base::rng::{Stream, stream};
 
 /// Random assignments on which a function has to agree.
-pub const PROBES: usize = 64;
+pub(super) const PROBES: usize = 64;
 /// Of these at least so many for each configuration of its parents.
 const EACH: usize = 2;
 /// Most configurations of the parents of one function.

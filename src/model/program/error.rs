@@ -4,6 +4,7 @@ use crate::ModelError;
 
 /// One variant per way in which a program cannot be run or an engine cannot serve it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProgramError {
     /// Two choices of one run at one address.
     #[error("two choices are made at the address `{at}`")]

@@ -25,7 +25,7 @@ use crate::linalg::log_sum_exp;
 use edifice_base::rng::{Stream, stream};
 
 /// Independent groups of particles.
-pub const ISLANDS: usize = 32;
+pub(super) const ISLANDS: usize = 32;
 /// Share of the particles below which they are resampled.
 const LEAST_SHARE: f64 = 0.5;
 

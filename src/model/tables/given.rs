@@ -5,6 +5,7 @@ use crate::{ModelError, Table};
 
 /// The defects of a piece of evidence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GivenError {
     /// Not of the form `name=value`.
     #[error("{text:?}: expected NAME=VALUE")]

@@ -67,6 +67,7 @@ fn empty_cell() -> Vec<String> {
 
 /// Why a table does not fit a schema.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SchemaError {
     /// A column of the schema is not in the table.
     #[error("the table has no column `{column}`")]

@@ -68,6 +68,7 @@ impl Default for Settings {
 
 /// Failures of [`minimize`].
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CmaError {
     /// A setting is out of its range.
     #[error("`{setting}` must be {must}")]

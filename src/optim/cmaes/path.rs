@@ -30,7 +30,7 @@ pub(super) struct Path {
 }
 
 impl Path {
-    pub fn new(start: &[f64], step: f64, count: usize) -> Self {
+    pub(super) fn new(start: &[f64], step: f64, count: usize) -> Self {
         let n = start.len();
         let half = count / 2;
         let raw = (1..=half).map(|i| ((count as f64 + 1.0) / 2.0).ln() - (i as f64).ln());
@@ -57,7 +57,7 @@ impl Path {
         }
     }
 
-    pub fn draw<R: Rng>(&self, rng: &mut R) -> DVector<f64> {
+    pub(super) fn draw<R: Rng>(&self, rng: &mut R) -> DVector<f64> {
         let n = self.mean.len();
         let z = DVector::from_fn(n, |i, _| {
             self.lengths[i] * rng.sample::<f64, _>(StandardNormal)
@@ -66,7 +66,7 @@ impl Path {
     }
 
     /// Learns from steps y in rising order of cost.
-    pub fn learn(&mut self, ranked: &[&DVector<f64>]) {
+    pub(super) fn learn(&mut self, ranked: &[&DVector<f64>]) {
         let n = self.mean.len() as f64;
         let mu = self.effective;
         let c_step = (mu + 2.0) / (n + mu + 5.0);
@@ -124,7 +124,7 @@ impl Path {
     }
 
     /// True if nothing more is to be had from this run.
-    pub fn converged(&self, tolerance: f64, spread: f64) -> bool {
+    pub(super) fn converged(&self, tolerance: f64, spread: f64) -> bool {
         let n = self.mean.len();
         let window = 10 + 30 * n / self.count;
         let largest = self.lengths.max();

@@ -72,6 +72,7 @@ impl Default for Settings {
 
 /// Failures of [`evolve`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NsgaError {
     /// A setting is out of its range.
     #[error("`{setting}` must be {must}")]

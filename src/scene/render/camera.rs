@@ -28,7 +28,7 @@ pub(super) struct View {
 }
 
 impl View {
-    pub fn new(camera: &Camera, width: usize, height: usize) -> Self {
+    pub(super) fn new(camera: &Camera, width: usize, height: usize) -> Self {
         let forward = unit(sub(camera.target, camera.eye));
         let right = unit(cross(forward, [0.0, 1.0, 0.0]));
         Self {
@@ -42,7 +42,7 @@ impl View {
     }
 
     /// Position of the eye, in metres.
-    pub fn eye(&self) -> V {
+    pub(super) fn eye(&self) -> V {
         self.eye
     }
 
@@ -53,7 +53,7 @@ impl View {
     }
 
     /// True if a part of a ball may be in the picture.
-    pub fn sees(&self, center: V, radius: f32) -> bool {
+    pub(super) fn sees(&self, center: V, radius: f32) -> bool {
         let [x, y, z] = self.local(center);
         let inside = |across: f32, half: f32| {
             // Distance from the side plane of the view, outwards.
@@ -64,7 +64,7 @@ impl View {
     }
 
     /// The triangle in pixels with depth 1/z, cut at the near plane: none, one or two triangles.
-    pub fn project(&self, corners: [V; 3], mut each: impl FnMut([[f32; 3]; 3])) {
+    pub(super) fn project(&self, corners: [V; 3], mut each: impl FnMut([[f32; 3]; 3])) {
         let local = corners.map(|p| self.local(p));
         let mut kept = [[0.0; 3]; 4];
         let mut count = 0;
@@ -93,7 +93,7 @@ impl View {
     }
 
     /// The point seen at a pixel's centre with depth 1/z, and the direction towards it.
-    pub fn point(&self, column: usize, row: usize, depth: f32) -> (V, V) {
+    pub(super) fn point(&self, column: usize, row: usize, depth: f32) -> (V, V) {
         let x = (column as f32 + 0.5 - self.middle[0]) / self.focal;
         let y = (self.middle[1] - row as f32 - 0.5) / self.focal;
         let ray = add(add(times(self.right, x), times(self.up, y)), self.forward);

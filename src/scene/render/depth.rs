@@ -8,7 +8,7 @@ pub(super) struct DepthBuffer {
 }
 
 impl DepthBuffer {
-    pub fn new(width: usize, height: usize) -> Self {
+    pub(super) fn new(width: usize, height: usize) -> Self {
         let depths = vec![0.0; width * height];
         Self {
             width,
@@ -19,7 +19,7 @@ impl DepthBuffer {
 
     /// Fills a triangle of pixel coordinates and depth, y down, and tells of each pixel that it is
     /// the nearest of so far. Depth is linear over the picture.
-    pub fn triangle(&mut self, corners: [[f32; 3]; 3], mut seen: impl FnMut(usize)) {
+    pub(super) fn triangle(&mut self, corners: [[f32; 3]; 3], mut seen: impl FnMut(usize)) {
         let [a, b, c] = corners;
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
         if !area.is_finite() || area.abs() < 1e-9 {

@@ -37,14 +37,14 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub fn is_sky(&self) -> bool {
+    pub(super) fn is_sky(&self) -> bool {
         self.distance.is_infinite()
     }
 }
 
 impl World {
     /// The triangles of a scene in their places.
-    pub fn new(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &Scene) -> Self {
         let mut corners = Vec::new();
         let mut colours = Vec::new();
         for group in &scene.groups {
@@ -69,7 +69,7 @@ impl World {
 
     /// The first surface that a ray meets; with a turn of 0 to 15 also the share of open sky, from directions turned by
     /// it.
-    pub fn seen(&self, from: V, ray: V, turn: Option<usize>) -> Seen {
+    pub(super) fn seen(&self, from: V, ray: V, turn: Option<usize>) -> Seen {
         let hit = self.tree.nearest(from, ray);
         let ground = (ray[1] < -1e-4).then(|| -from[1] / ray[1]);
         let ground = ground.filter(|t| hit.as_ref().is_none_or(|h| *t < h.distance));
@@ -125,7 +125,7 @@ impl World {
     }
 
     /// Light that comes back along the ray.
-    pub fn light(&self, seen: &Seen, open: f32) -> V {
+    pub(super) fn light(&self, seen: &Seen, open: f32) -> V {
         if seen.is_sky() {
             return sky(seen.ray);
         }

@@ -37,7 +37,7 @@ pub(super) struct Hit {
 }
 
 impl Tree {
-    pub fn new(corners: Vec<[V; 3]>) -> Self {
+    pub(super) fn new(corners: Vec<[V; 3]>) -> Self {
         let mut tree = Self {
             order: (0..corners.len() as u32).collect(),
             nodes: Vec::with_capacity(corners.len()),
@@ -117,23 +117,23 @@ impl Tree {
     }
 
     /// Unit normal of a triangle.
-    pub fn normal(&self, triangle: usize) -> V {
+    pub(super) fn normal(&self, triangle: usize) -> V {
         let [a, b, c] = self.corners[triangle];
         unit(cross(sub(b, a), sub(c, a)))
     }
 
     /// The first triangle that a ray meets from its front.
-    pub fn nearest(&self, from: V, ray: V) -> Option<Hit> {
+    pub(super) fn nearest(&self, from: V, ray: V) -> Option<Hit> {
         self.meet(from, ray, f32::INFINITY, false)
     }
 
     /// The first triangle that a ray meets from its front, within a distance.
-    pub fn nearest_within(&self, from: V, ray: V, most: f32) -> Option<Hit> {
+    pub(super) fn nearest_within(&self, from: V, ray: V, most: f32) -> Option<Hit> {
         self.meet(from, ray, most, false)
     }
 
     /// True if a ray meets any triangle from its front.
-    pub fn blocks(&self, from: V, ray: V) -> bool {
+    pub(super) fn blocks(&self, from: V, ray: V) -> bool {
         self.meet(from, ray, 1e4, true).is_some()
     }
 

@@ -47,7 +47,7 @@ impl<'a> View<'a> {
 }
 
 /// The lines of `axis` that minimize the energy of the module's first page, both borders included.
-pub fn choose(grid: &LabelGrid, axis: Axis, tolerance: f64) -> Vec<f64> {
+pub(super) fn choose(grid: &LabelGrid, axis: Axis, tolerance: f64) -> Vec<f64> {
     let view = View::new(grid, axis);
     let lines = candidates(&view, tolerance);
     let costs = strip_costs(&view, &lines, tolerance);

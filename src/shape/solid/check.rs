@@ -19,6 +19,7 @@ pub struct Report {
 
 /// The defects of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// It has no triangles.
     #[error("the surface has no triangles")]

@@ -218,7 +218,7 @@ const stories = {
     writeFileSync(file, JSON.stringify({ format: "edifice/facade", version: 1, name: "<script>alert(3)</script>", unit: "m", width: 4, height: 4, regions: [region] }));
     const server = await studio([file, "--read-only"]);
     const { page, faults } = await open(context, server.address);
-    await page.getByRole("button", { name: /onerror/ }).click();
+    await page.getByRole("button", { name: /onerror/ }).first().click();
     await shown(page);
     assert.equal(await page.locator("img, b[onmouseover], script:not([src])").count(), 0);
     assert.ok(await page.getByRole("button", { name: "Save" }).isDisabled());

@@ -9,7 +9,7 @@ use edifice::shape::{Axis, Rect, Region};
 use rand::RngExt;
 
 /// A random deterministic grammar of absolute integer sizes: all five operations, shared symbols.
-pub fn random_grammar(seed: u64) -> Grammar {
+pub(super) fn random_grammar(seed: u64) -> Grammar {
     let mut rng = stream(seed, "random_grammar", 0);
     let (width, height) = (rng.random_range(1..200), rng.random_range(1..200));
     let mut maker = Maker {
@@ -164,7 +164,7 @@ impl Maker {
 }
 
 /// Derivation by recursion, for deterministic grammars of absolute sizes.
-pub fn naive(grammar: &Grammar, symbol: &str, rect: Rect, out: &mut Vec<Region>) {
+pub(super) fn naive(grammar: &Grammar, symbol: &str, rect: Rect, out: &mut Vec<Region>) {
     let Some(rule) = grammar.rules.iter().find(|r| r.symbol == symbol) else {
         let label = symbol.into();
         out.push(Region { label, rect });
@@ -226,7 +226,7 @@ pub fn naive(grammar: &Grammar, symbol: &str, rect: Rect, out: &mut Vec<Region>)
 }
 
 /// The same grammar with every size relative.
-pub fn size_independent(grammar: &Grammar) -> Grammar {
+pub(super) fn size_independent(grammar: &Grammar) -> Grammar {
     let mut out = grammar.clone();
     for rule in &mut out.rules {
         for size in sizes(&mut rule.operation) {
@@ -237,7 +237,7 @@ pub fn size_independent(grammar: &Grammar) -> Grammar {
 }
 
 /// The same grammar with a second, weighted way to derive some symbols.
-pub fn stochastic(grammar: &Grammar, seed: u64) -> Grammar {
+pub(super) fn stochastic(grammar: &Grammar, seed: u64) -> Grammar {
     let mut out = size_independent(grammar);
     let mut rng = stream(seed, "stochastic", 0);
     for mut rule in out.rules.clone() {

@@ -9,7 +9,7 @@ use edifice_base::rng::Stream;
 
 /// A tile's content.
 #[derive(Debug, Clone, Copy)]
-pub enum Tile {
+pub(crate) enum Tile {
     /// A window of a kind of the style, perhaps one that breaks the rhythm.
     Window(usize, Option<Break>),
     /// A door.
@@ -18,7 +18,7 @@ pub enum Tile {
 
 /// A layout before its terminals are cut.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub(crate) struct Plan {
     /// Sizes and kinds of windows.
     pub style: Style,
     /// Wall on each side of the window or door, by column.
@@ -57,7 +57,7 @@ const MIRRORED: &[Rhythm] = &[Rhythm::Same, Rhythm::Ends, Rhythm::Middle, Rhythm
 
 impl Plan {
     /// Draws a layout of a kind.
-    pub fn draw(rng: &mut Stream, kind: Kind) -> Self {
+    pub(crate) fn draw(rng: &mut Stream, kind: Kind) -> Self {
         let glazing = GLAZING[rng.random_range(0..GLAZING.len())];
         let mut style = Style::draw(rng, glazing);
         if rng.random_bool(0.4) {

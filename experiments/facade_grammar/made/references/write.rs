@@ -10,7 +10,7 @@ use edifice_shape::Axis;
 
 impl Plan {
     /// The grammar of a kind; all kinds derive the same terminals.
-    pub fn grammar(&self, name: &str, kind: Kind) -> Grammar {
+    pub(crate) fn grammar(&self, name: &str, kind: Kind) -> Grammar {
         let mut writer = Writer::new(self);
         let width: u32 = writer.tiles[0].iter().map(|tile| tile.width).sum();
         let plinth = leaf("plinth", width, 30);

@@ -5,6 +5,7 @@ pub(super) const DEEPEST: usize = 256;
 
 /// Why a file is no CityGML.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CityGmlError {
     /// Malformed XML.
     #[error(transparent)]

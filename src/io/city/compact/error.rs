@@ -11,6 +11,7 @@ pub(super) const FIRST: u16 = 1;
 
 /// Why bytes are no grammar, or a grammar cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompactError {
     /// The file is of another kind.
     #[error("not a compact grammar: it does not begin with \"EdCG\"")]

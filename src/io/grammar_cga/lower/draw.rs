@@ -18,7 +18,7 @@ pub(super) struct Draw {
 }
 
 impl Draw {
-    pub fn new(part: usize) -> Self {
+    pub(super) fn new(part: usize) -> Self {
         Self {
             part: Some(part),
             taken: Cell::new(0),

@@ -53,6 +53,7 @@ pub type AttributeRow = Vec<Option<f64>>;
 
 /// Why a building has no attributes.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AttributeError {
     /// The area ratios of floors describe at most three floors (Appendix A.1).
     #[error("{name}: {floors} floors; the attributes describe at most 3")]

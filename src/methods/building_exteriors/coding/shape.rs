@@ -108,7 +108,12 @@ pub(super) struct Shape {
 
 impl Shape {
     /// Writes height, coverage and boundary of a house with `floors` floors whose bounding box is known.
-    pub fn mass(&self, row: &mut [Option<f64>], given: &[Option<f64>], floors: Option<usize>) {
+    pub(super) fn mass(
+        &self,
+        row: &mut [Option<f64>],
+        given: &[Option<f64>],
+        floors: Option<usize>,
+    ) {
         if let (None, Some(floors)) = (given[2], floors) {
             let storey = self.storey[usize::from(floors > 1)];
             let height = storey.map(|s| s.clamp(STOREYS[0], STOREYS[1]) * floors as f64);
@@ -132,7 +137,7 @@ impl Shape {
 
     /// Shares of the first and the second upper floor in the whole area, of which at most `most` of the ground floor has
     /// room above it.
-    pub fn shares(&self, floors: usize, most: f64) -> Option<[f64; 2]> {
+    pub(super) fn shares(&self, floors: usize, most: f64) -> Option<[f64; 2]> {
         let share = |k: usize| match (self.full[k], self.upper[k]) {
             (Some(true), _) => Some(1.0),
             (_, upper) => upper.map(|v| v.clamp(SHARES[0], SHARES[1])),

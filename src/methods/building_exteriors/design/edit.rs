@@ -28,6 +28,7 @@ pub enum Edit {
 
 /// Why an edit cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum EditError {
     /// There is no such box.
     #[error("there is no boxes[{index}]: the house has {count} boxes")]

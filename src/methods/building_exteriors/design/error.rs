@@ -5,6 +5,7 @@ use edifice_model::ModelError;
 
 /// Why observed parts cannot be completed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompleteError {
     /// An observed box does not fit into the given bounding box.
     #[error(

@@ -39,7 +39,7 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    pub fn width(&self) -> f64 {
+    pub(super) fn width(&self) -> f64 {
         self.end - self.start
     }
 }
@@ -53,7 +53,7 @@ pub(super) struct Walls<'a> {
 }
 
 impl<'a> Walls<'a> {
-    pub fn new(building: &Building, shell: &'a Faces, fixed: &[FixedPiece]) -> Self {
+    pub(super) fn new(building: &Building, shell: &'a Faces, fixed: &[FixedPiece]) -> Self {
         let garage = garage_opening(building, shell);
         let mut strips: [Vec<Strip>; 4] = Default::default();
         for piece in wall_pieces(building) {
@@ -89,7 +89,7 @@ impl<'a> Walls<'a> {
     }
 
     /// Heights over the floor between which a stretch of a piece is bare around eye level.
-    pub fn free(&self, room: &Room, span: [f64; 2]) -> Option<[f64; 2]> {
+    pub(super) fn free(&self, room: &Room, span: [f64; 2]) -> Option<[f64; 2]> {
         if room.taken {
             return None;
         }

@@ -18,6 +18,7 @@ pub struct Database {
 
 /// Why houses cannot serve as a database.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DatabaseError {
     /// The database has no houses.
     #[error("the database has no houses")]

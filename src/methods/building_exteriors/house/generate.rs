@@ -96,6 +96,7 @@ impl Default for Options {
 
 /// Why there is no house.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GenerateError {
     /// Given values contradict each other.
     #[error(transparent)]

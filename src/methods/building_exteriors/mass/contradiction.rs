@@ -14,6 +14,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Two attributes that no house can have together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Contradiction {
     /// A size or share that is not positive or not finite.
     #[error("{column} is {value}, expected a number {expected}")]

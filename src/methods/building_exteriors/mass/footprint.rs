@@ -15,6 +15,7 @@ use edifice_shape::{BoxStyle, Building, MassBox, PlanUnion, Rect};
 
 /// Why no house stands on a plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError {
     /// A given column says otherwise.
     #[error("{column} = {value} is given, the footprint has {bound:.4}")]

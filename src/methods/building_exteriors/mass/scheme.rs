@@ -56,7 +56,7 @@ const SAME: f64 = 1e-3;
 impl Scheme {
     /// The scheme of general boxes with the garage and the porches of the target in their places. `roofs` are
     /// those of garage and porches.
-    pub fn new(blocks: &[Block], roofs: [Roof; 3], target: &MassTarget) -> Self {
+    pub(super) fn new(blocks: &[Block], roofs: [Roof; 3], target: &MassTarget) -> Self {
         let mut scheme = Self {
             boxes: Vec::new(),
             lines: [Vec::new(), Vec::new()],
@@ -131,7 +131,7 @@ impl Scheme {
     }
 
     /// Position of a line, in metres.
-    pub fn at(&self, axis: usize, line: usize, x: &[f64]) -> f64 {
+    pub(super) fn at(&self, axis: usize, line: usize, x: &[f64]) -> f64 {
         match self.lines[axis][line] {
             Line::Fixed(at) => at,
             Line::Free(variable) => x[variable],
@@ -139,7 +139,7 @@ impl Scheme {
     }
 
     /// The building with the variables at `x`; edges of inverted boxes are swapped.
-    pub fn building(&self, x: &[f64], floor_height: f64) -> Building {
+    pub(super) fn building(&self, x: &[f64], floor_height: f64) -> Building {
         let boxes = self.boxes.iter().map(|b| {
             let [x, y] = [0, 1].map(|axis| {
                 let [a, b] = b.lines[axis].map(|line| self.at(axis, line, x));
@@ -167,7 +167,7 @@ impl Scheme {
     }
 
     /// The general boxes with the variables at `x`, to start anew from.
-    pub fn blocks(&self, x: &[f64], floor_height: f64) -> Vec<Block> {
+    pub(super) fn blocks(&self, x: &[f64], floor_height: f64) -> Vec<Block> {
         let general = self.boxes.iter().filter(|b| b.style == BoxStyle::Main);
         let blocks = general.map(|b| Block {
             edges: [0, 1].map(|axis| {
@@ -182,7 +182,7 @@ impl Scheme {
     }
 
     /// Signed extents of the general boxes.
-    pub fn thicknesses<'a>(&'a self, x: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    pub(super) fn thicknesses<'a>(&'a self, x: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let general = self.boxes.iter().filter(|b| b.style == BoxStyle::Main);
         general.flat_map(move |b| {
             [0, 1].map(|axis| {
@@ -193,7 +193,7 @@ impl Scheme {
     }
 
     /// The scheme with lines nearer than `reach` made one, or `None` when there are none.
-    pub fn snapped(&self, x: &[f64], reach: f64) -> Option<Self> {
+    pub(super) fn snapped(&self, x: &[f64], reach: f64) -> Option<Self> {
         let mut out = self.clone();
         out.start = x.to_vec();
         let mut changed = false;

@@ -41,7 +41,7 @@ pub(super) struct Sample {
 impl HeightMap {
     /// Rasters a mesh in its own axes; the plan is that of the bottom faces, else of everything. `None` where nothing
     /// covers a sample or the raster would be huge.
-    pub fn new(mesh: &TriangleMesh, planes: &Planes) -> Option<Self> {
+    pub(super) fn new(mesh: &TriangleMesh, planes: &Planes) -> Option<Self> {
         let (low, high) = mesh.bounds()?;
         let extent = [0, 1].map(|k| (high[k] - low[k]) / STEP);
         if (extent[0] * extent[1]).is_nan() || extent[0] * extent[1] > MOST {
@@ -120,7 +120,7 @@ impl HeightMap {
     }
 
     /// Samples of the plan.
-    pub fn samples(&self) -> impl Iterator<Item = Sample> + '_ {
+    pub(super) fn samples(&self) -> impl Iterator<Item = Sample> + '_ {
         (0..self.inside.len()).filter(|&k| self.inside[k]).map(|k| {
             let [x, y] = self.place(k / self.size[1], k % self.size[1]);
             Sample {
@@ -133,17 +133,17 @@ impl HeightMap {
     }
 
     /// Area of one sample.
-    pub fn cell(&self) -> f64 {
+    pub(super) fn cell(&self) -> f64 {
         self.step[0] * self.step[1]
     }
 
     /// Area of the plan.
-    pub fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         self.samples().count() as f64 * self.cell()
     }
 
     /// Ends of the plan along x and y.
-    pub fn bounds(&self) -> [[f64; 2]; 2] {
+    pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for s in self.samples() {
             for (axis, v) in [s.x, s.y].into_iter().enumerate() {
@@ -155,14 +155,14 @@ impl HeightMap {
     }
 
     /// Median height.
-    pub fn median(&self) -> f64 {
+    pub(super) fn median(&self) -> f64 {
         let mut heights: Vec<f64> = self.samples().map(|s| s.height).collect();
         heights.sort_by(f64::total_cmp);
         heights.get(heights.len() / 2).copied().unwrap_or(0.0)
     }
 
     /// Share of the plan below planes of less than 10 degrees.
-    pub fn flat_share(&self) -> f64 {
+    pub(super) fn flat_share(&self) -> f64 {
         let (mut flat, mut all) = (0.0, 0.0_f64);
         let [n, m] = self.size;
         let most = 10.0_f64.to_radians().tan() * self.step[0].min(self.step[1]);
@@ -187,7 +187,7 @@ impl HeightMap {
     }
 
     /// True if the plan is in one piece without courtyards, but for crumbs, which are dropped.
-    pub fn is_whole(&mut self) -> bool {
+    pub(super) fn is_whole(&mut self) -> bool {
         let parts = self.components(true);
         let total: usize = parts.iter().map(Vec::len).sum();
         let Some(largest) = (0..parts.len()).max_by_key(|&i| parts[i].len()) else {

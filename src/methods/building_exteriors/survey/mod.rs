@@ -95,6 +95,7 @@ pub struct Surveyed {
 
 /// Why a building of a city model becomes no house.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refused {
     /// It has no walls or no roof, or a coordinate is not finite.
     #[error("no walls or no roof")]

@@ -65,7 +65,7 @@ impl RoofedBox {
     }
 
     /// The box of a house, lengths to the centimetre, the pitch to a tenth of a degree.
-    pub fn mass_box(&self) -> MassBox {
+    pub(super) fn mass_box(&self) -> MassBox {
         let round = |v: f64| (v * 100.0).round() / 100.0;
         let [x0, x1, y0, y1] = self.plan.map(round);
         let pitch = (self.slope.atan().to_degrees() * 10.0).round() / 10.0;

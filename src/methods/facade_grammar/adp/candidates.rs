@@ -119,7 +119,7 @@ fn lines_up_to(level: f64, line_costs: &[f64], end: u16) -> Vec<u16> {
 impl Candidate {
     /// Its number of successors without the blocked lines, and the cost of the lines between them;
     /// `None` when it cannot do without the blocked lines.
-    pub fn without(&self, open: &OpenLines) -> Option<(usize, f64)> {
+    pub(crate) fn without(&self, open: &OpenLines) -> Option<(usize, f64)> {
         let (mut kept, mut cut) = (0, 0.0);
         for &(from, to) in &self.runs {
             let (before, upto) = (open.before[usize::from(from)], open.before[usize::from(to)]);
@@ -147,7 +147,7 @@ pub(crate) struct OpenLines {
 
 impl OpenLines {
     /// The lines along one axis.
-    pub fn new(blocked: &[bool], line_costs: &[f64]) -> Self {
+    pub(crate) fn new(blocked: &[bool], line_costs: &[f64]) -> Self {
         let mut before = vec![(0, 0.0)];
         let (mut count, mut cost) = (0, 0.0);
         for (blocked, line_cost) in blocked.iter().zip(line_costs) {

@@ -61,7 +61,7 @@ struct CandidateList {
 }
 
 impl Exploration {
-    pub fn new(
+    pub(crate) fn new(
         types: &Types,
         repeated: Vec<Repeated>,
         costs: Costs,
@@ -96,18 +96,18 @@ impl Exploration {
     }
 
     /// The regions that the present walk protects (Sec. 4.7).
-    pub fn protection(&mut self) -> &mut Protection {
+    pub(crate) fn protection(&mut self) -> &mut Protection {
         &mut self.protection
     }
 
     /// Ends the protection of all regions for the rest of the walk.
-    pub fn unprotect(&mut self) {
+    pub(crate) fn unprotect(&mut self) {
         self.protection.lift();
         self.blocked.lift();
     }
 
     /// Draws a rule for a type with probability `exp(-H) / sum exp(-H)`.
-    pub fn sample<R: Rng>(
+    pub(crate) fn sample<R: Rng>(
         &mut self,
         types: &mut Types,
         id: TypeId,
@@ -120,7 +120,7 @@ impl Exploration {
 
     /// Of all rules that [`Exploration::sample`] may draw, the one with the least sum of its cost and what
     /// the types that it needs are worth; `None` when all are infinite.
-    pub fn cheapest(
+    pub(crate) fn cheapest(
         &mut self,
         types: &mut Types,
         id: TypeId,
@@ -182,7 +182,7 @@ impl Exploration {
 
     /// All rules that [`Exploration::sample`] may draw.
     #[cfg(test)]
-    pub fn all_left(&mut self, types: &mut Types, id: TypeId) -> Vec<Rc<RuleCandidate>> {
+    pub(crate) fn all_left(&mut self, types: &mut Types, id: TypeId) -> Vec<Rc<RuleCandidate>> {
         let (list, left) = self.left(types, id);
         let rules = left.positions();
         rules
@@ -191,7 +191,7 @@ impl Exploration {
     }
 
     /// The lines of a type that cross a protected region.
-    pub fn blocked(&mut self, types: &mut Types, id: TypeId) -> &Blocked {
+    pub(crate) fn blocked(&mut self, types: &mut Types, id: TypeId) -> &Blocked {
         self.blocked.mark(&self.protection, types, id);
         &self.blocked
     }
@@ -233,7 +233,7 @@ impl Exploration {
     }
 
     /// The rule of least `H` for a type when nothing is protected; of several, the first.
-    pub fn best(&mut self, types: &mut Types, id: TypeId) -> Option<Rc<RuleCandidate>> {
+    pub(crate) fn best(&mut self, types: &mut Types, id: TypeId) -> Option<Rc<RuleCandidate>> {
         self.unprotect();
         let list = self.list(types, id);
         let positions = list.h.iter().enumerate();

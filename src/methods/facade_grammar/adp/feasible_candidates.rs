@@ -25,7 +25,7 @@ pub(crate) struct Blocked {
 
 impl Blocked {
     /// Marks the lines of a type; whether any is blocked.
-    pub fn mark(&mut self, protection: &Protection, types: &mut Types, id: TypeId) -> bool {
+    pub(crate) fn mark(&mut self, protection: &Protection, types: &mut Types, id: TypeId) -> bool {
         self.lift();
         if protection.is_lifted() {
             return false;
@@ -48,22 +48,26 @@ impl Blocked {
     }
 
     /// Unblocks all lines.
-    pub fn lift(&mut self) {
+    pub(crate) fn lift(&mut self) {
         self.any = [false; 2];
     }
 
     /// True if a line along an axis is blocked.
-    pub fn any(&self, axis: Axis) -> bool {
+    pub(crate) fn any(&self, axis: Axis) -> bool {
         self.any[axis as usize]
     }
 
     /// For each cut along an axis, true if it is blocked.
-    pub fn along(&self, axis: Axis) -> &[bool] {
+    pub(crate) fn along(&self, axis: Axis) -> &[bool] {
         &self.lines[axis as usize]
     }
 
     /// The lines, of those given along an axis, that are not blocked.
-    pub fn without<'a>(&'a self, axis: Axis, lines: &'a [u16]) -> impl Iterator<Item = u16> + 'a {
+    pub(crate) fn without<'a>(
+        &'a self,
+        axis: Axis,
+        lines: &'a [u16],
+    ) -> impl Iterator<Item = u16> + 'a {
         let along: &[bool] = if self.any(axis) {
             self.along(axis)
         } else {
@@ -74,7 +78,7 @@ impl Blocked {
     }
 
     /// True if a rule has a blocked line.
-    pub fn crosses(&self, rule: &RuleCandidate) -> bool {
+    pub(crate) fn crosses(&self, rule: &RuleCandidate) -> bool {
         let along = |axis: Axis, lines: &[u16]| {
             self.any(axis) && lines.iter().any(|l| self.along(axis)[usize::from(*l)])
         };
@@ -110,7 +114,7 @@ pub(crate) struct FeasibleCandidates {
 
 impl FeasibleCandidates {
     /// The rules with these `H` and positions, at most `most`.
-    pub fn new(left: impl Iterator<Item = (f64, usize)>, most: usize) -> Self {
+    pub(crate) fn new(left: impl Iterator<Item = (f64, usize)>, most: usize) -> Self {
         let (mut weights, mut positions) = (Vec::with_capacity(most), Vec::with_capacity(most));
         for (h, position) in left {
             weights.push(h);
@@ -128,27 +132,27 @@ impl FeasibleCandidates {
     }
 
     /// True if no rule is left.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
     /// The positions of its rules in the list.
-    pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn positions(&self) -> impl Iterator<Item = usize> + '_ {
         self.positions.iter().map(|position| *position as usize)
     }
 
     /// Its rules for Eq. 4, if they were asked for before.
-    pub fn priced(&self) -> Option<&PricedCandidates> {
+    pub(crate) fn priced(&self) -> Option<&PricedCandidates> {
         self.priced.get()
     }
 
     /// Draws a position in the list; there is one.
-    pub fn draw<R: Rng>(&self, rng: &mut R) -> usize {
+    pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> usize {
         self.positions[draw(&self.weights, rng)] as usize
     }
 
     /// The rule at a position, if it was drawn before.
-    pub fn rule(&self, position: usize) -> Option<Rc<RuleCandidate>> {
+    pub(crate) fn rule(&self, position: usize) -> Option<Rc<RuleCandidate>> {
         self.rules.borrow().get(&position).cloned()
     }
 }
@@ -174,7 +178,7 @@ pub(crate) struct FeasibleCache {
 
 impl FeasibleCache {
     /// The feasible candidates of a type under some blocked lines, if they are in the cache.
-    pub fn get(&mut self, id: TypeId, blocked: &Blocked) -> Option<Rc<FeasibleCandidates>> {
+    pub(crate) fn get(&mut self, id: TypeId, blocked: &Blocked) -> Option<Rc<FeasibleCandidates>> {
         blocked.key(id, &mut self.key);
         if let Some(known) = self.young.get(self.key.as_slice()) {
             return Some(Rc::clone(known));
@@ -185,13 +189,18 @@ impl FeasibleCache {
     }
 
     /// Puts the feasible candidates of a type under some blocked lines into the cache.
-    pub fn keep(&mut self, id: TypeId, blocked: &Blocked, feasible: &Rc<FeasibleCandidates>) {
+    pub(crate) fn keep(
+        &mut self,
+        id: TypeId,
+        blocked: &Blocked,
+        feasible: &Rc<FeasibleCandidates>,
+    ) {
         blocked.key(id, &mut self.key);
         self.insert(self.key.as_slice().into(), Rc::clone(feasible));
     }
 
     /// Keeps a rule that was drawn from a list. Rules of lists without blocked lines count too, though they are never dropped.
-    pub fn keep_rule(
+    pub(crate) fn keep_rule(
         &mut self,
         feasible: &FeasibleCandidates,
         position: usize,
@@ -205,7 +214,7 @@ impl FeasibleCache {
     }
 
     /// Keeps the priced candidates of a list for Eq. 4.
-    pub fn keep_priced<'a>(
+    pub(crate) fn keep_priced<'a>(
         &mut self,
         feasible: &'a FeasibleCandidates,
         priced: PricedCandidates,

@@ -50,7 +50,7 @@ pub(crate) fn append_needs(
 impl PricedCandidates {
     /// Rules with these positions and costs; `append` adds what the rule at a position needs to a list, and
     /// returns its cost.
-    pub fn new(
+    pub(crate) fn new(
         positions: impl Iterator<Item = usize>,
         append: impl Fn(usize, &mut Vec<TypeId>) -> f64,
     ) -> Self {
@@ -81,13 +81,13 @@ impl PricedCandidates {
     }
 
     /// Numbers of eight bytes that this takes, about.
-    pub fn held(&self) -> usize {
+    pub(crate) fn held(&self) -> usize {
         3 * self.priced.len() + self.needs.len() / 2
     }
 
     /// The position of the rule with the least value: its cost and what its needs are worth. Of several, the
     /// one that stands first in the list; `None` when all are infinite.
-    pub fn cheapest(&self, worth: impl Fn(TypeId) -> f64) -> Option<usize> {
+    pub(crate) fn cheapest(&self, worth: impl Fn(TypeId) -> f64) -> Option<usize> {
         let mut best = (f64::INFINITY, u32::MAX, 0);
         // What was cheapest last time spares summing most others to the end.
         let last = self.last.get();

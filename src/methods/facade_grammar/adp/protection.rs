@@ -27,7 +27,7 @@ pub(crate) struct Protection {
 
 impl Protection {
     /// The protection of a layout with these repeated regions, of which none is protected yet.
-    pub fn new(repeated: Vec<Repeated>) -> Self {
+    pub(crate) fn new(repeated: Vec<Repeated>) -> Self {
         let mut total = 0.0;
         let sums = repeated.iter().map(|r| {
             total += r.score();
@@ -45,7 +45,7 @@ impl Protection {
 
     /// Draws regions with probability proportional to `f(a, o)`, up to `draws` times; each is kept when
     /// none of its occurrences overlaps another or one kept before.
-    pub fn draw<R: Rng>(&mut self, draws: usize, rng: &mut R) {
+    pub(crate) fn draw<R: Rng>(&mut self, draws: usize, rng: &mut R) {
         self.restart();
         let Some(total) = self.scores.last() else {
             return;
@@ -70,7 +70,7 @@ impl Protection {
     }
 
     /// Samples regions without replacement until the protected set is maximal: no other would fit between those kept. `layouts` gives the columns and rows of each layout.
-    pub fn draw_all<R: Rng>(&mut self, layouts: &[(usize, usize)], rng: &mut R) {
+    pub(crate) fn draw_all<R: Rng>(&mut self, layouts: &[(usize, usize)], rng: &mut R) {
         self.restart();
         // The order of draws without replacement: least exponential variates of these rates first.
         let mut order: Vec<(f64, usize)> = Vec::with_capacity(self.repeated.len());
@@ -91,12 +91,12 @@ impl Protection {
     }
 
     /// Protects what was drawn last again.
-    pub fn restore(&mut self) {
+    pub(crate) fn restore(&mut self) {
         self.lifted = false;
     }
 
     /// Protects nothing for the rest of the walk.
-    pub fn lift(&mut self) {
+    pub(crate) fn lift(&mut self) {
         self.lifted = true;
     }
 
@@ -107,13 +107,13 @@ impl Protection {
     }
 
     /// True if nothing is protected for the rest of the walk.
-    pub fn is_lifted(&self) -> bool {
+    pub(crate) fn is_lifted(&self) -> bool {
         self.lifted || self.occurrences.is_empty()
     }
 
     /// The protected occurrences inside a region; one that is the region itself stands alone and is
     /// protected no more.
-    pub fn inside(&self, region: Region) -> impl Iterator<Item = Region> + '_ {
+    pub(crate) fn inside(&self, region: Region) -> impl Iterator<Item = Region> + '_ {
         let all = self.occurrences.iter().copied();
         all.filter(move |p| contains(region, *p) && *p != region)
     }

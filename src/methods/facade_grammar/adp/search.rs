@@ -32,7 +32,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(
+    pub(crate) fn new(
         facades: &[Facade],
         settings: &'a Settings,
         watched: &'a Watched<'a>,
@@ -70,7 +70,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    pub fn explore(&self, protect: Protect) -> Explore {
+    pub(crate) fn explore(&self, protect: Protect) -> Explore {
         Explore::new(
             Rc::clone(&self.types),
             Rc::clone(&self.exploration),
@@ -79,7 +79,7 @@ impl<'a> Search<'a> {
     }
 
     /// The text's algorithm (Sec. 4.2), and the `V(R)` that it learnt, by type.
-    pub fn paper(&self, iterations: u64) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
+    pub(crate) fn paper(&self, iterations: u64) -> Result<(Vec<AddRule>, Vec<f64>), InferError> {
         let readings = self.settings.readings;
         let epsilon = Epsilon {
             end: readings.last_epsilon,
@@ -101,7 +101,7 @@ impl<'a> Search<'a> {
     }
 
     /// The cheapest of many walks, before which so many steps were made, and what they taught.
-    pub fn walks<V: Approximation<Inference>>(
+    pub(crate) fn walks<V: Approximation<Inference>>(
         &self,
         explore: Explore,
         mut values: V,
@@ -122,7 +122,7 @@ impl<'a> Search<'a> {
     }
 
     /// A watch of a stage before which so many steps were made.
-    pub fn watch(
+    pub(crate) fn watch(
         &self,
         stage: &'static str,
         before: u64,
@@ -140,23 +140,23 @@ impl<'a> Search<'a> {
     }
 
     /// Always the best rule by the splitting heuristic.
-    pub fn greedy(&self) -> Vec<AddRule> {
+    pub(crate) fn greedy(&self) -> Vec<AddRule> {
         let exploration = &mut self.exploration.borrow_mut();
         baselines::greedy::greedy(&mut self.types.borrow_mut(), exploration)
     }
 
     /// Initial step of Martinovic and Van Gool 2013.
-    pub fn all_lines(&self) -> Vec<AddRule> {
+    pub(crate) fn all_lines(&self) -> Vec<AddRule> {
         baselines::bayesian::all_lines(&mut self.types.borrow_mut())
     }
 
     /// Splitting heuristic of Zhang et al. 2013.
-    pub fn symmetry_maximization(&self) -> Vec<AddRule> {
+    pub(crate) fn symmetry_maximization(&self) -> Vec<AddRule> {
         baselines::symmetry::symmetry_maximization(&mut self.types.borrow_mut())
     }
 
     /// The grammar of some rules.
-    pub fn grammar(&self, facades: &[Facade], rules: &[AddRule]) -> Grammar {
+    pub(crate) fn grammar(&self, facades: &[Facade], rules: &[AddRule]) -> Grammar {
         extract::grammar(&mut self.types.borrow_mut(), facades, rules)
     }
 }

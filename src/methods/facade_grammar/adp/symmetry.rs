@@ -21,7 +21,7 @@ pub(crate) struct Repeated {
 
 impl Repeated {
     /// `f(a, o) = (a - 1) (o - 1)`, the importance of a region (Sec. 4.7).
-    pub fn score(&self) -> f64 {
+    pub(crate) fn score(&self) -> f64 {
         f64::from(self.terminals - 1) * (self.occurrences.len() - 1) as f64
     }
 }

@@ -21,7 +21,7 @@ const NONE: u32 = u32::MAX;
 
 impl ValueEstimates {
     /// For each step of the walk, the cost of its rule and of all rules below, shared ones once.
-    pub fn costs(&mut self, walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
+    pub(crate) fn costs(&mut self, walk: &[AddRule], costs: &[f64]) -> Vec<f64> {
         let types = walk.iter().map(|a| a.id as usize + 1).max().unwrap_or(0);
         if self.step.len() < types {
             self.step.resize(types, NONE);

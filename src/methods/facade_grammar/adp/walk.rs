@@ -34,13 +34,13 @@ pub(crate) struct Derivation {
 
 impl Derivation {
     /// True if the type has a rule or waits for one.
-    pub fn knows(&self, id: TypeId) -> bool {
+    pub(crate) fn knows(&self, id: TypeId) -> bool {
         let word = self.is_known.get(id as usize / 64);
         word.is_some_and(|word| word >> (id % 64) & 1 == 1)
     }
 
     /// The type to split next. The process is not final.
-    pub fn next(&self) -> TypeId {
+    pub(crate) fn next(&self) -> TypeId {
         self.waiting.last().map_or(TypeId::MAX, |(_, id)| *id)
     }
 
@@ -112,7 +112,7 @@ pub(crate) struct Explore {
 }
 
 impl Explore {
-    pub fn new(
+    pub(crate) fn new(
         types: SharedTypes,
         exploration: Rc<RefCell<Exploration>>,
         protect: Protect,
@@ -164,7 +164,7 @@ pub(crate) struct ShortestPathRules {
 }
 
 impl ShortestPathRules {
-    pub fn new(pricer: RulePricer) -> Self {
+    pub(crate) fn new(pricer: RulePricer) -> Self {
         Self {
             pricer,
             values: Vec::new(),
@@ -176,7 +176,7 @@ impl ShortestPathRules {
     }
 
     /// The least `V(R)` learnt, by type; infinite where nothing is known.
-    pub fn into_values(self) -> Vec<f64> {
+    pub(crate) fn into_values(self) -> Vec<f64> {
         self.values
     }
 

@@ -39,7 +39,7 @@ pub(crate) struct NonterminalSet {
 
 impl NonterminalSet {
     /// Starts from the rules of a grammar; `values` prices types by what was learnt of them.
-    pub fn new(
+    pub(crate) fn new(
         types: SharedTypes,
         pricer: RulePricer,
         exploration: Rc<RefCell<Exploration>>,

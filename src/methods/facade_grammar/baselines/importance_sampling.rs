@@ -19,7 +19,7 @@ impl Approximation<Inference> for NothingKnown {
 
 impl Search<'_> {
     /// The cheapest of many walks by the splitting heuristic.
-    pub fn importance(&self) -> Result<Vec<AddRule>, InferError> {
+    pub(crate) fn importance(&self) -> Result<Vec<AddRule>, InferError> {
         let iterations = self.settings.iterations;
         let explore = self.explore(self.settings.readings.protection.anew());
         let always = Epsilon::ALWAYS_EXPLORE;

@@ -32,7 +32,7 @@ pub(super) struct Kit {
 
 impl Kit {
     /// Adds the meshes and materials to an empty scene.
-    pub fn new(scene: &mut Scene, materials: &mut Vec<Material>) -> Self {
+    pub(super) fn new(scene: &mut Scene, materials: &mut Vec<Material>) -> Self {
         let mut material = |name: &str, color: [u8; 3]| {
             let name = name.to_owned();
             let roughness = 0.95;

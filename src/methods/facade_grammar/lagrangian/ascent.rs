@@ -34,7 +34,12 @@ type Direction = BTreeMap<Item, Vec<f64>>;
 impl Dual<'_> {
     /// Raises `L`, up to so many steps and so much work, one step at least, until it shows that the incumbent is
     /// optimal or the search is stopped; offers it the grammars on the way. Keeps the multipliers of the greatest `L`.
-    pub fn ascend(&mut self, incumbent: &mut Incumbent, steps: u64, work: &mut u64) -> Ascent {
+    pub(super) fn ascend(
+        &mut self,
+        incumbent: &mut Incumbent,
+        steps: u64,
+        work: &mut u64,
+    ) -> Ascent {
         let mut found = Ascent {
             bound: f64::NEG_INFINITY,
             usage: BTreeMap::new(),

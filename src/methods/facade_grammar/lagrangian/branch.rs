@@ -268,11 +268,33 @@ fn undecided_item(program: &Program, found: &Ascent) -> Option<Item> {
 
 /// The branch with the least bound, the youngest of equals.
 fn pop_least(open: &mut Vec<Branch>) -> Option<Branch> {
-    let mut least = open.len().checked_sub(1)?;
-    for i in (0..least).rev() {
-        if open[i].lower < open[least].lower {
-            least = i;
+    let least = last_least(open.iter().map(|branch| branch.lower))?;
+    Some(open.remove(least))
+}
+
+/// Index of the least number, the last of equals.
+fn last_least(bounds: impl DoubleEndedIterator<Item = f64> + ExactSizeIterator) -> Option<usize> {
+    bounds
+        .enumerate()
+        .rev()
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(index, _)| index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::last_least;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_youngest_of_the_least_bounds_is_next(bounds in prop::collection::vec(0..4u8, 0..9)) {
+            let found = last_least(bounds.iter().map(|&b| f64::from(b)));
+            prop_assert_eq!(found.is_none(), bounds.is_empty());
+            if let Some(found) = found {
+                prop_assert!(bounds.iter().all(|&b| bounds[found] <= b));
+                prop_assert!(bounds[found + 1..].iter().all(|&b| bounds[found] < b));
+            }
         }
     }
-    Some(open.remove(least))
 }

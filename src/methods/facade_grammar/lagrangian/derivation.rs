@@ -13,7 +13,10 @@ pub(crate) struct Rule {
 
 impl Rule {
     /// The items of the rule.
-    pub fn items<'a>(&'a self, region_type: &RegionType) -> impl Iterator<Item = usize> + use<'a> {
+    pub(crate) fn items<'a>(
+        &'a self,
+        region_type: &RegionType,
+    ) -> impl Iterator<Item = usize> + use<'a> {
         std::iter::once(region_type.operation(self.operator)).chain(self.arcs.iter().copied())
     }
 }
@@ -35,7 +38,7 @@ pub(crate) struct Paths {
 
 impl Paths {
     /// Cost of the cheapest rule of an occurrence, and its operator; infinite when it has none.
-    pub fn cheapest(
+    pub(super) fn cheapest(
         &mut self,
         program: &Program,
         occurrence: u32,
@@ -84,7 +87,7 @@ impl Paths {
     }
 
     /// The cheapest rule along one operator.
-    pub fn rule(
+    pub(super) fn rule(
         &mut self,
         program: &Program,
         occurrence: u32,

@@ -23,7 +23,7 @@ pub(crate) struct Dual<'a> {
 
 impl<'a> Dual<'a> {
     /// The dual with equal multipliers over the cliques of each region type.
-    pub fn new(program: &'a Program) -> Self {
+    pub(super) fn new(program: &'a Program) -> Self {
         let mut multipliers = Vec::with_capacity(program.multipliers);
         for region_type in &program.region_types {
             let count = region_type.cliques.len();
@@ -35,7 +35,7 @@ impl<'a> Dual<'a> {
     }
 
     /// The dual with given multipliers, by clique and item.
-    pub fn from(program: &'a Program, multipliers: Vec<f64>) -> Self {
+    pub(super) fn from(program: &'a Program, multipliers: Vec<f64>) -> Self {
         let mut values = vec![f64::INFINITY; program.values()];
         values[program.occurrences.len()] = 0.0;
         let mut new = Self {

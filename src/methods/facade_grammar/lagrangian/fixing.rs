@@ -21,7 +21,7 @@ pub(super) struct Live {
 
 impl Live {
     /// The same without some items of rules.
-    pub fn without_items(&self, items: &[usize]) -> Self {
+    pub(super) fn without_items(&self, items: &[usize]) -> Self {
         let mut left = self.clone();
         for &item in items {
             left.items[item] = false;
@@ -30,7 +30,7 @@ impl Live {
     }
 
     /// The same without a type.
-    pub fn without_type(&self, region_type: &RegionType) -> Self {
+    pub(super) fn without_type(&self, region_type: &RegionType) -> Self {
         let mut left = self.clone();
         for &occurrence in &region_type.occurrences {
             left.occurrences[occurrence as usize] = false;
@@ -39,7 +39,7 @@ impl Live {
     }
 
     /// Items that a program of only these has, over all its occurrences.
-    pub fn items(&self, program: &Program) -> usize {
+    pub(super) fn items(&self, program: &Program) -> usize {
         let live = program.occurrences.iter().zip(&self.occurrences);
         let region_types = live
             .filter(|(_, live)| **live)

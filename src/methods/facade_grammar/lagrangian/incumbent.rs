@@ -25,7 +25,7 @@ pub(crate) struct Incumbent<'a> {
 
 impl Incumbent<'_> {
     /// Knows that some grammar has a cost; infinite when none is known.
-    pub fn new(cost: f64, costs: &Costs, operations: Operations) -> Self {
+    pub(crate) fn new(cost: f64, costs: &Costs, operations: Operations) -> Self {
         Self {
             cost,
             watched: None,
@@ -35,24 +35,24 @@ impl Incumbent<'_> {
     }
 
     /// True if the search for a cheaper one shall go on.
-    pub fn goes_on(&self) -> bool {
+    pub(crate) fn goes_on(&self) -> bool {
         let bound = Progress::stage("Lagrangian bound");
         self.watched.is_none_or(|watched| watched.goes_on(bound))
     }
 
     /// The least cost not below a bound that a grammar can have.
-    pub fn round_up(&self, bound: f64) -> f64 {
+    pub(crate) fn round_up(&self, bound: f64) -> f64 {
         self.granularity
             .map_or(bound, |q| ((bound - NOISE) / q).ceil() * q)
     }
 
     /// True if a lower bound shows that no grammar is cheaper than the incumbent.
-    pub fn is_optimal(&self, bound: f64) -> bool {
+    pub(crate) fn is_optimal(&self, bound: f64) -> bool {
         self.round_up(bound) >= self.cost - NOISE
     }
 
     /// Keeps a grammar when it is cheaper.
-    pub fn offer(&mut self, program: &Program, cost: f64, rules: &[Rule]) {
+    pub(crate) fn offer(&mut self, program: &Program, cost: f64, rules: &[Rule]) {
         if cost < self.cost - NOISE {
             let written = |rule: &Rule| {
                 let region_type = &program.region_types[rule.region_type as usize];
@@ -63,7 +63,7 @@ impl Incumbent<'_> {
     }
 
     /// The rules of the cheapest grammar that was offered, over the types of another search.
-    pub fn rules(&self, types: &mut Types) -> Vec<AddRule> {
+    pub(crate) fn rules(&self, types: &mut Types) -> Vec<AddRule> {
         self.rules.iter().map(|rule| rule.rule(types)).collect()
     }
 }
@@ -107,7 +107,7 @@ pub(super) struct Restricted {
 }
 
 impl Restricted {
-    pub fn new(program: &Program) -> Self {
+    pub(super) fn new(program: &Program) -> Self {
         let mut parts = vec![f64::INFINITY; program.values()];
         parts[program.occurrences.len()] = 0.0;
         Self {
@@ -118,7 +118,7 @@ impl Restricted {
 
     /// The best grammar over a set of region types that contains those of the roots, each rule being the cheapest;
     /// rules that the roots do not need are left out.
-    pub fn cheapest(&mut self, program: &Program, members: &[u32]) -> (f64, Vec<Rule>) {
+    pub(super) fn cheapest(&mut self, program: &Program, members: &[u32]) -> (f64, Vec<Rule>) {
         self.price(program, members, 0.0);
         let region_type_of = |part: u32| program.region_type_of(part);
         let mut needed: Vec<u32> = program

@@ -52,7 +52,7 @@ pub(crate) struct Program {
 impl Program {
     /// Everything that full lines can make of the facades; `None` when there are more than `limit` items,
     /// when grids are allowed, whose rules are no paths, or when the search is stopped meanwhile.
-    pub fn new(
+    pub(crate) fn new(
         mut types: Types,
         costs: &Costs,
         operations: Operations,
@@ -176,12 +176,12 @@ impl Program {
     }
 
     /// The region type of an occurrence.
-    pub fn region_type(&self, occurrence: u32) -> &RegionType {
+    pub(crate) fn region_type(&self, occurrence: u32) -> &RegionType {
         &self.region_types[self.occurrences[occurrence as usize].region_type as usize]
     }
 
     /// The parts into which an arc of a region type splits one of its occurrences.
-    pub fn parts(
+    pub(crate) fn parts(
         &self,
         occurrence: u32,
         region_type: &RegionType,
@@ -202,7 +202,7 @@ impl Program {
 
     /// The sum of the costs of the parts that an arc makes of an occurrence, given the cost of each occurrence.
     #[inline]
-    pub fn below(
+    pub(crate) fn below(
         &self,
         occurrence: u32,
         region_type: &RegionType,
@@ -220,12 +220,12 @@ impl Program {
     }
 
     /// True if a part is a terminal.
-    pub fn is_terminal(&self, part: u32) -> bool {
+    pub(crate) fn is_terminal(&self, part: u32) -> bool {
         part as usize == self.occurrences.len()
     }
 
     /// Index that stands for the occurrences of a region type that variable fixing removed.
-    pub fn removed(&self, region_type: u32) -> u32 {
+    pub(crate) fn removed(&self, region_type: u32) -> u32 {
         self.occurrences.len() as u32 + 1 + region_type
     }
 
@@ -235,7 +235,7 @@ impl Program {
     }
 
     /// The region type of a part that is no terminal.
-    pub fn region_type_of(&self, part: u32) -> u32 {
+    pub(crate) fn region_type_of(&self, part: u32) -> u32 {
         match self.occurrences.get(part as usize) {
             Some(occurrence) => occurrence.region_type,
             None => part - self.removed(0),
@@ -243,7 +243,7 @@ impl Program {
     }
 
     /// Number of values that parts have: of occurrences, of terminals, and of what was removed.
-    pub fn values(&self) -> usize {
+    pub(crate) fn values(&self) -> usize {
         self.removed_types() as usize + 1
     }
 }

@@ -62,12 +62,12 @@ pub(crate) struct Arc {
 
 impl RegionType {
     /// Item of an operator's operation.
-    pub fn operation(&self, operator: usize) -> usize {
+    pub(crate) fn operation(&self, operator: usize) -> usize {
         self.arcs.len() + operator
     }
 
     /// Items that no rule with this one has.
-    pub fn excluded_by(&self, item: usize) -> impl Iterator<Item = usize> {
+    pub(crate) fn excluded_by(&self, item: usize) -> impl Iterator<Item = usize> {
         let operator = |item: usize| match item.checked_sub(self.arcs.len()) {
             Some(operator) => operator,
             None => self.operators.partition_point(|w| w.arcs.end <= item),
@@ -84,7 +84,7 @@ impl RegionType {
     }
 
     /// The rule that follows some arcs of an operator.
-    pub fn written(&self, operator: usize, arcs: &[usize]) -> Written {
+    pub(crate) fn written(&self, operator: usize, arcs: &[usize]) -> Written {
         let written = arcs.iter().map(|&a| &self.arcs[a]).filter(|a| a.copies > 0);
         let lines = std::iter::once(0)
             .chain(written.map(|a| a.lines.1))
@@ -117,7 +117,7 @@ pub(crate) struct Written {
 
 impl Written {
     /// The rule as the other methods write it.
-    pub fn rule(&self, types: &mut Types) -> AddRule {
+    pub(crate) fn rule(&self, types: &mut Types) -> AddRule {
         let id = types.intern(self.region);
         let strips = types.strips(id, self.axis);
         AddRule {

@@ -25,7 +25,7 @@ fn place((a, b): (u16, u16)) -> usize {
 impl Cells {
     /// The rectangles between the full lines of a region along x and y; `None` when there are too many. `intern` gives a
     /// rectangle's type.
-    pub fn new(
+    pub(crate) fn new(
         region: Region,
         [xs, ys]: [&Strips; 2],
         mut intern: impl FnMut(Region) -> TypeId,
@@ -55,18 +55,18 @@ impl Cells {
     }
 
     /// Elementary intervals along x and y.
-    pub fn intervals(&self) -> (u16, u16) {
+    pub(crate) fn intervals(&self) -> (u16, u16) {
         (self.across, self.up)
     }
 
     /// Type of the rectangle between two cuts along x and two along y.
-    pub fn cell(&self, x: (u16, u16), y: (u16, u16)) -> TypeId {
+    pub(crate) fn cell(&self, x: (u16, u16), y: (u16, u16)) -> TypeId {
         let up = usize::from(self.up);
         self.types[place(x) * (up * (up + 1) / 2) + place(y)]
     }
 
     /// Types of all rectangles.
-    pub fn all(&self) -> &[TypeId] {
+    pub(crate) fn all(&self) -> &[TypeId] {
         &self.types
     }
 }

@@ -44,7 +44,7 @@ pub(crate) struct LayoutIndex {
 
 impl LayoutIndex {
     /// Prepares a tiling on its lines. `label(name)` numbers the labels.
-    pub fn new(
+    pub(crate) fn new(
         index: u16,
         facade: &Facade,
         lines: Lines,
@@ -142,7 +142,7 @@ impl LayoutIndex {
     }
 
     /// The whole layout of this index as a region.
-    pub fn root(&self, index: u16) -> Region {
+    pub(crate) fn root(&self, index: u16) -> Region {
         Region {
             layout: index,
             x0: 0,
@@ -153,19 +153,19 @@ impl LayoutIndex {
     }
 
     /// Residue of the width of a region.
-    pub fn extent_x(&self, r: Region) -> u64 {
+    pub(crate) fn extent_x(&self, r: Region) -> u64 {
         let at = |line: u16| self.residues_x[usize::from(line)];
         minus(at(r.x1), at(r.x0))
     }
 
     /// Residue of the height of a region.
-    pub fn extent_y(&self, r: Region) -> u64 {
+    pub(crate) fn extent_y(&self, r: Region) -> u64 {
         let at = |line: u16| self.residues_y[usize::from(line)];
         minus(at(r.y1), at(r.y0))
     }
 
     /// Edge coordinates along an axis, and their residues.
-    pub fn lines(&self, axis: Axis) -> (&[f64], &[u64]) {
+    pub(crate) fn lines(&self, axis: Axis) -> (&[f64], &[u64]) {
         match axis {
             Axis::X => (&self.xs, &self.residues_x),
             Axis::Y => (&self.ys, &self.residues_y),
@@ -184,13 +184,13 @@ impl LayoutIndex {
     }
 
     /// Number of terminals in a region.
-    pub fn terminals_in(&self, r: Region) -> u32 {
+    pub(crate) fn terminals_in(&self, r: Region) -> u32 {
         let [a, b, c, d] = self.corner_sums(&self.count, r);
         a + d - b - c
     }
 
     /// Hash of the contents, independent of the region's place.
-    pub fn hash_of(&self, r: Region) -> u64 {
+    pub(crate) fn hash_of(&self, r: Region) -> u64 {
         let [a, b, c, d] = self.corner_sums(&self.hash, r);
         let sum = subtract(subtract(add(a, d), b), c);
         multiply(
@@ -203,20 +203,20 @@ impl LayoutIndex {
     }
 
     /// Label of the region when it is a single terminal.
-    pub fn terminal_label(&self, r: Region) -> Option<u32> {
+    pub(crate) fn terminal_label(&self, r: Region) -> Option<u32> {
         let cell = usize::from(r.y0) * (self.xs.len() - 1) + usize::from(r.x0);
         let (rect, label) = self.terminals[self.owner[cell] as usize];
         (rect.x0 == r.x0 && rect.x1 == r.x1 && rect.y0 == r.y0 && rect.y1 == r.y1).then_some(label)
     }
 
     /// True if the vertical line at grid index `x` cuts a terminal between rows `y0` and `y1`.
-    pub fn cuts_terminal_x(&self, x: u16, y0: u16, y1: u16) -> bool {
+    pub(crate) fn cuts_terminal_x(&self, x: u16, y0: u16, y1: u16) -> bool {
         let at = |y: u16| self.cut_x[usize::from(y) * self.xs.len() + usize::from(x)];
         at(y1) > at(y0)
     }
 
     /// True if the horizontal line at grid index `y` cuts a terminal between columns `x0` and `x1`.
-    pub fn cuts_terminal_y(&self, y: u16, x0: u16, x1: u16) -> bool {
+    pub(crate) fn cuts_terminal_y(&self, y: u16, x0: u16, x1: u16) -> bool {
         let row = usize::from(y) * self.xs.len();
         self.cut_y[row + usize::from(x1)] > self.cut_y[row + usize::from(x0)]
     }

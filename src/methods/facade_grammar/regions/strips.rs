@@ -19,7 +19,7 @@ impl Offsets {
     }
 
     /// Length of the interval that starts at a cut.
-    pub fn interval(&self, start: usize) -> u64 {
+    pub(crate) fn interval(&self, start: usize) -> u64 {
         minus(self.residues[start + 1], self.residues[start])
     }
 
@@ -55,7 +55,7 @@ pub(crate) struct Strips {
 
 impl Strips {
     /// The strips between some cuts, given the type of each and the offsets of the cuts.
-    pub fn new(cuts: Vec<u16>, types: Vec<TypeId>, offsets: &Offsets) -> Self {
+    pub(crate) fn new(cuts: Vec<u16>, types: Vec<TypeId>, offsets: &Offsets) -> Self {
         let mut strips = Self {
             cuts,
             types,
@@ -84,23 +84,23 @@ impl Strips {
     }
 
     /// Number of elementary intervals, 1 when no line splits the region.
-    pub fn intervals(&self) -> usize {
+    pub(crate) fn intervals(&self) -> usize {
         self.cuts.len() - 1
     }
 
     /// Type of the strip between cuts `a < b`.
-    pub fn strip(&self, a: usize, b: usize) -> TypeId {
+    pub(crate) fn strip(&self, a: usize, b: usize) -> TypeId {
         self.types[b * (b - 1) / 2 + a]
     }
 
     /// Types of the strips that end at cut `b`, by where they start.
-    pub fn ending_at(&self, b: usize) -> &[TypeId] {
+    pub(crate) fn ending_at(&self, b: usize) -> &[TypeId] {
         let first = b * (b - 1) / 2;
         &self.types[first..first + b]
     }
 
     /// End of the first A of the alternation whose first B ends at cut `b`.
-    pub fn alternation_inner(&self, b: usize) -> u16 {
+    pub(crate) fn alternation_inner(&self, b: usize) -> u16 {
         self.alternations
             .iter()
             .find(|(_, end)| usize::from(*end) == b)
@@ -108,7 +108,7 @@ impl Strips {
     }
 
     /// Types of all strips.
-    pub fn all(&self) -> &[TypeId] {
+    pub(crate) fn all(&self) -> &[TypeId] {
         &self.types
     }
 }

@@ -43,7 +43,7 @@ impl Types {
     ///
     /// # Errors
     /// The index of a facade with a region that is too thin, which a check of the tiling has excluded.
-    pub fn new(facades: &[Facade]) -> Result<Self, (usize, LayoutError)> {
+    pub(crate) fn new(facades: &[Facade]) -> Result<Self, (usize, LayoutError)> {
         let mut labels: Vec<String> = Vec::new();
         let layouts: Rc<[LayoutIndex]> = lines(facades)?
             .into_iter()
@@ -91,43 +91,43 @@ impl Types {
     }
 
     /// Columns and rows of the grid of edges of each layout.
-    pub fn extents(&self) -> Vec<(usize, usize)> {
+    pub(crate) fn extents(&self) -> Vec<(usize, usize)> {
         let extent = |layout: &LayoutIndex| (layout.xs.len() - 1, layout.ys.len() - 1);
         self.layouts.iter().map(extent).collect()
     }
 
     /// Number of terminal labels.
-    pub fn label_count(&self) -> u32 {
+    pub(crate) fn label_count(&self) -> u32 {
         self.labels.len() as u32
     }
 
     /// Number of types seen so far, labels included.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.types.len()
     }
 
     /// True if there are as many strips as there may be.
-    pub fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.cut >= self.limit
     }
 
     /// True if the type is a terminal label.
-    pub fn is_terminal(&self, id: TypeId) -> bool {
+    pub(crate) fn is_terminal(&self, id: TypeId) -> bool {
         id < self.label_count()
     }
 
     /// First region found with this type (of a non-terminal type).
-    pub fn region(&self, id: TypeId) -> Region {
+    pub(crate) fn region(&self, id: TypeId) -> Region {
         self.types[id as usize].region
     }
 
     /// Number of terminals in a region of this type.
-    pub fn terminals(&self, id: TypeId) -> u32 {
+    pub(crate) fn terminals(&self, id: TypeId) -> u32 {
         self.types[id as usize].terminals
     }
 
     /// The type of a region that cuts no terminal.
-    pub fn intern(&mut self, region: Region) -> TypeId {
+    pub(crate) fn intern(&mut self, region: Region) -> TypeId {
         let layout = &self.layouts[usize::from(region.layout)];
         if let Some(label) = layout.terminal_label(region) {
             return label;
@@ -149,7 +149,7 @@ impl Types {
     }
 
     /// The strips of a non-terminal type along an axis.
-    pub fn strips(&mut self, id: TypeId, axis: Axis) -> Rc<Strips> {
+    pub(crate) fn strips(&mut self, id: TypeId, axis: Axis) -> Rc<Strips> {
         let slot = axis as usize;
         if let Some(strips) = &self.strips[id as usize][slot] {
             return Rc::clone(strips);
@@ -161,7 +161,7 @@ impl Types {
     }
 
     /// The rectangles between the full lines of a non-terminal type; `None` when there are too many.
-    pub fn cells(&mut self, id: TypeId) -> Option<Rc<Cells>> {
+    pub(crate) fn cells(&mut self, id: TypeId) -> Option<Rc<Cells>> {
         if !self.cells.contains_key(&id) {
             let [xs, ys] = Axis::BOTH.map(|axis| self.strips(id, axis));
             let region = self.region(id);
@@ -185,7 +185,7 @@ impl Types {
     }
 
     /// Grid indices of the cuts of a type's strips where another region has that type.
-    pub fn cuts_at(&mut self, id: TypeId, axis: Axis, region: Region) -> Vec<u16> {
+    pub(crate) fn cuts_at(&mut self, id: TypeId, axis: Axis, region: Region) -> Vec<u16> {
         let strips = self.strips(id, axis);
         let offsets = self.offsets(self.region(id), axis, &strips.cuts);
         let layout = &self.layouts[usize::from(region.layout)];
@@ -219,7 +219,7 @@ impl Types {
     }
 
     /// Distances of the cuts from the region's start.
-    pub fn offsets(&self, region: Region, axis: Axis, cuts: &[u16]) -> Offsets {
+    pub(crate) fn offsets(&self, region: Region, axis: Axis, cuts: &[u16]) -> Offsets {
         let (lines, residues) = self.layouts[usize::from(region.layout)].lines(axis);
         let from = |line: u16| usize::from(line);
         let start = from(cuts[0]);

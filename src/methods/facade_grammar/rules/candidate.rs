@@ -21,7 +21,7 @@ pub(crate) enum Arrangement {
 
 impl Arrangement {
     /// Direction of the cuts, `None` when they run both ways.
-    pub fn axis(self) -> Option<Axis> {
+    pub(crate) fn axis(self) -> Option<Axis> {
         match self {
             Arrangement::Split(axis)
             | Arrangement::Repeat(axis)
@@ -45,12 +45,12 @@ pub(crate) struct RuleCandidate {
 
 impl RuleCandidate {
     /// Cost of the rule (Eq. 2).
-    pub fn cost(&self, costs: &Costs) -> f64 {
+    pub(crate) fn cost(&self, costs: &Costs) -> f64 {
         operation_cost(self.arrangement, costs) + costs.successor * self.successors.len() as f64
     }
 
     /// The rule whose successors lie between consecutive `lines`.
-    pub fn between(arrangement: Arrangement, lines: Vec<u16>, strips: &Strips) -> Self {
+    pub(crate) fn between(arrangement: Arrangement, lines: Vec<u16>, strips: &Strips) -> Self {
         let successors = lines
             .windows(2)
             .map(|w| strips.strip(w[0].into(), w[1].into()))

@@ -32,7 +32,7 @@ pub(crate) struct RulePricer {
 }
 
 impl RulePricer {
-    pub fn new(costs: Costs, operations: Operations) -> Self {
+    pub(crate) fn new(costs: Costs, operations: Operations) -> Self {
         let (distance, previous) = (Vec::new(), Vec::new());
         Self {
             costs,
@@ -46,7 +46,7 @@ impl RulePricer {
 
     /// The cheapest rule for a type, with its cost; `None` when every rule has an infinite price. `price` gives the price of each
     /// type that a rule names.
-    pub fn cheapest(
+    pub(crate) fn cheapest(
         &mut self,
         types: &mut Types,
         id: TypeId,
@@ -71,7 +71,7 @@ impl RulePricer {
     }
 
     /// The cheapest rule along one axis, if it costs less than `bound`.
-    pub fn along(
+    pub(crate) fn along(
         &mut self,
         strips: &Strips,
         axis: Axis,

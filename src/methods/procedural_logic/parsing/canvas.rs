@@ -146,22 +146,22 @@ pub(crate) struct View<'a> {
 
 impl View<'_> {
     /// Number of cells along the axis.
-    pub fn depth(&self) -> usize {
+    pub(crate) fn depth(&self) -> usize {
         self.cuts.len() - 1
     }
 
     /// Number of cells along a line.
-    pub fn span(&self) -> usize {
+    pub(crate) fn span(&self) -> usize {
         self.spans.len() - 1
     }
 
     /// Asset of a cell.
-    pub fn asset(&self, k: usize, t: usize) -> u32 {
+    pub(crate) fn asset(&self, k: usize, t: usize) -> u32 {
         self.canvas.assets[k * self.step + t * self.stride]
     }
 
     /// Label of an asset.
-    pub fn label(&self, asset: u32) -> u32 {
+    pub(crate) fn label(&self, asset: u32) -> u32 {
         self.canvas.labels[asset as usize]
     }
 }

@@ -62,13 +62,17 @@ pub(crate) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     /// Sums the terms of both axes ("pre-computed for each pixel"). Linear in the cells.
-    pub fn new(canvas: &'a Canvas, coefficients: &Coefficients, parameters: &Parameters) -> Self {
+    pub(crate) fn new(
+        canvas: &'a Canvas,
+        coefficients: &Coefficients,
+        parameters: &Parameters,
+    ) -> Self {
         let terms = Axis::BOTH.map(|axis| terms(canvas, axis, coefficients, parameters));
         Self { canvas, terms }
     }
 
     /// True if some edge lies inside the scope.
-    pub fn has_edge(&self, scope: &Scope) -> bool {
+    pub(crate) fn has_edge(&self, scope: &Scope) -> bool {
         Axis::BOTH.into_iter().any(|axis| {
             let (start, end) = scope.range[axis as usize];
             (start + 1..end).any(|line| self.edges(axis, line, scope) > 0)
@@ -77,7 +81,7 @@ impl<'a> Lines<'a> {
 
     /// The allowed proposal of lowest energy (Eq. 3). Ties go to the fewest cuts, then to
     /// horizontal lines, then to the lowest coordinate.
-    pub fn best(
+    pub(crate) fn best(
         &self,
         scope: &Scope,
         parent: Option<Axis>,

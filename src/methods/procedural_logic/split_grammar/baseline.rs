@@ -12,6 +12,7 @@ use edifice_shape::{Facade, LabelGrid, LayoutError};
 
 /// Why a facade has no baseline grammar.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BaselineError {
     /// The layout is not a tiling.
     #[error(transparent)]

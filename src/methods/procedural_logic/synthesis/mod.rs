@@ -48,6 +48,7 @@ pub struct Style {
 
 /// Why a starting rule gives no new facades.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StyleError {
     /// Too few facades in the model to see how the parameters vary.
     #[error("the model has {found} facades to learn from, at least 2 are needed")]

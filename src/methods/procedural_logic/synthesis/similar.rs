@@ -27,7 +27,7 @@ impl Structure {
     ///
     /// # Errors
     /// [`InstanceError`] for an instance of other rules.
-    pub fn new(rules: &RuleSet, instance: &Instance) -> Result<Self, InstanceError> {
+    pub(super) fn new(rules: &RuleSet, instance: &Instance) -> Result<Self, InstanceError> {
         let tree = rules.expand(instance)?;
         let mut calls = vec![instance.start; tree.nodes.len()];
         let mut labels = vec![Vec::new(); tree.nodes.len()];
@@ -62,7 +62,7 @@ impl Structure {
     /// of both that were aligned, 0..=1.
     ///
     /// Complexity: `O(sum a b)` over the aligned splits with `a` and `b` parts.
-    pub fn proportioned(&self, other: &Self) -> (Instance, f64) {
+    pub(super) fn proportioned(&self, other: &Self) -> (Instance, f64) {
         let mut nodes = self.tree.nodes.clone();
         let mut aligned = 0_usize;
         let mut todo = vec![(

@@ -48,7 +48,7 @@ pub fn nearest(partial: &PartialLayout, model: &Model) -> Completion {
 }
 
 /// The elements of a layout scaled to another outline.
-pub fn fitted(layout: &Layout, width: f64, height: f64) -> Vec<Element> {
+pub(super) fn fitted(layout: &Layout, width: f64, height: f64) -> Vec<Element> {
     let (x, y) = (width / layout.width, height / layout.height);
     let scale = |e: &Element| {
         let r = e.rect;

@@ -14,7 +14,7 @@ use crate::layout::{Class, Element};
 use edifice_shape::Rect;
 
 /// A balcony is one of a floor above this width, in typical widths of a window.
-pub const WIDE: f64 = 2.0;
+pub(super) const WIDE: f64 = 2.0;
 /// Widths of shops and of doors are one up to this ratio.
 const SAME_WIDTH: f64 = 1.25;
 /// Largest way of a shop or door to its place by rule, in units of its width.
@@ -22,7 +22,7 @@ const REACH: f64 = 0.25;
 
 /// A window in its cell.
 #[derive(Debug, Clone, Copy)]
-pub struct Host {
+pub(super) struct Host {
     /// Its column.
     pub column: usize,
     /// Its row.
@@ -34,7 +34,7 @@ pub struct Host {
 }
 
 /// True if a balcony hangs before or below a window.
-pub fn is_host(window: &Rect, balcony: &Rect) -> bool {
+pub(super) fn is_host(window: &Rect, balcony: &Rect) -> bool {
     let (x, y) = window.centre();
     let beside = (balcony.centre().0 - x).abs() < 0.5 * window.width.max(balcony.width);
     beside && balcony.y < y && balcony.top() > window.y - 0.5 * window.height
@@ -88,7 +88,7 @@ impl Hanging {
 }
 
 /// Places of the added elements `others` (indices of those that are no windows), in an order in which they may be added.
-pub fn placed(
+pub(super) fn placed(
     scene: &Scene,
     hosts: &[Host],
     [columns, rows]: [&Lines; 2],

@@ -22,7 +22,7 @@ const EXACT: f64 = 0.02;
 const LEAST: usize = 3;
 
 /// The hidden windows of the exact lattice; `None` where the seen ones are none of one, or all of it.
-pub fn hidden(scene: &Scene) -> Option<Vec<Element>> {
+pub(super) fn hidden(scene: &Scene) -> Option<Vec<Element>> {
     let seen: Vec<Rect> = of(&scene.elements, Class::Window).map(|e| e.rect).collect();
     if seen.len() < LEAST {
         return None;

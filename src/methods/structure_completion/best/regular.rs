@@ -22,7 +22,7 @@ use edifice_shape::{Axis, Rect};
 const TOUCH: f64 = 1e-6;
 
 /// True if two elements may not stand together in a completion: they overlap, and neither is a balcony before something else.
-pub fn clash(a: &Element, b: &Element) -> bool {
+pub(super) fn clash(a: &Element, b: &Element) -> bool {
     let least = a.rect.area().min(b.rect.area());
     !a.class.may_overlap(b.class) && a.rect.overlap(&b.rect) > TOUCH * least
 }
@@ -30,7 +30,7 @@ pub fn clash(a: &Element, b: &Element) -> bool {
 /// A regular layout: added elements in the order in which they were given, each with the index of the element that it was,
 /// and the lines that it has.
 #[derive(Debug, Clone)]
-pub struct Regular {
+pub(super) struct Regular {
     /// Added elements, and the index of each among those given.
     pub added: Vec<(Element, Reason, usize)>,
     /// Columns and rows.
@@ -40,7 +40,7 @@ pub struct Regular {
 }
 
 /// Moves added elements to shared lines.
-pub fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
+pub(super) fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
     let seen: Vec<Rect> = of(&scene.elements, Class::Window).map(|e| e.rect).collect();
     let is_window = |k: &usize| added[*k].0.class == Class::Window;
     let windows: Vec<usize> = (0..added.len()).filter(is_window).collect();
@@ -120,7 +120,7 @@ impl Kept<'_> {
 }
 
 /// The layout without new windows that stand alone on a column or on a row, where others do not.
-pub fn without_loners(scene: &Scene, layout: Regular) -> Vec<(Element, Reason, usize)> {
+pub(super) fn without_loners(scene: &Scene, layout: Regular) -> Vec<(Element, Reason, usize)> {
     let mut hosts = layout.hosts;
     let [columns, rows] = layout.lines.map(|l| l.all.len());
     loop {

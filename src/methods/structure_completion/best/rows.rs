@@ -48,14 +48,14 @@ struct Cell {
 }
 
 /// True for a balcony of one window.
-pub fn is_single(scene: &Scene, element: &Element) -> bool {
+pub(super) fn is_single(scene: &Scene, element: &Element) -> bool {
     element.class == Class::Balcony && element.rect.width <= belong::WIDE * scene.size.0
 }
 
 /// The balconies of single windows that a layout gets, each with the candidate that stands for it; `None` where there are
 /// none to decide on. `hosts` are the windows of the layout, `added` what it adds, `like` gives the best candidate that is like
 /// an element with its value, and `least` what a further balcony must be worth.
-pub fn even(
+pub(super) fn even(
     scene: &Scene,
     hosts: &[Host],
     added: &[(Element, Reason, usize)],

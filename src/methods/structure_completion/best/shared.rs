@@ -15,7 +15,7 @@ const ON_LINE: f64 = 0.35;
 /// Windows of a line that differ by more than this share of their extent do not share one place.
 const SPREAD: f64 = 0.12;
 /// Sizes are one size up to this ratio.
-pub const SAME_SIZE: f64 = 1.15;
+pub(super) const SAME_SIZE: f64 = 1.15;
 
 /// A window on a line.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +30,7 @@ struct Member {
 
 /// A line of windows.
 #[derive(Debug, Clone)]
-pub struct Shared {
+pub(super) struct Shared {
     /// Centre.
     pub at: f64,
     /// Extent across the line.
@@ -40,7 +40,7 @@ pub struct Shared {
 
 impl Shared {
     /// Centre and extent at a place along the line.
-    pub fn place(&self, along: f64) -> (f64, f64) {
+    pub(super) fn place(&self, along: f64) -> (f64, f64) {
         let nearest = self.members.iter().min_by(|a, b| {
             let distance = |m: &Member| (m.along - along).abs();
             distance(a).total_cmp(&distance(b))
@@ -91,7 +91,7 @@ fn seen_lines(rects: &[Rect], axis: Axis) -> (Vec<Shared>, Vec<usize>) {
 
 /// The lines of one axis, in order, and the line of each new window.
 #[derive(Debug, Clone)]
-pub struct Lines {
+pub(super) struct Lines {
     /// Seen and new ones, in order.
     pub all: Vec<Shared>,
     /// The line of each seen window.
@@ -102,7 +102,7 @@ pub struct Lines {
 
 impl Lines {
     /// Lines along `axis`: columns for x, rows for y.
-    pub fn new(scene: &Scene, axis: Axis, seen: &[Rect], new: &[Rect]) -> Self {
+    pub(super) fn new(scene: &Scene, axis: Axis, seen: &[Rect], new: &[Rect]) -> Self {
         // A balcony of one window stands for a window that may be hidden itself.
         let standing = match axis {
             Axis::X => scene.standing(),

@@ -15,7 +15,7 @@ const LATER: f64 = 0.02;
 
 /// The new lines of one axis, each at its place by rule; `seen` and `new` increase, and lie in `[0, length]`. `size` is
 /// the typical extent of an element.
-pub fn by_rule(seen: &[f64], new: &[f64], length: f64, size: f64) -> Vec<f64> {
+pub(super) fn by_rule(seen: &[f64], new: &[f64], length: f64, size: f64) -> Vec<f64> {
     let mut placed = Vec::with_capacity(new.len());
     let mut rest = new;
     for k in 0..=seen.len() {

@@ -14,7 +14,7 @@ const ON_LINE: f64 = 0.35;
 
 /// Votes of all cells of the seen lattice.
 #[derive(Debug, Clone)]
-pub struct Votes {
+pub(super) struct Votes {
     columns: Vec<f64>,
     rows: Vec<f64>,
     reach: [f64; 2],
@@ -54,7 +54,7 @@ fn voted(lines: &[Vec<bool>]) -> Vec<Vec<f64>> {
 
 impl Votes {
     /// The votes of a scene; O(rows² columns + columns² rows).
-    pub fn new(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &Scene) -> Self {
         let at = |lines: &[Line]| lines.iter().map(|l| l.at).collect::<Vec<f64>>();
         let (columns, rows) = (at(&scene.columns), at(&scene.rows));
         let reach = [ON_LINE * scene.size.0, ON_LINE * scene.size.1];
@@ -82,7 +82,7 @@ impl Votes {
     }
 
     /// Votes of the rows and of the columns for the cell at a place; -1 off the seen lattice.
-    pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
+    pub(super) fn at(&self, x: f64, y: f64) -> [f64; 2] {
         let row = nearest(&self.rows, y, self.reach[1]);
         let column = nearest(&self.columns, x, self.reach[0]);
         match (row, column) {

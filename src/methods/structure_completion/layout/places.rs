@@ -25,7 +25,7 @@ fn spans(rect: &Rect) -> [(f64, f64); 2] {
 
 impl Places {
     /// No items yet, on a facade of this extent, with cells of about this size, but at most four for each of `most` items.
-    pub fn new(facade: [f64; 2], size: [f64; 2], most: usize) -> Self {
+    pub(crate) fn new(facade: [f64; 2], size: [f64; 2], most: usize) -> Self {
         let limit = 2 * most.isqrt().max(1);
         // A size that is no number gives one cell.
         let counts = [0, 1].map(|axis| ((facade[axis] / size[axis]) as usize).clamp(1, limit));
@@ -53,7 +53,7 @@ impl Places {
     }
 
     /// Lists an item.
-    pub fn insert(&mut self, item: u32, rect: &Rect) {
+    pub(crate) fn insert(&mut self, item: u32, rect: &Rect) {
         let [across, up] = spans(rect);
         for row in self.cell_of(1, up.0)..=self.cell_of(1, up.1) {
             for column in self.cell_of(0, across.0)..=self.cell_of(0, across.1) {
@@ -65,7 +65,7 @@ impl Places {
     }
 
     /// True if the test holds for an item that may meet the rectangle; one item may be tested several times.
-    pub fn any_near(&self, rect: &Rect, test: impl Fn(u32) -> bool) -> bool {
+    pub(crate) fn any_near(&self, rect: &Rect, test: impl Fn(u32) -> bool) -> bool {
         let [across, up] = spans(rect);
         let columns = self.cell_of(0, across.0)..=self.cell_of(0, across.1);
         let mut rows = self.cell_of(1, up.0)..=self.cell_of(1, up.1);
@@ -75,7 +75,7 @@ impl Places {
     /// The least distance that `distance` gives to an item whose centre lies along an axis from `at`, forward or
     /// backward, and across it within `strip`. `distance` gives `None` for items that do not count, and else the
     /// distance of the centre from `at` along the axis.
-    pub fn next(
+    pub(crate) fn next(
         &self,
         (axis, forward): (usize, bool),
         at: f64,

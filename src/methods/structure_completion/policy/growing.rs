@@ -28,7 +28,7 @@ pub(super) fn most(observed: usize) -> usize {
 
 /// A layout as it grows.
 #[derive(Debug, Clone)]
-pub struct Growing {
+pub(super) struct Growing {
     pub(super) items: Vec<Item>,
     groups: Vec<Group>,
     places: Places,
@@ -77,12 +77,12 @@ impl Growing {
     }
 
     /// The observed layout.
-    pub fn new(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &Scene) -> Self {
         scene.start.clone()
     }
 
     /// All elements, the observed ones first.
-    pub fn elements(&self) -> Vec<Element> {
+    pub(super) fn elements(&self) -> Vec<Element> {
         let real = self.items.iter().filter(|i| !i.empty);
         real.map(|i| i.element).collect()
     }

@@ -46,7 +46,7 @@ pub struct Scene<'a> {
 }
 
 impl Extent {
-    pub fn of(element: &Element) -> Self {
+    pub(super) fn of(element: &Element) -> Self {
         let r = element.rect;
         Self {
             low: [r.x, r.y],
@@ -54,7 +54,7 @@ impl Extent {
         }
     }
 
-    pub fn include(&mut self, element: &Element) {
+    pub(super) fn include(&mut self, element: &Element) {
         let other = Self::of(element);
         for axis in 0..2 {
             self.low[axis] = self.low[axis].min(other.low[axis]);
@@ -62,24 +62,24 @@ impl Extent {
         }
     }
 
-    pub fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
 
     /// True if an element is inside, and not on the boundary.
-    pub fn surrounds(&self, element: &Element) -> bool {
+    pub(super) fn surrounds(&self, element: &Element) -> bool {
         let other = Self::of(element);
         (0..2).all(|axis| self.low[axis] < other.low[axis] && other.high[axis] < self.high[axis])
     }
 
     /// True if a point is inside.
-    pub fn holds(&self, at: [f64; 2]) -> bool {
+    pub(super) fn holds(&self, at: [f64; 2]) -> bool {
         (0..2).all(|axis| self.low[axis] < at[axis] && at[axis] < self.high[axis])
     }
 }
 
 impl Item {
-    pub fn new(element: Element, grid: u32, empty: bool) -> Self {
+    pub(super) fn new(element: Element, grid: u32, empty: bool) -> Self {
         let (x, y) = element.rect.centre();
         Self {
             element,
@@ -89,7 +89,7 @@ impl Item {
         }
     }
 
-    pub fn size(&self) -> [f64; 2] {
+    pub(super) fn size(&self) -> [f64; 2] {
         [self.element.rect.width, self.element.rect.height]
     }
 }

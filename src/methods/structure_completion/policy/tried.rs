@@ -17,7 +17,7 @@ pub(super) enum Step {
 }
 
 impl Step {
-    pub fn length(self) -> f64 {
+    pub(super) fn length(self) -> f64 {
         match self {
             Step::Opposite(length) | Step::Observed(_, length) | Step::Other(length) => length,
         }
@@ -79,7 +79,7 @@ impl Tried {
     }
 
     /// The opposite neighbour's spacing ([`Growing::opposite`]).
-    pub fn opposite(
+    pub(super) fn opposite(
         &mut self,
         growing: &Growing,
         seed: usize,
@@ -91,7 +91,7 @@ impl Tried {
     }
 
     /// True if the place for an element like the seed is known to be taken.
-    pub fn is_taken(
+    pub(super) fn is_taken(
         &mut self,
         growing: &Growing,
         seed: usize,
@@ -109,7 +109,7 @@ impl Tried {
     }
 
     /// Remembers that the place for an element like the seed is taken.
-    pub fn take(
+    pub(super) fn take(
         &mut self,
         growing: &Growing,
         seed: usize,

@@ -17,7 +17,7 @@ const TYPES: usize = 16;
 /// The element types, and how many coherence sets cover any set of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
-pub struct Compatibility {
+pub(super) struct Compatibility {
     parts: Parts,
     cover: Vec<u8>,
 }
@@ -36,7 +36,7 @@ impl Compatibility {
     ///
     /// # Errors
     /// [`ModelError::Parameter`] when a median is not a number.
-    pub fn train<'a>(
+    pub(super) fn train<'a>(
         facades: impl Iterator<Item = (&'a [std::sync::Arc<Grid>], f64)> + Clone,
     ) -> Result<Self, ModelError> {
         let mut medians = [[1.0; 2]; 4];
@@ -65,7 +65,7 @@ impl Compatibility {
     }
 
     /// `#GCS` and `#OE`: how many coherence sets cover the types of the grids, and how many types there are.
-    pub fn cover(&self, grids: &[std::sync::Arc<Grid>], area: f64) -> (usize, usize) {
+    pub(super) fn cover(&self, grids: &[std::sync::Arc<Grid>], area: f64) -> (usize, usize) {
         let set = types(&self.parts.medians, grids, area);
         (
             usize::from(self.cover[usize::from(set)]),

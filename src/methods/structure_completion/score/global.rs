@@ -6,7 +6,7 @@ use super::grid::Grid;
 use crate::layout::Class;
 
 /// Area of the union of the grids' bounding boxes over the area of the facade.
-pub fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {
+pub(super) fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {
     let mut xs: Vec<f64> = grids.iter().flat_map(|g| [g.low[0], g.high[0]]).collect();
     xs.sort_unstable_by(f64::total_cmp);
     let mut by_y: Vec<&Grid> = grids.iter().map(Arc::as_ref).collect();
@@ -27,7 +27,7 @@ pub fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {
 
 /// Share of the elements' area that has a mirror image, and the mean position of the doors from left (0)
 /// to right (1), 0 without a door (Eq. 11).
-pub fn symmetry(grids: &[Arc<Grid>], facade: [f64; 2]) -> (f64, f64) {
+pub(super) fn symmetry(grids: &[Arc<Grid>], facade: [f64; 2]) -> (f64, f64) {
     let area: f64 = grids.iter().map(|g| g.area).sum();
     let symmetric: f64 = grids.iter().map(|g| g.symmetric).sum();
     let doors = grids.iter().filter(|g| g.class == Class::Door);

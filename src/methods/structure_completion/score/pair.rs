@@ -14,7 +14,7 @@ const SAME_LINE: f64 = 0.35;
 /// The repeating sequence of two interleaved grids, the first element being A: bit i is set where
 /// element i is a B. Length 0 stands for all that repeat less often than every six elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Pattern {
+pub(super) struct Pattern {
     /// Number of elements of the sequence.
     pub length: u8,
     /// Bit i is set where element i is a B.
@@ -23,7 +23,7 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern in letters.
-    pub fn letters(self) -> String {
+    pub(super) fn letters(self) -> String {
         let letter = |i| if self.bits >> i & 1 == 1 { 'B' } else { 'A' };
         match self.length {
             0 => "other".into(),
@@ -59,7 +59,7 @@ fn share_a_line(a: &Grid, b: &Grid, axis: usize) -> bool {
 
 /// The pattern of two grids along an axis, where they are interleaved: they share a line across the
 /// axis, their lines along the axis differ, and they change from one grid to the other at least twice.
-pub fn pattern(a: &Grid, b: &Grid, axis: usize) -> Option<Pattern> {
+pub(super) fn pattern(a: &Grid, b: &Grid, axis: usize) -> Option<Pattern> {
     if !overlapping(a, b, axis) || !share_a_line(a, b, 1 - axis) || share_a_line(a, b, axis) {
         return None;
     }
@@ -98,7 +98,7 @@ fn matches(a: &[f64], b: &[f64], tolerance: f64) -> usize {
 
 /// Gap and alignment coefficient (Eq. 6) of the lines along `axis` (0: columns, the vertical alignment)
 /// of two grids whose projections on that axis overlap; both lengths are relative to the facade.
-pub fn alignment(a: &Grid, b: &Grid, axis: usize, facade: [f64; 2]) -> Option<(f64, f64)> {
+pub(super) fn alignment(a: &Grid, b: &Grid, axis: usize, facade: [f64; 2]) -> Option<(f64, f64)> {
     if !overlapping(a, b, axis) {
         return None;
     }

@@ -57,7 +57,7 @@ pub(super) struct Climb<'a, 'd> {
 
 impl<'a, 'd> Climb<'a, 'd> {
     /// From the required edges alone.
-    pub fn new(
+    pub(super) fn new(
         families: &'a mut Families<'d>,
         allowed: &'a Allowed,
         settings: &'a Search,
@@ -83,7 +83,7 @@ impl<'a, 'd> Climb<'a, 'd> {
     }
 
     /// Climbs, and climbs again from other structures of the same score, and from some nearby.
-    pub fn run<R: Rng>(&mut self, rng: &mut R) {
+    pub(super) fn run<R: Rng>(&mut self, rng: &mut R) {
         self.climb();
         for restart in 0..self.settings.restarts {
             if self.ended() {
@@ -99,7 +99,7 @@ impl<'a, 'd> Climb<'a, 'd> {
     }
 
     /// True if the search was ended early.
-    pub fn ended(&self) -> bool {
+    pub(super) fn ended(&self) -> bool {
         self.ended
     }
 
@@ -110,7 +110,7 @@ impl<'a, 'd> Climb<'a, 'd> {
     }
 
     /// The structure of highest score, its score, and the moves made.
-    pub fn best(self) -> (Vec<Vec<usize>>, f64, usize) {
+    pub(super) fn best(self) -> (Vec<Vec<usize>>, f64, usize) {
         (self.best.0, self.best.1, self.moves)
     }
 

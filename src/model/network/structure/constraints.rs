@@ -14,7 +14,7 @@ pub(super) struct Allowed {
 }
 
 impl Allowed {
-    pub fn new(data: &Table, settings: &Search) -> Result<Self, ModelError> {
+    pub(super) fn new(data: &Table, settings: &Search) -> Result<Self, ModelError> {
         let names: Vec<String> = data.columns().iter().map(|c| c.name().to_owned()).collect();
         let n = names.len();
         let place = |name: &String| {
@@ -68,12 +68,12 @@ impl Allowed {
     }
 
     /// True if p may be a parent of c.
-    pub fn may(&self, p: usize, c: usize) -> bool {
+    pub(super) fn may(&self, p: usize, c: usize) -> bool {
         self.edge[p][c]
     }
 
     /// True if the edge from p to c has to stay.
-    pub fn must(&self, p: usize, c: usize) -> bool {
+    pub(super) fn must(&self, p: usize, c: usize) -> bool {
         self.required[c].contains(&p)
     }
 }

@@ -22,7 +22,7 @@ pub(super) struct Families<'a> {
 }
 
 impl<'a> Families<'a> {
-    pub fn new(data: &'a Table, score: Score) -> Result<Self, ModelError> {
+    pub(super) fn new(data: &'a Table, score: Score) -> Result<Self, ModelError> {
         if data.rows() == 0 || data.columns().is_empty() {
             return Err(ModelError::Empty { what: "rows" });
         }
@@ -57,17 +57,17 @@ impl<'a> Families<'a> {
         })
     }
 
-    pub fn variables(&self) -> usize {
+    pub(super) fn variables(&self) -> usize {
         self.sizes.len()
     }
 
     /// Families counted so far.
-    pub fn counted(&self) -> usize {
+    pub(super) fn counted(&self) -> usize {
         self.known.len()
     }
 
     /// The score of `child` with the given parents, ascending.
-    pub fn score(&mut self, child: usize, parents: &[usize]) -> f64 {
+    pub(super) fn score(&mut self, child: usize, parents: &[usize]) -> f64 {
         let key = (child, parents.to_vec());
         if let Some(&known) = self.known.get(&key) {
             return known;
@@ -78,7 +78,7 @@ impl<'a> Families<'a> {
     }
 
     /// Counts the families that are not yet known, in parallel.
-    pub fn prepare(&mut self, mut wanted: Vec<(usize, Vec<usize>)>) {
+    pub(super) fn prepare(&mut self, mut wanted: Vec<(usize, Vec<usize>)>) {
         wanted.retain(|key| !self.known.contains_key(key));
         let scores: Vec<f64> = wanted
             .par_iter()
@@ -123,7 +123,7 @@ impl<'a> Families<'a> {
     }
 
     /// The table of `child` given `parents`, the first slowest: per configuration the mode under a Dirichlet prior of `alpha`.
-    pub fn table(&self, child: usize, parents: &[usize], alpha: f64) -> Vec<f64> {
+    pub(super) fn table(&self, child: usize, parents: &[usize], alpha: f64) -> Vec<f64> {
         let r = self.sizes[child];
         let configurations: usize = parents.iter().map(|&p| self.sizes[p]).product();
         let mut counts = vec![0.0; configurations * r];

@@ -6,7 +6,7 @@ use edifice_optim::qp::{QpError, QpOptions, QuadraticProgram, Row, solve};
 use rand::RngExt;
 
 /// A smoothing program: points near data whose second differences are small.
-pub fn smoothing(n: usize) -> QuadraticProgram {
+pub(crate) fn smoothing(n: usize) -> QuadraticProgram {
     let mut program = QuadraticProgram::new(n);
     let mut rng = stream(5, "smoothing", 0);
     for i in 0..n {

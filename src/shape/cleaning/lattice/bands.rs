@@ -6,7 +6,7 @@ use crate::LabelGrid;
 const THIN: f64 = 0.02;
 
 /// The labels behind the elements with their lower and upper ends, from the bottom up.
-pub fn bands(grid: &LabelGrid, elements: &[Option<usize>]) -> Vec<(usize, [f64; 2])> {
+pub(super) fn bands(grid: &LabelGrid, elements: &[Option<usize>]) -> Vec<(usize, [f64; 2])> {
     let mut bands: Vec<(usize, [f64; 2])> = Vec::new();
     for j in 0..grid.rows() {
         let mut lengths = vec![0.0; grid.labels.len()];

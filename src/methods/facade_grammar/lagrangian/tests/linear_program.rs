@@ -7,7 +7,7 @@ use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 /// The optimum of the linear program. Variables: how much each occurrence uses each item, then how much each type has it. What
 /// enters an occurrence leaves it by its operators, the arcs of each operator are a flow, and a type has an item as much as the
 /// occurrences of any clique use it together.
-pub fn optimum(program: &Program) -> f64 {
+pub(super) fn optimum(program: &Program) -> f64 {
     let (used, had) = (program.items, program.type_items);
     let mut lp = QuadraticProgram::new(used + had);
     lp.lower.fill(0.0);

@@ -267,3 +267,78 @@ fn costs_that_a_bound_allows_are_multiples_of_their_granularity() {
     };
     assert_eq!(round_up(&roots, Operations::default()), 0.51);
 }
+
+/// The items of every rule of a type: a path of arcs from node 0 to an operator's last node, and its operation.
+fn items_of_rules(known: &region_type::RegionType) -> Vec<Vec<usize>> {
+    let mut found = Vec::new();
+    for (index, operator) in known.operators.iter().enumerate() {
+        let mut open = vec![(0, vec![known.operation(index)])];
+        while let Some((node, items)) = open.pop() {
+            if node == operator.last {
+                found.push(items);
+                continue;
+            }
+            for arc in operator.arcs.clone() {
+                if known.arcs[arc].from == node {
+                    let longer = [items.as_slice(), &[arc]].concat();
+                    open.push((known.arcs[arc].to, longer));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn programs_of_small_facades() -> Vec<Program> {
+    let facades = [facade(&["abab", "cdcd"]), facade(&["abcba", "abcba"])];
+    let program = |facade| {
+        let types = Types::new(&[facade]).unwrap();
+        let watched = Watched::new(&unwatched);
+        Program::new(types, &Costs::default(), EXTENSIONS, usize::MAX, &watched).unwrap()
+    };
+    facades.map(program).into()
+}
+
+/// The two branches of an item share out the rules: a rule has the item, or something that excludes it, and never both.
+#[test]
+fn a_rule_has_an_item_or_something_that_excludes_it() {
+    for program in programs_of_small_facades() {
+        let mut compared = 0;
+        for known in &program.region_types {
+            let rules = items_of_rules(known);
+            for item in 0..known.arcs.len() + known.operators.len() {
+                let excluded: Vec<usize> = known.excluded_by(item).collect();
+                for rule in &rules {
+                    let excludes = rule.iter().any(|other| excluded.contains(other));
+                    assert_ne!(rule.contains(&item), excludes);
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 100, "{compared} comparisons say little");
+    }
+}
+
+/// What a required type pays whatever its rule is taken from each of its rules, once.
+#[test]
+fn a_required_type_pays_in_advance_what_all_its_rules_cost() {
+    let mut paid = 0;
+    for mut program in programs_of_small_facades() {
+        for index in 0..program.region_types.len() {
+            let mut multipliers = vec![0.5; program.multipliers];
+            let costs = program.region_types[index].costs.clone();
+            let before = program.constant;
+            program.require(index, &mut multipliers);
+            let constant = program.constant - before;
+            let known = &program.region_types[index];
+            for rule in items_of_rules(known) {
+                let cost = |costs: &[f64]| rule.iter().map(|&item| costs[item]).sum::<f64>();
+                assert!((cost(&costs) - cost(&known.costs) - constant).abs() < 1e-9);
+                assert!(rule.iter().all(|&item| known.costs[item] >= 0.0));
+                paid += usize::from(constant > 0.0);
+            }
+            assert!(multipliers.iter().all(|m| (0.0..=0.5).contains(m)));
+        }
+    }
+    assert!(paid > 100, "{paid} rules say little");
+}
