@@ -61,6 +61,7 @@ impl FittedTable {
                     keep: Default::default(),
                     missing: vec![String::new()],
                     groups: groups.collect::<PyResult<_>>()?,
+                    relations: None,
                 }
             }
         };

@@ -96,6 +96,7 @@ fn schema() -> Schema {
             group("porch", Kind::Binary, "p"),
             group("roof", Kind::Category, "r"),
         ],
+        relations: None,
     }
 }
 

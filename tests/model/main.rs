@@ -12,6 +12,7 @@ mod hierarchy;
 mod learning;
 mod linfa;
 mod network;
+mod relations;
 mod scores;
 mod softmax;
 mod structure;

@@ -74,10 +74,12 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
         "building" => drop(io::building_json::parse(bytes, path)?),
         "footprint" => drop(io::footprint::parse(bytes, path)?),
         "schema" => {
-            use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
-            io::json::check_header(bytes, path, FORMAT, VERSION)?;
+            use edifice_model::tables::schema::{FORMAT, RELATED_VERSION, Schema, VERSION};
+            io::json::check_versions(bytes, path, FORMAT, VERSION..=RELATED_VERSION)?;
             let schema: Schema = io::json::parse_json(bytes, path)?;
-            assert_eq!(schema.groups.len(), 2);
+            schema.relations()?;
+            let related = schema.relations.map_or(0, |relations| relations.len());
+            assert_eq!(schema.groups.len(), 2 + related);
         }
         "network" => {
             let network = Network::from_json(text)?;

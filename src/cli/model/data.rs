@@ -6,7 +6,7 @@ use edifice_base::{Error, Result};
 use edifice_io::building_csv::{self, TextTable};
 use edifice_io::{json, read_bytes};
 use edifice_model::tables::Dataset;
-use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
+use edifice_model::tables::schema::{FORMAT, RELATED_VERSION, Schema, VERSION};
 use edifice_model::tables::table_model::TableModel;
 use edifice_model::{Cell, Column, Table};
 use serde_json::Value;
@@ -36,10 +36,30 @@ impl TableInput {
         Ok((data, schema))
     }
 
-    /// The guessed schema, of the columns that can be in one, and why others are left out, which is said.
+    /// As [`Self::read`], with the exact relations between columns in the schema, which are said: those of `known`, or else those
+    /// that the schema states, or else those that are found. The columns that they determine are left out of the rows.
+    pub(crate) fn read_related(&self, known: Option<&Schema>) -> Result<(Dataset, Schema)> {
+        let (data, mut schema) = self.read()?;
+        match known {
+            Some(known) => schema.relations.clone_from(&known.relations),
+            None => schema = schema.related(&data),
+        }
+        for relation in schema.relations.iter().flatten() {
+            print::message(&format!("exact relation: {}", relation.said()));
+        }
+        let at = |e| Error::content(&self.table, e);
+        let relations = schema.relations().map_err(at)?;
+        let reduced = relations.reduce_dataset(&data).map_err(at)?;
+        Ok((reduced, schema))
+    }
+
+    /// The guessed schema, of the columns that can be in one, with the relations found, and why other columns are left out, which is said.
     pub(crate) fn guess(&self) -> Result<(Schema, Vec<String>)> {
         let text = read_table(&self.table)?;
-        let (schema, left_out) = Schema::guess_some(&text.header, &text.rows);
+        let (mut schema, left_out) = Schema::guess_some(&text.header, &text.rows);
+        if let Ok(data) = schema.read(&text.header, &text.rows) {
+            schema = schema.related(&data);
+        }
         let left_out: Vec<String> = left_out.iter().map(ToString::to_string).collect();
         for reason in &left_out {
             print::message(&format!("left out: {reason}"));
@@ -60,7 +80,7 @@ pub(crate) fn read_table(path: &Path) -> Result<TextTable> {
 /// Reads a schema.
 pub(crate) fn read_schema(path: &Path) -> Result<Schema> {
     let bytes = read_bytes(path)?;
-    json::check_header(&bytes, path, FORMAT, VERSION)?;
+    json::check_versions(&bytes, path, FORMAT, VERSION..=RELATED_VERSION)?;
     json::parse_json(&bytes, path)
 }
 

@@ -56,7 +56,7 @@ pub(crate) struct Splits {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let begun = Instant::now();
-    let (data, _) = args.input.read()?;
+    let (data, _) = args.input.read_related(None)?;
     args.splits
         .evaluate(&data, &args.input.table, Contender::Extended, begun)
 }

@@ -67,10 +67,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return Err(Error::option("--time-limit", problem));
     }
     let start = Instant::now();
-    heed_interrupts();
     let limit = args.time_limit.map(seconds);
     let goes_on = || !interrupted() && limit.is_none_or(|limit| start.elapsed() < limit);
     let (data, _) = args.input.read()?;
+    // While the table was read, an interrupt ended the process.
+    heed_interrupts();
     let settings = Search {
         score: match args.score {
             Kind::Bdeu => Score::Bdeu(args.ess),

@@ -12,6 +12,7 @@ use edifice_model::tables::compare::BACKGROUND;
 use edifice_model::tables::encoding::Encoding;
 use edifice_model::tables::given::evidence;
 use edifice_model::tables::learn::extended;
+use edifice_model::tables::relations::Relation;
 use edifice_model::tables::table_model::{FORMAT, TableModel};
 
 use super::data::{
@@ -110,9 +111,19 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<()> {
 /// Runs `learn`.
 pub(super) fn learn(args: &LearnArgs) -> Result<()> {
     let begun = Instant::now();
-    heed_interrupts();
-    let (data, schema) = args.input.read()?;
     let start = args.learning.from.as_deref().map(read_model).transpose()?;
+    let (data, mut schema) = match args.as_published {
+        true => args.input.read()?,
+        false => (args.input).read_related(start.as_ref().map(|file| &file.schema))?,
+    };
+    schema.relations.take_if(|relations| relations.is_empty());
+    if args.as_published && schema.relations.is_some() {
+        let problem =
+            "the schema states relations between columns, which the published model does not have";
+        return Err(Error::option("--as-published", problem));
+    }
+    // While the table was read, an interrupt ended the process: there was nothing to keep.
+    heed_interrupts();
     let background = if args.as_published { 0.0 } else { BACKGROUND };
     let published = args.learning.search.settings(background)?;
     let (encoding, settings) = match &start {
@@ -298,6 +309,7 @@ fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
             "cardinalities": cardinalities,
             "encoding": file.encoding,
             "lateral_edges": model.lateral_edges(),
+            "relations": file.schema.relations.unwrap_or_default(),
         });
         return Ok(vec![summary.to_string()]);
     }
@@ -309,6 +321,7 @@ fn show(bytes: &[u8], path: &Path, json: bool) -> Result<Vec<String>> {
     for column in file.encoding.iter().flat_map(Encoding::columns) {
         lines.extend(column.said());
     }
+    lines.extend((file.schema.relations.iter().flatten()).map(Relation::said));
     let edges = model.lateral_edges();
     lines.push(format!("{} lateral edges", edges.len()));
     lines.extend(edges.iter().map(|(from, to)| format!("  {from} -> {to}")));

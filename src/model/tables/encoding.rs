@@ -278,7 +278,7 @@ fn real(column: &Column, row: usize) -> Option<f64> {
 }
 
 /// Adds a column as it is.
-fn copied(table: Table, column: &Column, rows: usize) -> Result<Table, ModelError> {
+pub(super) fn copied(table: Table, column: &Column, rows: usize) -> Result<Table, ModelError> {
     let cells = (0..rows).map(|row| column.cell(row));
     match column.categories() {
         None => table.real(

@@ -1,6 +1,8 @@
 //! A schema guessed from the texts of a table.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashSet;
 
 use super::schema::{Kind, Schema, SchemaError, SchemaGroup};
 
@@ -49,13 +51,17 @@ impl Schema {
             keep: BTreeMap::new(),
             missing: MISSING.map(str::to_owned).to_vec(),
             groups,
+            relations: None,
         };
         (schema, left_out)
     }
 }
 
 fn kind(column: &str, texts: &[&str]) -> Result<Kind, SchemaError> {
-    let different: BTreeSet<String> = texts.iter().map(|t| t.to_ascii_lowercase()).collect();
+    let few = (texts.len() / ROWS_PER_CATEGORY).min(FEW_CATEGORIES);
+    let most = (texts.len() / ROWS_PER_CATEGORY).clamp(FEW_CATEGORIES, MOST_CATEGORIES);
+    // Columns of many different numbers are not counted to the end.
+    let different = different(texts, most);
     if different.is_empty() {
         return Err(SchemaError::NoValues {
             column: column.to_owned(),
@@ -66,17 +72,33 @@ fn kind(column: &str, texts: &[&str]) -> Result<Kind, SchemaError> {
         return Ok(Kind::Binary);
     }
     let number = |text: &&str| text.parse().is_ok_and(f64::is_finite);
-    let few = (texts.len() / ROWS_PER_CATEGORY).min(FEW_CATEGORIES);
-    if texts.iter().all(number) && different.len() > few {
+    if different.len() > few && texts.iter().all(number) {
         return Ok(Kind::Continuous);
     }
-    let most = (texts.len() / ROWS_PER_CATEGORY).clamp(FEW_CATEGORIES, MOST_CATEGORIES);
     match different.len() <= most {
         true => Ok(Kind::Category),
         false => Err(SchemaError::FreeText {
             column: column.to_owned(),
-            different: different.len(),
+            different: self::different(texts, texts.len()).len(),
             cells: texts.len(),
         }),
     }
+}
+
+/// The different texts, by letters without regard to their case; no more than one beyond `most`.
+fn different(texts: &[&str], most: usize) -> FxHashSet<String> {
+    let mut found = FxHashSet::default();
+    let mut lower = String::new();
+    for text in texts {
+        lower.clear();
+        lower.push_str(text);
+        lower.make_ascii_lowercase();
+        if !found.contains(&lower) {
+            found.insert(lower.clone());
+            if found.len() > most {
+                break;
+            }
+        }
+    }
+    found
 }

@@ -64,12 +64,14 @@ impl TableModel {
     /// Learns the extended model of a table: numbers enter by an [`Encoding`] learnt first, categories may depend on each
     /// other, and the real columns share one hidden variable where that scores higher ([`learn_joined`]).
     ///
+    /// Columns that others determine ([`super::relations`]) are left out and computed again in draws.
+    ///
     /// `data` are the rows as `schema` reads them, of n rows; `settings` are those of the published model, of which variant and
     /// edges of categories are set here. The same seed gives the same model for any number of threads. The search, which
     /// `observer` may end, costs O(n) a step; an ended search gives the best model so far.
     ///
     /// # Errors
-    /// As [`Encoding::learn`] and [`learn`](crate::hierarchy::learn): a table without rows or columns, or settings out of range.
+    /// As [`Encoding::learn`], [`Relations::reduce`](super::relations::Relations::reduce) and [`learn`](crate::hierarchy::learn): a table without rows or columns, or settings out of range.
     ///
     /// # Examples
     /// ```
@@ -98,10 +100,12 @@ impl TableModel {
         seed: u64,
         observer: &Observer,
     ) -> Result<LearnedTable, ModelError> {
-        let (encoding, search) = learn_encoded(data, settings, seed, observer)?;
+        let schema = schema.clone().related(data);
+        let data = schema.relations()?.reduce_dataset(data)?;
+        let (encoding, search) = learn_encoded(&data, settings, seed, observer)?;
         Ok(LearnedTable {
             model: Self {
-                schema: schema.clone(),
+                schema,
                 encoding: Some(encoding),
                 model: search.learned.model.clone(),
             },

@@ -3,6 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`schema`] | which columns are which attributes, written by hand or guessed |
+//! | [`relations`] | exact relations between columns: copies, sums, products |
 //! | [`encoding`] | values that many rows share as categories, the others transformed |
 //! | [`given`] | evidence in words |
 //! | [`transform`] | monotone transforms of a real column |
@@ -25,6 +26,7 @@ pub mod kernels;
 pub mod learn;
 mod marginal;
 pub mod mixture;
+pub mod relations;
 pub mod schema;
 pub mod table_model;
 pub mod transform;

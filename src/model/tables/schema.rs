@@ -10,20 +10,24 @@
 //!     { "name": "roof", "kind": "category", "columns": ["roof_style"] } ] }
 //! ```
 //! `keep` leaves only rows with one of the listed texts; `missing` lists the texts that mean "not
-//! known" (empty cells by default). Binary cells are 0/1, no/yes or false/true.
+//! known" (empty cells by default). Binary cells are 0/1, no/yes or false/true. Version 2 states exact relations
+//! between columns ([`super::relations`]); without, they are sought where a model is learned.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
 use super::Dataset;
+use super::relations::{Relation, Relations, find};
 use crate::hierarchy::Group;
 use crate::{ModelError, Table};
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/attributes";
-/// The only version.
+/// Version of schemas without relations.
 pub const VERSION: u64 = 1;
+/// Version of schemas that state them.
+pub const RELATED_VERSION: u64 = 2;
 
 /// The interpretation of the cells of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,7 +53,7 @@ pub struct SchemaGroup {
 }
 
 /// A schema. Columns that no group names are not read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Schema {
     /// Rows to keep, by column.
     #[serde(default)]
@@ -59,6 +63,9 @@ pub struct Schema {
     pub missing: Vec<String>,
     /// The attributes.
     pub groups: Vec<SchemaGroup>,
+    /// The exact relations between columns; `None` where they are yet to be sought.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relations: Option<Vec<Relation>>,
 }
 
 fn empty_cell() -> Vec<String> {
@@ -145,7 +152,10 @@ impl Schema {
         }
         let stored = Stored {
             format: FORMAT,
-            version: VERSION,
+            version: match self.relations {
+                None => VERSION,
+                Some(_) => RELATED_VERSION,
+            },
             schema: self,
         };
         let text = serde_json::to_string_pretty(&stored);
@@ -186,6 +196,21 @@ impl Schema {
             table,
             groups: self.groups(),
         })
+    }
+
+    /// The exact relations between columns; none where they are not stated.
+    ///
+    /// # Errors
+    /// As [`Relations::new`].
+    pub fn relations(&self) -> Result<Relations<'_>, ModelError> {
+        Relations::new(self.relations.as_deref().unwrap_or_default())
+    }
+
+    /// The schema with the relations of its table stated, sought unless they are: `None` where there are none.
+    pub fn related(mut self, data: &Dataset) -> Self {
+        let relations = self.relations.unwrap_or_else(|| find(&data.table));
+        self.relations = (!relations.is_empty()).then_some(relations);
+        self
     }
 
     fn cell<'t>(&self, text: &'t str) -> Option<&'t str> {
@@ -235,9 +260,9 @@ fn add(
         }
         Kind::Category => {
             let texts = cells.iter().filter_map(|(_, text)| *text);
-            let categories: Vec<&str> = std::collections::BTreeSet::from_iter(texts)
-                .into_iter()
-                .collect();
+            let mut different = BTreeSet::new();
+            texts.for_each(|text| drop(different.insert(text)));
+            let categories: Vec<&str> = different.into_iter().collect();
             let values = cells.iter().map(|(_, text)| *text);
             Ok(table.categorical(column, &categories, values)?)
         }
