@@ -4,6 +4,7 @@ mod candidate;
 mod examples;
 mod studies;
 mod submit;
+mod verify;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -57,7 +58,7 @@ pub enum Command {
     Bundle(Bundle),
     /// Check a bundle: its digests, and a sample of its tasks run again
     #[command(after_help = "Example: edifice sweep verify ablation.zip --sample 1")]
-    Verify(Verify),
+    Verify(verify::Verify),
 }
 
 /// The options of all commands.
@@ -126,22 +127,6 @@ fn day(text: &str) -> std::result::Result<String, String> {
     }
 }
 
-/// Options of `verify`.
-#[derive(Args)]
-pub struct Verify {
-    /// Bundle
-    bundle: PathBuf,
-    /// Tasks to run again
-    #[arg(long, default_value_t = 10)]
-    sample: usize,
-    /// Run the commands of its arms too: programs that lie in the bundle
-    #[arg(long)]
-    commands: bool,
-    /// Print one JSON object as the last line
-    #[arg(long)]
-    json: bool,
-}
-
 /// Runs a command.
 pub fn run(command: Command) -> Result<()> {
     let studies = all_studies();
@@ -185,17 +170,22 @@ pub fn run(command: Command) -> Result<()> {
                 date: options.published.clone().unwrap_or_else(today),
                 licence: options.licence.clone(),
             });
-            let files = bundle::bundle(
+            let packed = bundle::bundle(
                 &plan,
                 &options.common.sweep,
                 &options.common.out,
                 &options.output,
                 published.as_ref(),
             )?;
-            print::message(&format!("{files} files in {}", options.output.display()));
-            json(&options.common, &serde_json::json!({ "files": files }))
+            print::message(&format!(
+                "{} files in {}, SHA-256 {}",
+                packed.files,
+                options.output.display(),
+                packed.sha256
+            ));
+            json(&options.common, &serde_json::json!(packed))
         }
-        Command::Verify(options) => verify(&options, &studies),
+        Command::Verify(options) => verify::run(&options, &studies),
     }
 }
 
@@ -308,41 +298,6 @@ fn status(common: &Common, studies: &[Study]) -> Result<()> {
         common,
         &serde_json::json!({ "arms": state.arms, "seconds_per_task": state.mean_seconds }),
     )
-}
-
-fn verify(options: &Verify, studies: &[Study]) -> Result<()> {
-    let folder = tempfile::tempdir().map_err(|e| Error::io(&options.bundle, "unpack", e))?;
-    let found = bundle::verify(
-        &options.bundle,
-        folder.path(),
-        studies,
-        options.sample,
-        options.commands,
-    )?;
-    for line in &found.different {
-        print::message(&format!("different: {line}"));
-    }
-    print::message(&format!(
-        "digests agree; {} tasks were run again, {} rows differ",
-        found.rerun,
-        found.different.len()
-    ));
-    if found.not_run > 0 {
-        print::message(&format!(
-            "{} tasks of arms that are commands were left out; --commands runs them",
-            found.not_run
-        ));
-    }
-    if options.json {
-        print::line(&serde_json::to_string(&found).map_err(Error::method)?)?;
-    }
-    match found.different.is_empty() {
-        true => Ok(()),
-        false => Err(Error::method(format!(
-            "{} rows differ from the bundle's",
-            found.different.len()
-        ))),
-    }
 }
 
 /// A time in words.

@@ -210,6 +210,46 @@ fn tables_run_on_facades_of_ones_own() {
     }
 }
 
+/// Label images of facades, of which no two differ by more than a pixel: there is none to learn from.
+#[test]
+fn three_pictures_that_are_alike_are_completed_by_what_ships() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let names = ["cottage_1", "cottage_1", "cottage_1"];
+    for (k, name) in names.iter().enumerate() {
+        let from = layouts().join(format!("{name}.facade.json"));
+        let picture = format!("{k}.png");
+        let from = from.display().to_string();
+        edifice(path, &["facade", "convert", &from, "-o", &picture]).success();
+    }
+    let text = completed(path, "mine=*.png");
+    assert!(text.contains(",mine,"), "{text}");
+    let page = std::fs::read_to_string(path.join("r/structure_completion/completion.md"));
+    assert!(
+        page.unwrap()
+            .contains("the model that ships completed them")
+    );
+}
+
+/// Layouts that are irregular are out of scope; they are all there is.
+#[test]
+fn layouts_that_are_out_of_scope_are_completed() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = format!("mine={}/*.json", layouts().display());
+    let text = completed(folder.path(), &pattern);
+    assert!(text.contains(",mine,"), "{text}");
+    assert!(text.lines().count() > 100, "{text}");
+}
+
+/// The rows of the artefact `completion` on a set of one's own.
+fn completed(path: &Path, dataset: &str) -> String {
+    let words = "reproduce structure_completion --only completion --budget smoke --out r --dataset";
+    let mut words: Vec<&str> = words.split(' ').collect();
+    words.push(dataset);
+    edifice(path, &words).success();
+    std::fs::read_to_string(path.join("r/structure_completion/completion.csv")).unwrap()
+}
+
 #[test]
 fn wrong_names_are_wrong_usage() {
     let folder = tempfile::tempdir().unwrap();
