@@ -174,17 +174,21 @@ fn data_is_described_and_checked() {
         .code(1);
 }
 
+/// Writes a picture of windows on a wall in the colours of ECP and Graz.
+fn windows(folder: &Path, name: &str, floors: u32, columns: u32) {
+    let picture = image::RgbImage::from_fn(20 * columns, 30 * floors, |x, y| {
+        let window = (5..15).contains(&(x % 20)) && (8..24).contains(&(y % 30));
+        image::Rgb(if window { [255, 0, 0] } else { [255, 255, 0] })
+    });
+    picture.save(folder.join(format!("{name}.png"))).unwrap();
+}
+
 #[test]
 fn tables_run_on_facades_of_ones_own() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    // Windows on a wall in the colours of ECP and Graz.
     for (name, floors, columns) in [("a", 3, 4), ("b", 3, 4), ("c", 4, 3), ("d", 4, 5)] {
-        let picture = image::RgbImage::from_fn(20 * columns, 30 * floors, |x, y| {
-            let window = (5..15).contains(&(x % 20)) && (8..24).contains(&(y % 30));
-            image::Rgb(if window { [255, 0, 0] } else { [255, 255, 0] })
-        });
-        picture.save(path.join(format!("{name}.png"))).unwrap();
+        windows(path, name, floors, columns);
     }
     for (paper, artefact) in [
         ("facade_grammar", "table_1"),
@@ -210,17 +214,13 @@ fn tables_run_on_facades_of_ones_own() {
     }
 }
 
-/// Label images of facades, of which no two differ by more than a pixel: there is none to learn from.
+/// Label images that are alike: there is none to learn from.
 #[test]
 fn three_pictures_that_are_alike_are_completed_by_what_ships() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    let names = ["cottage_1", "cottage_1", "cottage_1"];
-    for (k, name) in names.iter().enumerate() {
-        let from = layouts().join(format!("{name}.facade.json"));
-        let picture = format!("{k}.png");
-        let from = from.display().to_string();
-        edifice(path, &["facade", "convert", &from, "-o", &picture]).success();
+    for name in ["a", "b", "c"] {
+        windows(path, name, 3, 4);
     }
     let text = completed(path, "mine=*.png");
     assert!(text.contains(",mine,"), "{text}");
@@ -235,7 +235,7 @@ fn three_pictures_that_are_alike_are_completed_by_what_ships() {
 #[test]
 fn layouts_that_are_out_of_scope_are_completed() {
     let folder = tempfile::tempdir().unwrap();
-    let pattern = format!("mine={}/*.json", layouts().display());
+    let pattern = format!("mine={}/[bh]*_[14].facade.json", layouts().display());
     let text = completed(folder.path(), &pattern);
     assert!(text.contains(",mine,"), "{text}");
     assert!(text.lines().count() > 100, "{text}");
