@@ -10,6 +10,7 @@ mod figure_9;
 mod figures;
 mod folds;
 mod lattices;
+pub mod leaderboard;
 mod optimality;
 mod picture;
 mod plausibility;

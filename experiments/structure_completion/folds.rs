@@ -7,23 +7,96 @@ use edifice_base::rng::stream;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_structure_completion::best::learn::twins;
-use edifice_structure_completion::layout::Layout;
-use edifice_structure_completion::model::Model;
+use edifice_structure_completion::layout::{Class, Layout};
+use edifice_structure_completion::model::{Model, shipped_model};
 
 /// The fold of each item: groups of near-twins in random order, dealt in turn.
-pub(crate) fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
+pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
+    dealt(&groups(items), count, seed)
+}
+
+/// The group of near-twins of each item.
+fn groups(items: &[&Item]) -> Vec<usize> {
     let layouts: Vec<Layout> = items.iter().map(|i| i.layout.clone()).collect();
-    let groups = twins(&layouts);
-    let mut order: Vec<usize> = groups.clone();
+    twins(&layouts)
+}
+
+/// The groups, each once, in order.
+fn distinct(groups: &[usize]) -> Vec<usize> {
+    let mut order = groups.to_vec();
     order.sort_unstable();
     order.dedup();
+    order
+}
+
+fn dealt(groups: &[usize], count: usize, seed: u64) -> Vec<usize> {
+    let mut order = distinct(groups);
     order.shuffle(&mut stream(seed, "structure completion: folds", 0));
     let fold = |group: &usize| order.iter().position(|g| g == group).unwrap_or(0) % count;
     groups.iter().map(fold).collect()
 }
 
+/// Facades of a benchmark by fold, and the models that have not seen theirs.
+pub struct Parted<'a> {
+    /// The facades that are divided into folds.
+    pub used: Vec<&'a Item>,
+    /// Facades out of scope, which nothing is learnt from.
+    pub apart: Vec<&'a Item>,
+    /// The fold of each of `used`.
+    pub fold: Vec<usize>,
+    /// The model of each fold.
+    pub models: Vec<Model>,
+    /// True if there are no two facades that differ, so that the model that ships completes all.
+    pub by_default: bool,
+}
+
+impl<'a> Parted<'a> {
+    /// Divides the facades that have windows into at most `count` folds. Those out of scope stand apart, unless fewer than two of
+    /// those in scope differ: then, and with `all`, they are divided too. Facades that are all near-twins leave none to learn
+    /// from.
+    ///
+    /// # Errors
+    /// [`Error::Method`] if no facade has a window; those of learning.
+    pub fn new(items: &'a [Item], count: usize, all: bool, seed: u64) -> Result<Self> {
+        let usable = items.iter().filter(|i| i.layout.count(Class::Window) > 0);
+        let (mut used, mut apart): (Vec<&Item>, Vec<&Item>) =
+            usable.partition(|i| all || i.in_scope);
+        let mut groups = groups(&used);
+        if distinct(&groups).len() < 2 {
+            used.append(&mut apart);
+            groups = self::groups(&used);
+        }
+        if used.is_empty() {
+            return Err(Error::method(NoWindow(items.len())));
+        }
+        let count = count.min(distinct(&groups).len());
+        let by_default = count < 2;
+        let fold = dealt(&groups, count, seed);
+        let models = match by_default {
+            true => vec![shipped_model().map_err(Error::method)?],
+            false => (0..count)
+                .map(|f| model(&used, seed, |i| fold[i] != f))
+                .collect::<Result<_>>()?,
+        };
+        Ok(Self {
+            used,
+            apart,
+            fold,
+            models,
+            by_default,
+        })
+    }
+}
+
+/// There is nothing to complete.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "none of the {0} facades has an element that is labelled `window`; `--dataset NAME=GLOB:MAP.json` says what their labels are"
+)]
+struct NoWindow(usize);
+
 /// A model of the items that `keep` keeps.
-pub(crate) fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
+pub fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
     let kept = (0..items.len()).filter(|&i| keep(i));
     let layouts = kept.map(|i| items[i].layout.clone()).collect();
     let trained = Model::train(layouts, seed, &unwatched).map_err(Error::method)?;

@@ -48,6 +48,15 @@ enum BundleError {
 /// Most bytes that a bundle may unpack to.
 const LARGEST: u64 = 8 << 30;
 
+/// What was packed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Packed {
+    /// Number of files.
+    pub files: usize,
+    /// SHA-256 of the bundle, by which a leaderboard names it.
+    pub sha256: String,
+}
+
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verified {
@@ -70,7 +79,7 @@ pub fn bundle(
     out: &Path,
     to: &Path,
     published: Option<&Published>,
-) -> Result<usize> {
+) -> Result<Packed> {
     collect(plan, out)?;
     let mut files: Vec<(String, PathBuf)> = vec![("sweep.toml".into(), sweep.to_path_buf())];
     for name in [PLAN, RESULTS, TIMES] {
@@ -137,7 +146,10 @@ pub fn bundle(
     archive.write_all(&text).map_err(|e| fail(&e))?;
     let bytes = archive.finish().map_err(|e| fail(&e))?.into_inner();
     file::write_atomic(to, &bytes)?;
-    Ok(packed)
+    Ok(Packed {
+        files: packed,
+        sha256: hex(&Sha256::digest(&bytes)),
+    })
 }
 
 /// Unpacks a bundle into an empty folder, checks its digests, and runs `sample` of its finished tasks again, evenly spread.

@@ -31,9 +31,9 @@ def complete(facade, method="best", count=1, seed=0):
     return facade.complete(method=method, count=count, seed=seed)
 
 
-def hide(facade, task, seed=0):
-    """Hides a part of a whole facade: ``r20``, ``r50``, ``side50``, ``corner36`` or ``bottom40``."""
-    return facade.hide(task, seed=seed)
+def hide(facade, task, seed=0, frozen=False):
+    """Hides a part of a whole facade: ``r20``, ``r50``, ``side50``, ``corner36``, ``bottom40``, ``tree``, ``car`` or ``cut``."""
+    return facade.hide(task, seed=seed, frozen=frozen)
 
 
 def compare(truth, predicted):

@@ -107,7 +107,8 @@ class GaussianMixture(DensityMixin, BaseEstimator):
 
 def _columns(X):
     """Names and columns of a data frame of any library with the Arrow PyCapsule interface, or ``None`` for arrays."""
-    if hasattr(X, "columns") and hasattr(X, "__getitem__"):
+    # The columns of a table of pyarrow are no names.
+    if hasattr(X, "columns") and hasattr(X, "__getitem__") and not hasattr(X, "column_names"):
         names = [str(name) for name in X.columns]
         return names, [list(X[name]) for name in X.columns]
     if hasattr(X, "__arrow_c_stream__"):

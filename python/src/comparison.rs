@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::errors::failed;
+use super::worker::detached;
 
 /// The agreement of all elements, and of each label under `labels`; only elements in the unknown part count, where `found` names one.
 ///
@@ -13,10 +14,10 @@ use super::errors::failed;
 /// An `EdificeError` for layouts of different outlines.
 pub fn comparison<'py>(
     py: Python<'py>,
-    truth: &AnnotatedFacade,
-    found: &AnnotatedFacade,
+    truth: AnnotatedFacade,
+    found: AnnotatedFacade,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let result = compare_layouts(truth, found, false).map_err(failed)?;
+    let result = detached(py, move || compare_layouts(&truth, &found, false))?.map_err(failed)?;
     let about = agreement(py, &result.all)?;
     let labels = PyDict::new(py);
     for (label, own) in &result.labels {

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use edifice_base::rng;
 use edifice_editing::structure_completion as completing;
+use edifice_editing::structure_completion::hiding::hide;
 use edifice_facade_grammar::{Method, Operations, Settings, infer};
 use edifice_grammar::Costs;
 use edifice_io::{
@@ -11,7 +11,7 @@ use edifice_io::{
 };
 use edifice_shape::{AnnotatedFacade, LabelGrid, Rect, Region, decompose, elements_of_facade};
 use edifice_structure_completion::method;
-use edifice_structure_completion::task::Task;
+use edifice_structure_completion::sights::Sight;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -273,36 +273,22 @@ impl Facade {
         })
     }
 
-    /// Hides a part (`r20`, `r50`, `side50`, `corner36`, `bottom40`): the bytes of `edifice facade hide`.
-    #[pyo3(signature = (task, seed = 0))]
-    fn hide(&self, task: &str, seed: u64) -> PyResult<Self> {
-        let Some(task) = Task::named(task) else {
-            let names: Vec<&str> = Task::ALL.map(Task::name).to_vec();
+    /// Hides a part (`r20`, `r50`, `side50`, `corner36`, `bottom40`, `tree`, `car`, `cut`; `_maskless` behind a name for no mask), by the seed or by
+    /// the frozen mask of the facade: the bytes of `edifice facade hide`.
+    #[pyo3(signature = (task, seed = 0, frozen = false))]
+    fn hide(&self, task: &str, seed: u64, frozen: bool) -> PyResult<Self> {
+        let Some(sight) = Sight::named(task) else {
+            let names: Vec<String> = Sight::all().into_iter().map(Sight::name).collect();
             return Err(failed(format!(
                 "unknown task {task:?}, expected {}",
                 names.join(", ")
             )));
         };
-        let whole = self.annotated()?;
-        let facade = &whole.facade;
-        if facade.regions.is_empty() {
-            return Err(failed("the facade has no elements to hide"));
-        }
-        let rects: Vec<Rect> = facade.regions.iter().map(|r| r.rect).collect();
-        let mut stream = rng::stream(seed, "facade hide", 0);
-        let (hidden, unknown) = task.split(facade.width, facade.height, &rects, &mut stream);
-        let seen = |index: &usize| !hidden[*index];
-        let kept: Vec<usize> = (0..rects.len()).filter(seen).collect();
-        let inner = AnnotatedFacade {
-            facade: edifice_shape::Facade {
-                regions: kept.iter().map(|&i| facade.regions[i].clone()).collect(),
-                ..facade.clone()
-            },
-            notes: kept.iter().map(|&i| whole.notes[i].clone()).collect(),
-            unknown,
-            photograph: whole.photograph.clone(),
-        };
-        Ok(Self { inner })
+        let seed = (!frozen).then_some(seed);
+        let made = hide(&self.annotated()?, sight, seed).map_err(failed)?;
+        Ok(Self {
+            inner: made.partial,
+        })
     }
 
     /// Completes the unknown part in up to `count` ways, the best first: the bytes of `edifice facade complete` with its default model.
@@ -341,7 +327,7 @@ impl Facade {
     /// Compares a predicted layout of elements with this true one: `f1` by IoU, `mean_f1`, `iou`, counts, of all and of each label, as
     /// `edifice facade compare` tells them.
     fn compare<'py>(&self, py: Python<'py>, predicted: &Self) -> PyResult<Bound<'py, PyDict>> {
-        comparison(py, &self.annotated()?, &predicted.annotated()?)
+        comparison(py, self.annotated()?, predicted.annotated()?)
     }
 
     /// The facade drawn as SVG, for notebooks.

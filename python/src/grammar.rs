@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use super::errors::failed;
 use super::facade::Facade;
+use super::worker::detached;
 
 /// A split grammar: rules that derive a facade.
 #[pyclass(module = "edifice", frozen)]
@@ -85,6 +86,7 @@ impl Grammar {
     #[pyo3(signature = (width = None, height = None, seed = 0, start = 0, align = true))]
     fn derive(
         &self,
+        py: Python<'_>,
         width: Option<f64>,
         height: Option<f64>,
         seed: u64,
@@ -100,15 +102,16 @@ impl Grammar {
             seed,
             align,
         };
-        let made = derived(&self.inner, &wish).map_err(failed)?;
-        Ok(Facade::plain(made.facade))
+        let grammar = self.inner.clone();
+        let made = detached(py, move || derived(&grammar, &wish))?;
+        Ok(Facade::plain(made.map_err(failed)?.facade))
     }
 
     /// Judges the grammar by the facade that it should derive: `derives_back`, `reason`, `cost`, `rules`.
     fn evaluate<'py>(&self, py: Python<'py>, facade: &Facade) -> PyResult<Bound<'py, PyDict>> {
         let costs = Costs::default();
-        let facades = std::slice::from_ref(&facade.inner.facade);
-        let judged = evaluate(&self.inner, facades, &costs);
+        let (grammar, facades) = (self.inner.clone(), [facade.inner.facade.clone()]);
+        let judged = detached(py, move || evaluate(&grammar, &facades, &Costs::default()))?;
         let about = PyDict::new(py);
         about.set_item("derives_back", judged.is_ok())?;
         about.set_item("reason", judged.err().map(|e| e.to_string()))?;

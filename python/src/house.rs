@@ -31,8 +31,8 @@ impl House {
 impl House {
     /// Reads the houses of `.building.json` or `.buildings.jsonl`.
     #[staticmethod]
-    fn read(path: PathBuf) -> PyResult<Vec<Self>> {
-        let found = building_json::read(&path).map_err(failed)?;
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Vec<Self>> {
+        let found = detached(py, move || building_json::read(&path))?.map_err(failed)?;
         Ok(found.into_iter().map(|inner| Self { inner }).collect())
     }
 

@@ -4,6 +4,7 @@ mod candidate;
 mod examples;
 mod studies;
 mod submit;
+mod verify;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ use super::print;
 
 /// Commands of sweeps.
 #[derive(Subcommand)]
-pub(crate) enum Command {
+pub enum Command {
     /// List the studies with every setting, its type, default and meaning
     #[command(after_help = "Example: edifice sweep studies")]
     Studies(studies::Options),
@@ -57,12 +58,12 @@ pub(crate) enum Command {
     Bundle(Bundle),
     /// Check a bundle: its digests, and a sample of its tasks run again
     #[command(after_help = "Example: edifice sweep verify ablation.zip --sample 1")]
-    Verify(Verify),
+    Verify(verify::Verify),
 }
 
 /// The options of all commands.
 #[derive(Args)]
-pub(crate) struct Common {
+pub struct Common {
     /// Sweep file
     sweep: PathBuf,
     /// Folder of the sweep's plan and results
@@ -75,7 +76,7 @@ pub(crate) struct Common {
 
 /// Options of `run` and `retry`.
 #[derive(Args)]
-pub(crate) struct Run {
+pub struct Run {
     #[command(flatten)]
     common: Common,
     /// Run only every Nth task, from the Ith: `I/N`, counted from 0
@@ -88,7 +89,7 @@ pub(crate) struct Run {
 
 /// Options of `report`.
 #[derive(Args)]
-pub(crate) struct Report {
+pub struct Report {
     #[command(flatten)]
     common: Common,
     /// Compare on what all arms have, though tasks are missing or failed
@@ -101,7 +102,7 @@ pub(crate) struct Report {
 
 /// Options of `bundle`.
 #[derive(Args)]
-pub(crate) struct Bundle {
+pub struct Bundle {
     #[command(flatten)]
     common: Common,
     /// File to write
@@ -126,24 +127,8 @@ fn day(text: &str) -> std::result::Result<String, String> {
     }
 }
 
-/// Options of `verify`.
-#[derive(Args)]
-pub(crate) struct Verify {
-    /// Bundle
-    bundle: PathBuf,
-    /// Tasks to run again
-    #[arg(long, default_value_t = 10)]
-    sample: usize,
-    /// Run the commands of its arms too: programs that lie in the bundle
-    #[arg(long)]
-    commands: bool,
-    /// Print one JSON object as the last line
-    #[arg(long)]
-    json: bool,
-}
-
 /// Runs a command.
-pub(crate) fn run(command: Command) -> Result<()> {
+pub fn run(command: Command) -> Result<()> {
     let studies = all_studies();
     match command {
         Command::Studies(options) => studies::list(&studies, &options),
@@ -185,17 +170,22 @@ pub(crate) fn run(command: Command) -> Result<()> {
                 date: options.published.clone().unwrap_or_else(today),
                 licence: options.licence.clone(),
             });
-            let files = bundle::bundle(
+            let packed = bundle::bundle(
                 &plan,
                 &options.common.sweep,
                 &options.common.out,
                 &options.output,
                 published.as_ref(),
             )?;
-            print::message(&format!("{files} files in {}", options.output.display()));
-            json(&options.common, &serde_json::json!({ "files": files }))
+            print::message(&format!(
+                "{} files in {}, SHA-256 {}",
+                packed.files,
+                options.output.display(),
+                packed.sha256
+            ));
+            json(&options.common, &serde_json::json!(packed))
         }
-        Command::Verify(options) => verify(&options, &studies),
+        Command::Verify(options) => verify::run(&options, &studies),
     }
 }
 
@@ -308,41 +298,6 @@ fn status(common: &Common, studies: &[Study]) -> Result<()> {
         common,
         &serde_json::json!({ "arms": state.arms, "seconds_per_task": state.mean_seconds }),
     )
-}
-
-fn verify(options: &Verify, studies: &[Study]) -> Result<()> {
-    let folder = tempfile::tempdir().map_err(|e| Error::io(&options.bundle, "unpack", e))?;
-    let found = bundle::verify(
-        &options.bundle,
-        folder.path(),
-        studies,
-        options.sample,
-        options.commands,
-    )?;
-    for line in &found.different {
-        print::message(&format!("different: {line}"));
-    }
-    print::message(&format!(
-        "digests agree; {} tasks were run again, {} rows differ",
-        found.rerun,
-        found.different.len()
-    ));
-    if found.not_run > 0 {
-        print::message(&format!(
-            "{} tasks of arms that are commands were left out; --commands runs them",
-            found.not_run
-        ));
-    }
-    if options.json {
-        print::line(&serde_json::to_string(&found).map_err(Error::method)?)?;
-    }
-    match found.different.is_empty() {
-        true => Ok(()),
-        false => Err(Error::method(format!(
-            "{} rows differ from the bundle's",
-            found.different.len()
-        ))),
-    }
 }
 
 /// A time in words.

@@ -3,6 +3,7 @@
 
 mod edits;
 mod given;
+pub mod hiding;
 mod photograph;
 mod view;
 

@@ -174,17 +174,21 @@ fn data_is_described_and_checked() {
         .code(1);
 }
 
+/// Writes a picture of windows on a wall in the colours of ECP and Graz.
+fn windows(folder: &Path, name: &str, floors: u32, columns: u32) {
+    let picture = image::RgbImage::from_fn(20 * columns, 30 * floors, |x, y| {
+        let window = (5..15).contains(&(x % 20)) && (8..24).contains(&(y % 30));
+        image::Rgb(if window { [255, 0, 0] } else { [255, 255, 0] })
+    });
+    picture.save(folder.join(format!("{name}.png"))).unwrap();
+}
+
 #[test]
 fn tables_run_on_facades_of_ones_own() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    // Windows on a wall in the colours of ECP and Graz.
     for (name, floors, columns) in [("a", 3, 4), ("b", 3, 4), ("c", 4, 3), ("d", 4, 5)] {
-        let picture = image::RgbImage::from_fn(20 * columns, 30 * floors, |x, y| {
-            let window = (5..15).contains(&(x % 20)) && (8..24).contains(&(y % 30));
-            image::Rgb(if window { [255, 0, 0] } else { [255, 255, 0] })
-        });
-        picture.save(path.join(format!("{name}.png"))).unwrap();
+        windows(path, name, floors, columns);
     }
     for (paper, artefact) in [
         ("facade_grammar", "table_1"),
@@ -208,6 +212,42 @@ fn tables_run_on_facades_of_ones_own() {
         let text = std::fs::read_to_string(table).unwrap();
         assert!(text.contains(",mine,"), "{paper}: {text}");
     }
+}
+
+/// Label images that are alike: there is none to learn from.
+#[test]
+fn three_pictures_that_are_alike_are_completed_by_what_ships() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for name in ["a", "b", "c"] {
+        windows(path, name, 3, 4);
+    }
+    let text = completed(path, "mine=*.png");
+    assert!(text.contains(",mine,"), "{text}");
+    let page = std::fs::read_to_string(path.join("r/structure_completion/completion.md"));
+    assert!(
+        page.unwrap()
+            .contains("the model that ships completed them")
+    );
+}
+
+/// Layouts that are irregular are out of scope; they are all there is.
+#[test]
+fn layouts_that_are_out_of_scope_are_completed() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = format!("mine={}/[bh]*_[14].facade.json", layouts().display());
+    let text = completed(folder.path(), &pattern);
+    assert!(text.contains(",mine,"), "{text}");
+    assert!(text.lines().count() > 100, "{text}");
+}
+
+/// The rows of the artefact `completion` on a set of one's own.
+fn completed(path: &Path, dataset: &str) -> String {
+    let words = "reproduce structure_completion --only completion --budget smoke --out r --dataset";
+    let mut words: Vec<&str> = words.split(' ').collect();
+    words.push(dataset);
+    edifice(path, &words).success();
+    std::fs::read_to_string(path.join("r/structure_completion/completion.csv")).unwrap()
 }
 
 #[test]

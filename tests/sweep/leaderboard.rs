@@ -102,6 +102,106 @@ fn the_rows_of_two_baselines_are_found_again() {
         }
     }
     assert_eq!(compared, 30);
+    rows_stand_by_their_bundle(path);
+}
+
+/// Bundles the sweep, and checks a board whose rows name the bundle: as found, with another number, another task, or none.
+fn rows_stand_by_their_bundle(path: &Path) {
+    let digest = bundle(path);
+    let row = |line: &str| line.starts_with("mirror,") && line.contains(",side50,");
+    let own = BOARD.lines().find(|line| row(line)).expect("a row");
+    let named = own.replacen("edifice", "somebody", 1) + &digest;
+    let verify = |board: String| {
+        std::fs::write(path.join("board.csv"), board).expect("a board");
+        let mut command = Command::cargo_bin("edifice").expect("the program");
+        let words = ["sweep", "verify", "b.zip", "--sample", "1"];
+        command.current_dir(path).args(words);
+        let done = command.args(["--board", "board.csv"]).assert();
+        let said = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
+        (done.get_output().status.code(), said)
+    };
+    let (code, said) = verify(format!("{BOARD}{named}\n"));
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("1 rows of board.csv stand"), "{said}");
+    for (board, expected) in [
+        (BOARD.to_owned(), "no row names the bundle"),
+        (
+            format!("{BOARD}{}\n", named.replace(",3.0000,", ",2.0000,")),
+            "row 27: count_error is 2.0000, the bundle has 3.0000 over 8 facades",
+        ),
+        (
+            format!("{BOARD}{}\n", named.replace(",8,", ",9,")),
+            "over 8 facades",
+        ),
+        (
+            format!("{BOARD}{}\n", named.replace("mirror", "mine")),
+            "0 arms of the bundle have `mine` and `side50` in their names",
+        ),
+        (
+            format!("{BOARD}{}\n", named.replace("side50", "r20")),
+            "f1 is 0.5201",
+        ),
+    ] {
+        let (code, said) = verify(board);
+        assert_eq!(code, Some(1), "{said}");
+        assert!(said.contains(expected), "{expected}: {said}");
+    }
+}
+
+/// Packs the sweep as `b.zip` and returns its digest.
+fn bundle(path: &Path) -> String {
+    let words = "sweep bundle s.toml --out out -o b.zip --json".split(' ');
+    let mut command = Command::cargo_bin("edifice").expect("the program");
+    let done = command.current_dir(path).args(words).assert().success();
+    let told: serde_json::Value =
+        serde_json::from_slice(&done.get_output().stdout).expect("an object");
+    told["sha256"].as_str().expect("a digest").to_owned()
+}
+
+/// Somebody's sweep of other facades, or by masks of a seed, proves no row.
+#[test]
+fn other_facades_and_masks_prove_no_row() {
+    let board = examples()
+        .into_iter()
+        .find(|e| e.name == "structure_completion_leaderboard");
+    let text = board.expect("the sweep").text;
+    let line = text.lines().find(|line| line.starts_with("data"));
+    let all = line.expect("its facades");
+    let others = "data = [\"layouts/office_*.facade.json\"]";
+    for (data, frozen, expected) in [
+        (others, true, "has other facades than the leaderboard"),
+        (all, false, "does not hide by frozen masks"),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path();
+        let text = format!(
+            "study = \"structure_completion/complete\"\n{data}\nlearn = [\"layouts/*.facade.json\"]\nseeds = [1]\n\
+             [base]\nmethod = \"mirror\"\ntask = \"side50\"\nfrozen = {frozen}\n[[arm]]\nname = \"mirror side50\"\n"
+        );
+        std::fs::write(path.join("s.toml"), text).expect("a sweep");
+        sweep(path, &["run", "s.toml", "--out", "out"]);
+        let digest = bundle(path);
+        let board = format!("{BOARD}mirror,me,side50,8,1.0,1.0,0.0,{digest}\n");
+        std::fs::write(path.join("board.csv"), board).expect("a board");
+        let mut command = Command::cargo_bin("edifice").expect("the program");
+        let words = [
+            "sweep",
+            "verify",
+            "b.zip",
+            "--sample",
+            "1",
+            "--board",
+            "board.csv",
+        ];
+        let failed = command
+            .current_dir(path)
+            .args(words)
+            .assert()
+            .failure()
+            .code(1);
+        let said = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(said.contains(expected), "{said}");
+    }
 }
 
 fn sweep(folder: &Path, words: &[&str]) {

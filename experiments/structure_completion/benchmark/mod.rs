@@ -16,7 +16,9 @@
 //!   shared lines first, so that it cannot tell them by the noise of an annotation.
 //!
 //! Columns are the default model, a model learnt from the other real sets, one from the same set without the facade's fold
-//! ([`models`]), and the baselines. The parts are those of [`sights`]. Means are over facades, then over the real sets.
+//! ([`models`]), and the baselines. The parts are those of
+//! [`sights`](edifice_structure_completion::sights), hidden by frozen masks: they depend on the facade alone, not on the seed, and are those that
+//! `edifice facade hide --frozen` writes. Means are over facades, then over the real sets.
 //!
 //! # Deviations and readings
 //! - The paper has no such benchmark; the measures are ours.
@@ -30,19 +32,18 @@ mod measures;
 mod models;
 mod sanity;
 mod sheet;
-mod sights;
 mod tables;
 
 use self::columns::BASELINES;
 use self::measures::{Measured, measured};
 use self::models::Tested;
-use self::sights::Sight;
 use self::tables::Cases;
 use super::row;
 use crate::{Budget, Context};
 use edifice_base::Result;
 use edifice_base::rng::stream;
 use edifice_structure_completion::method::Method;
+use edifice_structure_completion::sights::Sight;
 
 /// One facade with one part hidden.
 struct Unit<'a> {
@@ -75,8 +76,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let work = |u: &Unit| -> Result<Vec<Measured>> {
         let name = key(u);
         let layout = &u.tested.layout;
-        let rng = &mut stream(seed, &format!("benchmark: mask/{name}"), 0);
-        let (partial, hidden) = u.sight.hide(layout, rng);
+        let (partial, hidden) = u.sight.hide_frozen(layout);
         if hidden.is_empty() {
             return Ok(Vec::new());
         }

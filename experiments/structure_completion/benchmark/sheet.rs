@@ -5,12 +5,12 @@ use rand::seq::SliceRandom;
 use super::super::picture::panel;
 use super::measures::added;
 use super::models::{MADE, Models};
-use super::sights::Sight;
 use crate::Context;
 use edifice_base::Result;
 use edifice_base::rng::stream;
 use edifice_report::Figure;
 use edifice_structure_completion::method::{Method, complete};
+use edifice_structure_completion::sights::Sight;
 
 /// Pictures of each part.
 const SHOWN: usize = 12;
@@ -35,7 +35,7 @@ pub(crate) fn draw(ctx: &mut Context, models: &Models) -> Result<()> {
             let tested = order.get(place).filter(|_| place < shown);
             let Some(&k) = tested else { continue };
             let layout = &models.tested[k].layout;
-            let (partial, _) = sight.hide(layout, rng);
+            let (partial, _) = sight.hide_frozen(layout);
             let done = complete(Method::Best, &partial, &models.all[0], 1, rng);
             // The name of the part stands once a row, with room at its sides.
             let name = if place == 1 {

@@ -7,10 +7,10 @@ use super::against::Margins;
 use super::columns::{BASELINES, COLUMNS, number, text};
 use super::measures::{Measured, calibration_error, ratio};
 use super::models::MADE;
-use super::sights::Sight;
 use crate::Context;
 use edifice_base::{Error, Result};
 use edifice_report::{Align, Table};
+use edifice_structure_completion::sights::Sight;
 
 /// Least number of pairs that a classifier is asked about.
 const PAIRS: usize = 20;

@@ -6,6 +6,7 @@
 
 use super::layout::{Element, Layout};
 use super::partial::PartialLayout;
+use super::sights::{Hidden, Sight};
 use super::task::Task;
 use edifice_base::rng::{Stream, stream};
 use edifice_shape::Rect;
@@ -52,36 +53,47 @@ impl Digest {
         Self { order, value }
     }
 
-    fn stream(&self, task: Task) -> Stream {
-        stream(self.value, &format!("frozen mask/{}", task.name()), 0)
-    }
-}
-
-impl Task {
-    /// As [`Task::split`], by the frozen mask; hidden elements are told in the order given.
-    pub fn split_frozen(
-        self,
-        width: f64,
-        height: f64,
+    /// The frozen mask of a part: `split` draws it for the elements in the order of the digest, and what it hides is told in the
+    /// order given.
+    fn mask(
+        &self,
+        part: &str,
         elements: &[(&str, Rect)],
-    ) -> (Vec<bool>, Option<Vec<Rect>>) {
-        let digest = Digest::new(width, height, elements);
-        let sorted: Vec<Rect> = digest.order.iter().map(|&i| elements[i].1).collect();
-        let mut rng = digest.stream(self);
-        let (sorted, unknown) = self.split(width, height, &sorted, &mut rng);
+        split: impl Fn(&[Rect], &mut Stream) -> Hidden,
+    ) -> Hidden {
+        let sorted: Vec<Rect> = self.order.iter().map(|&i| elements[i].1).collect();
+        let rng = &mut stream(self.value, &format!("frozen mask/{part}"), 0);
+        let (sorted, unknown) = split(&sorted, rng);
         let mut hidden = vec![false; elements.len()];
-        for (&index, is_hidden) in digest.order.iter().zip(sorted) {
+        for (&index, is_hidden) in self.order.iter().zip(sorted) {
             hidden[index] = is_hidden;
         }
         (hidden, unknown)
     }
+}
 
-    /// As [`Task::hide`], by the frozen mask.
+impl Sight {
+    /// As [`Sight::split`], by the frozen mask.
+    pub fn split_frozen(self, width: f64, height: f64, elements: &[(&str, Rect)]) -> Hidden {
+        let digest = Digest::new(width, height, elements);
+        digest.mask(self.part(), elements, |sorted, rng| {
+            self.split(width, height, sorted, rng)
+        })
+    }
+
+    /// A whole layout as a partial one by the frozen mask, and the elements that it hides.
     pub fn hide_frozen(self, layout: &Layout) -> (PartialLayout, Vec<Element>) {
         let named = layout.elements.iter().map(|e| (e.class.name(), e.rect));
         let named: Vec<(&str, Rect)> = named.collect();
         let (hidden, unknown) = self.split_frozen(layout.width, layout.height, &named);
         PartialLayout::parted(layout, &hidden, unknown)
+    }
+}
+
+impl Task {
+    /// As [`Task::hide`], by the frozen mask: that of the [`Sight`] of the same name.
+    pub fn hide_frozen(self, layout: &Layout) -> (PartialLayout, Vec<Element>) {
+        Sight::of(self).hide_frozen(layout)
     }
 }
 
@@ -106,7 +118,7 @@ mod tests {
     fn the_mask_is_that_of_the_content() {
         let elements = wall();
         for task in Task::ALL {
-            let (hidden, unknown) = task.split_frozen(16.0, 20.0, &elements);
+            let (hidden, unknown) = Sight::of(task).split_frozen(16.0, 20.0, &elements);
             assert!(
                 hidden.iter().any(|h| *h) && !hidden.iter().all(|h| *h),
                 "{task:?}"
@@ -114,7 +126,7 @@ mod tests {
             // Another order of the elements, and another unit.
             let mut turned = elements.clone();
             turned.rotate_left(7);
-            let (other, same) = task.split_frozen(16.0, 20.0, &turned);
+            let (other, same) = Sight::of(task).split_frozen(16.0, 20.0, &turned);
             assert_eq!(same, unknown);
             let mut back = other.clone();
             back.rotate_right(7);
@@ -127,7 +139,7 @@ mod tests {
                 )
             });
             let feet: Vec<(&str, Rect)> = feet.collect();
-            let (other, _) = task.split_frozen(16.0 / 0.3048, 20.0 / 0.3048, &feet);
+            let (other, _) = Sight::of(task).split_frozen(16.0 / 0.3048, 20.0 / 0.3048, &feet);
             assert_eq!(other, hidden, "{task:?}");
         }
     }
@@ -142,7 +154,7 @@ mod tests {
             changed[k].1.x += 0.01;
             let other = Digest::new(16.0, 20.0, &changed);
             assert_ne!(other.value, digest.value, "{k}");
-            masks.insert(Task::R50.split_frozen(16.0, 20.0, &changed).0);
+            masks.insert(Sight::of(Task::R50).split_frozen(16.0, 20.0, &changed).0);
         }
         assert!(masks.len() > 15, "{} masks", masks.len());
         let mut named = elements.clone();

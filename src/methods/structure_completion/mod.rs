@@ -60,4 +60,5 @@ pub mod model_file;
 pub mod partial;
 pub mod policy;
 pub mod score;
+pub mod sights;
 pub mod task;

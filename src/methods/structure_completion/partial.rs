@@ -66,14 +66,17 @@ pub struct Overlap {
     pub twice: bool,
 }
 
+/// True if the centre of an element lies in one of the regions.
+pub fn hidden_in(regions: &[Rect], element: &Rect) -> bool {
+    let (x, y) = element.centre();
+    regions.iter().any(|region| region.contains(x, y))
+}
+
 impl PartialLayout {
     /// A whole layout whose content in these rectangles is not known, and the elements that they hide: those whose centre lies in
     /// one.
     pub fn hiding(layout: &Layout, unknown: Vec<Rect>) -> (Self, Vec<Element>) {
-        let is_hidden = |e: &Element| {
-            let (x, y) = e.rect.centre();
-            unknown.iter().any(|u| u.contains(x, y))
-        };
+        let is_hidden = |e: &Element| hidden_in(&unknown, &e.rect);
         let hidden: Vec<bool> = layout.elements.iter().map(is_hidden).collect();
         Self::parted(layout, &hidden, Some(unknown))
     }

@@ -5,7 +5,7 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use super::layout::{Element, Layout};
-use super::partial::PartialLayout;
+use super::partial::{PartialLayout, hidden_in};
 use edifice_base::rng::Stream;
 use edifice_shape::Rect;
 
@@ -85,13 +85,7 @@ impl Task {
     ) -> (Vec<bool>, Option<Vec<Rect>>) {
         let unknown = self.unknown(width, height, rng);
         let hidden = match &unknown {
-            Some(rects) => elements
-                .iter()
-                .map(|e| {
-                    let (x, y) = e.centre();
-                    rects.iter().any(|r| r.contains(x, y))
-                })
-                .collect(),
+            Some(rects) => elements.iter().map(|e| hidden_in(rects, e)).collect(),
             None => {
                 let share = if self == Task::R20 { 0.2 } else { 0.5 };
                 let kept = (share * elements.len() as f64).round().max(1.0) as usize;

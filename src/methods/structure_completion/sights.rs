@@ -8,15 +8,15 @@
 //! | `car` | one or two boxes on the ground, each up to 0.35 W wide and 0.2 H high |
 //! | `cut` | a strip of 0.25 to 0.4 W at one side, where the picture ends |
 //!
-//! Each region is given as a mask, and once more without one: then all that is not seen is unknown, as in the paper.
+//! Each region is given as a mask, and once more without one: then all that is not seen is unknown, as in the paper. The masks of
+//! the published benchmark are [frozen](super::frozen).
 
 use rand::RngExt;
 
+use super::partial::hidden_in;
+use super::task::Task;
 use edifice_base::rng::Stream;
 use edifice_shape::Rect;
-use edifice_structure_completion::layout::{Element, Layout};
-use edifice_structure_completion::partial::PartialLayout;
-use edifice_structure_completion::task::Task;
 
 /// The part that is hidden.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,17 +29,20 @@ enum Part {
 
 /// A part that is hidden, with or without a mask.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sight {
+pub struct Sight {
     part: Part,
     masked: bool,
 }
+
+/// A value for each element, true where it is hidden; and the unknown rectangles, `None` where all that is not observed is unknown.
+pub type Hidden = (Vec<bool>, Option<Vec<Rect>>);
 
 /// Strips that a crown is cut into.
 const STRIPS: usize = 5;
 
 impl Sight {
     /// All of them, each region first with and then without a mask.
-    pub(crate) fn all() -> Vec<Self> {
+    pub fn all() -> Vec<Self> {
         let tasks = Task::ALL.into_iter().map(Part::Task);
         let parts = tasks.chain([Part::Tree, Part::Car, Part::Cut]);
         let both = |part: Part| match part {
@@ -49,43 +52,62 @@ impl Sight {
         parts.flat_map(both).collect()
     }
 
-    /// Its name in tables and rows.
-    pub(crate) fn name(self) -> String {
-        let part = match self.part {
+    /// A task as it is, with its mask where it has one.
+    pub fn of(task: Task) -> Self {
+        Self {
+            part: Part::Task(task),
+            masked: true,
+        }
+    }
+
+    /// Its name in commands, tables and rows.
+    pub fn name(self) -> String {
+        let mask = if self.masked { "" } else { "_maskless" };
+        format!("{}{mask}", self.part.name())
+    }
+
+    /// The sight of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|sight| sight.name() == name)
+    }
+
+    /// The name of what is hidden: with and without a mask it is the same.
+    pub(super) fn part(self) -> &'static str {
+        self.part.name()
+    }
+
+    /// The elements that are hidden, and the unknown rectangles.
+    pub fn split(self, width: f64, height: f64, elements: &[Rect], rng: &mut Stream) -> Hidden {
+        let (hidden, unknown) = match self.part {
+            Part::Task(task) => task.split(width, height, elements, rng),
+            Part::Tree => covered(elements, tree(width, height, rng)),
+            Part::Car => covered(elements, cars(width, height, rng)),
+            Part::Cut => covered(elements, vec![cut(width, height, rng)]),
+        };
+        (hidden, unknown.filter(|_| self.masked))
+    }
+}
+
+impl Part {
+    fn name(self) -> &'static str {
+        match self {
             Part::Task(task) => task.name(),
             Part::Tree => "tree",
             Part::Car => "car",
             Part::Cut => "cut",
-        };
-        let mask = if self.masked { "" } else { "_maskless" };
-        format!("{part}{mask}")
-    }
-
-    /// A whole layout as a partial one, and the elements that are hidden.
-    pub(crate) fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
-        let (w, h) = (layout.width, layout.height);
-        let regions = match self.part {
-            Part::Task(task) => {
-                let (mut partial, hidden) = task.hide(layout, rng);
-                if !self.masked {
-                    partial.unknown = None;
-                }
-                return (partial, hidden);
-            }
-            Part::Tree => tree(w, h, rng),
-            Part::Car => cars(w, h, rng),
-            Part::Cut => {
-                let wide = w * rng.random_range(0.25..0.4);
-                let x = if rng.random() { w - wide } else { 0.0 };
-                vec![Rect::new(x, 0.0, wide, h)]
-            }
-        };
-        let (mut partial, hidden) = PartialLayout::hiding(layout, regions);
-        if !self.masked {
-            partial.unknown = None;
         }
-        (partial, hidden)
     }
+}
+
+fn covered(elements: &[Rect], regions: Vec<Rect>) -> Hidden {
+    let hidden = elements.iter().map(|e| hidden_in(&regions, e)).collect();
+    (hidden, Some(regions))
+}
+
+fn cut(w: f64, h: f64, rng: &mut Stream) -> Rect {
+    let wide = w * rng.random_range(0.25..0.4);
+    let x = if rng.random() { w - wide } else { 0.0 };
+    Rect::new(x, 0.0, wide, h)
 }
 
 fn tree(w: f64, h: f64, rng: &mut Stream) -> Vec<Rect> {
@@ -121,16 +143,15 @@ fn cars(w: f64, h: f64, rng: &mut Stream) -> Vec<Rect> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use edifice_base::rng::stream;
-    use edifice_structure_completion::made::facades;
+    use crate::made::facades;
 
     #[test]
     fn what_is_hidden_is_unknown_and_nothing_is_lost() {
         let mut hides = 0;
-        for (k, sight) in Sight::all().into_iter().enumerate() {
+        for sight in Sight::all() {
+            assert_eq!(Sight::named(&sight.name()), Some(sight));
             for layout in facades::several(5, 3) {
-                let rng = &mut stream(1, "sights", k as u64);
-                let (partial, hidden) = sight.hide(&layout, rng);
+                let (partial, hidden) = sight.hide_frozen(&layout);
                 assert_eq!(
                     partial.observed.len() + hidden.len(),
                     layout.elements.len(),
@@ -146,5 +167,6 @@ mod tests {
             }
         }
         assert!(hides > 50, "{hides}");
+        assert_eq!(Sight::named("roof"), None);
     }
 }
