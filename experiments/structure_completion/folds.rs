@@ -11,7 +11,7 @@ use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::model::{Model, shipped_model};
 
 /// The fold of each item: groups of near-twins in random order, dealt in turn.
-pub fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
+pub(crate) fn folds(items: &[&Item], count: usize, seed: u64) -> Vec<usize> {
     dealt(&groups(items), count, seed)
 }
 
@@ -37,7 +37,7 @@ fn dealt(groups: &[usize], count: usize, seed: u64) -> Vec<usize> {
 }
 
 /// Facades of a benchmark by fold, and the models that have not seen theirs.
-pub struct Parted<'a> {
+pub(crate) struct Parted<'a> {
     /// The facades that are divided into folds.
     pub used: Vec<&'a Item>,
     /// Facades out of scope, which nothing is learnt from.
@@ -57,7 +57,7 @@ impl<'a> Parted<'a> {
     ///
     /// # Errors
     /// [`Error::Method`] if no facade has a window; those of learning.
-    pub fn new(items: &'a [Item], count: usize, all: bool, seed: u64) -> Result<Self> {
+    pub(crate) fn new(items: &'a [Item], count: usize, all: bool, seed: u64) -> Result<Self> {
         let usable = items.iter().filter(|i| i.layout.count(Class::Window) > 0);
         let (mut used, mut apart): (Vec<&Item>, Vec<&Item>) =
             usable.partition(|i| all || i.in_scope);
@@ -96,7 +96,7 @@ impl<'a> Parted<'a> {
 struct NoWindow(usize);
 
 /// A model of the items that `keep` keeps.
-pub fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
+pub(crate) fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
     let kept = (0..items.len()).filter(|&i| keep(i));
     let layouts = kept.map(|i| items[i].layout.clone()).collect();
     let trained = Model::train(layouts, seed, &unwatched).map_err(Error::method)?;

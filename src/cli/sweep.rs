@@ -23,7 +23,7 @@ use super::print;
 
 /// Commands of sweeps.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// List the studies with every setting, its type, default and meaning
     #[command(after_help = "Example: edifice sweep studies")]
     Studies(studies::Options),
@@ -63,7 +63,7 @@ pub enum Command {
 
 /// The options of all commands.
 #[derive(Args)]
-pub struct Common {
+pub(crate) struct Common {
     /// Sweep file
     sweep: PathBuf,
     /// Folder of the sweep's plan and results
@@ -76,7 +76,7 @@ pub struct Common {
 
 /// Options of `run` and `retry`.
 #[derive(Args)]
-pub struct Run {
+pub(crate) struct Run {
     #[command(flatten)]
     common: Common,
     /// Run only every Nth task, from the Ith: `I/N`, counted from 0
@@ -89,7 +89,7 @@ pub struct Run {
 
 /// Options of `report`.
 #[derive(Args)]
-pub struct Report {
+pub(crate) struct Report {
     #[command(flatten)]
     common: Common,
     /// Compare on what all arms have, though tasks are missing or failed
@@ -102,7 +102,7 @@ pub struct Report {
 
 /// Options of `bundle`.
 #[derive(Args)]
-pub struct Bundle {
+pub(crate) struct Bundle {
     #[command(flatten)]
     common: Common,
     /// File to write
@@ -128,7 +128,7 @@ fn day(text: &str) -> std::result::Result<String, String> {
 }
 
 /// Runs a command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     let studies = all_studies();
     match command {
         Command::Studies(options) => studies::list(&studies, &options),

@@ -159,6 +159,7 @@ fn the_method_holds_on_faulty_labels() {
         grids,
         other_dataset: "graz50",
         other,
+        pictured: true,
     }
     .rastered();
     let grids = corrupted(&source.grids, &TARGET, 1);

@@ -13,7 +13,7 @@ use crate::reading::Reading;
 
 /// Options of `facade hide`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Whole facade: any format that `facade convert` reads
     input: PathBuf,
     /// The part to hide: all but a random 20 % (r20) or 50 % (r50) of the elements, one half (side50), all but an upper
@@ -40,7 +40,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let sight = args.task;
     let whole = input::annotated(&args.input, &args.reading)?;
     let seed = (!args.frozen).then_some(args.seed);

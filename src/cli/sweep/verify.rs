@@ -12,7 +12,7 @@ use crate::print;
 
 /// Options of `verify`.
 #[derive(Args)]
-pub struct Verify {
+pub(crate) struct Verify {
     /// Bundle
     bundle: PathBuf,
     /// Tasks to run again
@@ -30,7 +30,7 @@ pub struct Verify {
 }
 
 /// Runs the command.
-pub fn run(options: &Verify, studies: &[Study]) -> Result<()> {
+pub(crate) fn run(options: &Verify, studies: &[Study]) -> Result<()> {
     let folder = tempfile::tempdir().map_err(|e| Error::io(&options.bundle, "unpack", e))?;
     let found = bundle::verify(
         &options.bundle,

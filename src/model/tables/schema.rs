@@ -260,8 +260,7 @@ fn add(
         }
         Kind::Category => {
             let texts = cells.iter().filter_map(|(_, text)| *text);
-            let mut different = BTreeSet::new();
-            texts.for_each(|text| drop(different.insert(text)));
+            let different: BTreeSet<&str> = texts.collect();
             let categories: Vec<&str> = different.into_iter().collect();
             let values = cells.iter().map(|(_, text)| *text);
             Ok(table.categorical(column, &categories, values)?)

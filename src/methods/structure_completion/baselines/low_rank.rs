@@ -14,7 +14,7 @@ const LAMBDA: f64 = 0.5;
 const FILLED: f64 = 0.5;
 
 /// The completed matrix of cells of one class.
-pub struct Cells {
+pub(crate) struct Cells {
     /// The observed columns.
     pub columns: Vec<Line>,
     /// The observed rows, from the bottom.
@@ -25,19 +25,19 @@ pub struct Cells {
 
 impl Cells {
     /// The completed value of a cell.
-    pub fn value(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn value(&self, row: usize, column: usize) -> f64 {
         self.values[row * self.columns.len() + column]
     }
 
     /// Number of filled cells.
-    pub fn filled(&self) -> usize {
+    pub(crate) fn filled(&self) -> usize {
         self.values.iter().filter(|v| **v > FILLED).count()
     }
 }
 
 /// The matrix over the observed columns and rows of elements of one class: 1 where one is observed, 0 on known wall,
 /// otherwise unknown; completed by soft-impute.
-pub fn cells(partial: &PartialLayout, rects: &[Rect]) -> Cells {
+pub(crate) fn cells(partial: &PartialLayout, rects: &[Rect]) -> Cells {
     let (columns, column) = lines(rects, Axis::X);
     let (rows, row) = lines(rects, Axis::Y);
     let mut known: Vec<Option<f64>> = Vec::with_capacity(columns.len() * rows.len());

@@ -43,7 +43,7 @@ struct Scattered {
 }
 
 /// Changes the probabilities of windows, one for each of the first candidates; with a mask none.
-pub fn weigh(scene: &Scene, candidates: &Candidates, probabilities: &mut [f64]) {
+pub(crate) fn weigh(scene: &Scene, candidates: &Candidates, probabilities: &mut [f64]) {
     let Some(scattered) = Scattered::new(scene) else {
         return;
     };
