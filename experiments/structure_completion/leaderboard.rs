@@ -45,11 +45,14 @@ enum RowError {
         arm: String,
         wrong: &'static str,
     },
-    #[error("row {row}: {metric} is {told}, the bundle has {found} over {facades} facades")]
+    #[error(
+        "row {row}: {metric} is {told} over {of} facades, the bundle has {found} over {facades}"
+    )]
     Value {
         row: usize,
         metric: String,
         told: String,
+        of: String,
         found: String,
         facades: usize,
     },
@@ -139,6 +142,7 @@ pub fn check(board: &Path, bundle: &Path, unpacked: &Path, studies: &[Study]) ->
                     row,
                     metric: metric.to_owned(),
                     told: record[k].to_owned(),
+                    of: record[facades].to_owned(),
                     found,
                     facades: values.len(),
                 }));

@@ -48,7 +48,7 @@ enum BundleError {
 /// Most bytes that a bundle may unpack to.
 const LARGEST: u64 = 8 << 30;
 
-/// What was packed.
+/// A bundle that was written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Packed {
     /// Number of files.

@@ -7,7 +7,7 @@ use edifice_structure_completion::sights::Sight;
 
 /// A facade of which a part is hidden.
 pub struct Hiding {
-    /// What is left, and the unknown rectangles.
+    /// The elements that are left, and the unknown rectangles.
     pub partial: AnnotatedFacade,
     /// Number of elements that are hidden.
     pub hidden: usize,
