@@ -260,7 +260,7 @@ fn add(
         Kind::Category => {
             let texts = cells.iter().filter_map(|(_, text)| *text);
             let mut different = BTreeSet::new();
-            texts.for_each(|text| drop(different.insert(text)));
+            different.extend(texts);
             let categories: Vec<&str> = different.into_iter().collect();
             let values = cells.iter().map(|(_, text)| *text);
             Ok(table.categorical(column, &categories, values)?)
