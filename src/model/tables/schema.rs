@@ -260,7 +260,8 @@ fn add(
         }
         Kind::Category => {
             let texts = cells.iter().filter_map(|(_, text)| *text);
-            let different: BTreeSet<&str> = texts.collect();
+            let mut different = BTreeSet::new();
+            different.extend(texts);
             let categories: Vec<&str> = different.into_iter().collect();
             let values = cells.iter().map(|(_, text)| *text);
             Ok(table.categorical(column, &categories, values)?)

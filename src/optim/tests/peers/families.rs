@@ -232,7 +232,7 @@ fn families_are_solved_as_fast_as_by_clarabel_itself() {
     ];
     for (name, program) in &programs {
         let (mut ours, mut theirs) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..5 {
+        for _ in 0..15 {
             let start = Instant::now();
             let found = solve(program, QpOptions::default()).unwrap();
             ours = ours.min(start.elapsed().as_secs_f64());
