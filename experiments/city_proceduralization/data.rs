@@ -20,6 +20,9 @@ const REAL: [(&str, &str); 5] = [
     ("manhattan", "city/nyc_manhattan_lod2.npz"),
 ];
 
+/// Name of the made city.
+pub(crate) const MADE: &str = "synthetic";
+
 /// The made city, and with `--data` the smallest real one.
 pub(crate) fn cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
     some_cities(ctx, 1)
@@ -33,10 +36,7 @@ pub(crate) fn all_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
 fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     let motifs = ctx.budget().choose(16, 500, 500);
     ctx.setting("motifs", motifs);
-    let mut found = vec![(
-        "synthetic".to_owned(),
-        synthetic::city(motifs, 0.0, ctx.seed()).0,
-    )];
+    let mut found = vec![(MADE.to_owned(), synthetic::city(motifs, 0.0, ctx.seed()).0)];
     if ctx.budget() > crate::Budget::Smoke {
         for (name, file) in &REAL[..real] {
             if let Some(path) = ctx.real(file)? {

@@ -15,7 +15,7 @@ use edifice_shape::Building;
 
 /// Pixels of a picture of a house, and of a street.
 const PICTURE: [usize; 2] = [800, 500];
-const STREET: [usize; 2] = [1600, 900];
+const STREET: [usize; 2] = [1500, 750];
 /// Room between houses of one row (m).
 const BETWEEN: f64 = 5.0;
 

@@ -17,11 +17,13 @@ const BEHIND: f64 = 7.0;
 const ROAD: f64 = 6.0;
 const PAVEMENT: f64 = 1.8;
 const PATH: f64 = 1.2;
+/// Least width of a gate that looks at the street.
+const GATE: f64 = 1.5;
 /// Plots along a row for each row: streets look best a few times as wide as deep.
 const ASPECT: f64 = 3.0;
 
 /// The direction of a view of a street, y up: fronts and right sides are seen, from above the roofs.
-pub const DIRECTION: [f32; 3] = [-0.3, -0.5, -0.8];
+pub const DIRECTION: [f32; 3] = [-0.2, -0.5, -0.85];
 
 /// A house that is to stand on a plot.
 #[derive(Debug, Clone, Copy)]
@@ -127,7 +129,8 @@ impl Plot {
             let across = [middle - PATH / 2.0, middle + PATH / 2.0];
             garden.slab(Kind::Path, across, [front, at[1] + y], 0.05);
         }
-        if let Some([left, right, y]) = self.garage {
+        // A gate in a side wall has no drive straight to it.
+        if let Some([left, right, y]) = self.garage.filter(|g| g[1] - g[0] > GATE) {
             let across = [at[0] + left - 0.2, at[0] + right + 0.2];
             garden.slab(Kind::Drive, across, [front - PAVEMENT, at[1] + y], 0.11);
         }
