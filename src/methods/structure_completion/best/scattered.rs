@@ -1,4 +1,4 @@
-//! What the seen lines say of a window where no mask does.
+//! Evidence of the seen lines for windows where no mask tells what is hidden.
 //!
 //! Without a mask a window that is not seen may be hidden or not there. The completed matrix of cells of the seen rows and
 //! columns (soft-impute, Mazumder et al. 2010; the baseline of Fig. 19) tells how many are hidden among those that are seen.
@@ -105,7 +105,7 @@ fn at_most(value: f64, limits: [f64; 2]) -> f64 {
     ((limits[1] - value) / (limits[1] - limits[0])).clamp(0.0, 1.0)
 }
 
-/// How surely the seen lines leave no room for others at the sides of the facade, from 0 to 1.
+/// The degree to which the seen lines leave no room for others at the sides of the facade, from 0 to 1.
 fn reach(partial: &PartialLayout, cells: &Cells) -> f64 {
     let [left, right] = room(&cells.columns, partial.width);
     let [below, above] = room(&cells.rows, partial.height);

@@ -54,7 +54,7 @@ pub enum Form {
 pub struct Relation {
     /// The determined column.
     pub column: String,
-    /// What determines it.
+    /// The form of the relation, with the columns that determine it.
     #[serde(flatten)]
     pub form: Form,
 }

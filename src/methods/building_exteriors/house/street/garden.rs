@@ -1,4 +1,4 @@
-//! What stands around houses: flat ways, hedges and trees, as instances of a few meshes.
+//! Flat ways, hedges and trees around houses, as instances of a few meshes.
 
 use edifice_base::rng::Stream;
 use edifice_scene::{Group, Instance, Material, Mesh, Scene};
@@ -10,7 +10,7 @@ const RINGS: usize = 6;
 /// Different crowns.
 const CROWNS: usize = 4;
 
-/// What a slab is.
+/// Kinds of slabs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Road,

@@ -319,7 +319,7 @@ fn a_rule_has_an_item_or_something_that_excludes_it() {
     }
 }
 
-/// What a required type pays whatever its rule is taken from each of its rules, once.
+/// The least that a required type pays, whatever its rule, is taken from each of its rules, once.
 #[test]
 fn a_required_type_pays_in_advance_what_all_its_rules_cost() {
     let mut paid = 0;
