@@ -36,7 +36,7 @@ pub(super) struct Table<'a> {
     pub(super) weights: Vec<f64>,
     /// Components that are equal to each.
     pub(super) counts: Vec<f64>,
-    /// Triangles of each as a template.
+    /// Triangles of each as a template, with those that its holes lack.
     pub(super) triangles: Vec<f64>,
     /// True for few polygons: triangles of templates have a price, too, and simple members far from the mean are tried.
     pub(super) few: bool,

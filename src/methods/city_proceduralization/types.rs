@@ -13,7 +13,7 @@ use super::settings::{ProceduralizeError, Representative};
 pub use super::uses::Use;
 use edifice_base::{Progress, Watched, rng};
 use edifice_cluster::{WardTree, kmeans, lloyd, means, ward};
-use edifice_shape::triangles::merge_coplanar;
+use edifice_shape::triangles::{merge_coplanar, repair};
 use rayon::prelude::*;
 
 /// The types of a city.
@@ -225,8 +225,10 @@ impl<'a> TypeTree<'a> {
         let tree = ward(&rows, d, &weights)?;
         let forms = distinct.iter().map(|&i| Form::of(&components[i]));
         let triangles = distinct.par_iter().map(|&i| {
-            let merged = merge_coplanar(&components[i].mesh, COPLANAR);
-            merged.triangles.len() as f64
+            let mesh = &components[i].mesh;
+            let merged = merge_coplanar(mesh, COPLANAR);
+            // What is left open is not cheaper: a hole counts as about the triangles that would close it.
+            (merged.triangles.len() + repair(mesh).1.open_edges) as f64
         });
         let table = Table {
             rows,
