@@ -218,7 +218,7 @@ def interrupted(call):
     sent = []
 
     def send():
-        time.sleep(0.6)
+        time.sleep(0.4)
         sent.append(time.perf_counter())
         os.kill(os.getpid(), signal.SIGINT)
 
@@ -249,13 +249,13 @@ import os; os._exit(0)
 model = edifice.TableModel(max_styles=2, max_kinds=2).fit(rows[:60])
 names, _, texts = model._table(np.where(rng.random((2000, 12)) < 0.5, np.nan, 0.5), False)
 """
-    normal = "model = edifice.GaussianMixture(n_components=3).fit(rows[:200])"
+    normal = "model = edifice.GaussianMixture(n_components=20).fit(rows)"
     facades = "facades = [edifice.Facade.from_array(rng.integers(0, 3, (30, 30)), ['a', 'b', 'c']) for _ in range({})]"
     # What is prepared, and a call that goes on for seconds.
     for prepare, call in [
         ("", "edifice.GaussianMixture(max_components=60, n_init=20).fit(rows)"),
-        (normal, "model.score_samples(np.tile(rows, (400, 1)))"),
-        (normal, "model.sample(3_000_000)"),
+        (normal, "model.score_samples(np.tile(rows, (200, 1)))"),
+        (normal, "model.sample(5_000_000)"),
         ("", "edifice.TableModel(max_styles=25, max_kinds=25).fit(rows)"),
         (few, "model.model_.log_density(names, 200 * texts)"),
         (few, "model.model_.sample(400_000, 0)"),
