@@ -20,8 +20,8 @@ const TRIED: usize = 12;
 /// Members that are tried as medoid beside them: of the nearest to the mean, those of fewest triangles.
 const SIMPLE: usize = 8;
 const AMONG: usize = 64;
-/// The power a of derived triangles, and for few polygons. With the first a city derives no more triangles than it has, at the
-/// same intersection over union as without a price (midtown: 0.97 of its triangles in place of 1.62).
+/// The power a of derived triangles, and for few polygons. With the first, fewer triangles are derived at the same
+/// intersection over union as without a price (midtown 0.89 of its own triangles in place of 1.62, Delft 1.75 in place of 2.59).
 const DERIVED: f64 = 0.12;
 const DERIVED_FEW: f64 = 0.2;
 /// Cost of a template beside its triangles, in triangles.

@@ -39,7 +39,7 @@ pub enum Precision {
 /// The member that represents a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Representative {
-    /// The member nearest to the mean. In `best` derived triangles have a small price: no more are derived than the city has.
+    /// The member nearest to the mean. In `best` derived triangles have a small price.
     Nearest,
     /// The member of fewest polygons ("-poly"). In `best` triangles have a higher price, those of templates, too: fewer are derived, in
     /// fewer bytes, at a loss of some hundredths of the intersection over union.
