@@ -5,8 +5,7 @@ use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Mode, judge, proceduralize};
-use edifice_io::city::picture::{Drawing, Drawn, draw};
-use edifice_shape::triangles::City;
+use edifice_io::city::picture::{Drawing, Drawn, bounds, draw};
 
 /// Part of the width of a made city that is drawn: its buildings are small and far apart.
 const NEAR: f64 = 0.12;
@@ -23,12 +22,18 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             .derive()
             .map_err(Error::method)?
             .city(&made.grammar);
-        let drawing = Drawing {
+        let whole = Drawing {
             width,
             height: width * 5 / 8,
             plan: false,
-            around: (name == data::MADE).then(|| middle(&city)),
+            around: None,
         };
+        let near = bounds(&city, &whole).filter(|_| name == data::MADE);
+        let around = near.map(|(low, high)| {
+            let at = [0, 1].map(|k| (low[k] + high[k]) / 2.0 + city.origin[k]);
+            (at, NEAR * (high[0] - low[0]).max(high[1] - low[1]))
+        });
+        let drawing = Drawing { around, ..whole };
         let drawn = [&city, &derived].map(|city| Drawn {
             city,
             colours: None,
@@ -43,17 +48,4 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         ctx.attach(&format!("figure_8_{name}.png"), &picture, &what)?;
     }
     Ok(())
-}
-
-/// The middle of a city in its reference system, and the radius around it that is drawn.
-fn middle(city: &City) -> ([f64; 2], f64) {
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for (l, h) in city.buildings.iter().filter_map(|b| b.mesh.bounds()) {
-        for k in 0..2 {
-            low[k] = low[k].min(l[k]);
-            high[k] = high[k].max(h[k]);
-        }
-    }
-    let at = [0, 1].map(|k| (low[k] + high[k]) / 2.0 + city.origin[k]);
-    (at, NEAR * (high[0] - low[0]).max(high[1] - low[1]))
 }

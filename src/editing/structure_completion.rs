@@ -5,6 +5,7 @@ mod edits;
 mod given;
 pub mod hiding;
 mod photograph;
+mod starts;
 mod view;
 
 use std::path::Path;
@@ -16,6 +17,7 @@ use serde_json::Value;
 pub use edits::{FacadeEdit, FacadeEditError, edit};
 pub use given::{Given, Wanted};
 
+use self::starts::{EMPTY, FOUR};
 use super::examples::{Example, Source as From};
 use super::script::Shell;
 use super::work::Work;
@@ -56,15 +58,6 @@ pub const EDITOR: Editor = Editor {
         },
     ],
 };
-
-const EMPTY: &str = r#"{ "format": "edifice/facade", "version": 1, "name": "sketch", "unit": "m",
-  "width": 15.0, "height": 12.0, "regions": [] }"#;
-const FOUR: &str = r#"{ "format": "edifice/facade", "version": 1, "name": "four_elements", "unit": "m",
-  "width": 15.0, "height": 12.0, "regions": [
-    { "label": "window", "x": 1.5, "y": 4.2, "width": 1.2, "height": 1.7, "id": "w1", "observed": true },
-    { "label": "window", "x": 4.1, "y": 4.2, "width": 1.2, "height": 1.7, "id": "w2", "observed": true },
-    { "label": "window", "x": 1.5, "y": 7.4, "width": 1.2, "height": 1.7, "id": "w3", "observed": true },
-    { "label": "door", "x": 6.8, "y": 0.0, "width": 1.4, "height": 2.5, "id": "d1", "observed": true } ] }"#;
 
 fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
     if !ends(path, ENDING) {

@@ -102,8 +102,8 @@ fn encoded(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     Ok(bytes)
 }
 
-/// The middle of what is drawn of a city, in the coordinates of its reference system.
-fn middle_of(city: &City, drawing: &Drawing) -> [f64; 3] {
+/// The least and the greatest corner of what is drawn of a city, relative to its origin; `None` where nothing is.
+pub fn bounds(city: &City, drawing: &Drawing) -> Option<([f64; 3], [f64; 3])> {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for b in &city.buildings {
         if let Some((l, h)) = b.mesh.bounds().filter(|b| seen(b, city, drawing)) {
@@ -113,8 +113,13 @@ fn middle_of(city: &City, drawing: &Drawing) -> [f64; 3] {
             }
         }
     }
-    match low[0] <= high[0] {
-        true => [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0 + city.origin[k]),
-        false => city.origin,
+    (low[0] <= high[0]).then_some((low, high))
+}
+
+/// The middle of what is drawn of a city, in the coordinates of its reference system.
+fn middle_of(city: &City, drawing: &Drawing) -> [f64; 3] {
+    match bounds(city, drawing) {
+        Some((low, high)) => [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0 + city.origin[k]),
+        None => city.origin,
     }
 }
