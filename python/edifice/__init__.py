@@ -20,6 +20,7 @@ __all__ = [
     "compare",
     "complete",
     "hide",
+    "program",
     "sweep",
 ]
 
@@ -46,6 +47,6 @@ def __getattr__(name):
 
     if name in ("GaussianMixture", "TableModel"):
         return getattr(importlib.import_module("._estimators", __name__), name)
-    if name == "sweep":
-        return importlib.import_module(".sweep", __name__)
+    if name in ("program", "sweep"):
+        return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

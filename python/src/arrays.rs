@@ -19,7 +19,7 @@ pub fn mesh<'py>(
 ) -> PyResult<MeshArrays<'py>> {
     let corners: Vec<Vec<f64>> = corners.iter().map(|p| p.to_vec()).collect();
     let triangles: Vec<Vec<i64>> = triangles.map(|t| t.map(i64::from).to_vec()).collect();
-    let shaped = |empty: bool| empty.then(|| [0, 3]);
+    let shaped = |empty: bool| empty.then_some([0, 3]);
     let corners = match shaped(corners.is_empty()) {
         Some(shape) => PyArray2::zeros(py, shape, false),
         None => PyArray2::from_vec2(py, &corners).map_err(failed)?,

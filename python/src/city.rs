@@ -13,6 +13,7 @@ use pyo3::types::PyDict;
 
 use super::arrays::{MeshArrays, mesh};
 use super::errors::failed;
+use super::html;
 use super::worker::{detached, watched};
 
 /// Most pixels along a side of a template's textures.
@@ -147,8 +148,9 @@ impl City {
     }
 
     /// Finds the grammar of the city (Demir et al. 2014): `templates` of them, or as many as components, halved `level` times. The same
-    /// seed gives the bytes of `edifice city proceduralize`.
-    #[pyo3(signature = (level = 4, templates = None, mode = "best", precision = None, seed = 1))]
+    /// seed gives the bytes of `edifice city proceduralize`. `progress` shows a bar of tqdm.
+    #[pyo3(signature = (level = 4, templates = None, mode = "best", precision = None, seed = 1, progress = false))]
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn proceduralize(
         &self,
         py: Python<'_>,
@@ -157,6 +159,7 @@ impl City {
         mode: &str,
         precision: Option<&str>,
         seed: u64,
+        progress: bool,
     ) -> PyResult<CityGrammar> {
         let settings = Settings {
             mode: match mode {
@@ -188,7 +191,8 @@ impl City {
             ..Settings::default()
         };
         let input = Arc::clone(&self.inner);
-        let found = watched(py, move |watch| -> Result<InstanceGrammar, String> {
+        let bar = progress.then_some("proceduralize");
+        let found = watched(py, bar, move |watch| -> Result<InstanceGrammar, String> {
             let made = proceduralize(&input, &settings, watch).map_err(|e| e.to_string())?;
             let textures = made.box_textures(&input, TEXTURE_PIXELS);
             let mut grammar = made.grammar;
@@ -317,6 +321,20 @@ impl CityGrammar {
     #[getter]
     fn residuals(&self) -> usize {
         self.inner.residuals()
+    }
+
+    /// The size of the grammar as a table, for notebooks.
+    fn _repr_html_(&self) -> String {
+        let rows = [
+            ("rules", self.inner.rules.len()),
+            ("templates", self.inner.templates.len()),
+            ("escapes", self.escapes()),
+            ("residuals", self.residuals()),
+        ];
+        let rows: Vec<_> = rows
+            .map(|(name, n)| (name.to_owned(), vec![n.to_string()]))
+            .into();
+        html::table("Grammar of a city", &["number"], &rows)
     }
 
     fn __len__(&self) -> usize {

@@ -228,8 +228,9 @@ impl Facade {
     }
 
     /// Infers the smallest split grammar (Wu et al. 2014); the same seed gives the bytes of `edifice grammar infer`.
+    /// `progress` shows a bar of tqdm.
     #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (method = "adp", iterations = None, seed = 0, ops = None, split_cost = None, repeat_cost = None))]
+    #[pyo3(signature = (method = "adp", iterations = None, seed = 0, ops = None, split_cost = None, repeat_cost = None, progress = false))]
     fn infer(
         &self,
         py: Python<'_>,
@@ -239,6 +240,7 @@ impl Facade {
         ops: Option<Vec<String>>,
         split_cost: Option<f64>,
         repeat_cost: Option<f64>,
+        progress: bool,
     ) -> PyResult<Grammar> {
         let defaults = Settings::default();
         let usual = Costs::default();
@@ -261,7 +263,8 @@ impl Facade {
             ..defaults
         };
         let facade = self.inner.facade.clone();
-        let found = watched(py, move |watch| -> Result<_, String> {
+        let bar = progress.then_some("infer");
+        let found = watched(py, bar, move |watch| -> Result<_, String> {
             facade.check_tiling().map_err(|e| e.to_string())?;
             edifice_shape::splittable(&facade).map_err(|e| e.to_string())?;
             infer(&[facade], &settings, watch).map_err(|e| e.to_string())

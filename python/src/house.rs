@@ -11,6 +11,7 @@ use pyo3::types::{PyDict, PyList};
 
 use super::arrays::{MeshArrays, mesh};
 use super::errors::failed;
+use super::html;
 use super::worker::detached;
 
 /// A house: boxes with roofs, and pieces of facades with windows and doors; metres.
@@ -100,6 +101,18 @@ impl House {
         let surface = found.map_err(failed)?.surface;
         let triangles = surface.triangles.iter().map(|(corners, _)| *corners);
         mesh(py, &surface.positions, triangles)
+    }
+
+    /// The attributes that are observed, as a table, for notebooks.
+    fn _repr_html_(&self) -> PyResult<String> {
+        let row = attributes(&self.inner).map_err(failed)?;
+        let found = COLUMNS.iter().zip(row);
+        let found = found.filter_map(|(name, value)| {
+            let value = value?;
+            Some(((*name).to_string(), vec![format!("{value:.3}")]))
+        });
+        let rows: Vec<_> = found.collect();
+        Ok(html::table(&self.__repr__(), &["value"], &rows))
     }
 
     fn __repr__(&self) -> String {

@@ -75,8 +75,8 @@ impl HouseModel {
 
     /// Draws houses; the same seed gives the bytes of `edifice building generate`. `given` maps a column or an attribute to its value: a number, a truth
     /// value, a text (`none`: all zero), or a list with a value for each column of an attribute. `style` draws from one style only, the first is 1;
-    /// `most_probable` draws many and keeps the most probable that differ. Samples that no house can have, or whose houses miss them or are not believable, are drawn anew, unless `untruncated`.
-    #[pyo3(signature = (given = None, count = 10, seed = 1, style = None, most_probable = false, untruncated = false))]
+    /// `most_probable` draws many and keeps the most probable that differ. Samples that no house can have, or whose houses miss them or are not believable, are drawn anew, unless `untruncated`. `progress` shows a bar of tqdm.
+    #[pyo3(signature = (given = None, count = 10, seed = 1, style = None, most_probable = false, untruncated = false, progress = false))]
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn generate(
         &self,
@@ -87,6 +87,7 @@ impl HouseModel {
         style: Option<usize>,
         most_probable: bool,
         untruncated: bool,
+        progress: bool,
     ) -> PyResult<Vec<House>> {
         let given = given.map_or(Ok(Vec::new()), evidence)?;
         if style.is_some() && (most_probable || !given.is_empty()) {
@@ -103,7 +104,8 @@ impl HouseModel {
             seed,
         };
         let model = Arc::clone(&self.inner);
-        let made = watched(py, move |watch| {
+        let bar = progress.then_some("generate");
+        let made = watched(py, bar, move |watch| {
             let database = shipped_database()?;
             let drawn = ordered(&model, &draws, None, database)?;
             let redraws = Redraws::new(&model, &draws, database, false);

@@ -5,14 +5,18 @@
 mod arrays;
 mod city;
 mod comparison;
+mod distribution;
 mod errors;
 mod facade;
 mod grammar;
 mod house;
 mod house_model;
+mod html;
 mod logic;
 mod mixture;
 mod network;
+mod posterior;
+mod program;
 mod table;
 mod worker;
 
@@ -23,6 +27,8 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use super::city::{City, CityGrammar};
+    #[pymodule_export]
+    use super::distribution::Distribution;
     #[pymodule_export]
     use super::errors::EdificeError;
     #[pymodule_export]
@@ -39,6 +45,10 @@ mod _native {
     use super::mixture::MixtureModel;
     #[pymodule_export]
     use super::network::Network;
+    #[pymodule_export]
+    use super::posterior::Posterior;
+    #[pymodule_export]
+    use super::program::{Effect, exact, factor, importance, metropolis, observe, sample, smc};
     #[pymodule_export]
     use super::table::FittedTable;
 }

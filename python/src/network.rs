@@ -9,6 +9,7 @@ use edifice_model::network::{self, Evidence};
 use pyo3::prelude::*;
 
 use super::errors::failed;
+use super::html;
 use super::worker::detached;
 
 /// A Bayesian network of discrete variables.
@@ -103,6 +104,21 @@ impl Network {
         let (network, evidence) = (Arc::clone(&self.inner), evidence(given));
         let found = detached(py, move || network.explain(&evidence))?;
         Ok(found.map_err(failed)?.values.into_iter().collect())
+    }
+
+    /// Variables, their parents and categories as a table, for notebooks.
+    fn _repr_html_(&self) -> PyResult<String> {
+        let mut rows = Vec::new();
+        for name in self.inner.names() {
+            let parents = self.inner.parents(name).map_err(failed)?.join(", ");
+            let categories = self.inner.categories(name).map_err(failed)?.join(", ");
+            rows.push((name.to_owned(), vec![parents, categories]));
+        }
+        Ok(html::table(
+            &self.__repr__(),
+            &["parents", "categories"],
+            &rows,
+        ))
     }
 
     fn __len__(&self) -> usize {

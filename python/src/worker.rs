@@ -1,13 +1,14 @@
 //! Long calls in a thread of their own.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use edifice_base::Watch;
+use edifice_base::{Progress, Watch};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::errors::failed;
 
@@ -25,22 +26,67 @@ impl Drop for Stop {
     }
 }
 
-/// As [`detached`], for work that takes a watch: what is interrupted ends soon.
+/// As [`detached`], for work that takes a watch: what is interrupted ends soon. With a name, a bar of `tqdm` shows the progress.
 ///
 /// # Errors
-/// As [`detached`].
+/// As [`detached`]; `ImportError` where a bar is asked for and there is no `tqdm`.
 pub fn watched<T: Send + 'static>(
     py: Python<'_>,
+    bar: Option<&'static str>,
     work: impl FnOnce(&Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
+    let bar = bar.map(|name| Bar::new(py, name)).transpose()?;
     let stop = Stop(Arc::default());
     let stopped = Arc::clone(&stop.0);
-    detached(py, move || {
-        work(&|_| match stopped.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+    let last = Arc::new(Mutex::new(None));
+    let told = Arc::clone(&last);
+    let shown = bar.is_some();
+    let work = move || {
+        work(&|progress| {
+            // A step that comes while the last one is looked at is not shown.
+            if shown && let Ok(mut told) = told.try_lock() {
+                *told = Some(progress);
+            }
+            match stopped.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
         })
-    })
+    };
+    let show = || match (&bar, last.lock().ok().and_then(|told| *told)) {
+        (Some(bar), Some(progress)) => bar.show(py, &progress),
+        _ => Ok(()),
+    };
+    let found = polled(py, work, show);
+    if let Some(bar) = &bar {
+        show()?;
+        bar.0.call_method0(py, "close")?;
+    }
+    found
+}
+
+/// A bar of `tqdm`, in a notebook or a terminal.
+struct Bar(Py<PyAny>);
+
+impl Bar {
+    fn new(py: Python<'_>, name: &str) -> PyResult<Self> {
+        let about = PyDict::new(py);
+        about.set_item("desc", name)?;
+        let made = py
+            .import("tqdm.auto")?
+            .call_method("tqdm", (), Some(&about))?;
+        Ok(Self(made.unbind()))
+    }
+
+    fn show(&self, py: Python<'_>, progress: &Progress) -> PyResult<()> {
+        let bar = self.0.bind(py);
+        bar.setattr("n", progress.done)?;
+        bar.setattr("total", progress.most)?;
+        let best = progress.best.map(|best| format!(", best {best:.6}"));
+        let text = format!("{}{}", progress.stage, best.unwrap_or_default());
+        bar.call_method1("set_postfix_str", (text,))?;
+        Ok(())
+    }
 }
 
 /// Runs `work` in a thread of its own with the interpreter released, and answers Ctrl-C within `PAUSE`. Work that has been left ends in the
@@ -51,6 +97,15 @@ pub fn watched<T: Send + 'static>(
 pub fn detached<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    polled(py, work, || Ok(()))
+}
+
+/// As [`detached`]; `look` is called between two looks for a signal.
+fn polled<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+    mut look: impl FnMut() -> PyResult<()>,
 ) -> PyResult<T> {
     let (send, mut receive) = channel();
     let thread = std::thread::Builder::new().stack_size(STACK);
@@ -66,7 +121,10 @@ pub fn detached<T: Send + 'static>(
         receive = back;
         match found {
             Ok(value) => return Ok(value),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Timeout) => {
+                py.check_signals()?;
+                look()?;
+            }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(failed(
                     "the computation failed inside; please report its input",

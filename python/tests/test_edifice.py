@@ -264,8 +264,9 @@ names, _, texts = model._table(np.where(rng.random((2000, 12)) < 0.5, np.nan, 0.
         (facades.format(2500), "edifice.Logic.fit(facades)"),
         ("whole = layout(160, 160)", "whole.compare(whole)"),
         ("half = layout(12, 16).hide('r20')", "half.complete(method='annealing', count=8)"),
-        ("city = edifice.City.from_arrays([box(15.0 * k, *rng.uniform(4, 14, 2)) for k in range(3000)])", "city.proceduralize(mode='paper')"),
+        ("city = edifice.City.from_arrays([box(15.0 * k, *rng.uniform(4, 14, 2)) for k in range(12000)])", "city.proceduralize(mode='paper')"),
         ("model = edifice.HouseModel.shipped()", "model.generate(count=100_000)"),
+        ("from test_program import *", "smc(schools, EFFECTS, ERRORS, count=10**7)"),
     ]:
         text = code.format(here=here, prepare=prepare, call=call)
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=120)

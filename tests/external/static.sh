@@ -16,8 +16,9 @@ root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 mkdir "$root/tmp"
 cp "$program" "$root/edifice"
-within=(chroot)
-[ "$(id -u)" -eq 0 ] || within=(unshare --map-root-user chroot)
+# The environment is empty, so that the program has its path here.
+within=("$(command -v chroot)")
+[ "$(id -u)" -eq 0 ] || within=("$(command -v unshare)" --map-root-user "${within[@]}")
 inside() { env -i "${within[@]}" "$root" /edifice "$@"; }
 inside --version
 inside reproduce --budget smoke --out /tmp/report --quiet

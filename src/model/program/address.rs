@@ -53,6 +53,26 @@ impl From<String> for Address {
     }
 }
 
+impl From<(String, u32)> for Address {
+    fn from((name, i): (String, u32)) -> Self {
+        Self {
+            name: Cow::Owned(name),
+            index: [i, 0],
+            depth: 1,
+        }
+    }
+}
+
+impl From<(String, u32, u32)> for Address {
+    fn from((name, i, j): (String, u32, u32)) -> Self {
+        Self {
+            name: Cow::Owned(name),
+            index: [i, j],
+            depth: 2,
+        }
+    }
+}
+
 impl From<(&'static str, usize)> for Address {
     fn from((name, i): (&'static str, usize)) -> Self {
         Self {
