@@ -5,6 +5,7 @@
 
 mod city;
 mod compare;
+mod costs;
 pub mod data;
 mod figure_10;
 mod figure_12;
@@ -149,6 +150,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "optimality",
         title: "lower bounds and proofs of optimality for small facades",
         run: optimality::run,
+    },
+    Artefact {
+        name: "costs",
+        title: "costs and proven bounds of every facade",
+        run: costs::run,
     },
     Artefact {
         name: "speed",

@@ -14,7 +14,7 @@ use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
 use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// The two sets of operations of Tables 1 and 2.
-const OPERATIONS: [&str; 2] = ["split", "split_repeat"];
+pub(super) const OPERATIONS: [&str; 2] = ["split", "split_repeat"];
 
 /// Branches for facades of more than 100 terminals, where each costs much and proofs are rare.
 const FEW_NODES: u64 = 100;

@@ -17,7 +17,7 @@ use super::errors::failed;
 use super::posterior::Posterior;
 use super::worker::{Stop, detached};
 
-/// What a program asks of the engine when it yields.
+/// A wish of a program to its engine, which it yields.
 enum Request {
     Sample(Address, Distribution),
     Observe(Distribution, Value),

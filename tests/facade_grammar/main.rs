@@ -5,6 +5,7 @@ mod common;
 #[path = "../smallest_grammar/mod.rs"]
 mod smallest_grammar;
 
+mod board;
 mod bound;
 mod claims;
 mod exact;
