@@ -65,7 +65,6 @@ pub mod gmm;
 pub(crate) mod graph;
 pub mod hierarchy;
 mod information;
-pub(crate) mod kmeans;
 pub(crate) mod linalg;
 pub mod log_linear;
 pub mod low_rank;
