@@ -1,6 +1,7 @@
-//! The parts that every crate of Edifice shares: errors with their place, seeded random streams, whole files, the
-//! progress of long calls.
+//! The parts that every crate of Edifice shares: errors with their place, seeded random streams, whole files, cells of
+//! CSV, the progress of long calls.
 
+pub mod csv;
 pub mod error;
 pub mod file;
 pub mod progress;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, csv};
 use edifice_io::write_atomic;
 use edifice_procedural_logic as procedural_logic;
 use edifice_procedural_logic::Model;
@@ -124,8 +124,7 @@ fn equal(a: f64, b: f64) -> bool {
 
 /// The matrix with the names of the facades.
 fn csv(model: &Model, distances: &DMatrix<f64>) -> String {
-    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let names: Vec<String> = model.facades.iter().map(|f| quoted(&f.name)).collect();
+    let names: Vec<String> = model.facades.iter().map(|f| csv::quoted(&f.name)).collect();
     let mut text = format!("facade,{}\n", names.join(","));
     for (row, name) in names.iter().enumerate() {
         let values: Vec<String> = distances.row(row).iter().map(f64::to_string).collect();
