@@ -152,12 +152,12 @@ pub(super) fn sampler<'a>(
     plan: Option<&[Rect]>,
     part: u64,
 ) -> Result<(Sampler<'a>, Table)> {
-    let mut rng = stream(draws.seed, "building/sample", part);
     if let Some(style) = draws.style {
+        let mut rng = stream(draws.seed, "building/sample", part);
         let batch = move || style_table(file, style, draws.count, &mut rng);
         return Ok((Box::new(batch), Table::new()));
     }
-    let mut given = given_table(file, &draws.given, &mut rng)?;
+    let mut given = given_table(file, &draws.given)?;
     for (c, value) in plan.into_iter().flat_map(decided) {
         // What is given of the plan is checked against it when the houses are made.
         if given.column(COLUMNS[c]).is_err() {
@@ -187,13 +187,13 @@ pub fn style_table(
     Ok(draws.map_err(|e| wrong(e.to_string()))?.table)
 }
 
-/// Evidence as a table of one row. A sample of the model tells the kinds of the columns.
+/// Evidence as a table of one row.
 ///
 /// # Errors
 /// [`Error::Option`] for evidence that the model does not know.
-pub fn given_table(file: &ModelFile, given: &[String], rng: &mut Stream) -> Result<Table> {
-    let kinds = file.sample(1, rng).map_err(Error::method)?;
-    evidence(&file.attributes(), &kinds.table, given)
+pub fn given_table(file: &ModelFile, given: &[String]) -> Result<Table> {
+    let columns = file.columns().map_err(Error::method)?;
+    evidence(&file.attributes(), &columns, given)
         .map_err(|e| Error::option("--given", e.to_string()))
 }
 

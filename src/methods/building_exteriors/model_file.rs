@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::attributes::{AttributeRow, GROUPS};
 use super::coding::{Coding, attribute_rows, coded_evidence, settled};
+use super::data;
 use edifice_model::hierarchy::{Draws, Group, Hierarchy};
 use edifice_model::{ModelError, Table};
 
@@ -70,6 +71,21 @@ impl ModelFile {
                     derived || self.groups.iter().flat_map(|g| &g.columns).any(|c| own(c))
                 });
                 known.map(|g| Group::new(g.name, g.columns())).collect()
+            }
+        }
+    }
+
+    /// A table of the columns of [`Self::attributes`] without rows: their kinds.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::columns`].
+    pub fn columns(&self) -> Result<Table, ModelError> {
+        match self.coding {
+            Coding::Published => self.model.columns(),
+            Coding::Presence => {
+                let attributes = self.attributes();
+                let names = attributes.iter().flat_map(|g| &g.columns);
+                data::table(&[])?.in_order(&names.map(String::as_str).collect::<Vec<_>>())
             }
         }
     }
