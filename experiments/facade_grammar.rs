@@ -15,7 +15,6 @@ mod joint_real;
 mod judge;
 mod library;
 mod likeness;
-pub mod made;
 mod optimality;
 mod procedural_logic;
 mod projection;

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::houses::wild;
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
@@ -16,6 +15,7 @@ use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{
     MASS, MassModel, MassTarget, Search, is_sound, least_z, max_z, nearest, search,
 };
+use edifice_generators::building_exteriors::wild;
 use edifice_model::hierarchy::learn;
 use edifice_model::{Cell, Table as Data};
 use edifice_report::{Align, Row, Table};

@@ -2,9 +2,9 @@
 
 use super::kind::Kind;
 use super::plan::{Plan, Tile};
-use crate::facade_grammar::made::composition::run;
-use crate::facade_grammar::made::draft::{Draft, Part, leaf};
-use crate::facade_grammar::made::elements::door;
+use crate::facade_grammar::composition::run;
+use crate::facade_grammar::draft::{Draft, Part, leaf};
+use crate::facade_grammar::elements::door;
 use edifice_grammar::Grammar;
 use edifice_shape::Axis;
 
