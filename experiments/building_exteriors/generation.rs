@@ -9,15 +9,15 @@ use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{COLUMNS, mass_attributes};
-use edifice_building_exteriors::design::possible_rows;
+use edifice_building_exteriors::design::{possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, Options, generate, model};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{
     MASS, MassModel, MassTarget, Search, is_sound, least_z, max_z, nearest, search,
 };
 use edifice_generators::building_exteriors::wild;
+use edifice_model::Table as Data;
 use edifice_model::hierarchy::learn;
-use edifice_model::{Cell, Table as Data};
 use edifice_report::{Align, Row, Table};
 use edifice_shape::Building;
 
@@ -131,13 +131,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
 
 /// The 49 columns of each row.
 pub(super) fn rows_of(table: &Data) -> Vec<Vec<f64>> {
-    let value = |row: usize, name: &str| match table.column(name).map(|c| c.cell(row)) {
-        Ok(Cell::Real(v)) => v,
-        Ok(Cell::Code(code)) => code as f64,
-        _ => 0.0,
-    };
-    let row = |r: usize| COLUMNS.iter().map(|name| value(r, name)).collect();
-    (0..table.rows()).map(row).collect()
+    wanted_rows(table).into_iter().map(Vec::from).collect()
 }
 
 /// Runs one method on one house and measures what came of it.

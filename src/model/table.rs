@@ -16,10 +16,21 @@ pub enum Cell {
     Code(usize),
 }
 
+impl Cell {
+    /// The number of a real cell, the index of a categorical one (0 or 1 of a binary one), `None` where it is missing.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Missing => None,
+            Self::Real(value) => Some(value),
+            Self::Code(code) => Some(code as f64),
+        }
+    }
+}
+
 /// Values of a column.
 #[derive(Clone, Debug)]
 pub(crate) enum Values {
-    /// Finite numbers; NaN marks a missing one and never leaves the module.
+    /// Finite numbers; NaN marks a missing one.
     Real(Vec<f64>),
     /// Indices into `categories`, or [`MISSING`].
     Codes {
@@ -37,6 +48,9 @@ pub struct Column {
 }
 
 impl Column {
+    /// The index that [`Column::codes`] has for a missing cell.
+    pub const MISSING: u32 = MISSING;
+
     /// The column's name.
     pub fn name(&self) -> &str {
         &self.name
@@ -47,6 +61,35 @@ impl Column {
         match &self.values {
             Values::Real(_) => None,
             Values::Codes { categories, .. } => Some(categories),
+        }
+    }
+
+    /// All cells of a real column, in its own unit, NaN where a cell is missing; `None` for a categorical one.
+    ///
+    /// # Examples
+    /// ```
+    /// use edifice_model::{Column, Table};
+    /// let houses = Table::new()
+    ///     .real("width", [Some(12.0), None])?
+    ///     .categorical("roof", &["flat", "hip"], [None, Some("hip")])?;
+    /// let width = houses.column("width")?.numbers().unwrap_or_default();
+    /// assert!(width[0] == 12.0 && width[1].is_nan());
+    /// assert_eq!(houses.column("roof")?.codes(), Some(&[Column::MISSING, 1][..]));
+    /// # Ok::<(), edifice_model::ModelError>(())
+    /// ```
+    pub fn numbers(&self) -> Option<&[f64]> {
+        match &self.values {
+            Values::Real(values) => Some(values),
+            Values::Codes { .. } => None,
+        }
+    }
+
+    /// All cells of a categorical column as indices into its categories, [`Column::MISSING`] where a cell is missing; `None` for
+    /// a real one.
+    pub fn codes(&self) -> Option<&[u32]> {
+        match &self.values {
+            Values::Real(_) => None,
+            Values::Codes { codes, .. } => Some(codes),
         }
     }
 

@@ -10,7 +10,7 @@ use edifice_building_exteriors::model_file::ModelFile;
 use edifice_editing::building_exteriors::draws::{Draws, drawn_table, given_table, style_table};
 use edifice_editing::building_exteriors::is_file_name;
 use edifice_io::building_json;
-use edifice_model::{Cell, Table};
+use edifice_model::Table;
 
 use super::data::{self, Input};
 use super::produce::Making;
@@ -166,10 +166,8 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
         }
         let mut row = observed(&partial, &args.keep).map_err(|e| named(e.to_string()))?;
         for (value, name) in row.iter_mut().zip(COLUMNS) {
-            match given.column(name).map(|c| c.cell(0)) {
-                Ok(Cell::Real(v)) => *value = Some(v),
-                Ok(Cell::Code(code)) => *value = Some(code as f64),
-                _ => {}
+            if let Ok(column) = given.column(name) {
+                *value = column.cell(0).number().or(*value);
             }
         }
         let seed = args.draw.seed;
