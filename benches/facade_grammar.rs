@@ -22,7 +22,7 @@ fn ten_thousand_iterations(c: &mut Criterion) {
     let facade = layout.facade;
     let mut group = c.benchmark_group("infer_10000_iterations");
     group.sample_size(10);
-    for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
+    for method in [Method::Lagrangian, Method::AdpPaper, Method::Importance] {
         let id = BenchmarkId::new(method.to_string(), facade.regions.len());
         group.bench_function(id, |b| {
             b.iter(|| {

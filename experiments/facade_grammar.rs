@@ -41,7 +41,7 @@ use super::{Artefact, Budget, Experiment, picture};
 use edifice_facade_grammar::Method;
 
 /// This project's configuration of approximate dynamic programming.
-const BEST: Method = Method::AdpBest;
+const BEST: Method = Method::Lagrangian;
 /// The paper's, as far as its text says.
 const PAPER: Method = Method::AdpPaper;
 

@@ -13,7 +13,7 @@ use edifice_building_exteriors::design::{possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, Options, generate, model};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{
-    MASS, MassModel, MassTarget, Search, is_sound, least_z, max_z, nearest, search,
+    MASS, MassModel, MassTarget, SearchLimits, is_sound, least_z, max_z, nearest, search,
 };
 use edifice_generators::building_exteriors::wild;
 use edifice_model::Table as Data;
@@ -143,9 +143,9 @@ pub(super) fn answer(unit: &Unit, database: &Database, seed: u64) -> Result<Answ
     if unit.dataset != "wild" && matches!(unit.method, "best") {
         let wanted: [f64; 49] = std::array::from_fn(|c| unit.wanted[c]);
         let options = Options {
-            search: Search {
+            search: SearchLimits {
                 leave_out,
-                ..Search::default()
+                ..SearchLimits::default()
             },
             ..Options::default()
         };
@@ -199,9 +199,9 @@ fn mass_model(
     seed: u64,
     rng: &mut edifice_base::rng::Stream,
 ) -> Result<MassModel> {
-    let options = Search {
+    let options = SearchLimits {
         leave_out,
-        ..Search::default()
+        ..SearchLimits::default()
     };
     let copied = |building: Building| MassModel {
         building,
@@ -239,7 +239,7 @@ fn mass_model(
             model
         }
         method => {
-            let options = Search {
+            let options = SearchLimits {
                 donors: if method == "random" {
                     0
                 } else {

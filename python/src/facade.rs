@@ -229,7 +229,7 @@ impl Facade {
 
     /// Infers the smallest split grammar (Wu et al. 2014); the same seed gives the bytes of `edifice grammar infer`.
     #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (method = "adp", iterations = None, seed = 0, ops = None, split_cost = None, repeat_cost = None))]
+    #[pyo3(signature = (method = "lagrangian", iterations = None, seed = 0, ops = None, split_cost = None, repeat_cost = None))]
     fn infer(
         &self,
         py: Python<'_>,

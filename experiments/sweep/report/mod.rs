@@ -4,7 +4,7 @@ mod compare;
 mod figures;
 mod publish;
 
-pub use compare::{Comparison, Line, Question, compare};
+pub use compare::{ArmResult, Comparison, Question, compare};
 pub use publish::publish;
 
 use std::path::Path;

@@ -37,7 +37,7 @@ pub(crate) struct Args {
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
     /// Method of search
-    #[arg(long, value_parser = one_of(METHODS), default_value = "adp")]
+    #[arg(long, value_parser = one_of(METHODS), default_value = "lagrangian")]
     method: Solver,
     /// Sizes written into the rules, or as parameters of them
     #[arg(long, value_enum, default_value = "fixed")]
@@ -93,7 +93,8 @@ enum Solver {
 
 #[rustfmt::skip]
 const METHODS: &[Choice<Solver>] = &[
-    ("adp", "A Lagrangian bound, which proves most grammars optimal; else also walks and annealing over the set of non-terminal types", Solver::Own(Method::AdpBest)),
+    ("lagrangian", "A Lagrangian bound with branching, which proves most grammars optimal; else also walks and annealing over the set of non-terminal types", Solver::Own(Method::Lagrangian)),
+    ("adp", "", Solver::Own(Method::Lagrangian)),
     ("adp-paper", "Approximate dynamic programming as Wu et al. 2014 describe it", Solver::Own(Method::AdpPaper)),
     ("importance", "Importance sampling with the splitting heuristic", Solver::Own(Method::Importance)),
     ("greedy", "Always the best rule by the splitting heuristic", Solver::Own(Method::Greedy)),

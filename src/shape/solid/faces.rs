@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::arrangement::Cell;
 use super::exact::{Line, Plane};
-use super::segments::Plan;
+use super::segments::CellOutlines;
 use super::{Finish, Prism};
 use crate::vec3::{cross, norm, sub};
 
@@ -59,7 +59,7 @@ struct Piece {
     upright: Vec<Option<u32>>,
 }
 
-pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &Plan) -> Faces {
+pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &CellOutlines) -> Faces {
     let mut vertices = Vertices {
         at: vec![Vec::new(); plan.points.len()],
         ..Vertices::default()
@@ -138,7 +138,7 @@ fn walls(
     cell: &Cell,
     other: Option<&Cell>,
     edge: Edge,
-    plan: &Plan,
+    plan: &CellOutlines,
     vertices: &mut Vertices,
     pieces: &mut Vec<Piece>,
 ) {
@@ -203,7 +203,7 @@ fn directed(line: Line, ends: &[super::exact::Point; 2]) -> Line {
 }
 
 impl Vertices {
-    fn get(&mut self, point: u32, plane: &Plane, plan: &Plan) -> u32 {
+    fn get(&mut self, point: u32, plane: &Plane, plan: &CellOutlines) -> u32 {
         let place = &plan.points[point as usize];
         let height = plane.at(place);
         *self.index.entry((point, height)).or_insert_with(|| {
