@@ -8,7 +8,7 @@ use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
-use edifice_building_exteriors::attributes::{COLUMNS, mass_attributes};
+use edifice_building_exteriors::attributes::mass_attributes;
 use edifice_building_exteriors::design::{possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, Options, generate, model};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};

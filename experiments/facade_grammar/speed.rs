@@ -4,12 +4,12 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
-use super::made;
 use super::{BEST, PAPER};
 use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Settings, infer};
+use edifice_generators::facade_grammar as made;
 use edifice_grammar::derive;
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 

@@ -7,5 +7,8 @@ pub mod file;
 pub mod progress;
 pub mod rng;
 
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
+
 pub use error::{Error, Result};
 pub use progress::{Ended, Progress, Watch, Watched, unwatched};

@@ -9,7 +9,7 @@ pub(crate) type Choice<T> = (&'static str, &'static str, T);
 /// Reads one of the names; the help of the option lists them.
 pub(crate) fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>
 where
-    T: Copy + Send + Sync,
+    T: Copy + Send + Sync + 'static,
 {
     let names = choices.iter().map(|(name, help, _)| {
         let value = PossibleValue::new(*name);
@@ -18,7 +18,7 @@ where
             false => value.help(*help),
         }
     });
-    PossibleValuesParser::new(names).try_map(|name| {
+    PossibleValuesParser::new(names).try_map(move |name| {
         let found = choices.iter().find(|choice| choice.0 == name);
         found.map(|choice| choice.2).ok_or("no such name")
     })

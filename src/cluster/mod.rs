@@ -21,6 +21,11 @@ mod moves;
 mod retrieval;
 mod ward;
 
+/// The version of `nalgebra` whose matrices are in signatures here.
+pub use nalgebra;
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
+
 pub use agglomerative::{Dendrogram, DistanceError, Linkage, Merge, agglomerate};
 pub use agreement::adjusted_rand_index;
 pub use chi_square::{Histogram, chi_square};

@@ -32,6 +32,9 @@ mod tiling;
 pub mod triangles;
 pub mod vec3;
 
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
+
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{
     BoxStyle, Building, ElementStyle, FacadeElement, FacadePiece, MassBox, Ridge, Roof, RoofStyle,

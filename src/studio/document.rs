@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::difference::difference;
 use super::jobs::Job;
-use super::journal::{Entry, Journal, Source};
+use super::journal::{Journal, JournalEntry, Source};
 use edifice_base::file::write_atomic;
 use edifice_base::{Error, Result};
 use edifice_editing as editing;
@@ -172,26 +172,26 @@ impl Open {
     ) {
         self.document.take(commands, steps);
         self.milliseconds = milliseconds;
-        self.note(&Entry::Did(commands.to_vec()), journals);
+        self.note(&JournalEntry::Did(commands.to_vec()), journals);
     }
 
     /// Takes back the last edit.
     pub fn undo(&mut self, journals: Option<&Path>) {
         if self.document.undo() {
-            self.note(&Entry::Undo, journals);
+            self.note(&JournalEntry::Undo, journals);
         }
     }
 
     /// Does again what was taken back.
     pub fn redo(&mut self, journals: Option<&Path>) {
         if self.document.redo() {
-            self.note(&Entry::Redo, journals);
+            self.note(&JournalEntry::Redo, journals);
         }
     }
 
     /// Adds a line to the journal, which begins with the first one. A journal that cannot be written is told of, and the
     /// document goes on without.
-    fn note(&mut self, line: &Entry, journals: Option<&Path>) {
+    fn note(&mut self, line: &JournalEntry, journals: Option<&Path>) {
         let noted = match (&mut self.journal, journals) {
             (Some(journal), _) => journal.add(line),
             (None, Some(folder)) => self.begin_journal(folder, std::slice::from_ref(line)),
@@ -213,7 +213,7 @@ impl Open {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(super) fn begin_journal(&mut self, folder: &Path, lines: &[Entry]) -> Result<()> {
+    pub(super) fn begin_journal(&mut self, folder: &Path, lines: &[JournalEntry]) -> Result<()> {
         let Some(source) = self.source.take() else {
             return Ok(());
         };
@@ -270,7 +270,7 @@ impl Open {
         self.saved_at = self.document.revision();
         self.warning = None;
         if self.journal.is_some() {
-            self.note(&Entry::Saved, None);
+            self.note(&JournalEntry::Saved, None);
         }
         Ok([self.file.clone(), script])
     }

@@ -6,7 +6,7 @@ use edifice_base::rng::{Stream, stream};
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::coding::attribute_rows;
-use edifice_building_exteriors::data::{filled, table};
+use edifice_building_exteriors::data::table;
 use edifice_building_exteriors::design::{Possible, possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
 use edifice_building_exteriors::mass::contradiction::check_given;
@@ -230,6 +230,6 @@ pub(super) fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Tab
             *value = known.or(*value);
         }
     }
-    let rows = filled(rows, shipped_model()?, rng).map_err(Error::method)?;
+    let rows = shipped_model()?.filled(rows, rng).map_err(Error::method)?;
     table(&rows).map_err(Error::method)
 }

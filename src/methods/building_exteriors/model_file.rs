@@ -142,6 +142,30 @@ impl ModelFile {
         self.decoded(draws, &rows.collect::<Vec<_>>())
     }
 
+    /// The rows with what is missing drawn given the rest; columns that the model does not know stay missing.
+    ///
+    /// # Errors
+    /// As [`Self::complete`].
+    pub fn filled<R: Rng>(
+        &self,
+        mut rows: Vec<AttributeRow>,
+        rng: &mut R,
+    ) -> Result<Vec<AttributeRow>, ModelError> {
+        let holes = |row: &AttributeRow| row.iter().any(Option::is_none);
+        for row in rows.iter_mut().filter(|row| holes(row)) {
+            let drawn = match row.iter().all(Option::is_none) {
+                true => self.sample(1, rng)?,
+                false => self.complete(&data::table(std::slice::from_ref(row))?, 1, rng)?,
+            };
+            for own in attribute_rows(&drawn.table) {
+                for (value, drawn) in row.iter_mut().zip(own) {
+                    *value = value.or(drawn);
+                }
+            }
+        }
+        Ok(rows)
+    }
+
     /// The most probable completions of one row that differ; see [`Hierarchy::most_probable`].
     ///
     /// # Errors

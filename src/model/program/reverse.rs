@@ -22,12 +22,12 @@ use super::real::Real;
 /// ```
 #[derive(Debug, Default)]
 pub struct Tape {
-    nodes: RefCell<Vec<Node>>,
+    nodes: RefCell<Vec<TapeNode>>,
 }
 
 /// Places of the two arguments and the derivatives by them; a place is that of the node itself where there is none.
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct TapeNode {
     from: [u32; 2],
     slope: [f64; 2],
 }
@@ -74,7 +74,7 @@ impl Tape {
     fn push(&self, value: f64, from: [Option<u32>; 2], slope: [f64; 2]) -> Var<'_> {
         let mut nodes = self.nodes.borrow_mut();
         let place = nodes.len() as u32;
-        nodes.push(Node {
+        nodes.push(TapeNode {
             from: from.map(|f| f.unwrap_or(place)),
             slope,
         });

@@ -5,7 +5,7 @@ use rand_distr::StandardNormal;
 
 use super::growing::{Growing, most};
 use super::problem::{CompletionProblem, Extent, Item};
-use super::tried::{Spacing, Tried};
+use super::tried::{SeedSpacing, Tried};
 use super::{Direction, FAILURES, Policy};
 use crate::layout::{Class, Element};
 use edifice_shape::Rect;
@@ -148,29 +148,29 @@ fn spacing<R: Rng>(
     direction: (usize, bool),
     policy: &Policy,
     rng: &mut R,
-) -> Spacing {
+) -> SeedSpacing {
     let axis = direction.0;
     let method = policy.option(7, 8, rng);
     if method == 0
         && let Some(length) = tried.opposite(growing, seed, direction)
     {
-        return Spacing::Opposite(length);
+        return SeedSpacing::Opposite(length);
     }
     let observed = &problem.spacings[axis];
     let ratios = &problem.model.spacings[axis];
     let size = growing.items[seed].size()[axis];
     let step = if !observed.is_empty() {
         let number = rng.random_range(0..observed.len());
-        Spacing::Observed(number, observed[number])
+        SeedSpacing::Observed(number, observed[number])
     } else if !ratios.is_empty() {
-        Spacing::Other(ratios[rng.random_range(0..ratios.len())] * size)
+        SeedSpacing::Other(ratios[rng.random_range(0..ratios.len())] * size)
     } else {
-        Spacing::Other(2.0 * size)
+        SeedSpacing::Other(2.0 * size)
     };
     match method {
         2 => {
             let offset = OFFSET * rng.sample::<f64, _>(StandardNormal);
-            Spacing::Other(step.length() * (1.0 + offset))
+            SeedSpacing::Other(step.length() * (1.0 + offset))
         }
         _ => step,
     }

@@ -7,7 +7,7 @@ use super::growing::Growing;
 
 /// Spacing of an extension.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Spacing {
+pub(super) enum SeedSpacing {
     /// That of the opposite neighbour.
     Opposite(f64),
     /// The observed one of this number.
@@ -16,21 +16,21 @@ pub(super) enum Spacing {
     Other(f64),
 }
 
-impl Spacing {
+impl SeedSpacing {
     pub(super) fn length(self) -> f64 {
         match self {
-            Spacing::Opposite(length) | Spacing::Observed(_, length) | Spacing::Other(length) => {
-                length
-            }
+            SeedSpacing::Opposite(length)
+            | SeedSpacing::Observed(_, length)
+            | SeedSpacing::Other(length) => length,
         }
     }
 
     /// Its bit among the spacings that are remembered.
     fn bit(self) -> Option<u64> {
         match self {
-            Spacing::Opposite(_) => Some(1 << 63),
-            Spacing::Observed(number, _) if number < 63 => Some(1 << number),
-            Spacing::Observed(..) | Spacing::Other(_) => None,
+            SeedSpacing::Opposite(_) => Some(1 << 63),
+            SeedSpacing::Observed(number, _) if number < 63 => Some(1 << number),
+            SeedSpacing::Observed(..) | SeedSpacing::Other(_) => None,
         }
     }
 }
@@ -98,13 +98,13 @@ impl Tried {
         growing: &Growing,
         seed: usize,
         direction: (usize, bool),
-        step: Spacing,
+        step: SeedSpacing,
         snap: bool,
     ) -> bool {
         let known = self.of(seed, growing);
         let side = side(direction);
         let taken = match step {
-            Spacing::Observed(..) if !snap => known.lasting[side],
+            SeedSpacing::Observed(..) if !snap => known.lasting[side],
             _ => known.passing[usize::from(snap)][side],
         };
         step.bit().is_some_and(|bit| taken & bit != 0)
@@ -116,13 +116,13 @@ impl Tried {
         growing: &Growing,
         seed: usize,
         direction: (usize, bool),
-        step: Spacing,
+        step: SeedSpacing,
         snap: bool,
     ) {
         let known = self.of(seed, growing);
         let side = side(direction);
         let taken = match step {
-            Spacing::Observed(..) if !snap => &mut known.lasting[side],
+            SeedSpacing::Observed(..) if !snap => &mut known.lasting[side],
             _ => &mut known.passing[usize::from(snap)][side],
         };
         *taken |= step.bit().unwrap_or(0);
