@@ -140,10 +140,16 @@ pub fn solve_from(
     previous: &Solution,
 ) -> Result<Solution, QpError> {
     let pair = previous.best.as_deref().zip(previous.duals.as_ref());
-    if pair.is_some_and(|(x, _)| x.len() != program.dimension()) {
-        return Err(QpError::Start);
+    let n = program.dimension();
+    let fits = |(x, duals): (&[f64], &Duals)| {
+        [x.len(), duals.lower.len(), duals.upper.len()] == [n; 3]
+            && duals.equalities.len() == program.equalities.len()
+            && duals.inequalities.len() == program.inequalities.len()
+    };
+    match pair.is_none_or(fits) {
+        true => execute(program, options, pair),
+        false => Err(QpError::Start),
     }
-    execute(program, options, pair)
 }
 
 fn execute(
@@ -222,8 +228,10 @@ fn run(
             .map(|limit| limit.saturating_sub(start.elapsed()))
     };
     if let Some((x, duals)) = previous {
-        let z = form.multipliers(duals).ok_or(QpError::Start)?;
-        let near = Pair { x: x.to_vec(), z };
+        let near = Pair {
+            x: x.to_vec(),
+            z: form.multipliers(duals),
+        };
         let goes_on = || left() != Some(Duration::ZERO);
         let (tolerance, most) = (options.tolerance, options.max_iterations);
         let (found, count) = solve_near(&form, &program.linear, &near, tolerance, most, goes_on);

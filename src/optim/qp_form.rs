@@ -80,16 +80,8 @@ impl Form {
         }
     }
 
-    /// The multipliers of all rows, the inverse of [`Form::duals`]; `None` where there are not as many.
-    pub(super) fn multipliers(&self, duals: &Duals) -> Option<Vec<f64>> {
-        let n = self.upper.len();
-        let fits = duals.equalities.len() == self.equalities
-            && duals.inequalities.len() == self.bounds - self.equalities
-            && duals.lower.len() == n
-            && duals.upper.len() == n;
-        if !fits {
-            return None;
-        }
+    /// The multipliers of all rows, the inverse of [`Form::duals`], of which there are as many.
+    pub(super) fn multipliers(&self, duals: &Duals) -> Vec<f64> {
         let mut z = vec![0.0; self.right.len()];
         z[..self.equalities].copy_from_slice(&duals.equalities);
         z[self.equalities..self.bounds].copy_from_slice(&duals.inequalities);
@@ -101,6 +93,6 @@ impl Form {
                 }
             }
         }
-        Some(z)
+        z
     }
 }

@@ -132,7 +132,7 @@ fn half_times(half: &CscMatrix<f64>, x: &[f64]) -> Vec<f64> {
 
 /// Column, row and value of every entry.
 fn entries(matrix: &CscMatrix<f64>) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-    (0..matrix.n).flat_map(|j| {
+    (0..matrix.n).flat_map(move |j| {
         let range = matrix.colptr[j]..matrix.colptr[j + 1];
         range.map(move |k| (j, matrix.rowval[k], matrix.nzval[k]))
     })
