@@ -18,11 +18,11 @@ pub(super) struct Form {
     /// Rows that are equalities; they come first.
     pub(super) equalities: usize,
     /// The row after the last inequality.
-    bounds: usize,
+    pub(super) bounds: usize,
     /// The row of each variable's upper bound.
-    upper: Vec<Option<usize>>,
+    pub(super) upper: Vec<Option<usize>>,
     /// The row of each variable's lower bound.
-    lower: Vec<Option<usize>>,
+    pub(super) lower: Vec<Option<usize>>,
 }
 
 impl Form {

@@ -9,8 +9,8 @@
 //! ```
 //! and W is right when every multiplier of an inequality in W is at least 0 and every inequality outside of W holds. Else those of
 //! negative multipliers leave W, those violated enter it, and the system is solved again. These are Newton steps on the optimality
-//! conditions, a primal-dual active set method. It need not end: after [`MOST`] steps, or where a system has no
-//! solution, the interior-point method takes over. What it returns fulfils the optimality conditions, which suffice, the program being convex.
+//! conditions, a primal-dual active set method. It need not end: after [`MOST`] steps, after one that changes no fewer constraints than the step
+//! before, or where a system has no solution, the interior-point method takes over. What it returns fulfils the optimality conditions, which suffice, the program being convex.
 //!
 //! Sources: Hintermüller, Ito and Kunisch 2002, *The primal-dual active set strategy as a semismooth Newton method*, Algorithm 2.1;
 //! for the regularised system and its refinement, Stellato et al. 2020, *OSQP*, Sec. 4.
@@ -28,6 +28,9 @@ const SHIFT: f64 = 1e-8;
 /// Rounds of refinement, which take away what the shift did.
 const REFINEMENTS: usize = 12;
 
+/// Largest residual of a system that counts as solved, in units of its largest right-hand side or 1.
+const SOLVED: f64 = 1e-6;
+
 /// A point and the multipliers of all rows.
 pub(super) struct Pair {
     /// n numbers.
@@ -38,7 +41,7 @@ pub(super) struct Pair {
 
 /// The solution from a pair near it, and the number of systems solved; `None` in place of the solution where the steps do not lead to it.
 ///
-/// `goes_on` is asked before each step. A step costs one sparse factor of n + |W| rows.
+/// `goes_on` is asked before each step. A step costs one sparse factor of at most n + |W| rows.
 pub(super) fn solve_near(
     form: &Form,
     linear: &[f64],
@@ -51,7 +54,7 @@ pub(super) fn solve_near(
     let mut tight: Vec<bool> = (0..form.right.len())
         .map(|i| i < form.equalities || near.z[i] > slack[i])
         .collect();
-    let mut steps = 0;
+    let (mut steps, mut changed) = (0, usize::MAX);
     while steps < most.min(MOST) && goes_on() {
         steps += 1;
         let Some(mut pair) = with_tight(form, linear, &tight) else {
@@ -59,16 +62,16 @@ pub(super) fn solve_near(
         };
         let scale = Scale::new(form, linear, &pair);
         let slack = slacks(form, &pair.x);
-        let mut right = true;
+        let mut count = 0;
         for i in form.equalities..tight.len() {
             let stays = match tight[i] {
                 true => pair.z[i] >= -tolerance * scale.dual,
                 false => slack[i] < -tolerance * scale.primal,
             };
-            right &= stays == tight[i];
+            count += usize::from(stays != tight[i]);
             tight[i] = stays;
         }
-        if right {
+        if count == 0 {
             let holds = (0..tight.len())
                 .all(|i| !tight[i] || slack[i].abs() <= tolerance * scale.primal)
                 && gradient(form, linear, &pair)
@@ -78,6 +81,10 @@ pub(super) fn solve_near(
             signed.iter_mut().for_each(|z| *z = z.max(0.0));
             return (holds.then_some(pair), steps);
         }
+        if count >= changed {
+            break;
+        }
+        changed = count;
     }
     (None, steps)
 }
@@ -139,39 +146,94 @@ fn entries(matrix: &CscMatrix<f64>) -> impl Iterator<Item = (usize, usize, f64)>
 }
 
 /// The solution of the system whose tight rows are these; `None` where it has none, or none that is found.
+///
+/// Variables at a tight bound are put in, so that the system is one of the other variables and of the tight equalities and inequalities.
 fn with_tight(form: &Form, linear: &[f64], tight: &[bool]) -> Option<Pair> {
     let n = linear.len();
-    let mut place = vec![None; tight.len()];
-    let mut wanted: Vec<f64> = linear.iter().map(|q| -q).collect();
-    for (i, _) in tight.iter().enumerate().filter(|(_, tight)| **tight) {
-        place[i] = Some(wanted.len());
-        wanted.push(form.right[i]);
-    }
-    let size = wanted.len();
-    let count = form.quadratic.nzval.len() + form.rows.nzval.len();
-    let mut own = Triplets::with_capacity(count);
-    entries(&form.quadratic).for_each(|(j, i, value)| own.entry(i, j, value));
-    for (j, i, value) in entries(&form.rows) {
-        if let Some(place) = place[i] {
-            own.entry(j, place, value);
+    let bound = |rows: &[Option<usize>], j: usize| rows[j].filter(|row| tight[*row]);
+    let at = |j| (bound(&form.upper, j), bound(&form.lower, j));
+    let mut pair = Pair {
+        x: vec![0.0; n],
+        z: vec![0.0; tight.len()],
+    };
+    let mut free = Vec::new();
+    let mut seat = vec![None; n];
+    for j in 0..n {
+        match at(j) {
+            (Some(row), _) => pair.x[j] = form.right[row],
+            (None, Some(row)) => pair.x[j] = -form.right[row],
+            (None, None) => {
+                seat[j] = Some(free.len());
+                free.push(j);
+            }
         }
     }
-    let own = own.matrix(size, size);
-    let largest = entries(&form.quadratic).filter(|(j, i, _)| i == j);
-    let shift = SHIFT * largest.fold(1.0_f64, |m, (_, _, value)| m.max(value.abs()));
-    let mut shifted = Triplets::with_capacity(count + size);
-    entries(&own).for_each(|(j, i, value)| shifted.entry(i, j, value));
+    let rows: Vec<usize> = (0..form.bounds).filter(|i| tight[*i]).collect();
+    // More conditions than numbers hold by chance alone, and their factor fills up.
+    if rows.len() > free.len() {
+        return None;
+    }
+    let mut place = vec![None; tight.len()];
+    (rows.iter().enumerate()).for_each(|(k, &i)| place[i] = Some(free.len() + k));
+    // What the variables at bounds leave of the right-hand sides.
+    let (rest, slack) = (gradient(form, linear, &pair), slacks(form, &pair.x));
+    let wanted = free.iter().map(|&j| -rest[j]);
+    let wanted: Vec<f64> = wanted.chain(rows.iter().map(|&i| slack[i])).collect();
+    let mut own = Triplets::with_capacity(form.quadratic.nzval.len() + form.rows.nzval.len());
+    for (j, i, value) in entries(&form.quadratic) {
+        if let (Some(j), Some(i)) = (seat[j], seat[i]) {
+            own.entry(i, j, value);
+        }
+    }
+    for (j, i, value) in entries(&form.rows) {
+        if let (Some(j), Some(i)) = (seat[j], place[i]) {
+            own.entry(j, i, value);
+        }
+    }
+    let own = own.matrix(wanted.len(), wanted.len());
+    let found = saddle(&own, free.len(), &wanted)?;
+    for (j, value) in free.iter().zip(&found) {
+        pair.x[*j] = *value;
+    }
+    for (i, value) in rows.iter().zip(&found[free.len()..]) {
+        pair.z[*i] = *value;
+    }
+    for (j, g) in gradient(form, linear, &pair).into_iter().enumerate() {
+        match at(j) {
+            (Some(row), None) => pair.z[row] = -g,
+            (None, Some(row)) => pair.z[row] = g,
+            // Equal bounds: the one against which the cost pushes.
+            (Some(upper), Some(lower)) => {
+                (pair.z[upper], pair.z[lower]) = ((-g).max(0.0), g.max(0.0))
+            }
+            (None, None) => {}
+        }
+    }
+    Some(pair)
+}
+
+/// The solution of a symmetric system, of which the upper half is given: positive semidefinite in its first `n` rows, zero in the square of the
+/// others. Solved with a shift of the diagonal, which refinement takes away; `None` where no numbers come of it.
+fn saddle(own: &CscMatrix<f64>, n: usize, wanted: &[f64]) -> Option<Vec<f64>> {
+    let size = wanted.len();
+    if size == 0 {
+        return Some(Vec::new());
+    }
+    let diagonal = entries(own).filter(|(j, i, _)| i == j);
+    let shift = SHIFT * diagonal.fold(1.0_f64, |m, (_, _, value)| m.max(value.abs()));
+    let mut shifted = Triplets::with_capacity(own.nzval.len() + size);
+    entries(own).for_each(|(j, i, value)| shifted.entry(i, j, value));
     (0..size).for_each(|i| shifted.entry(i, i, if i < n { shift } else { -shift }));
     let signs = (0..size).map(|i| if i < n { 1 } else { -1 }).collect();
     let settings = QDLDLSettingsBuilder::default().Dsigns(signs).build().ok()?;
     let mut factor = QDLDLFactorisation::new(&shifted.matrix(size, size), Some(settings)).ok()?;
     let mut found = vec![0.0; size];
-    let mut rest = wanted.clone();
+    let mut rest = wanted.to_vec();
     let mut before = f64::INFINITY;
     for _ in 0..REFINEMENTS {
         factor.solve(&mut rest);
         let better: Vec<f64> = found.iter().zip(&rest).map(|(f, r)| f + r).collect();
-        let product = half_times(&own, &better);
+        let product = half_times(own, &better);
         rest = wanted.iter().zip(product).map(|(w, p)| w - p).collect();
         let size = rest.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
         if size.is_nan() || size >= before {
@@ -179,11 +241,6 @@ fn with_tight(form: &Form, linear: &[f64], tight: &[bool]) -> Option<Pair> {
         }
         (found, before) = (better, size);
     }
-    if !before.is_finite() {
-        return None;
-    }
-    let z = place.iter().map(|at| at.map_or(0.0, |at| found[at]));
-    let z = z.collect();
-    found.truncate(n);
-    Some(Pair { x: found, z })
+    let largest = wanted.iter().fold(1.0_f64, |m, w| m.max(w.abs()));
+    (before <= SOLVED * largest).then_some(found)
 }

@@ -10,7 +10,7 @@
 //! - Of large tables (more than 10,000 real values searched on) coarse groupings come first, 1, 2, 4, 8, .. groups, until one scores less than the
 //!   one before: the coarser, the quicker. From [`MANY`] groups on the doubling has to gain 1 nat a row, or the search ends there. Else
 //!   the groups as given come last.
-//! - Of small tables both ends are learned, then those next to the better end while the score rises.
+//! - Of small tables both ends are learned, then those next to the better end, until two in a row do not score more than the best.
 //! - A search is given up where it stays far behind the best so far: of the groups as given 2 nats a row before any
 //!   cardinality is raised, 1 nat a row when all |S| swept are done; of groupings between a quarter of that.
 //! - A joined model without categories has one style: the one hidden variable is the whole mixture, and a style above it says
@@ -28,6 +28,8 @@ use crate::{ModelError, Table};
 const MANY: usize = 16;
 /// Nats a row that it has to gain.
 const FAR: f64 = 1.0;
+/// Groupings of a small table in a row that may score less than the best.
+const MISSES: usize = 2;
 /// Patience with groupings between the ends.
 const BETWEEN: f64 = 0.25;
 
@@ -303,9 +305,14 @@ fn from_the_better_end(
     if apart {
         order.reverse();
     }
+    let mut without_gain = 0;
     for (count, level) in order {
-        if !trial.goes_on() || trial.learn(&level, count, true)? <= 0.0 {
+        if !trial.goes_on() || without_gain == MISSES {
             break;
+        }
+        match trial.learn(&level, count, true)? > 0.0 {
+            true => without_gain = 0,
+            false => without_gain += 1,
         }
     }
     Ok(())

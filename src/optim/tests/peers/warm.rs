@@ -108,6 +108,67 @@ fn a_solution_shortens_the_next() {
     }
 }
 
+/// Programs of which little is left: other costs and right-hand sides altogether, of the size that they had.
+fn everything(program: &mut QuadraticProgram, rng: &mut Stream) {
+    for q in &mut program.linear {
+        *q += 2.0 * q.abs() * normal(rng);
+    }
+    let change = |row: &mut Row| row.right += 0.5 * row.right.abs() * normal(rng);
+    program.inequalities.iter_mut().for_each(change);
+}
+
+/// A solution and the least seconds of seven runs, since other programs run beside.
+fn timed(run: impl Fn() -> Solution) -> (Solution, f64) {
+    let runs = (0..7).map(|_| {
+        let start = Instant::now();
+        (run(), start.elapsed().as_secs_f64())
+    });
+    let least = runs.min_by(|a, b| a.1.total_cmp(&b.1));
+    least.unwrap()
+}
+
+#[test]
+fn a_solution_far_away_costs_little() {
+    let mut rng = stream(4, "families", 0);
+    let programs = [
+        ("portfolio", portfolio(20, &mut rng)),
+        ("lasso", lasso(40, &mut rng)),
+        ("Huber", huber(40, &mut rng)),
+        ("SVM", svm(40, &mut rng)),
+        ("control", control(12, &mut rng)),
+        ("smoothing", smoothing(4000)),
+    ];
+    let options = QpOptions::default();
+    for (name, program) in programs {
+        let first = solve(&program, options).unwrap();
+        let (mut ratios, mut counts, mut led) = (Vec::new(), [0, 0], 0);
+        for _ in 0..15 {
+            let mut next = program.clone();
+            everything(&mut next, &mut rng);
+            let (anew, cold) = timed(|| solve(&next, options).unwrap());
+            let (found, warm) = timed(|| solve_from(&next, options, &first).unwrap());
+            ratios.push(warm / cold);
+            assert_eq!(found.outcome, anew.outcome, "{name}");
+            if anew.best.is_some() {
+                let off = (found.cost - anew.cost).abs();
+                assert!(off < 1e-6 * (1.0 + anew.cost.abs()), "{name}: {off}");
+            }
+            assert!(found.iterations <= anew.iterations + 8, "{name}");
+            counts = [counts[0] + anew.iterations, counts[1] + found.iterations];
+            led += u32::from(found.warm);
+        }
+        ratios.sort_by(f64::total_cmp);
+        let median = ratios[ratios.len() / 2];
+        println!(
+            "{name}: {} iterations anew, {} from far away, {led} of 15 without interior points, median ratio of times {median:.2}, most {:.2}",
+            counts[0],
+            counts[1],
+            ratios[ratios.len() - 1]
+        );
+        assert!(median < 2.0, "{name}: {median}");
+    }
+}
+
 /// A program with small whole numbers, so that ties, equal rows and flat directions occur.
 fn whole(rng: &mut Stream) -> QuadraticProgram {
     let n = rng.random_range(1..6);
