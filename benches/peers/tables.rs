@@ -102,21 +102,24 @@ fn compare(
         let encoding = Encoding::learn(&learned, &settings.priors.linear, SEED)?;
         let spread = spread(&data, &test, &intervals, &encoding, index)?;
         for contender in models.split(',') {
-            let known = Contender::ALL.into_iter().chain([Contender::Extended]);
-            let found = known.into_iter().find(|c| c.name() == contender);
+            let found = Contender::EVERY.into_iter().find(|c| c.name() == contender);
             let Some(model) = found else {
                 return Err(format!("there is no model `{contender}`").into());
             };
             let start = Instant::now();
-            let drawn = match model {
-                Contender::Extended => &spread.but_atoms,
-                _ => &spread.all,
+            let encoded = matches!(
+                model,
+                Contender::Extended | Contender::OneGroup | Contender::Apart
+            );
+            let drawn = match encoded {
+                true => &spread.but_atoms,
+                false => &spread.all,
             };
             let rows = held_out(model, &learned, drawn, &settings, SEED)?;
             let seconds = start.elapsed().as_secs_f64();
-            let at_atoms = match model {
-                Contender::Extended => &vec![0.0; test.len()],
-                _ => &spread.log_sizes,
+            let at_atoms = match encoded {
+                true => &vec![0.0; test.len()],
+                false => &spread.log_sizes,
             };
             let own: Vec<f64> = rows
                 .chunks(DRAWS)

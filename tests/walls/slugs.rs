@@ -16,6 +16,7 @@ const OWN: &[(&str, &str)] = &[
     ("procedural_logic", "src/cli/logic"),
     ("building_exteriors", "src/cli/building"),
     ("structure_completion", "src/cli/facade/"),
+    ("structure_completion", "examples/model_layout.rs"),
     ("city_proceduralization", "src/cli/city"),
 ];
 

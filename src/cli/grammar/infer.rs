@@ -224,6 +224,7 @@ fn report(args: &Args, evaluation: &Evaluation, found: &Outcome, seconds: f64) -
     let Outcome {
         iterations,
         lower_bound,
+        effective,
         ..
     } = *found;
     let cost = (cost * 1e9).round() / 1e9;
@@ -235,6 +236,9 @@ fn report(args: &Args, evaluation: &Evaluation, found: &Outcome, seconds: f64) -
         if let Some(bound) = lower_bound {
             line["lower_bound"] = ((bound * 1e9).round() / 1e9).into();
         }
+        if let Some(effective) = effective {
+            line["effective"] = effective.into();
+        }
         return print::line(&line.to_string());
     }
     let proof = match lower_bound {
@@ -242,8 +246,12 @@ fn report(args: &Args, evaluation: &Evaluation, found: &Outcome, seconds: f64) -
         Some(_) if found.proves(evaluation.cost) => " (proven optimal)".to_owned(),
         Some(bound) => format!(" (no grammar costs less than {bound:.1})"),
     };
+    let counted = match effective {
+        None => String::new(),
+        Some(count) => format!(", of which {count:.1} count when weighted by exp(-cost)"),
+    };
     print::message(&format!(
-        "cost {cost}{proof}, {rules} rules for {terminals} terminals, at most {iterations} iterations in {seconds:.2} s"
+        "cost {cost}{proof}, {rules} rules for {terminals} terminals, at most {iterations} iterations{counted} in {seconds:.2} s"
     ));
     Ok(())
 }
