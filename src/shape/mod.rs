@@ -23,6 +23,7 @@ mod label_grid;
 mod labelled;
 mod photograph;
 mod rect;
+pub mod rectification;
 pub mod solid;
 mod splittable;
 #[cfg(test)]

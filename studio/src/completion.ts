@@ -3,7 +3,7 @@
 import type { Doc } from "./api";
 import { button, field, h, s, section, swap, tidy } from "./dom";
 import { arrow, Drawing, place, type Rect, snap } from "./drawing";
-import { rectified } from "./photograph";
+import { address, corners } from "./photograph";
 import type { Editor, Session } from "./session";
 
 interface Element_ extends Rect {
@@ -21,6 +21,8 @@ type Corners = [number, number, number, number];
 interface View {
   /** Which photograph is under the drawing. */
   photograph: string | null;
+  /** The photograph that the drawing was opened from, until its corners are known. */
+  original: { file: string; width: number; height: number } | null;
   unit: string;
   width: number;
   height: number;
@@ -97,6 +99,23 @@ export function completion(session: Session<View>): Editor<View> {
   /** Another photograph, or none; where there were answers, the same again over it. */
   const put = (picture: string | null) =>
     session.run(() => [{ do: "photograph", picture }, ...(session.doc.view.answers.length > 0 ? [complete()] : [])]);
+
+  /** A photograph as the rectangle between its corners; where there were answers, the same again over it. */
+  const straighten = (wish: { picture: string | null; corners: [number, number][]; height: number | null }) =>
+    session.run(() => [{ do: "straighten", ...wish }, ...(session.doc.view.answers.length > 0 ? [complete()] : [])]);
+
+  /** Asks for the corners of the photograph that the drawing was opened from. */
+  const straightenOriginal = (original: NonNullable<View["original"]>) =>
+    session.calmly(async () => {
+      const said = await session.ask<{ picture: string | null }>({ ask: "original" });
+      if (!said?.picture) return;
+      const source = await (await fetch(said.picture)).blob();
+      const empty = session.doc.view.elements.length === 0;
+      const placed = await corners(source, [original.width, original.height], empty ? "new" : "kept");
+      if (placed !== null) await straighten({ picture: null, ...placed });
+    });
+  /** True once the corners were asked for unasked. */
+  let offered = false;
 
   /** The address of the photograph under the drawing, asked for once: it is not in every answer of the server. */
   function under(id: string | null): string | null {
@@ -212,8 +231,10 @@ export function completion(session: Session<View>): Editor<View> {
       const chosen = file.files?.[0];
       if (!chosen) return;
       await session.calmly(async () => {
-        const made = await rectified(chosen, view.width / view.height);
-        if (made !== null) await put(made);
+        const sent = await address(chosen);
+        const empty = view.elements.length === 0;
+        const placed = await corners(chosen, [sent.width, sent.height], empty ? "new" : "kept");
+        if (placed !== null) await straighten({ picture: sent.text, ...placed });
       });
     });
     swap(
@@ -224,6 +245,7 @@ export function completion(session: Session<View>): Editor<View> {
           show(session.doc);
         }, { "aria-pressed": String(tool === id), class: `tool ${id}` }),
       ),
+      view.original === null ? null : button("Straighten", () => straightenOriginal(view.original!), { class: "tool" }),
       h("label", { class: "tool file" }, "Photograph", file),
       view.photograph === null ? null : button("No photograph", () => put(null), { class: "tool" }),
     );
@@ -280,6 +302,10 @@ export function completion(session: Session<View>): Editor<View> {
     );
     if (focused) (drawing.layer.querySelector(`[data-id="${CSS.escape(focused)}"]`) as SVGGElement | null)?.focus();
     toolbar(view);
+    if (view.original && !offered && view.elements.length === 0) {
+      offered = true;
+      void straightenOriginal(view.original);
+    }
     const box = h("input", { type: "checkbox", checked: live });
     box.addEventListener("change", () => (live = box.checked));
     const answers = view.answers.map((a, k) =>

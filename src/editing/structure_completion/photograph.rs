@@ -18,6 +18,8 @@ use edifice_shape::AnnotatedFacade;
 enum Question {
     /// The picture under it.
     Photograph,
+    /// The picture that it was opened from, whose corners are not known yet.
+    Original,
 }
 
 /// Answers a question.
@@ -25,9 +27,11 @@ enum Question {
 /// # Errors
 /// [`CommandError::Form`](super::super::CommandError::Form) for none.
 pub(super) fn answer(sketch: &Sketch, question: &Value) -> Result<Value> {
-    let Question::Photograph = parse(question)?;
-    let picture = sketch.layout.photograph.as_ref();
-    Ok(json!({"picture": picture.map(photograph::address)}))
+    let picture = match parse(question)? {
+        Question::Photograph => sketch.layout.photograph.as_ref().map(photograph::address),
+        Question::Original => sketch.original.as_ref().map(|o| o.address()),
+    };
+    Ok(json!({"picture": picture}))
 }
 
 impl Sketch {
