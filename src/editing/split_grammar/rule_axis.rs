@@ -98,8 +98,8 @@ pub(super) fn repeats(operation: &Operation) -> bool {
     )
 }
 
-/// The line of a rule that a place is in.
-pub(super) struct Line<'g> {
+/// The sizes of a rule along the axis that a place lies on.
+pub(super) struct RuleAxis<'g> {
     rule: usize,
     place: Place,
     /// The axis along which it lies.
@@ -107,11 +107,11 @@ pub(super) struct Line<'g> {
     pub(super) operation: &'g mut Operation,
 }
 
-impl<'g> Line<'g> {
-    /// The line of a place that is there.
+impl<'g> RuleAxis<'g> {
+    /// Those of a place that is there.
     ///
     /// # Errors
-    /// When there is no such rule, line or place.
+    /// When there is no such rule, axis or place.
     pub(super) fn of(
         grammar: &'g mut Grammar,
         rule: usize,
