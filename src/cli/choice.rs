@@ -2,8 +2,8 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-/// A name, its line in the help, and the value that it stands for. Without a line in the help a name is read but not listed: an
-/// older one.
+/// A name, its line in the help, and the value that it stands for. A name with an empty line is read but not listed: an older
+/// name of the same value.
 pub(crate) type Choice<T> = (&'static str, &'static str, T);
 
 /// Reads one of the names; the help of the option lists them.

@@ -20,6 +20,9 @@ pub struct KMeans {
 
 /// Labels of `k` centres drawn by k-means++, refined by at most `steps` steps of Lloyd; fewer centres where there are fewer
 /// distinct points of positive weight. O(n k d) to draw.
+///
+/// # Panics
+/// If there are points but no centre, since `k` or all weights are 0, and if `dimension` is 0.
 pub fn kmeans<R: Rng>(
     points: &[f64],
     dimension: usize,
@@ -36,8 +39,11 @@ pub fn kmeans<R: Rng>(
     lloyd(points, dimension, weights, centres, steps)
 }
 
-/// As [`kmeans`], of points that weigh 1 each; the first centre is drawn as one integer, so that the same generator gives other
-/// centres than to `kmeans` with weights of 1.
+/// As [`kmeans`], of points that weigh 1 each. The first centre is drawn as an integer, so that the same generator gives other
+/// centres than in `kmeans` with weights of 1.
+///
+/// # Panics
+/// If there are points but `k` is 0, and if `dimension` is 0.
 ///
 /// # Examples
 /// ```
@@ -90,7 +96,7 @@ fn spread<R: Rng>(
     centres
 }
 
-/// An index drawn in proportion to `mass`; `None` without any: all points are centres.
+/// An index drawn in proportion to `mass`; `None` where all mass is zero, as when every point is a centre.
 fn positive<R: Rng>(mass: &[f64], rng: &mut R) -> Option<usize> {
     let chosen = categorical(mass, rng);
     (mass.get(chosen)? > &0.0).then_some(chosen)

@@ -59,7 +59,7 @@ pub(crate) enum Start {
     },
 }
 
-/// What a further line says.
+/// The content of a further line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum JournalEntry {

@@ -1,4 +1,4 @@
-//! What is seen from outside: the modules at the top of `edifice`, and foreign crates whose types are in signatures.
+//! The surface of the library: the modules at the top of `edifice`, and foreign crates whose types are in signatures.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn the_library_has_few_modules_at_its_top() {
             .filter(|_| line.starts_with("pub use"))
         {
             let names = names.trim_end_matches('}').split(", ");
-            // Modules and functions are in lower case; these are the functions.
+            // Modules and functions are in lower case; `unwatched` is the one function.
             let lower = names.filter(|n| n.starts_with(char::is_lowercase) && *n != "unwatched");
             modules.extend(lower.map(str::to_owned));
         }

@@ -84,7 +84,7 @@ enum Sizes {
     Free,
 }
 
-/// Who infers a grammar.
+/// A method of the crate that infers grammars, or the rules of the procedural logic.
 #[derive(Clone, Copy)]
 enum Solver {
     Own(Method),

@@ -98,17 +98,17 @@ pub(super) fn repeats(operation: &Operation) -> bool {
     )
 }
 
-/// The sizes of a rule along the axis that a place lies on.
+/// One axis of a rule, along which its sizes are read and changed.
 pub(super) struct RuleAxis<'g> {
     rule: usize,
     place: Place,
-    /// The axis along which it lies.
+    /// Across or up.
     pub(super) axis: Axis,
     pub(super) operation: &'g mut Operation,
 }
 
 impl<'g> RuleAxis<'g> {
-    /// Those of a place that is there.
+    /// The axis on which a place of the rule lies.
     ///
     /// # Errors
     /// When there is no such rule, axis or place.

@@ -68,7 +68,7 @@ fn over_edges(mesh: &TriangleMesh) -> Vec<usize> {
     (0..mesh.triangles.len()).map(|i| sets.root(i)).collect()
 }
 
-/// The plan of a surface.
+/// The convex hull of a surface in plan, and its bounds.
 struct PlanHull {
     hull: Vec<[f64; 2]>,
     middle: [f64; 2],

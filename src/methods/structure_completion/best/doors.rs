@@ -23,7 +23,7 @@ const SHARE: f64 = 0.15;
 /// Columns nearer than this share of a window are one.
 const ONE_COLUMN: f64 = 0.3;
 
-/// A place of a door.
+/// A place where a door may be.
 #[derive(Debug, Clone)]
 pub struct DoorCandidate {
     /// The door.
