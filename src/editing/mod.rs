@@ -94,7 +94,7 @@ pub trait State: Send + Sync {
     ///
     /// # Errors
     /// [`CommandError`] for a command that is none, or what its method says of a command that cannot be done.
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step>;
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied>;
 
     /// Answers a question about the state, which stays as it is.
     ///
@@ -124,7 +124,7 @@ pub trait State: Send + Sync {
 enum NoQuestion {}
 
 /// The result of a command.
-pub struct Step {
+pub struct Applied {
     /// The new state.
     pub state: Arc<dyn State>,
     /// The command in words.

@@ -26,7 +26,7 @@ use super::examples::{Example, Source as From};
 use super::script::Shell;
 use super::work::Work;
 use super::{
-    CommandError, Editor, Opened, State, Step, answer, count_of_answers, ends, parse, written,
+    Applied, CommandError, Editor, Opened, State, answer, count_of_answers, ends, parse, written,
 };
 use edifice_base::{Error, Result};
 use edifice_io::{Source, draw, facade_json};
@@ -175,7 +175,7 @@ impl Sketch {
         Path::new(&self.layout.facade.name)
     }
 
-    fn edit(&self, texts: &[String]) -> Result<Step> {
+    fn edit(&self, texts: &[String]) -> Result<Applied> {
         let edits = FacadeEdit::parse_all(texts)?;
         let layout = edit(&self.layout, &edits).map_err(Error::method)?;
         let mut shell = Shell::new(["facade", "edit", "--output", ">", "--", "<"]);
@@ -192,7 +192,7 @@ impl Sketch {
             .filter_map(|n| n.id.as_deref())
             .collect();
         state.pins.retain(|pin| ids.contains(&pin.as_str()));
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: texts.join(", "),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -207,7 +207,7 @@ impl Sketch {
         seed: u64,
         pins: &[String],
         forbidden: &[Rect],
-    ) -> Result<Step> {
+    ) -> Result<Applied> {
         let count = count_of_answers(count, MOST)?;
         let unknown = || CommandError::Edit {
             edit: method.to_owned(),
@@ -246,7 +246,7 @@ impl Sketch {
         let layout = whole.first().unwrap_or(&self.layout).clone();
         let found = whole.len();
         let result = (found > 0).then(|| file(1));
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(Self {
                 layout,
                 pins: pins.to_vec(),
@@ -261,14 +261,14 @@ impl Sketch {
         })
     }
 
-    fn choose(&self, wanted: usize) -> Result<Step> {
+    fn choose(&self, wanted: usize) -> Result<Applied> {
         let (layout, _) = answer(&self.answers, wanted)?;
         let state = Self {
             layout: layout.clone(),
             chosen: Some(wanted),
             ..self.clone()
         };
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: format!("take answer {wanted}"),
             shell: Shell::default().gives("", Some(file(wanted))),
@@ -303,7 +303,7 @@ impl State for Sketch {
         Ok(view::view(self))
     }
 
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
             Command::Complete {

@@ -162,7 +162,7 @@ fn artefact(slug: &str, s: &Section) -> Markup {
     html! {
         section id=(format!("{slug}-{}", s.name)) {
             h3 { (s.heading) }
-            (markdown::html(&s.markdown, markdown::Place { folder: slug, files: &s.files }))
+            (markdown::html(&s.markdown, markdown::LinkTargets { folder: slug, files: &s.files }))
             @if !s.command.is_empty() { p.made { "Made again by " code { (s.command) } } }
             p.made {
                 (s.made) ". Files: "

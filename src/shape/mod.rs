@@ -5,6 +5,7 @@
 //! - [`Building`]: boxes, roofs and facade pieces (Fan and Wonka 2016, Sec. 4.1).
 //! - [`solid`]: houses as unions of prisms, and their closed surface.
 //! - [`triangles`]: cities and buildings as triangles, and what is measured on them.
+//! - [`vec3`]: arithmetic of points and directions.
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
 mod annotated;
@@ -30,6 +31,10 @@ mod splittable;
 mod tests;
 mod tiling;
 pub mod triangles;
+pub mod vec3;
+
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
 
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{

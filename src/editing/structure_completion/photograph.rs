@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::super::script::{Shell, Word};
-use super::super::{Step, parse};
+use super::super::{Applied, parse};
 use super::{ENDING, Sketch};
 use edifice_base::{Error, Result};
 use edifice_io::photograph;
@@ -36,7 +36,7 @@ pub(super) fn answer(sketch: &Sketch, question: &Value) -> Result<Value> {
 
 impl Sketch {
     /// Another photograph under the drawing, or none; a completion of it begins anew.
-    pub(super) fn photograph(&self, address: Option<&str>) -> Result<Step> {
+    pub(super) fn photograph(&self, address: Option<&str>) -> Result<Applied> {
         let read = address.map(photograph::of_address).transpose();
         let picture = read.map_err(Error::method)?;
         let shell = Shell::new(["facade", "edit", "--output", ">"]);
@@ -61,7 +61,7 @@ impl Sketch {
             forbidden: self.forbidden.clone(),
             ..Self::new(layout)
         };
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said,
             shell,

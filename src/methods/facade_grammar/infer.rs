@@ -1,6 +1,6 @@
 //! Inference: from facades to one grammar.
 
-use super::adp::search::Search;
+use super::adp::search::Setup;
 use super::lagrangian::NOISE;
 use super::settings::{InferError, Method, Settings};
 use edifice_base::{Ended, Watch, Watched};
@@ -12,9 +12,9 @@ use edifice_shape::{Facade, splittable};
 pub struct Outcome {
     /// The grammar; its cost is for [`edifice_grammar`] to say.
     pub grammar: Grammar,
-    /// Iterations that the method was given; [`Method::AdpBest`] stops sooner once its grammar is proven optimal.
+    /// Iterations that the method was given; [`Method::Lagrangian`] stops sooner once its grammar is proven optimal.
     pub iterations: u64,
-    /// No grammar of these facades costs less, as far as [`Method::AdpBest`] found out (see [`super::lower_bound`]).
+    /// No grammar of these facades costs less, as far as [`Method::Lagrangian`] found out (see [`super::lower_bound`]).
     pub lower_bound: Option<f64>,
     /// The way in which the search ended; that it was proven optimal says [`Outcome::proves`].
     pub ended: Ended,
@@ -42,9 +42,9 @@ pub fn infer(
     settings.costs.check()?;
     check(facades)?;
     let watched = Watched::new(watch);
-    let search = Search::new(facades, settings, &watched)?;
+    let search = Setup::new(facades, settings, &watched)?;
     let (rules, lower_bound) = match settings.method {
-        Method::AdpBest => {
+        Method::Lagrangian => {
             let (rules, lower) = search.best(facades)?;
             (rules, Some(lower))
         }
@@ -55,7 +55,7 @@ pub fn infer(
         Method::Symmetry => (search.symmetry_maximization(), None),
     };
     let iterations = match settings.method {
-        Method::AdpBest | Method::AdpPaper | Method::Importance => settings.iterations,
+        Method::Lagrangian | Method::AdpPaper | Method::Importance => settings.iterations,
         Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
     };
     Ok(Outcome {

@@ -85,8 +85,8 @@ mod restyle;
 mod revise;
 mod schema;
 mod search;
+mod search_step;
 mod split;
-mod step;
 mod store;
 pub(crate) mod structure;
 mod watch;
@@ -102,7 +102,7 @@ pub(crate) use learn::learn_against;
 pub use learn::{Fitted, Learned, fit, fit_observed, learn, learn_observed, refine};
 pub use query::Hierarchy;
 pub use schema::Group;
-pub use step::Step;
+pub use search_step::SearchStep;
 pub use watch::Observer;
 
 /// Which of the paper's models to learn: the table in [the module](self).

@@ -1,6 +1,6 @@
 //! Importance sampling: the cheapest of many walks that always explore.
 
-use crate::adp::search::Search;
+use crate::adp::search::Setup;
 use crate::adp::walk::{Derivation, Inference};
 use crate::rules::AddRule;
 use crate::settings::InferError;
@@ -17,7 +17,7 @@ impl Approximation<Inference> for NothingKnown {
     fn learn(&mut self, _: &mut Inference, _: &[AddRule], _: &[f64]) {}
 }
 
-impl Search<'_> {
+impl Setup<'_> {
     /// The cheapest of many walks by the splitting heuristic.
     pub(crate) fn importance(&self) -> Result<Vec<AddRule>, InferError> {
         let iterations = self.settings.iterations;
