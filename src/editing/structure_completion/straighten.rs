@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::super::script::{Shell, Word};
-use super::super::{Step, written};
+use super::super::{Applied, written};
 use super::{ENDING, Sketch};
 use edifice_base::{Error, Result};
 use edifice_io::photograph::{self, Picture, ReadPhotographError};
@@ -143,7 +143,7 @@ impl Sketch {
         picture: Option<&str>,
         corners: [[f64; 2]; 4],
         height: Option<f64>,
-    ) -> Result<Step> {
+    ) -> Result<Applied> {
         let (bytes, word) = match (picture, &self.original) {
             (Some(address), _) => {
                 let bytes = photograph::bytes_of_address(address).map_err(Error::method)?;
@@ -179,7 +179,7 @@ impl Sketch {
             forbidden: self.forbidden.clone(),
             ..Self::new(made)
         };
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: format!("photograph straightened to {width} x {height} {unit}"),
             shell: shell.gives(ENDING, Some(String::new())),
