@@ -70,7 +70,7 @@ pub fn index(pages: &[Page]) -> String {
                         @for section in &page.sections { (artefact(&page.slug, section)) }
                     }
                 }
-                footer { "Pictures lead to their vector form where it is small enough to ship. Numbers, seeds, settings and digests of the data stand in the " code { "run.json" } " of each paper." }
+                footer { "Pictures lead to their vector form where it is small enough to ship. Numbers, seeds, settings and digests of the data stand in the " code { "run.json" } " of each paper, commits, times and machines in its " code { "provenance.json" } "." }
                 script { (PreEscaped(SCRIPT)) }
             }
         }

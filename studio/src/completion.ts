@@ -94,6 +94,23 @@ export function completion(session: Session<View>): Editor<View> {
       const wish = complete();
       return [command, { ...wish, pins: wish.pins.filter((p) => !gone.has(p)) }];
     });
+  /** Shows the rest as it would be completed after edits that are still under way. */
+  function completed(edits: string[]) {
+    if (!live || session.doc.view.answers.length === 0) return;
+    const gone = new Set(edits.map((e) => e.split(" ")[1].split("=")[0]));
+    const wish = complete();
+    const pins = wish.pins.filter((p) => !gone.has(p));
+    void session.preview([{ do: "edit", edits }, { ...wish, count: 1, pins }], (view) => {
+      for (const node of drawing.layer.querySelectorAll("g.element.added")) if (!gone.has(node.getAttribute("data-id") ?? "")) node.remove();
+      const added = view.elements.filter((e) => !e.observed && !e.pinned).sort(below);
+      const nodes = added.map((e) => {
+        const node = picture(e);
+        node.classList.add("added");
+        return node;
+      });
+      drawing.layer.querySelector("rect.wall")?.after(...nodes);
+    });
+  }
   const again = (change: Partial<ReturnType<typeof complete>> = {}) => session.run(() => [{ ...complete(), ...change }]);
 
   /** Another photograph, or none; where there were answers, the same again over it. */
@@ -185,7 +202,10 @@ export function completion(session: Session<View>): Editor<View> {
       return (dx, dy, done) => {
         const [x, y] = [snap(e.x + dx, grid()) - e.x, snap(e.y + dy, grid()) - e.y];
         for (const node of nodes) node?.setAttribute("transform", `translate(${x},${y})`);
-        if (done && (x !== 0 || y !== 0)) void edit(...own.map((o) => `move ${o.id}=${four(o.x + x)},${four(o.y + y)}`));
+        if (x === 0 && y === 0) return;
+        const moves = own.map((o) => `move ${o.id}=${four(o.x + x)},${four(o.y + y)}`);
+        if (done) void edit(...moves);
+        else completed(moves);
       };
     });
     return g;

@@ -89,6 +89,20 @@ fn a_city_of_five_thousand_buildings_opens() {
 }
 
 #[test]
+fn a_city_of_twelve_thousand_buildings_opens_in_three_seconds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("made.city-grammar.json.gz");
+    grammar_json::write(&made(12_000), &path).expect("written");
+    let (seconds, bytes, buildings) = opened(&path);
+    println!(
+        "{buildings} buildings: {seconds:.2} s, {:.2} MB",
+        bytes as f64 / 1e6
+    );
+    assert!(buildings >= 12_000);
+    assert!(seconds <= 3.0, "{seconds} s");
+}
+
+#[test]
 fn a_city_of_an_island_opens() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("made.city-grammar.json.gz");
