@@ -95,7 +95,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ctx.figure("figure_15", &figure)?;
     ctx.table(&table);
     ctx.note(format!("```\n{}\n```", commands.join("\n")));
-    ctx.note("The commands give the same completions, by the default model. SketchStep (b) of the paper, the choice of 3D models from a database, has no counterpart here.");
+    ctx.note("The commands give the same completions, by the default model. Step (b) of the paper, the choice of 3D models from a database, has no counterpart here.");
     Ok(())
 }
 
