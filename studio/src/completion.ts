@@ -3,7 +3,7 @@
 import type { Doc } from "./api";
 import { button, field, h, s, section, swap, tidy } from "./dom";
 import { arrow, Drawing, place, type Rect, snap } from "./drawing";
-import { address, corners } from "./photograph";
+import { address, corners, held } from "./photograph";
 import type { Editor, Session } from "./session";
 
 interface Element_ extends Rect {
@@ -126,7 +126,7 @@ export function completion(session: Session<View>): Editor<View> {
     session.calmly(async () => {
       const said = await session.ask<{ picture: string | null }>({ ask: "original" });
       if (!said?.picture) return;
-      const source = await (await fetch(said.picture)).blob();
+      const source = held(said.picture);
       const empty = session.doc.view.elements.length === 0;
       const placed = await corners(source, [original.width, original.height], empty ? "new" : "kept");
       if (placed !== null) await straighten({ picture: null, ...placed });

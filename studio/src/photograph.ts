@@ -32,6 +32,13 @@ export async function address(file: Blob): Promise<{ text: string; width: number
   return { text, width, height };
 }
 
+/** The picture that a `data:` address holds; the page may fetch nothing but answers of its server. */
+export function held(address: string): Blob {
+  const [head, text] = address.split(",");
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  return new Blob([bytes], { type: head.slice("data:".length).split(";")[0] });
+}
+
 /** Asks for the four corners of the facade in a picture of this size, and for its height where that is not known; null if nothing
  * is to be done. */
 export async function corners(source: Blob, [width, height]: Point, outline: "new" | "kept"): Promise<Placed | null> {
