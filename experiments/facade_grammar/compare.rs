@@ -84,6 +84,10 @@ pub(crate) fn run(ctx: &mut Context, plan: Design) -> Result<Comparison> {
                 "cost" => (answer.cost, ""),
                 "rules" => (answer.rules as f64, ""),
                 "terminals" => (answer.terminals as f64, ""),
+                "effective" => match answer.effective {
+                    Some(effective) => (effective, ""),
+                    None => continue,
+                },
                 _ => (answer.seconds, "s"),
             };
             ctx.observe(Row {

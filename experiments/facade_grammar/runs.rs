@@ -104,14 +104,16 @@ pub(crate) struct Answer {
     pub terminals: usize,
     /// Processor seconds of inference, which runs on one thread.
     pub seconds: f64,
+    /// Effective number of weighted walks, of importance sampling.
+    pub effective: Option<f64>,
 }
 
 /// Runs a method on a facade, or on several for one joint grammar; the grammar derives back to
 /// them, or this fails.
 pub(crate) fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar, Answer)> {
     let start = ThreadTime::now();
-    let grammar = match (question.solver, facades) {
-        (Solver::ProceduralLogic, [facade]) => peers::grammar("procedural_logic", facade)?,
+    let (grammar, effective) = match (question.solver, facades) {
+        (Solver::ProceduralLogic, [facade]) => (peers::grammar("procedural_logic", facade)?, None),
         (Solver::ProceduralLogic, _) => {
             return Err(Error::method("procedural logic takes one facade"));
         }
@@ -125,9 +127,8 @@ pub(crate) fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar,
                 readings: question.readings,
                 ..Settings::default()
             };
-            infer(facades, &settings, &unwatched)
-                .map_err(Error::method)?
-                .grammar
+            let found = infer(facades, &settings, &unwatched).map_err(Error::method)?;
+            (found.grammar, found.effective)
         }
     };
     let seconds = start.elapsed().as_secs_f64();
@@ -137,6 +138,7 @@ pub(crate) fn solve(facades: &[Facade], question: &Question) -> Result<(Grammar,
         rules: found.rules,
         terminals: found.terminals,
         seconds,
+        effective,
     };
     Ok((grammar, answer))
 }

@@ -3,7 +3,7 @@
 use super::compare::{self, Comparison, Design};
 use super::data::FIGURE_9;
 use super::published::Published;
-use super::runs::Solver;
+use super::runs::{Solver, least, mean};
 use super::{BEST, PAPER, ratios, room};
 use crate::Context;
 use edifice_base::Result;
@@ -22,7 +22,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let plan = Design {
         solvers,
         operations: Operations::default(),
-        metrics: &["cost", "rules", "terminals", "seconds"],
+        metrics: &["cost", "rules", "terminals", "seconds", "effective"],
     };
     let found = compare::run(ctx, plan)?;
     let printed = Published::read(ctx)?;
@@ -31,6 +31,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         ctx.table(&found.table(title("cost"), dataset, |a| a.cost, 1, true));
         ctx.table(&found.table(title("rules"), dataset, |a| a.rules as f64, 0, false));
         ctx.table(&found.table(title("seconds"), dataset, |a| a.seconds, 2, false));
+        ctx.table(&effective(&found, dataset));
     }
     ctx.table(&published(&printed));
     facade_i(ctx, &found, &printed, many);
@@ -51,6 +52,27 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
          depend on the iterations that it may use. Seconds are processor time of one thread on the machine that `run.json` names; the paper's are of a 3.07 GHz Xeon X5675.",
     );
     Ok(())
+}
+
+/// Effective numbers of the walks of importance sampling.
+fn effective(found: &Comparison, dataset: &str) -> Table {
+    let sampled = |s: &usize| matches!(found.solvers[*s], Solver::Infer(Method::Importance, _));
+    let columns: Vec<usize> = (0..found.solvers.len()).filter(sampled).collect();
+    let mut table = Table::new(format!(
+        "{dataset}: walks of importance sampling that count, each weighted by exp(-cost): 1 / sum of squared shares, least/mean over the seeds"
+    ))
+    .column("facade", Align::Left)
+    .numbers(columns.iter().map(|&s| found.solvers[s].name()));
+    for i in found.of(dataset) {
+        let mut row = vec![found.instances[i].facade.name.clone()];
+        row.extend(columns.iter().map(|&s| {
+            let answers = found.answers[i][s].iter();
+            let values: Vec<f64> = answers.filter_map(|a| a.effective).collect();
+            format!("{:.1}/{:.1}", least(&values), mean(&values))
+        }));
+        table.row(row);
+    }
+    table
 }
 
 /// Facade (i) is the one that can be set beside the paper number by number.

@@ -10,16 +10,17 @@
 //! argmin [`Solver`], so that limits, observers and statuses are those of every other optimizer here.
 //! Clarabel returns "solved" for a P that is not positive semidefinite: that is checked at the door.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use argmin::core::{Error as ArgminError, Executor, KV, Problem, Solver, State, TerminationReason};
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
+use super::qp_form::Form;
 pub use super::qp_problem::{QpError, QuadraticProgram, Row};
+use super::qp_warm::{Pair, solve_near};
 use super::run::{Outcome, Search};
-use super::triplets::Triplets;
 
 /// Limits of a run of [`solve`], whose example uses the default: 200 iterations, no limit of time, tolerance 1e-9. A limit
 /// that is reached is an [`Outcome`], not an error.
@@ -43,7 +44,7 @@ impl Default for QpOptions {
     }
 }
 
-/// Result of [`solve`].
+/// Result of [`solve`] and [`solve_from`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
     /// The point; `None` where there is none: the program is infeasible or unbounded, or the run ended before it was solved.
@@ -54,8 +55,10 @@ pub struct Solution {
     pub duals: Option<Duals>,
     /// The reason for which the run ended.
     pub outcome: Outcome,
-    /// Interior-point iterations.
+    /// Interior-point iterations, and steps from the solution before ([`solve_from`]).
     pub iterations: u32,
+    /// True if the solution before led here without the interior-point method.
+    pub warm: bool,
 }
 
 /// Multipliers of the constraints: by how much the least cost falls for each unit by which the right-hand side of a row, or an upper bound, is
@@ -105,9 +108,60 @@ pub struct Duals {
 /// assert_eq!((found.best, found.outcome), (None, Outcome::Infeasible));
 /// ```
 pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<Solution, QpError> {
+    execute(program, options, None)
+}
+
+/// As [`solve`], from the solution of a program that differs little: with numbers changed, not with other variables or constraints.
+///
+/// The constraints that were tight are assumed to be so, and corrected by at most eight Newton steps on the optimality conditions, each of one
+/// sparse factor; an interior-point iteration takes one as well. Where these do not lead to the end, or the solution given has no point, the
+/// interior-point method solves the program from the start. A start that is far away costs time alone: in the families of programs of OSQP, with
+/// all costs and right-hand sides changed, the median was at most 1.7 times the time of [`solve`].
+///
+/// # Errors
+/// As [`solve`]; [`QpError::Start`] for a solution of other numbers of variables, equalities or inequalities.
+///
+/// # Examples
+/// ```
+/// use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve, solve_from};
+/// let mut program = QuadraticProgram::new(2);
+/// program.pull(0, 3.0, 1.0).pull(1, 1.0, 1.0);
+/// program.equalities.push(Row::new([(0, 1.0), (1, 1.0)], 2.0));
+/// program.upper[0] = 1.5;
+/// let first = solve(&program, QpOptions::default())?;
+/// program.equalities[0].right = 2.2;
+/// let second = solve_from(&program, QpOptions::default(), &first)?;
+/// assert!(second.warm && second.iterations == 1);
+/// assert!((second.best.unwrap()[1] - 0.7).abs() < 1e-6);
+/// # Ok::<(), edifice_optim::qp::QpError>(())
+/// ```
+pub fn solve_from(
+    program: &QuadraticProgram,
+    options: QpOptions,
+    previous: &Solution,
+) -> Result<Solution, QpError> {
+    let pair = previous.best.as_deref().zip(previous.duals.as_ref());
+    let n = program.dimension();
+    let fits = |(x, duals): (&[f64], &Duals)| {
+        [x.len(), duals.lower.len(), duals.upper.len()] == [n; 3]
+            && duals.equalities.len() == program.equalities.len()
+            && duals.inequalities.len() == program.inequalities.len()
+    };
+    match pair.is_none_or(fits) {
+        true => execute(program, options, pair),
+        false => Err(QpError::Start),
+    }
+}
+
+fn execute(
+    program: &QuadraticProgram,
+    options: QpOptions,
+    previous: Option<(&[f64], &Duals)>,
+) -> Result<Solution, QpError> {
     program.check()?;
     let solver = InteriorPoint {
         options,
+        previous,
         found: None,
     };
     let result = Executor::new(program, solver)
@@ -120,12 +174,13 @@ pub fn solve(program: &QuadraticProgram, options: QpOptions) -> Result<Solution,
 }
 
 /// The interior-point method as an argmin solver: one argmin iteration is a whole run.
-struct InteriorPoint {
+struct InteriorPoint<'a> {
     options: QpOptions,
+    previous: Option<(&'a [f64], &'a Duals)>,
     found: Option<Solution>,
 }
 
-impl Solver<&QuadraticProgram, Search<Vec<f64>>> for InteriorPoint {
+impl Solver<&QuadraticProgram, Search<Vec<f64>>> for InteriorPoint<'_> {
     fn name(&self) -> &str {
         "interior point (Clarabel)"
     }
@@ -138,7 +193,7 @@ impl Solver<&QuadraticProgram, Search<Vec<f64>>> for InteriorPoint {
         let program = problem
             .problem
             .ok_or_else(|| ArgminError::msg("no program"))?;
-        let found = run_clarabel(program, self.options)?;
+        let found = run(program, self.options, self.previous)?;
         let cost = found.cost;
         self.found = Some(found);
         let done = TerminationReason::SolverConverged;
@@ -160,43 +215,63 @@ fn outcome(status: SolverStatus) -> Outcome {
     }
 }
 
-/// Clarabel's form: equalities, then inequalities, then bounds as rows of one matrix.
-fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Solution, QpError> {
-    let n = program.dimension();
-    let terms = |rows: &[Row]| rows.iter().map(|row| row.terms.len()).sum::<usize>();
-    let size = terms(&program.equalities) + terms(&program.inequalities) + 2 * n;
-    let (mut rows, mut right) = (Triplets::with_capacity(size), Vec::new());
-    for row in program.equalities.iter().chain(&program.inequalities) {
-        for &(column, value) in &row.terms {
-            rows.entry(right.len(), column, value);
+/// Newton steps from the solution before, where there is one, and the interior-point method where these do not lead to the end.
+fn run(
+    program: &QuadraticProgram,
+    options: QpOptions,
+    previous: Option<(&[f64], &Duals)>,
+) -> Result<Solution, QpError> {
+    let (start, form) = (Instant::now(), Form::new(program));
+    let mut steps = 0;
+    let left = || {
+        options
+            .time_limit
+            .map(|limit| limit.saturating_sub(start.elapsed()))
+    };
+    if let Some((x, duals)) = previous {
+        let near = Pair {
+            x: x.to_vec(),
+            z: form.multipliers(duals),
+        };
+        let goes_on = || left() != Some(Duration::ZERO);
+        let (tolerance, most) = (options.tolerance, options.max_iterations);
+        let (found, count) = solve_near(&form, &program.linear, &near, tolerance, most, goes_on);
+        if let Some(pair) = found {
+            return Ok(Solution {
+                cost: program.value(&pair.x),
+                duals: Some(form.duals(&pair.z)),
+                outcome: Outcome::Converged,
+                iterations: count,
+                warm: true,
+                best: Some(pair.x),
+            });
         }
-        right.push(row.right);
+        steps = count;
     }
-    let equalities = program.equalities.len();
-    // The rows of the bounds.
-    let (mut upper_at, mut lower_at) = (vec![None; n], vec![None; n]);
-    for i in 0..n {
-        if program.upper[i] < f64::INFINITY {
-            upper_at[i] = Some(right.len());
-            rows.entry(right.len(), i, 1.0);
-            right.push(program.upper[i]);
-        }
-        if program.lower[i] > f64::NEG_INFINITY {
-            lower_at[i] = Some(right.len());
-            rows.entry(right.len(), i, -1.0);
-            right.push(-program.lower[i]);
-        }
-    }
+    let cold = QpOptions {
+        time_limit: left(),
+        ..options
+    };
+    let found = interior_point(program, &form, cold)?;
+    Ok(Solution {
+        iterations: found.iterations + steps,
+        ..found
+    })
+}
+
+/// Clarabel on the matrices of a program.
+fn interior_point(
+    program: &QuadraticProgram,
+    form: &Form,
+    options: QpOptions,
+) -> Result<Solution, QpError> {
+    let (equalities, rows) = (form.equalities, form.right.len());
     let mut cones = Vec::new();
     if equalities > 0 {
         cones.push(SupportedConeT::ZeroConeT(equalities));
     }
-    if right.len() > equalities {
-        cones.push(SupportedConeT::NonnegativeConeT(right.len() - equalities));
-    }
-    let mut upper = Triplets::with_capacity(program.quadratic.len());
-    for &(i, j, value) in &program.quadratic {
-        upper.entry(i.min(j), i.max(j), value);
+    if rows > equalities {
+        cones.push(SupportedConeT::NonnegativeConeT(rows - equalities));
     }
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
@@ -211,25 +286,13 @@ fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Soluti
         .tol_feas(options.tolerance)
         .build()
         .map_err(|e| QpError::Solver(e.to_string()))?;
-    let p = upper.matrix(n, n);
-    let a = rows.matrix(right.len(), n);
-    let mut solver = DefaultSolver::new(&p, &program.linear, &a, &right, &cones, settings)
+    let (p, a) = (&form.quadratic, &form.rows);
+    let mut solver = DefaultSolver::new(p, &program.linear, a, &form.right, &cones, settings)
         .map_err(|e| QpError::Solver(e.to_string()))?;
     solver.solve();
     let found = solver.solution;
     let outcome = outcome(found.status);
     let point = outcome.is_solved() && found.x.iter().all(|v| v.is_finite());
-    let bound = |at: Vec<Option<usize>>| -> Vec<f64> {
-        let at = at.into_iter();
-        at.map(|row| row.map_or(0.0, |row| found.z[row])).collect()
-    };
-    let inequalities = equalities + program.inequalities.len();
-    let duals = Duals {
-        equalities: found.z[..equalities].to_vec(),
-        inequalities: found.z[equalities..inequalities].to_vec(),
-        lower: bound(lower_at),
-        upper: bound(upper_at),
-    };
     let cost = match outcome {
         Outcome::Infeasible => f64::INFINITY,
         Outcome::Unbounded => f64::NEG_INFINITY,
@@ -238,9 +301,10 @@ fn run_clarabel(program: &QuadraticProgram, options: QpOptions) -> Result<Soluti
     };
     Ok(Solution {
         cost,
-        duals: point.then_some(duals),
+        duals: point.then(|| form.duals(&found.z)),
         outcome,
         iterations: found.iterations,
+        warm: false,
         best: point.then_some(found.x),
     })
 }

@@ -124,6 +124,9 @@ pub enum QpError {
     /// P has a negative eigenvalue: the program is not convex.
     #[error("the quadratic form is not positive semidefinite: eigenvalue {0}")]
     NotConvex(f64),
+    /// The solution to start from is of other variables or constraints.
+    #[error("the solution to start from has other numbers of variables or constraints")]
+    Start,
     /// The solver refused or failed.
     #[error("quadratic programming failed: {0}")]
     Solver(String),

@@ -193,6 +193,7 @@ fn procedural_logic_grammar(facades: &[Facade]) -> Result<Outcome> {
         grammar,
         iterations: 1,
         lower_bound: None,
+        effective: None,
         ended: Ended::Finished,
     })
 }

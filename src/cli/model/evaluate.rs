@@ -38,9 +38,9 @@ pub(crate) struct Splits {
     share: f64,
     /// Models to compare, separated by commas; differences are to the first. `ours` is what the command beside learns by default
     /// (`model learn`, `building learn`), `published` the hierarchical model of the paper, `model_1` to `model_3` and `gmm` its
-    /// peers: these unless given. Further ones are `extended`, the hierarchical model of an encoded table whose real columns share one
-    /// hidden variable or have one each, by the higher score; `one_group`, the same where they share one; `gaussian`, one Gaussian; `kde`, a
-    /// kernel density. At values that many rows share the density of an encoded table is a probability: there its numbers are not to be
+    /// peers: these unless given. Further ones are `extended`, the hierarchical model of an encoded table whose real columns share
+    /// hidden variables, all, in groups or none, by the highest score; `one_group`, the same where all share one; `apart`, where none
+    /// do; `gaussian`, one Gaussian; `kde`, a kernel density. At values that many rows share the density of an encoded table is a probability: there its numbers are not to be
     /// compared with those of densities.
     #[arg(long, value_delimiter = ',')]
     models: Vec<String>,

@@ -13,7 +13,7 @@ use edifice_model::hierarchy::{
     Hierarchy, Learned, SearchStep, Settings, fit_observed, learn_observed, refine,
 };
 use edifice_model::tables::Dataset;
-use edifice_model::tables::joined::learn_joined;
+use edifice_model::tables::joined::{Joined, Tried, learn_joined};
 use edifice_model::{ModelError, Table};
 
 use super::search::{SearchOptions, warnings};
@@ -128,19 +128,12 @@ impl Learning {
         }
         let learned: Learned = match start {
             Some(model) => refine(model, &data.table, settings, seed, &observer)?,
-            // The extended model: the real columns may share one hidden variable.
+            // The extended model: real columns may share hidden variables.
             None if settings.category_edges => {
                 let (table, groups) = (&data.table, &data.groups);
                 let found = learn_joined(table, groups, settings, seed, &observer)?;
-                if let Some(other) = found.other_score {
-                    let (ours, theirs) = match found.joined {
-                        true => ("share one hidden variable", "one each"),
-                        false => ("have a hidden variable each", "one together"),
-                    };
-                    let score = found.learned.score;
-                    print::message(&format!(
-                        "real columns {ours}: score {score:.1}, with {theirs} {other:.1}"
-                    ));
+                if found.tried.len() > 1 {
+                    print::message(&told(&found));
                 }
                 found.learned
             }
@@ -161,6 +154,18 @@ impl Learning {
             print::message(&format!("warning: {warning}"));
         }
     }
+}
+
+/// The groupings of real columns that were tried, in words.
+fn told(found: &Joined) -> String {
+    let one = |tried: &Tried| format!("{:.3} with {}", tried.score, tried.groups);
+    let all: Vec<String> = found.tried.iter().map(one).collect();
+    let kept = match found.real_groups() {
+        1 => "share one hidden variable".to_owned(),
+        count => format!("have {count} hidden variables"),
+    };
+    let all = all.join(", ");
+    format!("real columns {kept}; score in nats a row, as far as each was learned: {all}")
 }
 
 /// Ctrl-C ends what is running with the best so far; a second one ends the process.

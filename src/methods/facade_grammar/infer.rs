@@ -1,6 +1,7 @@
 //! Inference: from facades to one grammar.
 
 use super::adp::search::Setup;
+use super::baselines::importance_sampling::cheapest;
 use super::lagrangian::NOISE;
 use super::settings::{InferError, Method, Settings};
 use edifice_base::{Ended, Watch, Watched};
@@ -16,6 +17,8 @@ pub struct Outcome {
     pub iterations: u64,
     /// No grammar of these facades costs less, as far as [`Method::Lagrangian`] found out (see [`super::lower_bound`]).
     pub lower_bound: Option<f64>,
+    /// Effective number of walks of [`Method::Importance`], weighted by `exp(-cost)` ([`super::weighted`]); `None` of other methods.
+    pub effective: Option<f64>,
     /// The way in which the search ended; that it was proven optimal says [`Outcome::proves`].
     pub ended: Ended,
 }
@@ -43,16 +46,22 @@ pub fn infer(
     check(facades)?;
     let watched = Watched::new(watch);
     let search = Setup::new(facades, settings, &watched)?;
-    let (rules, lower_bound) = match settings.method {
+    let (mut lower_bound, mut effective) = (None, None);
+    let rules = match settings.method {
         Method::Lagrangian => {
             let (rules, lower) = search.best(facades)?;
-            (rules, Some(lower))
+            lower_bound = Some(lower);
+            rules
         }
-        Method::AdpPaper => (search.paper(settings.iterations)?.0, None),
-        Method::Importance => (search.importance()?, None),
-        Method::Greedy => (search.greedy(), None),
-        Method::Bayesian => (search.all_lines(), None),
-        Method::Symmetry => (search.symmetry_maximization(), None),
+        Method::AdpPaper => search.paper(settings.iterations)?.0,
+        Method::Importance => {
+            let walks = search.importance()?;
+            effective = Some(walks.ess());
+            cheapest(walks)
+        }
+        Method::Greedy => search.greedy(),
+        Method::Bayesian => search.all_lines(),
+        Method::Symmetry => search.symmetry_maximization(),
     };
     let iterations = match settings.method {
         Method::Lagrangian | Method::AdpPaper | Method::Importance => settings.iterations,
@@ -62,6 +71,7 @@ pub fn infer(
         grammar: search.grammar(facades, &rules),
         iterations,
         lower_bound,
+        effective,
         ended: watched.ended(),
     })
 }
@@ -70,7 +80,7 @@ pub fn infer(
 const MAX_LINES: usize = 20_000;
 const MAX_CELLS: usize = 60_000_000;
 
-fn check(facades: &[Facade]) -> Result<(), InferError> {
+pub(crate) fn check(facades: &[Facade]) -> Result<(), InferError> {
     if facades.is_empty() {
         return Err(InferError::NoFacade);
     }

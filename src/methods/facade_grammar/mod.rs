@@ -134,6 +134,7 @@ mod operations;
 mod regions;
 mod rules;
 mod settings;
+mod weighted;
 
 pub use adp::readings::{Exploit, Protect, Readings};
 pub use bound::{Bound, Weakness, lower_bound};
@@ -141,3 +142,4 @@ pub use infer::{Outcome, infer};
 pub use lagrangian::BoundLimits;
 pub use operations::{Operations, UnknownOperation};
 pub use settings::{InferError, Method, Settings, UnknownMethod};
+pub use weighted::{Weighted, WeightedGrammar, weighted};

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::adp::readings::Readings;
 use super::operations::Operations;
 use edifice_grammar::{CostError, Costs};
+use edifice_model::program::ProgramError;
 use edifice_optim::adp::AdpError;
 use edifice_optim::annealing::AnnealingError;
 use edifice_shape::LayoutError;
@@ -119,6 +120,9 @@ pub enum InferError {
     /// Approximate dynamic programming failed.
     #[error(transparent)]
     Adp(#[from] AdpError),
+    /// Weighted draws failed.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
     /// Annealing failed.
     #[error(transparent)]
     Annealing(#[from] AnnealingError),

@@ -9,7 +9,7 @@ use super::super::error::ModelError;
 use super::super::table::Table;
 use super::fit::{Problem, Scored};
 use super::schema::{Rows, Schema};
-use super::search::Search;
+use super::search::{Rival, Search};
 use super::search_step::SearchStep;
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
@@ -116,14 +116,14 @@ pub fn learn_observed(
     learn_against(data, groups, settings, seed, None, observer)
 }
 
-/// As [`learn_observed`], beside a model of the same rows and columns in other groups, whose score on the rows searched is
-/// `rival`: a search that stays far behind is not gone on with to its end.
+/// As [`learn_observed`], beside a model of the same rows and columns in other groups: a search that stays far behind is not gone on with to
+/// its end, and what is behind in the end is not fitted to rows that were not searched.
 pub(crate) fn learn_against(
     data: &Table,
     groups: &[Group],
     settings: &Settings,
     seed: u64,
-    rival: Option<f64>,
+    rival: Option<Rival>,
     observer: &Observer,
 ) -> Result<Learned, ModelError> {
     check(settings)?;
@@ -233,7 +233,7 @@ impl<'a> Work<'a> {
     /// Searches, then fits what was found to all rows.
     fn learn(
         &self,
-        rival: Option<f64>,
+        rival: Option<Rival>,
         observer: &Observer,
         search: impl FnOnce(&Search) -> Result<(Scored, Vec<SearchStep>), ModelError>,
     ) -> Result<Learned, ModelError> {
@@ -251,7 +251,8 @@ impl<'a> Work<'a> {
             watch: &watch,
         })?;
         let mut fitted = rows.rows;
-        if self.sample.is_some() && !watch.ended() {
+        let behind = rival.is_some_and(|rival| scored.score < rival.score);
+        if self.sample.is_some() && !watch.ended() && !behind {
             let structure = scored.shape.structure.clone();
             let goes_on = || watch.goes_on();
             let mut problem = Problem::new(schema, &self.rows, &settings.priors, structure)?;

@@ -102,6 +102,7 @@ pub(crate) use learn::learn_against;
 pub use learn::{Fitted, Learned, fit, fit_observed, learn, learn_observed, refine};
 pub use query::Hierarchy;
 pub use schema::Group;
+pub(crate) use search::{Rival, SMALL};
 pub use search_step::SearchStep;
 pub use watch::Observer;
 

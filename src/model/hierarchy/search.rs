@@ -19,7 +19,7 @@ use super::{Settings, Sweep, Variant};
 use edifice_base::rng::stream;
 
 /// Values of real columns up to which all |S| are searched from the start.
-const SMALL: usize = 10_000;
+pub(crate) const SMALL: usize = 10_000;
 
 /// Rounds of EM in a short run.
 const SHORT: usize = 10;
@@ -28,6 +28,15 @@ const BEHIND: f64 = 1.0;
 /// The same when an |S| has its first edges, before any cardinality is raised.
 const FAR_BEHIND: f64 = 2.0;
 
+/// A model of the same rows and columns in other groups.
+#[derive(Clone, Copy)]
+pub(crate) struct Rival {
+    /// Its score on the rows searched.
+    pub score: f64,
+    /// The part of the usual distances, of [`BEHIND`] and [`FAR_BEHIND`], at which the search is given up.
+    pub patience: f64,
+}
+
 /// The inputs that every part of a search needs.
 pub(crate) struct Search<'a> {
     pub schema: &'a Schema,
@@ -35,8 +44,8 @@ pub(crate) struct Search<'a> {
     pub settings: &'a Settings,
     /// True if edges from categories are searched.
     pub categories: bool,
-    /// Score of a model of the same rows that this one is to surpass.
-    pub rival: Option<f64>,
+    /// A model of the same rows that this one is to surpass.
+    pub rival: Option<Rival>,
     pub watch: &'a Watch<'a>,
 }
 
@@ -91,7 +100,7 @@ impl<'a> Search<'a> {
     fn behind(&self, scored: &Scored, most: f64) -> bool {
         let rows = self.rows.rows as f64;
         self.rival
-            .is_some_and(|rival| scored.score + most * rows < rival)
+            .is_some_and(|r| scored.score + r.patience * most * rows < r.score)
     }
 
     /// Goes on from a structure and its parameters.

@@ -3,6 +3,9 @@
 //! `Z = E[w]` over runs with `w = Π_j w_j`, and posterior means are `Σ w f / Σ w`. The standard error of `log Z` is
 //! `sqrt(1 / ESS - 1 / N)`, with `ESS = (Σ w)² / Σ w²`, to first order.
 
+use std::ops::ControlFlow;
+
+use rand::Rng;
 use rayon::prelude::*;
 
 use super::Program;
@@ -43,7 +46,64 @@ where
     };
     let draws: Result<Vec<Draw<P::Out>>, ProgramError> =
         (0..count).into_par_iter().map(one).collect();
-    let draws = draws?;
+    judged(draws?)
+}
+
+/// As [`importance`], one run after the other with the numbers of one generator: for programs that threads cannot share.
+///
+/// `observer` is told of every draw, its weight not yet divided by their sum, and ends the runs with [`ControlFlow::Break`].
+///
+/// # Errors
+/// As [`importance`].
+///
+/// # Examples
+/// Until three heads have been seen:
+/// ```
+/// use std::ops::ControlFlow;
+/// use edifice_base::rng::stream;
+/// use edifice_model::program::{Handler, Program, dist::bernoulli, importance_in_turn};
+/// struct Coin;
+/// impl Program for Coin {
+///     type Out = bool;
+///     fn run<H: Handler>(&self, h: &mut H) -> bool {
+///         h.sample("coin", bernoulli(0.5))
+///     }
+/// }
+/// let mut heads = 0;
+/// let found = importance_in_turn(&Coin, 1000, &mut stream(1, "coins", 0), |draw| {
+///     heads += u32::from(draw.out);
+///     if heads < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+/// })?;
+/// assert_eq!(found.draws.iter().filter(|d| d.out).count(), 3);
+/// assert!((found.ess() - found.draws.len() as f64).abs() < 1e-9);
+/// # Ok::<(), edifice_model::program::ProgramError>(())
+/// ```
+pub fn importance_in_turn<P: Program, G: Rng>(
+    program: &P,
+    count: usize,
+    rng: &mut G,
+    mut observer: impl FnMut(&Draw<P::Out>) -> ControlFlow<()>,
+) -> Result<Posterior<P::Out>, ProgramError> {
+    let mut draws = Vec::new();
+    for _ in 0..count {
+        let done = run(program, Old::default(), rng)?;
+        let draw = Draw {
+            log_weight: done.trace.log_likelihood(),
+            trace: done.trace,
+            out: done.out,
+        };
+        let answer = observer(&draw);
+        draws.push(draw);
+        if answer.is_break() {
+            break;
+        }
+    }
+    judged(draws)
+}
+
+/// The posterior of draws whose weights are not yet divided by their sum.
+fn judged<T>(draws: Vec<Draw<T>>) -> Result<Posterior<T>, ProgramError> {
+    let count = draws.len();
     let logs: Vec<f64> = draws.iter().map(|d| d.log_weight).collect();
     let total = log_sum_exp(&logs);
     if total == f64::NEG_INFINITY {

@@ -79,7 +79,7 @@ pub use condition::{Given, given};
 pub use dist::Dist;
 pub use error::ProgramError;
 pub use exact::exact;
-pub use importance::importance;
+pub use importance::{importance, importance_in_turn};
 pub use metropolis::{Chains, metropolis};
 #[cfg(feature = "nuts")]
 pub use nuts::nuts;

@@ -33,6 +33,8 @@ pub enum Contender {
     Extended,
     /// The same with all real columns in one group, which share one hidden variable (`one_group`).
     OneGroup,
+    /// The same with the groups of real columns as they are given, one each by default (`apart`).
+    Apart,
     /// One Gaussian over all columns.
     Gaussian,
     /// A kernel density ([`Kernels`]).
@@ -50,7 +52,7 @@ impl Contender {
     ];
 
     /// All that there are.
-    pub const EVERY: [Contender; 9] = [
+    pub const EVERY: [Contender; 10] = [
         Contender::Ours,
         Contender::Model1,
         Contender::Model2,
@@ -58,6 +60,7 @@ impl Contender {
         Contender::Gmm,
         Contender::Extended,
         Contender::OneGroup,
+        Contender::Apart,
         Contender::Gaussian,
         Contender::Kde,
     ];
@@ -72,6 +75,7 @@ impl Contender {
             Contender::Gmm => "gmm",
             Contender::Extended => "extended",
             Contender::OneGroup => "one_group",
+            Contender::Apart => "apart",
             Contender::Gaussian => "gaussian",
             Contender::Kde => "kde",
         }
@@ -79,7 +83,9 @@ impl Contender {
 
     fn variant(self) -> Option<Variant> {
         match self {
-            Contender::Ours | Contender::Extended | Contender::OneGroup => Some(Variant::Full),
+            Contender::Ours | Contender::Extended | Contender::OneGroup | Contender::Apart => {
+                Some(Variant::Full)
+            }
             Contender::Model1 => Some(Variant::NoLateral),
             Contender::Model2 => Some(Variant::NoSecondLevel),
             Contender::Model3 => Some(Variant::Directed),
@@ -101,7 +107,7 @@ pub fn held_out(
     settings: &Settings,
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
-    if let Contender::Extended | Contender::OneGroup = contender {
+    if let Contender::Extended | Contender::OneGroup | Contender::Apart = contender {
         let go_on = |_: Option<&SearchStep>| ControlFlow::Continue(());
         let (encoding, model) = match contender {
             Contender::OneGroup => {
@@ -113,6 +119,12 @@ pub fn held_out(
                     None => learn(table, groups, &settings, seed)?.model,
                 };
                 (encoding, model)
+            }
+            Contender::Apart => {
+                let (encoding, encoded) = encode(train, settings, seed, &go_on)?;
+                let settings = extended(settings);
+                let found = learn(&encoded.table, &encoded.groups, &settings, seed)?;
+                (encoding, found.model)
             }
             _ => {
                 let (encoding, found) = learn_encoded(train, settings, seed, &go_on)?;

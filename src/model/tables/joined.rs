@@ -1,33 +1,63 @@
-//! Columns that share one hidden variable, or have each their own: the better of both.
+//! Columns that share one hidden variable, all or in groups, or have each their own: the best of these.
 //!
 //! A schema of one attribute a column gives each real column a hidden variable of its own, so that columns depend on each other through the
-//! style and lateral edges alone. Where they move together, on a curve say, one vector-valued attribute of all real columns is far
-//! better: a mixture of full Gaussians. Both are learned, and the Cheeseman-Stutz score chooses, which is the logarithm of the evidence of the
+//! style and lateral edges alone. Where they move together, on a curve say, one vector-valued attribute is far better: a mixture of full
+//! Gaussians, of all real columns or of those of a group. Groupings from all in one to none are learned, each a
+//! split of the one before ([`levels`](super::grouping)), and the Cheeseman-Stutz score chooses, which is the logarithm of the evidence of the
 //! same rows of the same standardised columns.
 //!
 //! # Deviations and readings
-//! - Only the two ends are tried, all joined and none, not the groupings between. The joined model is learned first: it is the
-//!   quicker one where columns are many. The search of the other is given up where it stays far behind: 2 nats a row before any
-//!   cardinality is raised, 1 nat a row when all |S| swept are done.
+//! - Of large tables (more than 10,000 real values searched on) coarse groupings come first, 1, 2, 4, 8, .. groups, until one scores less than the
+//!   one before: the coarser, the quicker. From [`MANY`] groups on the doubling has to gain 1 nat a row, or the search ends there. Else
+//!   the groups as given come last.
+//! - Of small tables both ends are learned, then those next to the better end, until two in a row do not score more than the best.
+//! - A search is given up where it stays far behind the best so far: of the groups as given 2 nats a row before any
+//!   cardinality is raised, 1 nat a row when all |S| swept are done; of groupings between a quarter of that.
 //! - A joined model without categories has one style: the one hidden variable is the whole mixture, and a style above it says
-//!   nothing.
+//!   nothing. Groupings between are searched from two |S| ([`Sweep::Few`]).
 
 use std::ops::ControlFlow;
 
-use crate::hierarchy::{Group, Learned, Observer, Settings, learn_against, learn_observed};
+use super::grouping::levels;
+use crate::hierarchy::{
+    Group, Learned, Observer, Rival, SMALL, Settings, Sweep, learn_against, learn_observed,
+};
 use crate::{ModelError, Table};
+
+/// Groups from which on a finer grouping of a large table has to be far better.
+const MANY: usize = 16;
+/// Nats a row that it has to gain.
+const FAR: f64 = 1.0;
+/// Groupings of a small table in a row that may score less than the best.
+const MISSES: usize = 2;
+/// Patience with groupings between the ends.
+const BETWEEN: f64 = 0.25;
 
 /// Result of [`learn_joined`].
 #[derive(Debug, Clone)]
 pub struct Joined {
-    /// The model of the higher score.
+    /// The model of the highest score.
     pub learned: Learned,
     /// Its groups of columns.
     pub groups: Vec<Group>,
-    /// True if the real columns share one hidden variable.
-    pub joined: bool,
-    /// Score of the other grouping; `None` where there is no other, or the search ended before it was tried.
-    pub other_score: Option<f64>,
+    /// All groupings that were learned, in their order.
+    pub tried: Vec<Tried>,
+}
+
+/// A grouping that [`learn_joined`] learned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tried {
+    /// Number of groups of real columns; 1 if all share one hidden variable.
+    pub groups: usize,
+    /// Score in nats a row, of one that was given up as far as it came.
+    pub score: f64,
+}
+
+impl Joined {
+    /// Number of groups of real columns.
+    pub fn real_groups(&self) -> usize {
+        self.learned.model.real_groups().len()
+    }
 }
 
 /// The same groups with all real columns in one, the first of all; `None` where fewer than two groups are of real columns.
@@ -88,8 +118,81 @@ pub fn learn_one_group(
     Ok(Some((learned, together)))
 }
 
-/// Learns the model of both groupings and keeps the one of the higher score. A search that the observer ends in the first grouping does not come to the
-/// second.
+/// A grouping whose model was learned.
+struct Level {
+    learned: Learned,
+    groups: Vec<Group>,
+    /// Highest score met on the rows searched.
+    searched: f64,
+}
+
+/// What is known while groupings are tried.
+struct Trial<'a> {
+    data: &'a Table,
+    settings: &'a Settings,
+    seed: u64,
+    observer: &'a Observer<'a>,
+    best: Level,
+    tried: Vec<Tried>,
+}
+
+impl Trial<'_> {
+    /// The score of a row, on the rows searched where these are not all.
+    fn of_a_row(&self, level: &Level) -> f64 {
+        let rows = self.data.rows();
+        match rows > self.settings.searched {
+            true => level.searched / self.settings.searched as f64,
+            // One that was ended may be of fewer rows.
+            false => level.learned.score / level.learned.rows as f64,
+        }
+    }
+
+    /// True if the search shall go on.
+    fn goes_on(&self) -> bool {
+        !self.best.learned.interrupted && (self.observer)(None) == ControlFlow::Continue(())
+    }
+
+    /// Learns a grouping beside the best so far; the nats a row that it gains.
+    fn learn(&mut self, groups: &[Group], reals: usize, between: bool) -> Result<f64, ModelError> {
+        let few = Settings {
+            sweep: Sweep::Few,
+            ..self.settings.clone()
+        };
+        let (settings, patience) = match between {
+            true => (&few, BETWEEN),
+            false => (self.settings, 1.0),
+        };
+        let rival = Rival {
+            score: self.best.searched,
+            patience,
+        };
+        let (seed, observer) = (self.seed, self.observer);
+        let learned = learn_against(self.data, groups, settings, seed, Some(rival), observer)?;
+        let level = Level {
+            searched: searched(&learned),
+            learned,
+            groups: groups.to_vec(),
+        };
+        let gain = self.of_a_row(&level) - self.of_a_row(&self.best);
+        self.tried.push(Tried {
+            groups: reals,
+            score: self.of_a_row(&level),
+        });
+        if gain > 0.0 {
+            self.best = level;
+        }
+        Ok(gain)
+    }
+}
+
+/// Highest score that a search met on the rows searched; its own where it noted none.
+fn searched(learned: &Learned) -> f64 {
+    let scores = learned.trace.iter().map(|step| step.score);
+    scores.max_by(f64::total_cmp).unwrap_or(learned.score)
+}
+
+/// Learns the models of several groupings of the real columns, from all in one to the groups given, and keeps the one of the highest score.
+/// A search that the observer ends comes to no further grouping.
 ///
 /// # Errors
 /// As [`learn`](crate::hierarchy::learn).
@@ -109,7 +212,9 @@ pub fn learn_one_group(
 /// let groups = [Group::new("x", &["x"]), Group::new("y", &["y"])];
 /// let settings = Settings { styles: 1..=4, ..Settings::default() };
 /// let found = learn_joined(&table, &groups, &settings, 1, &|_| ControlFlow::Continue(()))?;
-/// assert!(found.joined && found.learned.score > found.other_score.unwrap());
+/// let [together, apart] = found.tried[..] else { panic!("{:?}", found.tried) };
+/// assert_eq!((together.groups, apart.groups, found.groups.len()), (1, 2, 1));
+/// assert!(together.score > apart.score);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn learn_joined(
@@ -119,37 +224,182 @@ pub fn learn_joined(
     seed: u64,
     observer: &Observer,
 ) -> Result<Joined, ModelError> {
-    let apart = |other_score, rival| -> Result<Joined, ModelError> {
-        Ok(Joined {
-            learned: learn_against(data, groups, settings, seed, rival, observer)?,
-            groups: groups.to_vec(),
-            joined: false,
-            other_score,
-        })
-    };
     let Some((learned, together)) = learn_one_group(data, groups, settings, seed, observer)? else {
-        return apart(None, None);
+        return Ok(Joined {
+            learned: learn_observed(data, groups, settings, seed, observer)?,
+            groups: groups.to_vec(),
+            tried: Vec::new(),
+        });
     };
-    // On the rows searched.
-    let scores = learned.trace.iter().map(|step| step.score);
-    let rival = scores.max_by(f64::total_cmp);
-    let first = Joined {
+    let reals = groups.len() + 1 - together.len();
+    let best = Level {
+        searched: searched(&learned),
         learned,
         groups: together,
-        joined: true,
-        other_score: None,
     };
-    if first.learned.interrupted || observer(None) == ControlFlow::Break(()) {
-        return Ok(first);
+    let mut trial = Trial {
+        data,
+        settings,
+        seed,
+        observer,
+        best,
+        tried: Vec::new(),
+    };
+    let score = trial.of_a_row(&trial.best);
+    trial.tried.push(Tried { groups: 1, score });
+    if trial.goes_on() {
+        let rows = data.rows().min(settings.searched);
+        let between = levels(data, groups, rows, observer)?;
+        match rows * trial.best.groups[0].columns.len() > SMALL {
+            true => coarse_to_fine(&mut trial, groups, reals, &between)?,
+            false => from_the_better_end(&mut trial, groups, reals, between)?,
+        }
     }
-    let second = apart(Some(first.learned.score), rival)?;
-    // One that was ended may be of fewer rows.
-    let of_a_row = |learned: &Learned| learned.score / learned.rows as f64;
-    Ok(match of_a_row(&second.learned) > of_a_row(&first.learned) {
-        true => second,
-        false => Joined {
-            other_score: Some(second.learned.score),
-            ..first
-        },
+    Ok(Joined {
+        learned: trial.best.learned,
+        groups: trial.best.groups,
+        tried: trial.tried,
     })
+}
+
+/// Groupings of a large table.
+fn coarse_to_fine(
+    trial: &mut Trial,
+    groups: &[Group],
+    reals: usize,
+    between: &[Vec<Group>],
+) -> Result<(), ModelError> {
+    let mut count = 1;
+    for level in between {
+        if !trial.goes_on() {
+            return Ok(());
+        }
+        count *= 2;
+        let gain = trial.learn(level, count, true)?;
+        if count >= MANY && gain < FAR {
+            return Ok(());
+        }
+        if gain <= 0.0 {
+            break;
+        }
+    }
+    if trial.goes_on() {
+        trial.learn(groups, reals, false)?;
+    }
+    Ok(())
+}
+
+/// Groupings of a small table.
+fn from_the_better_end(
+    trial: &mut Trial,
+    groups: &[Group],
+    reals: usize,
+    between: Vec<Vec<Group>>,
+) -> Result<(), ModelError> {
+    let apart = trial.learn(groups, reals, false)? > 0.0;
+    let mut order: Vec<(usize, Vec<Group>)> = between
+        .into_iter()
+        .enumerate()
+        .map(|(i, level)| (2 << i, level))
+        .collect();
+    if apart {
+        order.reverse();
+    }
+    let mut without_gain = 0;
+    for (count, level) in order {
+        if !trial.goes_on() || without_gain == MISSES {
+            break;
+        }
+        match trial.learn(&level, count, true)? > 0.0 {
+            true => without_gain = 0,
+            false => without_gain += 1,
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_base::rng::stream;
+    use rand::RngExt;
+
+    /// Blocks of three columns along a curve each, one row of columns after the other.
+    fn blocks(count: usize, rows: usize) -> (Table, Vec<Group>) {
+        let mut rng = stream(1, "blocks", 0);
+        let hidden: Vec<Vec<f64>> = (0..count)
+            .map(|_| (0..rows).map(|_| rng.random_range(-2.0..2.0)).collect())
+            .collect();
+        let curves: [fn(f64) -> f64; 3] = [|t| t, |t| t + 0.5 * t * t, |t| (1.5 * t).sin()];
+        let (mut data, mut groups) = (Table::new(), Vec::new());
+        for (c, curve) in curves.iter().enumerate() {
+            for (b, t) in hidden.iter().enumerate() {
+                let name = format!("b{b}_{c}");
+                let cells = t
+                    .iter()
+                    .map(|t| Some(curve(*t) + 0.1 * rng.random::<f64>()));
+                let cells: Vec<Option<f64>> = cells.collect();
+                data = data.real(&name, cells).unwrap();
+                groups.push(Group::new(&name, &[&name]));
+            }
+        }
+        (data, groups)
+    }
+
+    fn learned(rows: usize, most: usize) -> Joined {
+        let (data, groups) = blocks(4, rows);
+        let settings = Settings {
+            styles: 1..=2,
+            most_states: most,
+            restarts: 2,
+            ..Settings::default()
+        };
+        let go_on = |_: Option<&crate::hierarchy::SearchStep>| ControlFlow::Continue(());
+        learn_joined(&data, &groups, &settings, 1, &go_on).unwrap()
+    }
+
+    #[test]
+    fn independent_curves_are_found_between_the_ends() {
+        // 2,400 values, and 12,000: a small table and a large one.
+        for (rows, most) in [(200, 5), (1000, 3)] {
+            let found = learned(rows, most);
+            assert_eq!(found.real_groups(), 4, "{:?}", found.tried);
+            for group in &found.groups {
+                let block = |name: &String| name[..2].to_owned();
+                let first = block(&group.columns[0]);
+                assert!(
+                    group.columns.len() == 3 && group.columns.iter().all(|c| block(c) == first)
+                );
+            }
+            let own = |count| {
+                found
+                    .tried
+                    .iter()
+                    .find(|t| t.groups == count)
+                    .map(|t| t.score)
+            };
+            let four = own(4).unwrap();
+            assert!(
+                [1, 2, 8, 12]
+                    .map(|n| own(n).is_none_or(|other| other < four))
+                    .iter()
+                    .all(|b| *b)
+            );
+        }
+    }
+
+    #[test]
+    fn an_ended_search_tries_no_further_grouping() {
+        let (data, groups) = blocks(4, 60);
+        let settings = Settings {
+            styles: 1..=2,
+            ..Settings::default()
+        };
+        let stop = |step: Option<&crate::hierarchy::SearchStep>| match step {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        };
+        let found = learn_joined(&data, &groups, &settings, 1, &stop).unwrap();
+        assert!(found.learned.interrupted && found.tried.len() == 1);
+    }
 }

@@ -62,7 +62,7 @@ pub struct LearnedTable {
 
 impl TableModel {
     /// Learns the extended model of a table: numbers enter by an [`Encoding`] learnt first, categories may depend on each
-    /// other, and the real columns share one hidden variable where that scores higher ([`learn_joined`]).
+    /// other, and the real columns share hidden variables, all or in groups, where that scores higher ([`learn_joined`]).
     ///
     /// Columns that others determine ([`super::relations`]) are left out and computed again in draws.
     ///

@@ -8,7 +8,7 @@
 //! | [`given`] | evidence in words |
 //! | [`transform`] | monotone transforms of a real column |
 //! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
-//! | [`joined`] | real columns with one hidden variable together or one each, by the higher score |
+//! | [`joined`] | real columns that share hidden variables: all, those of a group, or none, by the highest score |
 //! | [`bins`] | real columns as categories, by description length |
 //! | [`kernels`] | a kernel density over mixed columns, a peer |
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
@@ -20,6 +20,7 @@ pub mod bins;
 pub mod compare;
 pub mod encoding;
 pub mod given;
+mod grouping;
 mod guess;
 pub mod joined;
 pub mod kernels;

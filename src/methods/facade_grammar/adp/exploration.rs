@@ -13,12 +13,13 @@ use rand::Rng;
 use rustc_hash::FxHashSet;
 
 use super::candidates::{self, Candidate, OpenLines};
-use super::feasible_candidates::{Blocked, FeasibleCache, FeasibleCandidates};
+use super::feasible_candidates::{Blocked, FeasibleCache, FeasibleCandidates, draw};
+use super::line_costs::Occurrences;
 use super::priced_candidates::{PricedCandidates, append_needs};
-use super::protection::{Protection, contains};
+use super::protection::Protection;
 use super::symmetry::Repeated;
 use crate::operations::Operations;
-use crate::regions::{Region, Strips, TypeId, Types, ends};
+use crate::regions::{Strips, TypeId, Types};
 use crate::rules::grid;
 use crate::rules::{Arrangement, RuleCandidate, operation_cost};
 use edifice_grammar::Costs;
@@ -37,8 +38,7 @@ pub(crate) struct Exploration {
     costs: Costs,
     operations: Operations,
     lambdas: Lambdas,
-    /// Occurrences of repeated regions: per layout and bottom row, sorted by left edge.
-    occurrences: Vec<Vec<Vec<(Region, f64)>>>,
+    occurrences: Occurrences,
     repeated_types: FxHashSet<TypeId>,
     protection: Protection,
     lists: Vec<Option<Rc<CandidateList>>>,
@@ -68,25 +68,11 @@ impl Exploration {
         operations: Operations,
         lambdas: Lambdas,
     ) -> Self {
-        let mut occurrences: Vec<Vec<Vec<(Region, f64)>>> = types
-            .layouts
-            .iter()
-            .map(|s| vec![Vec::new(); s.ys.len()])
-            .collect();
-        for group in &repeated {
-            for &region in &group.occurrences {
-                occurrences[usize::from(region.layout)][usize::from(region.y0)]
-                    .push((region, f64::from(group.terminals)));
-            }
-        }
-        for row in occurrences.iter_mut().flatten() {
-            row.sort_by_key(|(r, _)| (r.x0, r.x1, r.y1));
-        }
         Self {
             costs,
             operations,
             lambdas,
-            occurrences,
+            occurrences: Occurrences::new(types, &repeated),
             repeated_types: repeated.iter().map(|r| r.id).collect(),
             protection: Protection::new(repeated),
             lists: Vec::new(),
@@ -113,8 +99,18 @@ impl Exploration {
         id: TypeId,
         rng: &mut R,
     ) -> Rc<RuleCandidate> {
+        self.choose(types, id, |sums| draw(sums, rng))
+    }
+
+    /// As [`Exploration::sample`], the place among the rules that are left being chosen from the sums of their weights up to each.
+    pub(crate) fn choose(
+        &mut self,
+        types: &mut Types,
+        id: TypeId,
+        place: impl FnOnce(&[f64]) -> usize,
+    ) -> Rc<RuleCandidate> {
         let (list, left) = self.left(types, id);
-        let position = left.draw(rng);
+        let position = left.position(place(left.sums()));
         self.feasible_rule(types, id, &list, &left, position)
     }
 
@@ -328,8 +324,10 @@ impl Exploration {
         let region = types.region(id);
         let terminals = f64::from(types.terminals(id));
         let strips = Axis::BOTH.map(|axis| types.strips(id, axis));
-        let line_costs =
-            Axis::BOTH.map(|axis| self.line_costs(region, terminals, axis, &strips[axis as usize]));
+        let line_costs = Axis::BOTH.map(|axis| {
+            self.occurrences
+                .line_costs(region, terminals, axis, &strips[axis as usize])
+        });
         let candidates: Vec<Candidate> = Axis::BOTH
             .into_iter()
             .flat_map(|axis| {
@@ -367,29 +365,5 @@ impl Exploration {
         });
         self.lists[index] = Some(Rc::clone(&list));
         list
-    }
-
-    /// `cost_sl` of every cut of a region (Fig. 8).
-    fn line_costs(&self, region: Region, terminals: f64, axis: Axis, strips: &Strips) -> Vec<f64> {
-        let mut costs = vec![0.0; strips.cuts.len() + 1];
-        for row in &self.occurrences[usize::from(region.layout)]
-            [usize::from(region.y0)..usize::from(region.y1)]
-        {
-            let first = row.partition_point(|(r, _)| r.x0 < region.x0);
-            for (r, weight) in row[first..].iter().take_while(|(r, _)| r.x0 < region.x1) {
-                if *r == region || !contains(region, *r) {
-                    continue;
-                }
-                let (from, to) = ends(*r, axis);
-                costs[strips.cuts.partition_point(|&c| c <= from)] += weight;
-                costs[strips.cuts.partition_point(|&c| c < to)] -= weight;
-            }
-        }
-        let mut sum = 0.0;
-        for cost in &mut costs {
-            sum += *cost;
-            *cost = sum / terminals;
-        }
-        costs
     }
 }

@@ -146,9 +146,14 @@ impl FeasibleCandidates {
         self.priced.get()
     }
 
-    /// Draws a position in the list; there is one.
-    pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> usize {
-        self.positions[draw(&self.weights, rng)] as usize
+    /// Sums of `exp(-H)`, up to a common factor, over the rules up to and with each.
+    pub(crate) fn sums(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The position in the list of the rule at a place among those that are left.
+    pub(crate) fn position(&self, place: usize) -> usize {
+        self.positions[place] as usize
     }
 
     /// The rule at a position, if it was drawn before.
@@ -245,8 +250,8 @@ fn weigh(all: &mut [f64]) {
     }
 }
 
-/// Draws a position with probability proportional to its weight; there is at least one.
-fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
+/// Draws a place with probability proportional to its weight; there is at least one.
+pub(crate) fn draw<R: Rng>(sums: &[f64], rng: &mut R) -> usize {
     let at = rng.random::<f64>() * sums[sums.len() - 1];
     sums.partition_point(|sum| *sum <= at).min(sums.len() - 1)
 }

@@ -4,6 +4,7 @@ pub(super) mod candidates;
 pub(super) mod exploitation;
 pub(super) mod exploration;
 pub(super) mod feasible_candidates;
+pub(super) mod line_costs;
 pub(super) mod priced_candidates;
 pub(super) mod protection;
 pub(super) mod readings;

@@ -47,25 +47,39 @@ impl Protection {
     /// none of its occurrences overlaps another or one kept before.
     pub(crate) fn draw<R: Rng>(&mut self, draws: usize, rng: &mut R) {
         self.restart();
-        let Some(total) = self.scores.last() else {
+        let Some(total) = self.total() else {
             return;
         };
         for _ in 0..rng.random_range(0..=draws) {
             let at = rng.random::<f64>() * total;
-            let drawn = self.scores.partition_point(|sum| *sum <= at);
-            let Some(group) = self.repeated.get(drawn) else {
-                continue;
-            };
-            let occurrences = &group.occurrences;
-            let apart = *self.apart[drawn].get_or_insert_with(|| disjoint(occurrences));
-            if !apart || self.kept.contains(&drawn) {
-                continue;
-            }
-            let crosses = |a: &Region| self.occurrences.iter().any(|b| overlap(*a, *b));
-            if !occurrences.iter().any(crosses) {
-                self.kept.push(drawn);
-                self.occurrences.extend(occurrences);
-            }
+            self.keep(self.scores.partition_point(|sum| *sum <= at));
+        }
+    }
+
+    /// The sum of all scores; `None` where no region has one.
+    pub(crate) fn total(&self) -> Option<f64> {
+        self.scores.last().copied().filter(|total| *total > 0.0)
+    }
+
+    /// Scores of the repeated regions, summed up to each: what [`Protection::draw`] draws by.
+    pub(crate) fn scores(&self) -> &[f64] {
+        &self.scores
+    }
+
+    /// Keeps a region that was drawn, when none of its occurrences overlaps another or one kept before.
+    pub(crate) fn keep(&mut self, drawn: usize) {
+        let Some(group) = self.repeated.get(drawn) else {
+            return;
+        };
+        let occurrences = &group.occurrences;
+        let apart = *self.apart[drawn].get_or_insert_with(|| disjoint(occurrences));
+        if !apart || self.kept.contains(&drawn) {
+            return;
+        }
+        let crosses = |a: &Region| self.occurrences.iter().any(|b| overlap(*a, *b));
+        if !occurrences.iter().any(crosses) {
+            self.kept.push(drawn);
+            self.occurrences.extend(occurrences);
         }
     }
 
@@ -100,7 +114,8 @@ impl Protection {
         self.lifted = true;
     }
 
-    fn restart(&mut self) {
+    /// Protects nothing that was drawn before.
+    pub(crate) fn restart(&mut self) {
         self.restore();
         self.kept.clear();
         self.occurrences.clear();

@@ -63,7 +63,7 @@ impl<'a> Setup<'a> {
         })
     }
 
-    fn process(&self) -> Inference {
+    pub(crate) fn process(&self) -> Inference {
         Inference {
             types: Rc::clone(&self.types),
             costs: self.settings.costs,

@@ -11,7 +11,7 @@ use edifice_optim::qp::{QpOptions, QuadraticProgram, Row, solve};
 use rand::RngExt;
 
 /// A normal number.
-fn normal(rng: &mut Stream) -> f64 {
+pub(crate) fn normal(rng: &mut Stream) -> f64 {
     let (u, v): (f64, f64) = (1.0 - rng.random::<f64>(), rng.random());
     (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
 }
@@ -32,7 +32,7 @@ fn sparse(rows: usize, columns: usize, density: f64, rng: &mut Stream) -> Vec<Ve
 }
 
 /// Returns of assets explained by k factors y = F' x: weights x of sum 1, none negative.
-fn portfolio(k: usize, rng: &mut Stream) -> QuadraticProgram {
+pub(crate) fn portfolio(k: usize, rng: &mut Stream) -> QuadraticProgram {
     let n = 20 * k;
     let mut program = QuadraticProgram::new(n + k);
     for i in 0..n {
@@ -55,7 +55,7 @@ fn portfolio(k: usize, rng: &mut Stream) -> QuadraticProgram {
 }
 
 /// Least squares with a bound on absolute values: x, residuals y, and t at least |x|.
-fn lasso(n: usize, rng: &mut Stream) -> QuadraticProgram {
+pub(crate) fn lasso(n: usize, rng: &mut Stream) -> QuadraticProgram {
     let m = 5 * n;
     let mut program = QuadraticProgram::new(2 * n + m);
     for (j, row) in sparse(m, n, 0.15, rng).into_iter().enumerate() {
@@ -81,7 +81,7 @@ fn lasso(n: usize, rng: &mut Stream) -> QuadraticProgram {
 }
 
 /// Robust regression: residual u + r - s, quadratic in u and linear in r and s.
-fn huber(n: usize, rng: &mut Stream) -> QuadraticProgram {
+pub(crate) fn huber(n: usize, rng: &mut Stream) -> QuadraticProgram {
     let m = 5 * n;
     let mut program = QuadraticProgram::new(n + 3 * m);
     for (j, row) in sparse(m, n, 0.15, rng).into_iter().enumerate() {
@@ -104,7 +104,7 @@ fn huber(n: usize, rng: &mut Stream) -> QuadraticProgram {
 }
 
 /// A support vector machine: x and slacks t.
-fn svm(n: usize, rng: &mut Stream) -> QuadraticProgram {
+pub(crate) fn svm(n: usize, rng: &mut Stream) -> QuadraticProgram {
     let m = 10 * n;
     let mut program = QuadraticProgram::new(n + m);
     (0..n).for_each(|i| program.quadratic.push((i, i, 1.0)));
@@ -123,7 +123,7 @@ fn svm(n: usize, rng: &mut Stream) -> QuadraticProgram {
 }
 
 /// Control of a linear system over ten steps, states and inputs bounded.
-fn control(n: usize, rng: &mut Stream) -> QuadraticProgram {
+pub(crate) fn control(n: usize, rng: &mut Stream) -> QuadraticProgram {
     let (inputs, steps) = (n / 2, 10);
     let width = n + inputs;
     let mut program = QuadraticProgram::new(steps * width);
@@ -231,13 +231,13 @@ fn families_are_solved_as_fast_as_by_clarabel_itself() {
         ("smoothing", super::programs::smoothing(4000)),
     ];
     for (name, program) in &programs {
-        let (mut ours, mut theirs) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..15 {
+        let mut times = Vec::new();
+        for _ in 0..31 {
             let start = Instant::now();
             let found = solve(program, QpOptions::default()).unwrap();
-            ours = ours.min(start.elapsed().as_secs_f64());
-            let (cost, seconds) = direct(program);
-            theirs = theirs.min(seconds);
+            let ours = start.elapsed().as_secs_f64();
+            let (cost, theirs) = direct(program);
+            times.push((ours / theirs, ours, theirs));
             assert_eq!(found.outcome, Outcome::Converged, "{name}");
             assert!(
                 (found.cost - cost).abs() < 1e-6 * (1.0 + cost.abs()),
@@ -245,14 +245,15 @@ fn families_are_solved_as_fast_as_by_clarabel_itself() {
                 found.cost
             );
         }
+        // Of pairs of runs one after the other, so that what else runs bears on both.
+        times.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (ratio, ours, theirs) = times[times.len() / 2];
+        let (low, high) = (times[times.len() / 4].0, times[3 * times.len() / 4].0);
         println!(
-            "{name}, {} variables: {:.4} s, Clarabel {:.4} s, ratio {:.2}",
-            program.dimension(),
-            ours,
-            theirs,
-            ours / theirs
+            "{name}, {} variables: {ours:.4} s, Clarabel {theirs:.4} s, median ratio {ratio:.2}, quartiles {low:.2} and {high:.2}",
+            program.dimension()
         );
         // Times on a busy machine vary.
-        assert!(ours < 3.0 * theirs + 0.01, "{name}");
+        assert!(ratio < 1.5, "{name}");
     }
 }

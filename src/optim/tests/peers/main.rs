@@ -5,3 +5,4 @@ mod families;
 mod fronts;
 mod programs;
 mod tours;
+mod warm;
