@@ -10,11 +10,11 @@ use edifice::methods::building_exteriors::facade::{FacadeTarget, furnish};
 use edifice::methods::building_exteriors::house::scene::{Placed, scene};
 use edifice::methods::building_exteriors::house::solids::prisms;
 use edifice::methods::building_exteriors::house::{Database, Joining, Options, generate};
-use edifice::methods::building_exteriors::mass::{MassTarget, Search, search};
+use edifice::methods::building_exteriors::mass::{MassTarget, SearchLimits, search};
 use edifice::model::hierarchy::{Constant, Settings, learn};
 use edifice::rng::stream;
 use edifice::shape::solid::faces;
-use edifice_experiments::building_exteriors::houses::houses;
+use edifice_generators::building_exteriors::houses;
 use rayon::prelude::*;
 
 fn of_houses(c: &mut Criterion) {
@@ -54,9 +54,9 @@ fn of_generation(c: &mut Criterion) {
     let row = |i: usize| -> [f64; 49] {
         std::array::from_fn(|c| database.rows[i][c].expect("all sides have pieces"))
     };
-    let without = |i: usize| Search {
+    let without = |i: usize| SearchLimits {
         leave_out: Some(i),
-        ..Search::default()
+        ..SearchLimits::default()
     };
     let some = || (0..200).step_by(10);
     c.bench_function("mass/houses_20", |b| {

@@ -4,7 +4,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use edifice::grammar::derive;
 use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::unwatched;
-use edifice_experiments::facade_grammar::made;
+use edifice_generators::facade_grammar as made;
 
 fn settings(method: Method, iterations: u64) -> Settings {
     Settings {
@@ -22,7 +22,7 @@ fn ten_thousand_iterations(c: &mut Criterion) {
     let facade = layout.facade;
     let mut group = c.benchmark_group("infer_10000_iterations");
     group.sample_size(10);
-    for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
+    for method in [Method::Lagrangian, Method::AdpPaper, Method::Importance] {
         let id = BenchmarkId::new(method.to_string(), facade.regions.len());
         group.bench_function(id, |b| {
             b.iter(|| {

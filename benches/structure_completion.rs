@@ -2,13 +2,13 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use edifice::methods::structure_completion::best::chain::Chain;
+use edifice::methods::structure_completion::best::observation::Observation;
 use edifice::methods::structure_completion::best::pool::line_problem;
-use edifice::methods::structure_completion::best::scene::Scene;
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
 use edifice::methods::structure_completion::method::{Method, complete};
 use edifice::methods::structure_completion::model::shipped_model;
 use edifice::methods::structure_completion::policy::{
-    Budget, PaperModel, Policy, Scene as PolicyScene, WEIGHTS, grow, optimize, weight_states,
+    Budget, CompletionProblem, PaperModel, Policy, WEIGHTS, grow, optimize, weight_states,
 };
 use edifice::methods::structure_completion::score::{Change, Scored};
 use edifice::methods::structure_completion::task::Task;
@@ -36,8 +36,8 @@ fn completion(c: &mut Criterion) {
         },
     );
     let size = model.window_size(partial.width, partial.height);
-    let scene = Scene::new(&partial, partial.observed.clone(), size);
-    let (problem, _) = line_problem(&scene, Axis::X);
+    let observation = Observation::new(&partial, partial.observed.clone(), size);
+    let (problem, _) = line_problem(&observation, Axis::X);
     let bins = problem.bins;
     c.bench_function(
         &format!("structure_completion/chain_100_draws/{bins}"),
@@ -60,7 +60,7 @@ fn paper(c: &mut Criterion) {
     group.sample_size(10);
     for task in Task::ALL {
         let (partial, _) = task.hide(layout, &mut stream(1, "bench", 0));
-        let scene = PolicyScene::new(paper, &partial);
+        let problem = CompletionProblem::new(paper, &partial);
         let candidates = Budget::PAPER.candidates();
         group.bench_function(
             format!(
@@ -68,17 +68,17 @@ fn paper(c: &mut Criterion) {
                 task.name(),
                 layout.elements.len()
             ),
-            |b| b.iter(|| optimize(&scene, &Budget::PAPER, 5, 1, &unwatched)),
+            |b| b.iter(|| optimize(&problem, &Budget::PAPER, 5, 1, &unwatched)),
         );
     }
     // Linear in the number of elements.
     for side in [10u32, 22, 71] {
         let whole = lattice(side);
         let (partial, _) = Task::R50.hide(&whole, &mut stream(1, "bench", 3));
-        let scene = PolicyScene::new(paper, &partial);
+        let problem = CompletionProblem::new(paper, &partial);
         group.bench_function(format!("candidate/{}", whole.elements.len()), |b| {
             let mut rng = stream(1, "bench", 4);
-            b.iter(|| grow(&scene, &Policy::FIXED, &mut rng));
+            b.iter(|| grow(&problem, &Policy::FIXED, &mut rng));
         });
     }
     let facade = [layout.width, layout.height];

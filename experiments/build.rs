@@ -27,9 +27,14 @@ fn main() -> Anyway<()> {
             println!("cargo::rerun-if-changed={}", folder.display());
             let others: Vec<&PathBuf> = crates.values().filter(|f| *f != folder).collect();
             let needs = needs(&std::fs::read_to_string(folder.join("Cargo.toml"))?);
-            if name == "edifice-experiments" {
-                for (part, digest) in parts(folder)? {
-                    rows += &format!("(\"experiments/{part}\", \"{digest}\", &[]),\n");
+            let place = match name.as_str() {
+                "edifice-experiments" => Some("experiments"),
+                "edifice-generators" => Some("experiments/generators"),
+                _ => None,
+            };
+            if let Some(place) = place {
+                for (part, digest) in parts(folder, &others)? {
+                    rows += &format!("(\"{place}/{part}\", \"{digest}\", &[]),\n");
                 }
             }
             let digest = digest(&files(folder, &others)?, folder)?;
@@ -115,10 +120,10 @@ fn foreign(locked: &str) -> String {
     from_elsewhere.join("\n\n")
 }
 
-/// The parts of the experiments that results depend on beside the methods: each slug's own, and `frame`.
-fn parts(folder: &Path) -> Anyway<BTreeMap<String, String>> {
+/// The parts of the experiments or the generators that results depend on beside the methods: each slug's own, and `frame`.
+fn parts(folder: &Path, others: &[&PathBuf]) -> Anyway<BTreeMap<String, String>> {
     let mut parts: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
-    for file in files(folder, &[])? {
+    for file in files(folder, others)? {
         let below = file.strip_prefix(folder)?;
         let first = below.components().next().ok_or("a file has a name")?;
         let first = first.as_os_str().to_string_lossy().into_owned();

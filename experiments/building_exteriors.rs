@@ -12,7 +12,6 @@ mod figure_14;
 mod generation;
 mod generation_figures;
 mod generation_speed;
-pub mod houses;
 mod learning;
 mod mixture_figures;
 mod reasons;

@@ -19,7 +19,6 @@ mod photographs;
 mod recovery;
 mod scaling;
 pub mod study;
-pub mod synthetic;
 mod table_1;
 
 use super::{Artefact, Experiment};

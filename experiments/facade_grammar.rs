@@ -16,7 +16,6 @@ mod joint_real;
 mod judge;
 mod library;
 mod likeness;
-pub mod made;
 mod optimality;
 mod procedural_logic;
 mod projection;
@@ -43,7 +42,7 @@ use super::{Artefact, Budget, Experiment, picture};
 use edifice_facade_grammar::Method;
 
 /// This project's configuration of approximate dynamic programming.
-const BEST: Method = Method::AdpBest;
+const BEST: Method = Method::Lagrangian;
 /// The paper's, as far as its text says.
 const PAPER: Method = Method::AdpPaper;
 

@@ -7,7 +7,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use edifice::model::network::structure::{Score, Search, score, search};
+use edifice::model::network::structure::{Score, SearchSettings, score, search};
 use edifice::model::network::{Evidence, Network};
 use edifice::model::{Cell, Table};
 use edifice::rng::stream;
@@ -49,9 +49,9 @@ fn learn(path: &Path, rows: usize) -> Result<(), Box<dyn Error>> {
         parents.push(own);
     }
     for (label, kind) in [("bdeu", Score::Bdeu(1.0)), ("bic", Score::Bic)] {
-        let settings = Search {
+        let settings = SearchSettings {
             score: kind,
-            ..Search::default()
+            ..SearchSettings::default()
         };
         let start = Instant::now();
         let found = search(&data, &settings, 1)?;

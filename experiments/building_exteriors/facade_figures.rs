@@ -12,7 +12,7 @@ use edifice_building_exteriors::house::{
     Database, Generated, Joining, Method, Model, Options, generate, model,
 };
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use edifice_building_exteriors::mass::{MASS, MassTarget, Search, is_sound};
+use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, is_sound};
 use edifice_optim::Step;
 use edifice_optim::genetic::Settings;
 use edifice_report::{Align, Chart, Figure, Row, Scale, Series, Table};
@@ -171,9 +171,9 @@ fn regenerated(
     method: Method,
 ) -> Result<Generated> {
     let options = Options {
-        search: Search {
+        search: SearchLimits {
             leave_out: Some(house),
-            ..Search::default()
+            ..SearchLimits::default()
         },
         method,
         generations: ctx.budget().choose(3, 200, 1000),

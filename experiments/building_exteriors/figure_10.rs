@@ -139,10 +139,9 @@ const DRAWS: usize = 40;
 
 /// Mean of each column among the houses of a style, in standard deviations of all houses.
 fn deviations(table: &Data, labels: &[usize], style: usize) -> Vec<(&'static str, f64)> {
-    let value = |column: &str, row: usize| match table.column(column).map(|c| c.cell(row)) {
-        Ok(Cell::Real(v)) => v,
-        Ok(Cell::Code(c)) => c as f64,
-        _ => 0.0,
+    let value = |column: &str, row: usize| {
+        let cell = table.column(column).map(|c| c.cell(row));
+        cell.ok().and_then(Cell::number).unwrap_or(0.0)
     };
     let scores = COLUMNS.iter().map(|column| {
         let values: Vec<f64> = (0..table.rows()).map(|row| value(column, row)).collect();

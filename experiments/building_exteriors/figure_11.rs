@@ -2,15 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{data, houses, settings};
+use super::{data, settings};
 use crate::{Budget, Context};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::agreement::edge_agreement;
 use edifice_building_exteriors::attributes::{GROUPS, Level};
 use edifice_building_exteriors::network;
+use edifice_generators::building_exteriors as houses;
+use edifice_model::Table as Data;
 use edifice_model::hierarchy::{Settings, learn};
-use edifice_model::{Cell, Table as Data};
 use edifice_report::{Align, Chart, Figure, HeatMap, Row, Scale, Series, Table};
 
 #[derive(Serialize, Deserialize)]
@@ -222,7 +223,7 @@ pub(crate) fn right(ctx: &mut Context) -> Result<()> {
 fn scales(table: &Data) -> Vec<f64> {
     let scale = table.columns().iter().map(|column| {
         let values: Vec<f64> = (0..table.rows())
-            .map(|row| plain(column.cell(row)))
+            .map(|row| column.cell(row).number().unwrap_or(0.0))
             .collect();
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -232,14 +233,6 @@ fn scales(table: &Data) -> Vec<f64> {
     scale.collect()
 }
 
-fn plain(cell: Cell) -> f64 {
-    match cell {
-        Cell::Real(v) => v,
-        Cell::Code(c) => c as f64,
-        Cell::Missing => 0.0,
-    }
-}
-
 fn contributors(sample: &Data, row: usize, houses: &Data, scales: &[f64]) -> usize {
     let mut nearest = std::collections::BTreeSet::new();
     for group in &GROUPS {
@@ -247,8 +240,12 @@ fn contributors(sample: &Data, row: usize, houses: &Data, scales: &[f64]) -> usi
         let distance = |house: usize| -> f64 {
             let columns = range.clone().zip(group.columns());
             let squares = columns.map(|(c, name)| {
-                let a = sample.column(name).map_or(0.0, |k| plain(k.cell(row)));
-                let b = houses.column(name).map_or(0.0, |k| plain(k.cell(house)));
+                let a = sample
+                    .column(name)
+                    .map_or(0.0, |k| k.cell(row).number().unwrap_or(0.0));
+                let b = houses
+                    .column(name)
+                    .map_or(0.0, |k| k.cell(house).number().unwrap_or(0.0));
                 ((a - b) / scales[c]).powi(2)
             });
             squares.sum()

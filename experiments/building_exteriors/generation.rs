@@ -4,20 +4,20 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::houses::wild;
 use super::{data, settings};
 use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
-use edifice_building_exteriors::attributes::{COLUMNS, mass_attributes};
-use edifice_building_exteriors::design::possible_rows;
+use edifice_building_exteriors::attributes::mass_attributes;
+use edifice_building_exteriors::design::{possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, Options, generate, model};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{
-    MASS, MassModel, MassTarget, Search, is_sound, least_z, max_z, nearest, search,
+    MASS, MassModel, MassTarget, SearchLimits, is_sound, least_z, max_z, nearest, search,
 };
+use edifice_generators::building_exteriors::wild;
+use edifice_model::Table as Data;
 use edifice_model::hierarchy::learn;
-use edifice_model::{Cell, Table as Data};
 use edifice_report::{Align, Row, Table};
 use edifice_shape::Building;
 
@@ -60,10 +60,10 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let settings = settings(ctx);
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
     let (many, slow) = (
-        ctx.budget().choose(6, 200, 500),
+        ctx.budget().choose(6, 60, 500),
         ctx.budget().choose(2, 20, 60),
     );
-    let wilder = ctx.budget().choose(6, 500, 500);
+    let wilder = ctx.budget().choose(6, 150, 500);
     ctx.setting("wild_houses", wilder);
     ctx.setting("houses", many);
     ctx.setting("houses_of_paper", slow);
@@ -131,13 +131,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
 
 /// The 49 columns of each row.
 pub(super) fn rows_of(table: &Data) -> Vec<Vec<f64>> {
-    let value = |row: usize, name: &str| match table.column(name).map(|c| c.cell(row)) {
-        Ok(Cell::Real(v)) => v,
-        Ok(Cell::Code(code)) => code as f64,
-        _ => 0.0,
-    };
-    let row = |r: usize| COLUMNS.iter().map(|name| value(r, name)).collect();
-    (0..table.rows()).map(row).collect()
+    wanted_rows(table).into_iter().map(Vec::from).collect()
 }
 
 /// Runs one method on one house and measures what came of it.
@@ -149,9 +143,9 @@ pub(super) fn answer(unit: &Unit, database: &Database, seed: u64) -> Result<Answ
     if unit.dataset != "wild" && matches!(unit.method, "best") {
         let wanted: [f64; 49] = std::array::from_fn(|c| unit.wanted[c]);
         let options = Options {
-            search: Search {
+            search: SearchLimits {
                 leave_out,
-                ..Search::default()
+                ..SearchLimits::default()
             },
             ..Options::default()
         };
@@ -205,9 +199,9 @@ fn mass_model(
     seed: u64,
     rng: &mut edifice_base::rng::Stream,
 ) -> Result<MassModel> {
-    let options = Search {
+    let options = SearchLimits {
         leave_out,
-        ..Search::default()
+        ..SearchLimits::default()
     };
     let copied = |building: Building| MassModel {
         building,
@@ -245,7 +239,7 @@ fn mass_model(
             model
         }
         method => {
-            let options = Search {
+            let options = SearchLimits {
                 donors: if method == "random" {
                     0
                 } else {

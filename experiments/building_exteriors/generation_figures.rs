@@ -8,7 +8,7 @@ use edifice_building_exteriors::design::possible_rows;
 use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::{Database, Options, generate};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
-use edifice_building_exteriors::mass::{MASS, MassTarget, Search, search};
+use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, search};
 use edifice_io::scene_png::picture_png;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Chart, Figure, Scale, Series, Table};
@@ -48,9 +48,9 @@ pub(crate) fn figure_6(ctx: &mut Context) -> Result<()> {
             .map(|s| (s.iteration as f64, s.best.max(1e-6)))
             .collect();
         chart = chart.series(Series::line(format!("paper, mass model {}", k + 1), points));
-        let options = Search {
+        let options = SearchLimits {
             leave_out: Some(house),
-            ..Search::default()
+            ..SearchLimits::default()
         };
         let mut rng = stream(seed, "building_exteriors/figure_6", house as u64);
         let best = search(&target, &[], &database, &options, &mut rng).map_err(Error::method)?;

@@ -12,7 +12,7 @@ use edifice_building_exteriors::facade::{FacadeTarget, furnish};
 use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::solids::prisms;
 use edifice_building_exteriors::house::{Database, Joining, Options, generate};
-use edifice_building_exteriors::mass::{MASS, MassTarget, Search, search};
+use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, search};
 use edifice_io::gltf;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::solid::faces;
@@ -21,8 +21,8 @@ use edifice_shape::solid::faces;
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
-    let many = ctx.budget().choose(5, 200, 200);
-    let whole = ctx.budget().choose(10, 1000, 1000);
+    let many = ctx.budget().choose(5, 100, 200);
+    let whole = ctx.budget().choose(10, 100, 1000);
     ctx.setting("houses", many);
     ctx.setting("whole_houses", whole);
     let row = |i: usize| -> [f64; 49] {
@@ -32,9 +32,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     // One after the other: times of one house must not contain those of another.
     for i in 0..many {
         let wanted = row(i);
-        let options = Search {
+        let options = SearchLimits {
             leave_out: Some(i),
-            ..Search::default()
+            ..SearchLimits::default()
         };
         let target = MassTarget::new(std::array::from_fn(|c| wanted[c]));
         let mut rng = stream(ctx.seed(), "building_exteriors/generation_speed", i as u64);

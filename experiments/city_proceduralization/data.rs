@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ingolstadt, synthetic};
+use super::ingolstadt;
 use crate::Context;
 use edifice_base::{Ended, Error, Result, Watch};
 use edifice_city_proceduralization::{Budget, Mode, Settings, judge, proceduralize};
+use edifice_generators::city_proceduralization as synthetic;
 use edifice_grammar::instance::Kept;
 use edifice_io::city;
 use edifice_report::Row;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{data, synthetic};
+use super::data;
 use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
@@ -10,6 +10,7 @@ use edifice_city_proceduralization::{
     Budget, Component, Mode, Settings, Structure, decompose, from_components,
 };
 use edifice_cluster::adjusted_rand_index;
+use edifice_generators::city_proceduralization as synthetic;
 use edifice_grammar::instance::Repeated;
 use edifice_report::{Align, Table};
 

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{data, synthetic};
+use super::data;
 use crate::frame::Progress;
 use crate::frame::memory::{peak_megabytes, reset_peak};
 use crate::{Budget, Context};
@@ -14,6 +14,7 @@ use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{
     Decomposition, Mode, decompose, from_components, proceduralize,
 };
+use edifice_generators::city_proceduralization as synthetic;
 use edifice_io::city;
 use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
 use edifice_shape::triangles::{City, CityBuilding};

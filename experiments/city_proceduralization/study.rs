@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::data::{self, Measures};
-use super::synthetic;
 use crate::sweep::{Better, Given, Outcome, Shared, Study};
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization as proceduralization;
 use edifice_city_proceduralization::Budget;
+use edifice_generators::city_proceduralization as synthetic;
 use edifice_io::{city, json, read_bytes};
 use edifice_shape::triangles::City;
 

@@ -8,7 +8,7 @@ use edifice_facade_grammar::Operations;
 use edifice_report::{Align, Row, Table};
 
 /// The methods, operations and metrics of a comparison.
-pub(crate) struct Plan {
+pub(crate) struct Design {
     /// Methods in the order of the columns.
     pub solvers: Vec<Solver>,
     /// Operations allowed.
@@ -28,7 +28,7 @@ pub(crate) struct Comparison {
 }
 
 /// Runs a plan on the shipped facades, and on the real ones that the user has.
-pub(crate) fn run(ctx: &mut Context, plan: Plan) -> Result<Comparison> {
+pub(crate) fn run(ctx: &mut Context, plan: Design) -> Result<Comparison> {
     let mut instances: Vec<Instance> = data::shipped(ctx)?
         .into_iter()
         .map(|facade| Instance {

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::facade_grammar::made;
 use crate::{Budget, Context, layouts};
 use edifice_base::{Error, Result, file};
+use edifice_generators::facade_grammar as made;
 use edifice_grammar::{Grammar, derive};
 use edifice_io::{ReadOptions, facade_json, grammar_cga, grammar_json, read_label_grid};
 use edifice_layout::regularize::regularize_grid;

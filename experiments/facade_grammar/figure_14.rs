@@ -172,7 +172,7 @@ fn trace(
     Ok(points)
 }
 
-type Line = Vec<(f64, f64)>;
+type Curve = Vec<(f64, f64)>;
 
 /// The lowest cost that a run had found after so many iterations: that of a run which ended before stays what it was. Of a run
 /// whose first point comes later it is that of the first point.
@@ -187,7 +187,7 @@ fn curves(
     traces: &[&Vec<Point>],
     every: u64,
     iterations: u64,
-) -> (Line, Vec<(f64, f64, f64)>, Line) {
+) -> (Curve, Vec<(f64, f64, f64)>, Curve) {
     let points = || traces.iter().flat_map(|t| t.iter());
     // All runs have a first point from here on.
     let first = traces.iter().filter_map(|t| t.first()).map(|p| p.iteration);

@@ -30,7 +30,7 @@ impl Solver {
             Solver::Infer(Method::Symmetry, _) => "symmetry".into(),
             Solver::Infer(method, iterations) => {
                 let name = match method {
-                    Method::AdpBest => "adp_best",
+                    Method::Lagrangian => "adp_best",
                     Method::AdpPaper => "adp_paper",
                     _ => "importance",
                 };
@@ -48,7 +48,7 @@ impl Solver {
             Solver::ProceduralLogic => Some("procedural_logic"),
             Solver::Infer(Method::Bayesian, _) => Some("bayesian"),
             Solver::Infer(Method::Symmetry, _) => Some("symmetry"),
-            Solver::Infer(Method::AdpBest | Method::AdpPaper, _) => Some("adp"),
+            Solver::Infer(Method::Lagrangian | Method::AdpPaper, _) => Some("adp"),
             Solver::Infer(Method::Greedy | Method::Importance, _) => None,
         }
     }
@@ -57,7 +57,10 @@ impl Solver {
     pub(crate) fn random(self) -> bool {
         matches!(
             self,
-            Solver::Infer(Method::AdpBest | Method::AdpPaper | Method::Importance, _)
+            Solver::Infer(
+                Method::Lagrangian | Method::AdpPaper | Method::Importance,
+                _
+            )
         )
     }
 }

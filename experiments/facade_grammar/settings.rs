@@ -96,7 +96,7 @@ pub(super) fn asked(settings: &Infer, costs: Costs, seed: u64) -> facade_grammar
     let has = |operation| settings.ops.contains(&operation);
     facade_grammar::Settings {
         method: match settings.method {
-            MethodName::Best => Method::AdpBest,
+            MethodName::Best => Method::Lagrangian,
             MethodName::AdpPaper => Method::AdpPaper,
             MethodName::Importance => Method::Importance,
             MethodName::Greedy => Method::Greedy,

@@ -4,12 +4,12 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
-use super::made;
 use super::{BEST, PAPER};
 use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Settings, infer};
+use edifice_generators::facade_grammar as made;
 use edifice_grammar::derive;
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 
@@ -44,7 +44,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     }
     let found = ctx.units(
         &units,
-        |(method, size)| format!("{method}/{size}"),
+        |(method, size)| format!("{}/{size}", name(*method)),
         |&(method, size)| {
             let layout = made::sized(seed, size).map_err(Error::method)?;
             let settings = |iterations| Settings {
@@ -91,10 +91,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         Chart::new(title, Scale::new("terminals").log(), Scale::new("ms").log())
             .legend(Corner::Above)
     };
-    let walk = chart("One iteration".into()).series(Series::marked(
-        PAPER.to_string(),
-        line(PAPER, |t| t.iteration),
-    ));
+    let walk = chart("One iteration".into())
+        .series(Series::marked(name(PAPER), line(PAPER, |t| t.iteration)));
     let setup = chart("Before and after".into())
         .series(Series::marked(
             "symmetry detection",
@@ -102,8 +100,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         ))
         .series(Series::marked("derivation", line(PAPER, |t| t.derive)));
     let run = chart(format!("Whole run, {iterations} iterations"))
-        .series(Series::marked(BEST.to_string(), line(BEST, |t| t.run)))
-        .series(Series::marked(PAPER.to_string(), line(PAPER, |t| t.run)));
+        .series(Series::marked(name(BEST), line(BEST, |t| t.run)))
+        .series(Series::marked(name(PAPER), line(PAPER, |t| t.run)));
     for times in of(PAPER) {
         observe(ctx, PAPER, times, "seconds_per_iteration", times.iteration);
         observe(ctx, PAPER, times, "seconds_setup", times.setup);
@@ -128,10 +126,18 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     Ok(())
 }
 
+/// The name in tables, which is older than the method's own.
+fn name(method: Method) -> String {
+    match method {
+        BEST => "adp".into(),
+        other => other.to_string(),
+    }
+}
+
 fn observe(ctx: &mut Context, method: Method, times: &Times, metric: &str, seconds: f64) {
     ctx.observe(Row {
         dataset: "made".into(),
-        method: method.to_string(),
+        method: name(method),
         instance: times.terminals.to_string(),
         seed: Some(ctx.seed()),
         metric: metric.into(),

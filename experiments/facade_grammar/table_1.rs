@@ -1,6 +1,6 @@
 //! Table 1: approximate dynamic programming, importance sampling, greedy.
 
-use super::compare::{self, Comparison, Plan};
+use super::compare::{self, Comparison, Design};
 use super::data::FIGURE_9;
 use super::published::Published;
 use super::runs::{Solver, least, mean};
@@ -19,7 +19,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         solvers.extend(with(method));
     }
     solvers.push(Solver::Infer(Method::Greedy, 1));
-    let plan = Plan {
+    let plan = Design {
         solvers,
         operations: Operations::default(),
         metrics: &["cost", "rules", "terminals", "seconds", "effective"],

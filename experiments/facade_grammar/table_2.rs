@@ -1,6 +1,6 @@
 //! Table 2: the automatic methods, split rule only.
 
-use super::compare::{self, Comparison, Plan};
+use super::compare::{self, Comparison, Design};
 use super::data::FIGURE_9;
 use super::published::{AUTOMATIC, Published};
 use super::runs::Solver;
@@ -15,7 +15,7 @@ use edifice_shape::LabelGrid;
 /// Costs of five methods with splits alone.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (_, many) = super::iterations(ctx.budget());
-    let plan = Plan {
+    let plan = Design {
         solvers: vec![
             Solver::ProceduralLogic,
             Solver::Infer(Method::Bayesian, 1),

@@ -1,4 +1,4 @@
-//! The provenance of a result: `run.json`.
+//! The provenance of a result: `run.json`, which is the same wherever it is made again, and `provenance.json`, which is not.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +8,13 @@ use sha2::{Digest, Sha256};
 
 use edifice_base::{Error, Result};
 
-/// Provenance of the artefacts of one paper, `OUT/<paper>/run.json`.
+/// Name of the file of what is the same wherever it is made again.
+pub(crate) const RUN: &str = "run.json";
+
+/// Name of the file of what differs from one run to the next.
+const PROVENANCE: &str = "provenance.json";
+
+/// Provenance of the artefacts of one paper, `OUT/<paper>/run.json` and `provenance.json`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Run {
     /// Slug of the paper.
@@ -21,7 +27,8 @@ pub(crate) struct Run {
     pub order: Vec<String>,
 }
 
-/// The way in which an artefact was made.
+/// The way in which an artefact was made. Commit, time and machine stand in `provenance.json`; a `run.json` of before, which has them
+/// itself, is read too.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Made {
     /// Its subject.
@@ -39,17 +46,19 @@ pub(crate) struct Made {
     /// Version of the crate.
     pub version: String,
     /// The commit that the program was built from; `None` without version control.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing)]
     pub commit: Option<String>,
     /// True if files of the sources differed from that commit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing)]
     pub dirty: Option<bool>,
     /// Digest of the sources that it depends on ([`super::verify::sources_of`]); empty where none was recorded.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub sources: String,
     /// Seconds from start to end, units taken from the journal not counted.
+    #[serde(default, skip_serializing)]
     pub wall_seconds: f64,
     /// The machine: cores, threads used, system.
+    #[serde(default, skip_serializing)]
     pub machine: Machine,
     /// Files written, relative to the paper's folder.
     pub files: Vec<String>,
@@ -57,6 +66,25 @@ pub(crate) struct Made {
     pub comparisons: Vec<Comparison>,
     /// Why nothing was made, when nothing was.
     pub skipped: Option<String>,
+}
+
+/// What `provenance.json` says of the artefacts of one paper.
+#[derive(Debug, Serialize, Deserialize)]
+struct Provenance {
+    format: String,
+    version: u32,
+    artefacts: BTreeMap<String, Build>,
+}
+
+/// The build and the machine that made an artefact.
+#[derive(Debug, Serialize, Deserialize)]
+struct Build {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    commit: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dirty: Option<bool>,
+    wall_seconds: f64,
+    machine: Machine,
 }
 
 /// A machine, as far as it matters for times.
@@ -103,20 +131,50 @@ pub(crate) struct Comparison {
 }
 
 impl Run {
-    /// Reads `run.json`; a missing file, or one of another version, is an empty run.
-    pub(crate) fn read(path: &Path) -> Self {
-        std::fs::read(path)
-            .ok()
-            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
-            .unwrap_or_default()
+    /// Reads what a folder holds; missing files, or those of another version, are an empty run.
+    pub(crate) fn read(folder: &Path) -> Self {
+        let mut run: Self = read(&folder.join(RUN)).unwrap_or_default();
+        if let Some(provenance) = read::<Provenance>(&folder.join(PROVENANCE)) {
+            for (name, build) in provenance.artefacts {
+                if let Some(made) = run.artefacts.get_mut(&name) {
+                    (made.commit, made.dirty) = (build.commit, build.dirty);
+                    (made.wall_seconds, made.machine) = (build.wall_seconds, build.machine);
+                }
+            }
+        }
+        run
     }
 
-    /// Writes `run.json`.
-    pub(crate) fn write(&self, path: &Path) -> Result<()> {
-        let mut bytes = serde_json::to_vec_pretty(self).map_err(Error::method)?;
-        bytes.push(b'\n');
-        edifice_base::file::write_atomic(path, &bytes)
+    /// Writes both files.
+    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
+        let build = |made: &Made| Build {
+            commit: made.commit.clone(),
+            dirty: made.dirty,
+            wall_seconds: made.wall_seconds,
+            machine: made.machine.clone(),
+        };
+        let artefacts = self.artefacts.iter();
+        let provenance = Provenance {
+            format: "edifice/provenance".to_owned(),
+            version: 1,
+            artefacts: artefacts
+                .map(|(n, made)| (n.clone(), build(made)))
+                .collect(),
+        };
+        write(&folder.join(PROVENANCE), &provenance)?;
+        write(&folder.join(RUN), self)
     }
+}
+
+fn read<T: serde::de::DeserializeOwned>(path: &Path) -> Option<T> {
+    let bytes = std::fs::read(path).ok()?;
+    serde_json::from_slice(&bytes).ok()
+}
+
+fn write(path: &Path, value: &impl Serialize) -> Result<()> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(Error::method)?;
+    bytes.push(b'\n');
+    edifice_base::file::write_atomic(path, &bytes)
 }
 
 /// SHA-256 of a file, or of the names and contents of all files below a folder, in order of name.

@@ -14,7 +14,7 @@ use super::document::readable;
 use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::{line, result};
-use super::provenance::{Comparison, Machine, Made, Run, commit};
+use super::provenance::{Comparison, Machine, Made, RUN, Run, commit};
 use super::verify::{say_which_are_older, sources_of};
 use super::{Artefact, Experiment};
 use crate::sweep::definition::suggestion;
@@ -191,8 +191,7 @@ fn make(
     edifice_base::file::write_atomic(&folder.join(&page), text.as_bytes())?;
     ctx.files.insert(0, page);
 
-    let path = folder.join("run.json");
-    let mut run = Run::read(&path);
+    let mut run = Run::read(folder);
     run.experiment = experiment.slug.to_string();
     run.paper = experiment.paper.to_string();
     run.order = experiment.artefacts.iter().map(|a| a.name.into()).collect();
@@ -215,7 +214,7 @@ fn make(
         skipped: ctx.skipped.clone(),
     };
     run.artefacts.insert(artefact.name.to_string(), made);
-    run.write(&path)?;
+    run.write(folder)?;
     Ok(ctx.skipped)
 }
 
@@ -233,20 +232,20 @@ pub(crate) fn write_index(out: &Path) -> Result<PathBuf> {
     }
     let pages: Vec<Page> = folders
         .iter()
-        .map(|folder| page(folder, &Run::read(&folder.join("run.json"))))
+        .map(|folder| page(folder, &Run::read(folder)))
         .collect();
     let path = out.join("index.html");
     edifice_base::file::write_atomic(&path, report::index(&pages).as_bytes())?;
     Ok(path)
 }
 
-/// Folders with a `run.json`, by name.
+/// Folders of reports, by name.
 fn made_in(folder: &Path) -> Result<Vec<PathBuf>> {
     let fail = |e| Error::io(folder, "read", e);
     let mut folders = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(fail)? {
         let path = entry.map_err(fail)?.path();
-        if path.join("run.json").is_file() {
+        if path.join(RUN).is_file() {
             folders.push(path);
         }
     }
@@ -270,17 +269,14 @@ fn page(folder: &Path, run: &Run) -> Page {
             command: made.command.clone(),
             beside: made.comparisons.iter().map(beside).collect(),
             skipped: made.skipped.clone(),
+            // The same wherever it is made again; commit, time and machine are in `provenance.json`.
             made: format!(
-                "{}, version {}{}, {:.1} s on {} threads, {}{}",
+                "{}, version {}{}",
                 match made.budget.as_str() {
                     "sweep" => "sweep, processor time".to_owned(),
                     budget => format!("seed {}, budget {budget}", made.seed),
                 },
                 made.version,
-                built_from(made),
-                made.wall_seconds,
-                made.machine.threads,
-                made.machine.system,
                 match made.machine.optimized {
                     true => "",
                     false => ", unoptimized build",
@@ -300,18 +296,6 @@ fn beside(comparison: &Comparison) -> Beside {
         quantity: comparison.quantity.clone(),
         printed: comparison.printed.clone(),
         ours: comparison.ours.clone(),
-    }
-}
-
-/// The commit in words, where it is known.
-fn built_from(made: &Made) -> String {
-    let Some(commit) = &made.commit else {
-        return String::new();
-    };
-    let short: String = commit.chars().take(10).collect();
-    match made.dirty {
-        Some(true) => format!(", commit {short} with changes"),
-        _ => format!(", commit {short}"),
     }
 }
 

@@ -47,7 +47,7 @@ pub(crate) fn verify(
     };
     let mut found = Vec::new();
     for (experiment, artefacts) in chosen {
-        let run = Run::read(&options.out.join(experiment.slug).join("run.json"));
+        let run = Run::read(&options.out.join(experiment.slug));
         for artefact in artefacts {
             let state = match run.artefacts.get(artefact.name) {
                 None => State::Missing,

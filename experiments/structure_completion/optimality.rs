@@ -10,8 +10,8 @@ use edifice_report::{Align, Table};
 use edifice_shape::Axis;
 use edifice_structure_completion::best::chain::{Chain, LineProblem, log_weight};
 use edifice_structure_completion::best::density::Spacing;
+use edifice_structure_completion::best::observation::Observation;
 use edifice_structure_completion::best::pool::line_problem;
-use edifice_structure_completion::best::scene::Scene;
 use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::model::Model;
 use edifice_structure_completion::task::Task;
@@ -40,14 +40,14 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             let mut rng = stream(seed, "optimality", *k as u64);
             let task = Task::ALL[k % Task::ALL.len()];
             let (partial, _) = task.hide(&item.layout, &mut rng);
-            let scene = Scene::new(
+            let observation = Observation::new(
                 &partial,
                 partial.observed.clone(),
                 model.window_size(partial.width, partial.height),
             );
             let mut pairs = Vec::new();
             for (axis, spacing) in [(Axis::X, &model.columns), (Axis::Y, &model.rows)] {
-                let (problem, _) = line_problem(&scene, axis);
+                let (problem, _) = line_problem(&observation, axis);
                 let best = Chain::new(&problem, spacing, true).log_value();
                 if best.is_finite() {
                     pairs.push((best, anneal(&problem, spacing, &mut rng)));

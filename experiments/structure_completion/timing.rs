@@ -12,21 +12,23 @@ use edifice_report::{Align, Table};
 use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::method::{Method, complete};
 use edifice_structure_completion::model::Model;
-use edifice_structure_completion::policy::{self, PaperModel, Scene, WEIGHTS, optimize};
+use edifice_structure_completion::policy::{
+    self, CompletionProblem, PaperModel, WEIGHTS, optimize,
+};
 use edifice_structure_completion::task::Task;
 
 /// Facades that are learnt from.
 const LEARNT: usize = 100;
 
 /// One line of the table.
-struct Line {
+struct Timing {
     instance: String,
     method: &'static str,
     done: String,
     seconds: Vec<f64>,
 }
 
-impl Line {
+impl Timing {
     fn one(instance: &str, method: &'static str, done: String, seconds: f64) -> Self {
         Self {
             instance: instance.into(),
@@ -62,7 +64,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let densities = PaperModel::of_densities(&some, seed).map_err(Error::method)?;
     let seconds = start.elapsed().as_secs_f64();
     let done = format!("densities of the scoring functions, {learnt} facades");
-    lines.push(Line::one("densities", "paper", done, seconds));
+    lines.push(Timing::one("densities", "paper", done, seconds));
 
     let chosen: Vec<&Layout> = some.iter().collect();
     let start = Instant::now();
@@ -71,7 +73,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         .map_err(Error::method)?;
     let seconds = start.elapsed().as_secs_f64();
     let done = format!("weights of the factor graph, {learnt} facades");
-    lines.push(Line::one("weights", "paper", done, seconds));
+    lines.push(Timing::one("weights", "paper", done, seconds));
 
     let start = Instant::now();
     let model = Model::train(some, seed, &unwatched)
@@ -79,7 +81,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         .model;
     let seconds = start.elapsed().as_secs_f64();
     let done = format!("all that `facade train` learns, {learnt} facades");
-    lines.push(Line::one("train", "best", done, seconds));
+    lines.push(Timing::one("train", "best", done, seconds));
 
     let budget = match ctx.budget() {
         Budget::Smoke => policy::Budget::SMALL,
@@ -96,11 +98,11 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             let mut rng = stream(seed, "timing: candidates", k as u64);
             let (partial, _) = task.hide(layout, &mut rng);
             let start = Instant::now();
-            let scene = Scene::new(&paper, &partial);
-            optimize(&scene, &budget, 1, seed, &unwatched).map_err(Error::method)?;
+            let problem = CompletionProblem::new(&paper, &partial);
+            optimize(&problem, &budget, 1, seed, &unwatched).map_err(Error::method)?;
             seconds.push(start.elapsed().as_secs_f64());
         }
-        lines.push(Line {
+        lines.push(Timing {
             instance: format!("candidates_{candidates}/{}", task.name()),
             method: "paper",
             done: format!("{candidates} candidates of one facade, {}", task.name()),
@@ -119,7 +121,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         complete(Method::Best, &partial, &model, 5, &mut rng);
         seconds.push(start.elapsed().as_secs_f64());
     }
-    lines.push(Line {
+    lines.push(Timing {
         instance: "complete_5".into(),
         method: "best",
         done: "`facade complete --count 5`, no candidates of the paper's kind".into(),
@@ -151,7 +153,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     // The mean over the lines of an instance.
     let mean_of = |instance: &str| {
         let same = lines.iter().filter(|l| l.instance.starts_with(instance));
-        let all: Vec<f64> = same.map(Line::mean).collect();
+        let all: Vec<f64> = same.map(Timing::mean).collect();
         all.iter().sum::<f64>() / all.len().max(1) as f64
     };
     let (weights, mean) = (mean_of("weights"), mean_of("candidates"));

@@ -10,7 +10,7 @@ use super::bounds;
 use super::journal::{Damaged, Entry, Keep, Known, read_all};
 use super::plan::Plan;
 use super::record::Record;
-use edifice_base::{Error, Result, file};
+use edifice_base::{Error, Result, csv, file};
 
 /// Name of the table of results in a sweep's folder.
 pub const RESULTS: &str = "results.csv";
@@ -125,8 +125,8 @@ pub fn collect(plan: &Plan, out: &Path) -> Result<(usize, usize)> {
     let mut times = String::from("arm,instance,seed,seconds\n");
     let (mut rows, mut timed) = (0, 0);
     for record in &records {
-        let arm = quoted(&plan.head.arms[record.arm].name);
-        let instance = quoted(&plan.head.instances[record.instance].name);
+        let arm = csv::cell(&plan.head.arms[record.arm].name);
+        let instance = csv::cell(&plan.head.instances[record.instance].name);
         let mut row = |metric: &str, value: String| {
             rows += 1;
             let study = &plan.head.study;
@@ -151,20 +151,12 @@ pub fn collect(plan: &Plan, out: &Path) -> Result<(usize, usize)> {
                     record.seed, record.seconds
                 );
             }
-            (None, Some(reason)) => row("failure", quoted(reason)),
-            (None, None) => row("failure", quoted("no reason was given")),
+            (None, Some(reason)) => row("failure", csv::cell(reason).into_owned()),
+            (None, None) => row("failure", "no reason was given".into()),
         }
     }
     for (name, text) in [(RESULTS, results), (TIMES, times)] {
         file::write_atomic(&out.join(name), text.as_bytes()).map_err(|e: Error| e)?;
     }
     Ok((rows, timed))
-}
-
-/// A field of a CSV file.
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
 }

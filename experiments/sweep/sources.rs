@@ -1,7 +1,7 @@
 //! Digests of the sources that a result depends on: the version of a program says nothing where its code has changed.
 //!
 //! The build script (`experiments/build.rs`) writes a row per crate of the workspace: its name, SHA-256 of its sources, the crates that it is built
-//! on. A study depends on the crates of its method with all that those are built on, on its own part of the experiments (question and judge), and
+//! on. A study depends on the crates of its method with all that those are built on, on its own part of the experiments (question and judge) and of the generators, and
 //! on the versions of all foreign crates (`Cargo.lock`). A comment counts as a change; tests do not.
 
 use std::collections::BTreeSet;
@@ -28,11 +28,11 @@ pub(crate) fn digest(crates: &[&str], part: &str) -> String {
             open.extend(row.2);
         }
     }
-    let part = format!("experiments/{part}");
+    let parts = ["experiments", "experiments/generators"].map(|room| format!("{room}/{part}"));
     let mut hash = Sha256::new();
     hash.update(env!("CARGO_PKG_VERSION"));
     for (name, digest, _) in TABLE {
-        if wanted.contains(name) || [part.as_str(), "Cargo.lock"].contains(name) {
+        if wanted.contains(name) || *name == "Cargo.lock" || parts.iter().any(|part| part == name) {
             hash.update(name);
             hash.update([0]);
             hash.update(digest);
@@ -65,6 +65,7 @@ mod tests {
         for part in [
             "experiments/facade_grammar",
             "experiments/generic",
+            "experiments/generators/facade_grammar",
             "Cargo.lock",
         ] {
             assert!(row(part).is_some(), "{part}");

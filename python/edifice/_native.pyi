@@ -40,7 +40,7 @@ class Facade:
     def elements(self) -> Facade: ...
     def infer(
         self,
-        method: str = "adp",
+        method: str = "lagrangian",
         iterations: int | None = None,
         seed: int = 0,
         ops: list[str] | None = None,

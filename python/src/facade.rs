@@ -230,7 +230,7 @@ impl Facade {
     /// Infers the smallest split grammar (Wu et al. 2014); the same seed gives the bytes of `edifice grammar infer`.
     /// `progress` shows a bar of tqdm.
     #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (method = "adp", iterations = None, seed = 0, ops = None, split_cost = None, repeat_cost = None, progress = false))]
+    #[pyo3(signature = (method = "lagrangian", iterations = None, seed = 0, ops = None, split_cost = None, repeat_cost = None, progress = false))]
     fn infer(
         &self,
         py: Python<'_>,

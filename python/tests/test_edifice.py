@@ -254,7 +254,7 @@ names, _, texts = model._table(np.where(rng.random((2000, 12)) < 0.5, np.nan, 0.
     # What is prepared, and a call that goes on for seconds.
     for prepare, call in [
         ("", "edifice.GaussianMixture(max_components=60, n_init=20).fit(rows)"),
-        (normal, "model.score_samples(np.tile(rows, (200, 1)))"),
+        (normal + "\nmany = np.tile(rows, (200, 1))", "model.score_samples(many)"),
         (normal, "model.sample(5_000_000)"),
         ("", "edifice.TableModel(max_styles=25, max_kinds=25).fit(rows)"),
         (few, "model.model_.log_density(names, 200 * texts)"),

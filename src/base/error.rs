@@ -27,9 +27,9 @@ pub enum Error {
         source: std::io::Error,
     },
     /// The content of a file is not what its format promises.
-    #[error("{}: {place}: {source}", path.display())]
+    #[error("{}{place}: {source}", named(path))]
     Input {
-        /// File concerned.
+        /// File concerned; empty for bytes that are in no file.
         path: PathBuf,
         /// Place in the file: `line 3, column 7`, `regions[17].width`, `pixel (3, 9)`, ...
         place: String,
@@ -37,9 +37,9 @@ pub enum Error {
         source: Cause,
     },
     /// The content of a file as a whole cannot serve.
-    #[error("{}: {source}", path.display())]
+    #[error("{}{source}", named(path))]
     Content {
-        /// File concerned.
+        /// File concerned; empty for bytes that are in no file.
         path: PathBuf,
         /// The defect of the content.
         source: Cause,
@@ -58,6 +58,14 @@ pub enum Error {
     /// The user asked to stop; what was finished is kept.
     #[error("interrupted; finished work is kept, run the same command again to resume")]
     Interrupted,
+}
+
+/// The path before what is wrong; nothing for bytes that are in no file.
+fn named(path: &Path) -> String {
+    match path.as_os_str().is_empty() {
+        true => String::new(),
+        false => format!("{}: ", path.display()),
+    }
 }
 
 impl Error {
@@ -98,5 +106,18 @@ impl Error {
     /// A method's own failure.
     pub fn method(source: impl Into<Cause>) -> Self {
         Self::Method(source.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_in_no_file_are_named_by_their_place_alone() {
+        let said = |path: &str| Error::input(Path::new(path), "line 3", "no number").to_string();
+        assert_eq!(said("a.csv"), "a.csv: line 3: no number");
+        assert_eq!(said(""), "line 3: no number");
+        assert_eq!(Error::content(Path::new(""), "empty").to_string(), "empty");
     }
 }

@@ -8,6 +8,7 @@ mod input;
 mod mask;
 mod overview;
 mod score;
+mod straighten;
 mod train;
 
 use std::path::{Path, PathBuf};
@@ -53,6 +54,8 @@ read as the nearest one of the map (without a map: of ECP and Graz), and the lar
     Complete(complete::Args),
     /// Add, move, resize, relabel and remove elements of a layout.
     Edit(edit::Args),
+    /// Begin a drawing with a photograph: its four corners become a rectangle of true proportions.
+    Straighten(straighten::Args),
     /// Hide a part of a whole facade, to see how it is completed.
     #[command(
         after_help = "Example:\n  edifice facade hide datasets/facade_grammar/layouts/office_1.facade.json --task side50 --seed 1 -o partial.facade.json"
@@ -98,6 +101,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Train(args) => train::run(&args),
         Command::Complete(args) => complete::run(&args),
         Command::Edit(args) => edit::run(&args),
+        Command::Straighten(args) => straighten::run(&args),
         Command::Hide(args) => hide::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Score(args) => score::run(&args),

@@ -2,6 +2,7 @@
 //! error; exit code 0 on success, 2 for bad usage, 1 for bad input or failure.
 
 mod building;
+mod choice;
 mod city;
 mod cleaning;
 mod data;

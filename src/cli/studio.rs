@@ -16,12 +16,13 @@ use super::print::{self, Json};
 #[command(after_help = "Examples:
   edifice studio
   edifice studio office_1.facade.json houses/house_0001.building.json
+  edifice studio photo.jpg
   edifice studio fig9.grammar.json --port 8080 --no-open --read-only
 
 The first line on standard output is the address, with the token that opens it; Ctrl-C ends the studio. It listens on this
 machine only, and its page asks nothing of any other. Files open in the editor that suits them: whole facades and grammars
-(.facade.json, .grammar.json, .cga), partial facades (.facade.json), houses (.building.json), cities (.city-grammar.json, or
-triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
+(.facade.json, .grammar.json, .cga), partial facades (.facade.json), photographs of facades to draw over (.jpg, .png), houses
+(.building.json), cities (.city-grammar.json, or triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
 Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes; a file or a
 script of somebody else is not replaced unasked. A photograph that is drawn over is kept in the file. What is not saved is kept in
 the user's state folder ($XDG_STATE_HOME/edifice/studio, by default ~/.local/state/edifice/studio) and offered at the next start.")]

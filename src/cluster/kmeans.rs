@@ -1,6 +1,7 @@
 //! k-means: k-means++ starts (Arthur and Vassilvitskii 2007) and Lloyd's steps with exact nearest
 //! centres from a kd-tree.
 
+use edifice_base::rng::categorical;
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
@@ -17,7 +18,11 @@ pub struct KMeans {
     pub sse: f64,
 }
 
-/// Labels of `k` centres drawn by k-means++, refined by at most `steps` steps of Lloyd. O(n k d) to draw.
+/// Labels of `k` centres drawn by k-means++, refined by at most `steps` steps of Lloyd; fewer centres where there are fewer
+/// distinct points of positive weight. O(n k d) to draw.
+///
+/// # Panics
+/// If there are points but no centre, since `k` or all weights are 0, and if `dimension` is 0.
 pub fn kmeans<R: Rng>(
     points: &[f64],
     dimension: usize,
@@ -26,35 +31,75 @@ pub fn kmeans<R: Rng>(
     steps: usize,
     rng: &mut R,
 ) -> KMeans {
-    let n = weights.len();
+    let first = match k.min(weights.len()) {
+        0 => None,
+        _ => positive(weights, rng),
+    };
+    let centres = spread(points, dimension, weights, first, k, rng);
+    lloyd(points, dimension, weights, centres, steps)
+}
+
+/// As [`kmeans`], of points that weigh 1 each. The first centre is drawn as an integer, so that the same generator gives other
+/// centres than in `kmeans` with weights of 1.
+///
+/// # Panics
+/// If there are points but `k` is 0, and if `dimension` is 0.
+///
+/// # Examples
+/// ```
+/// use edifice_base::rng::stream;
+/// let widths = [1.0, 1.2, 7.0, 7.1, 6.9];
+/// let found = edifice_cluster::kmeans_unweighted(&widths, 1, 2, 10, &mut stream(1, "widths", 0));
+/// assert_eq!(found.labels[0], found.labels[1]);
+/// assert_ne!(found.labels[0], found.labels[2]);
+/// ```
+pub fn kmeans_unweighted<R: Rng>(
+    points: &[f64],
+    dimension: usize,
+    k: usize,
+    steps: usize,
+    rng: &mut R,
+) -> KMeans {
+    let n = points.len().checked_div(dimension).unwrap_or(0);
+    let weights = vec![1.0; n];
+    let first = (k.min(n) > 0).then(|| rng.random_range(0..n));
+    let centres = spread(points, dimension, &weights, first, k, rng);
+    lloyd(points, dimension, &weights, centres, steps)
+}
+
+/// k-means++ (Arthur and Vassilvitskii 2007, Sec. 2.2): after the first, each centre is drawn in proportion to
+/// the squared distance to the nearest one before it.
+fn spread<R: Rng>(
+    points: &[f64],
+    dimension: usize,
+    weights: &[f64],
+    first: Option<usize>,
+    k: usize,
+    rng: &mut R,
+) -> Vec<f64> {
     let row = |i: usize| &points[i * dimension..(i + 1) * dimension];
-    let mut nearest = vec![f64::INFINITY; n];
-    let mut centres = Vec::with_capacity(k * dimension);
-    for c in 0..k.min(n) {
-        let mass = |i: usize| {
-            if c == 0 {
-                weights[i]
-            } else {
-                weights[i] * nearest[i]
-            }
-        };
-        let total: f64 = (0..n).map(mass).sum();
-        let mut left = rng.random::<f64>() * total;
-        // Rounding may leave a rest: the last point with mass. Without mass all points are centres.
-        let chosen = (0..n).filter(|&i| mass(i) > 0.0).find(|&i| {
-            left -= mass(i);
-            left <= 0.0
-        });
-        let last = || (0..n).rev().find(|&i| mass(i) > 0.0);
-        let Some(chosen) = chosen.or_else(last) else {
-            break;
-        };
+    let mut nearest = vec![f64::INFINITY; weights.len()];
+    let mut mass = vec![0.0; weights.len()];
+    let mut centres = Vec::with_capacity(k.min(weights.len()) * dimension);
+    let mut next = first;
+    while let Some(chosen) = next {
         centres.extend_from_slice(row(chosen));
+        if centres.len() >= k.min(weights.len()) * dimension {
+            break;
+        }
         for (i, least) in nearest.iter_mut().enumerate() {
             *least = least.min(square(row(i), row(chosen)));
+            mass[i] = weights[i] * *least;
         }
+        next = positive(&mass, rng);
     }
-    lloyd(points, dimension, weights, centres, steps)
+    centres
+}
+
+/// An index drawn in proportion to `mass`; `None` where all mass is zero, as when every point is a centre.
+fn positive<R: Rng>(mass: &[f64], rng: &mut R) -> Option<usize> {
+    let chosen = categorical(mass, rng);
+    (mass.get(chosen)? > &0.0).then_some(chosen)
 }
 
 /// At most `steps` steps of Lloyd from given centres; ends when no label changes. A cluster that loses all

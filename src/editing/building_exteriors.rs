@@ -20,7 +20,7 @@ pub use wish::{WishError, Wishes, given, ranges, wished};
 
 use super::examples::{Example, Source};
 use super::work::Work;
-use super::{CommandError, Editor, Opened, State, Step, ends, parse};
+use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::design::{Edit, EditError, edited, suggested, variants};
@@ -279,7 +279,7 @@ impl State for House {
         view::view(self)
     }
 
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied> {
         match parse(command)? {
             Command::Edit {
                 edits,

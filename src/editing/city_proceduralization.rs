@@ -20,7 +20,7 @@ use original::Original;
 use super::examples::{Example, Source};
 use super::script::{Shell, Word};
 use super::work::Work;
-use super::{CommandError, Editor, Opened, State, Step, ends, parse};
+use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
@@ -187,7 +187,7 @@ impl City {
         }))
     }
 
-    fn proceduralize(&self, level: u32, work: &Work) -> Result<Step> {
+    fn proceduralize(&self, level: u32, work: &Work) -> Result<Applied> {
         let original = self.original.as_ref();
         let original = original.ok_or_else(|| Error::method(CityError::NoOriginal))?;
         if level > DEEPEST {
@@ -200,7 +200,7 @@ impl City {
         shell.words.push(Word::Beside(original.file.clone()));
         let mut shell = shell.option("--level", level);
         shell.words.extend(Shell::new(["--output", ">"]).words);
-        Ok(Step {
+        Ok(Applied {
             state: self.with(grammar, Some(level))?,
             said: format!("level {level}: {templates} templates"),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -208,7 +208,7 @@ impl City {
         })
     }
 
-    fn edit(&self, texts: &[String]) -> Result<Step> {
+    fn edit(&self, texts: &[String]) -> Result<Applied> {
         let edits: std::result::Result<Vec<CityEdit>, CommandError> =
             texts.iter().map(|t| t.parse()).collect();
         let edits = edits?;
@@ -220,7 +220,7 @@ impl City {
         for text in texts {
             shell = shell.arg(text);
         }
-        Ok(Step {
+        Ok(Applied {
             state: self.with(edited, None)?,
             said: texts.join(", "),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -228,7 +228,7 @@ impl City {
         })
     }
 
-    fn synthesize(&self, polygon: Vec<[f64; 2]>, seed: u64) -> Result<Step> {
+    fn synthesize(&self, polygon: Vec<[f64; 2]>, seed: u64) -> Result<Applied> {
         if polygon.len() < 3 {
             return Err(Error::method(FillError::Corners(polygon.len())));
         }
@@ -247,7 +247,7 @@ impl City {
             words: [shell.words, output].concat(),
             ..shell
         };
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(Self::new(grammar)?),
             said: format!("fill a drawn shape with {count} buildings, seed {seed}"),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -293,7 +293,7 @@ impl State for City {
         view::view(self)
     }
 
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
             Command::Synthesize { polygon, seed } => {

@@ -14,7 +14,7 @@ use super::examples::{Example, Source};
 use super::script::{Shell, Word};
 use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit, glb};
 use super::work::Work;
-use super::{CommandError, Editor, Opened, State, Step, ends, parse};
+use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
 use edifice_base::{Error, Result};
 use edifice_grammar::{Costs, Grammar, Operation, Rule, Size, check, listing};
 use edifice_io::palette::Palette;
@@ -136,7 +136,7 @@ impl Editing {
         }
     }
 
-    fn edit(&self, texts: &[String]) -> Result<Step> {
+    fn edit(&self, texts: &[String]) -> Result<Applied> {
         let edits: std::result::Result<Vec<GrammarEdit>, CommandError> =
             texts.iter().map(|t| t.parse()).collect();
         let edits = edits?;
@@ -157,7 +157,7 @@ impl Editing {
         for text in texts {
             shell = shell.arg(text);
         }
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: texts.join(", "),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -166,7 +166,7 @@ impl Editing {
     }
 
     /// One grammar of the facades of this one and of others.
-    fn merge(&self, texts: &[String], work: &Work) -> Result<Step> {
+    fn merge(&self, texts: &[String], work: &Work) -> Result<Applied> {
         let further = merge::facades(texts)?;
         if further.is_empty() {
             return Err(CommandError::Nothing.into());
@@ -185,7 +185,7 @@ impl Editing {
         let mut shell = Shell::new(["grammar", "merge", "--output", ">", "--", "<"]);
         let held = |text: &String| Word::File(".facade.json", text.clone());
         shell.words.extend(texts.iter().map(held));
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: format!("one grammar of {starts} facades"),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -194,7 +194,7 @@ impl Editing {
     }
 
     /// Another example facade; the grammar stays.
-    fn shown_at(&self, size: Option<[f64; 2]>, seed: u64, start: usize) -> Result<Step> {
+    fn shown_at(&self, size: Option<[f64; 2]>, seed: u64, start: usize) -> Result<Applied> {
         let state = Self {
             size: size.map(|[w, h]| (w, h)),
             seed,
@@ -203,7 +203,7 @@ impl Editing {
         };
         state.derived(false)?;
         let at = size.map_or("its own size".to_owned(), |[w, h]| format!("{w} x {h}"));
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: format!("derive at {at}, seed {seed}"),
             shell: Shell::default(),
@@ -276,7 +276,7 @@ impl State for Editing {
         }))
     }
 
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
             Command::Derive { size, seed, start } => self.shown_at(size, seed, start),

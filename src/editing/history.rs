@@ -6,13 +6,13 @@ use serde_json::Value;
 
 use super::script::{Shell, script};
 use super::work::Work;
-use super::{CommandError, State, Step};
+use super::{Applied, CommandError, State};
 use edifice_base::Result;
 
 /// Commands that were done at once, and are undone at once.
 struct Entry {
     commands: Vec<Value>,
-    steps: Vec<Step>,
+    steps: Vec<Applied>,
 }
 
 /// A document with its history.
@@ -27,11 +27,11 @@ pub struct Document {
 ///
 /// # Errors
 /// As [`State::apply`]; [`CommandError::Nothing`] without commands.
-pub fn steps(state: &Arc<dyn State>, commands: &[Value], work: &Work) -> Result<Vec<Step>> {
+pub fn steps(state: &Arc<dyn State>, commands: &[Value], work: &Work) -> Result<Vec<Applied>> {
     if commands.is_empty() {
         return Err(CommandError::Nothing.into());
     }
-    let mut steps: Vec<Step> = Vec::with_capacity(commands.len());
+    let mut steps: Vec<Applied> = Vec::with_capacity(commands.len());
     for command in commands {
         let step = steps
             .last()
@@ -107,7 +107,7 @@ impl Document {
     }
 
     /// Takes the steps that commands came to, from the state that it is in.
-    pub fn take(&mut self, commands: &[Value], steps: Vec<Step>) {
+    pub fn take(&mut self, commands: &[Value], steps: Vec<Applied>) {
         self.entries.truncate(self.at);
         self.entries.push(Entry {
             commands: commands.to_vec(),

@@ -18,6 +18,7 @@
 //! | | `complete` | `count`, `seed`, `method`, `pins`, `forbid` | `facade complete` |
 //! | | `choose` | `answer`, from 1 | the file of that answer |
 //! | | `photograph` | `picture`, a JPEG or PNG picture as a `data:` address, or null for none | `facade edit --photograph` |
+//! | | `straighten` | `corners` of the facade in a photograph, four `[x, y]` in pixels, upper left first, clockwise; `picture` as above, or null for the one that was opened; `height` in metres for a new outline, or null | `facade straighten` |
 //! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `insert RULE.PART=SIZE`, `remove RULE.PART`, `grow RULE.PART`, `shrink RULE.PART`, `repeat RULE`, `weight RULE=W`, `outline W,H`; PART is a part `0`, a column `c0` or a row `r0` of a grid) | `grammar edit` |
 //! | | `merge` | `facades`, the texts of `.facade.json` files | `grammar merge` |
 //! | `city` | `edit` | `edits` (`scale TEMPLATE=FX,FY,FZ`, `weight RULE=W`) | `city edit` |
@@ -93,7 +94,7 @@ pub trait State: Send + Sync {
     ///
     /// # Errors
     /// [`CommandError`] for a command that is none, or what its method says of a command that cannot be done.
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step>;
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied>;
 
     /// Answers a question about the state, which stays as it is.
     ///
@@ -123,7 +124,7 @@ pub trait State: Send + Sync {
 enum NoQuestion {}
 
 /// The result of a command.
-pub struct Step {
+pub struct Applied {
     /// The new state.
     pub state: Arc<dyn State>,
     /// The command in words.
@@ -204,8 +205,8 @@ pub fn open(path: &Path, bytes: &[u8], work: &Work) -> Result<Arc<dyn State>> {
     opened.unwrap_or_else(|| {
         Err(Error::content(
             path,
-            "no editor knows this kind of file: expected .facade.json, .grammar.json, .cga, .building.json, .city-grammar.json, or a \
-             city (.npz, .obj, .glb, .gltf, .city.json, .city.jsonl)",
+            "no editor knows this kind of file: expected .facade.json, .grammar.json, .cga, .building.json, .city-grammar.json, a \
+             photograph (.jpg, .png), or a city (.npz, .obj, .glb, .gltf, .city.json, .city.jsonl)",
         ))
     })
 }

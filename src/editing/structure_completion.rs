@@ -1,43 +1,49 @@
 //! Facades of which a part is seen: elements drawn, moved, resized and relabelled, and completed again (Fan et al. 2014,
 //! Fig. 15).
 
+mod answers;
 mod edits;
 mod given;
 pub mod hiding;
 mod photograph;
 mod starts;
+mod straighten;
 mod view;
 
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde_json::Value;
 
+pub use answers::{Answers, complete, shipped_model};
 pub use edits::{FacadeEdit, FacadeEditError, edit};
 pub use given::{Given, Wanted};
+pub use straighten::{Outline, StraightenError, USUAL_HEIGHT, straightened};
 
 use self::starts::{EMPTY, FOUR};
 use super::examples::{Example, Source as From};
 use super::script::Shell;
 use super::work::Work;
 use super::{
-    CommandError, Editor, Opened, State, Step, answer, count_of_answers, ends, parse, written,
+    Applied, CommandError, Editor, Opened, State, answer, count_of_answers, ends, parse, written,
 };
-use edifice_base::{Error, Result, rng};
+use edifice_base::{Error, Result};
 use edifice_io::{Source, draw, facade_json};
 use edifice_shape::{AnnotatedFacade, Note, Rect, is_background};
 use edifice_structure_completion::completion::Completion;
-use edifice_structure_completion::layout::{extract, scope};
-use edifice_structure_completion::method::{self, Method};
-use edifice_structure_completion::model::{self, Model};
+use edifice_structure_completion::layout::extract;
+use edifice_structure_completion::method::Method;
 
 /// Most answers at once.
 const MOST: usize = 100;
 const ENDING: &str = ".facade.json";
 const FORMATS: &[&str] = &["svg", "png"];
 
-/// Opens element layouts and partial layouts, `*.facade.json`.
+/// Photographs of facades.
+const PHOTOGRAPHS: [&str; 3] = [".jpg", ".jpeg", ".png"];
+
+/// Opens element layouts and partial layouts, `*.facade.json`, and photographs to draw over.
 pub const EDITOR: Editor = Editor {
     kind: "completion",
     open,
@@ -60,6 +66,10 @@ pub const EDITOR: Editor = Editor {
 };
 
 fn open(path: &Path, bytes: &[u8], _work: &Work) -> Opened {
+    if PHOTOGRAPHS.iter().any(|ending| ends(path, ending)) {
+        let sketch = straighten::open(path, bytes);
+        return Some(sketch.map(|sketch| Arc::new(sketch) as Arc<dyn State>));
+    }
     if !ends(path, ENDING) {
         return None;
     }
@@ -102,76 +112,6 @@ pub fn annotated(source: Source, bytes: &[u8], path: &Path) -> Result<AnnotatedF
     Ok(AnnotatedFacade::plain(facade))
 }
 
-/// The model that ships with the project, read once.
-///
-/// # Errors
-/// When it cannot be read; a test keeps it readable.
-pub fn shipped_model() -> Result<&'static Model> {
-    static READ: OnceLock<Model> = OnceLock::new();
-    if let Some(model) = READ.get() {
-        return Ok(model);
-    }
-    let model = model::shipped_model().map_err(Error::method)?;
-    Ok(READ.get_or_init(|| model))
-}
-
-/// Completions of a layout.
-pub struct Answers {
-    /// The input that was completed.
-    pub given: Given,
-    /// The completions, the best first.
-    pub completions: Vec<Completion>,
-    /// Warnings for the user.
-    pub warnings: Vec<String>,
-}
-
-impl Answers {
-    /// The completed layouts, in the same order.
-    pub fn whole(&self) -> Vec<AnnotatedFacade> {
-        let completed = |c| self.given.completed(c);
-        self.completions.iter().map(completed).collect()
-    }
-}
-
-/// Completes a layout in up to `count` ways, the best first; the path only names it.
-///
-/// # Errors
-/// As [`Given::new`].
-pub fn complete(
-    layout: AnnotatedFacade,
-    wanted: &Wanted,
-    method: Method,
-    model: &Model,
-    count: usize,
-    seed: u64,
-    path: &Path,
-) -> Result<Answers> {
-    let given = Given::new(layout, wanted, path)?;
-    let mut warnings = given.warnings.clone();
-    let completions = if given.partial.has_unknown() {
-        let mut stream = rng::stream(seed, "facade complete", 0);
-        method::complete(method, &given.partial, model, count, &mut stream)
-    } else {
-        warnings.push("nothing is unknown: the layout is returned as it is".into());
-        vec![Completion {
-            added: Vec::new(),
-            score: 0.0,
-            mass: 1.0,
-        }]
-    };
-    let out_of_scope = |best: &Completion| !scope::in_scope(&given.layout(best));
-    if completions.first().is_some_and(out_of_scope) {
-        warnings.push(
-            "out of scope: the completed facade has no regular lattice of at least 8 windows; expect less of it".into(),
-        );
-    }
-    Ok(Answers {
-        given,
-        completions,
-        warnings,
-    })
-}
-
 /// A facade that is being drawn and completed.
 #[derive(Clone)]
 pub struct Sketch {
@@ -180,6 +120,8 @@ pub struct Sketch {
     forbidden: Vec<Rect>,
     answers: Vec<(AnnotatedFacade, Completion)>,
     chosen: Option<usize>,
+    /// The photograph whose corners are not known yet.
+    original: Option<Arc<straighten::Original>>,
 }
 
 #[derive(Deserialize)]
@@ -205,6 +147,11 @@ enum Command {
     Photograph {
         picture: Option<String>,
     },
+    Straighten {
+        picture: Option<String>,
+        corners: [[f64; 2]; 4],
+        height: Option<f64>,
+    },
 }
 
 fn best() -> String {
@@ -220,6 +167,7 @@ impl Sketch {
             forbidden: Vec::new(),
             answers: Vec::new(),
             chosen: None,
+            original: None,
         }
     }
 
@@ -227,7 +175,7 @@ impl Sketch {
         Path::new(&self.layout.facade.name)
     }
 
-    fn edit(&self, texts: &[String]) -> Result<Step> {
+    fn edit(&self, texts: &[String]) -> Result<Applied> {
         let edits = FacadeEdit::parse_all(texts)?;
         let layout = edit(&self.layout, &edits).map_err(Error::method)?;
         let mut shell = Shell::new(["facade", "edit", "--output", ">", "--", "<"]);
@@ -237,13 +185,14 @@ impl Sketch {
         let mut state = Self {
             pins: self.pins.clone(),
             forbidden: self.forbidden.clone(),
+            original: self.original.clone(),
             ..Self::new(layout)
         };
         let ids: Vec<&str> = (state.layout.notes.iter())
             .filter_map(|n| n.id.as_deref())
             .collect();
         state.pins.retain(|pin| ids.contains(&pin.as_str()));
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: texts.join(", "),
             shell: shell.gives(ENDING, Some(String::new())),
@@ -258,7 +207,7 @@ impl Sketch {
         seed: u64,
         pins: &[String],
         forbidden: &[Rect],
-    ) -> Result<Step> {
+    ) -> Result<Applied> {
         let count = count_of_answers(count, MOST)?;
         let unknown = || CommandError::Edit {
             edit: method.to_owned(),
@@ -297,13 +246,14 @@ impl Sketch {
         let layout = whole.first().unwrap_or(&self.layout).clone();
         let found = whole.len();
         let result = (found > 0).then(|| file(1));
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(Self {
                 layout,
                 pins: pins.to_vec(),
                 forbidden: forbidden.to_vec(),
                 answers: whole.into_iter().zip(answers.completions).collect(),
                 chosen: Some(1),
+                original: self.original.clone(),
             }),
             said: format!("complete in {found} ways, seed {seed}"),
             shell: shell.gives("", result),
@@ -311,14 +261,14 @@ impl Sketch {
         })
     }
 
-    fn choose(&self, wanted: usize) -> Result<Step> {
+    fn choose(&self, wanted: usize) -> Result<Applied> {
         let (layout, _) = answer(&self.answers, wanted)?;
         let state = Self {
             layout: layout.clone(),
             chosen: Some(wanted),
             ..self.clone()
         };
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said: format!("take answer {wanted}"),
             shell: Shell::default().gives("", Some(file(wanted))),
@@ -353,7 +303,7 @@ impl State for Sketch {
         Ok(view::view(self))
     }
 
-    fn apply(&self, command: &Value, work: &Work) -> Result<Step> {
+    fn apply(&self, command: &Value, work: &Work) -> Result<Applied> {
         match parse(command)? {
             Command::Edit { edits } => self.edit(&edits),
             Command::Complete {
@@ -373,6 +323,14 @@ impl State for Sketch {
             }
             Command::Choose { answer } => self.choose(answer),
             Command::Photograph { picture } => self.photograph(picture.as_deref()),
+            Command::Straighten {
+                picture,
+                corners,
+                height,
+            } => {
+                work.tell("straightening the photograph", None)?;
+                self.straighten(picture.as_deref(), corners, height)
+            }
         }
     }
 

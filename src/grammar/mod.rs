@@ -23,6 +23,9 @@ mod table;
 mod tiling;
 mod weights;
 
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
+
 pub use check::check;
 pub use combine::{LEAST_SIMILARITY, combine};
 pub use cost::{CostError, Costs};

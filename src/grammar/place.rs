@@ -42,7 +42,7 @@ pub(super) fn place(
     fit: Fit,
     mut visit: impl FnMut(usize, Rect),
 ) -> Result<f64, GrammarError> {
-    let line = |axis: Axis| Line {
+    let along = |axis: Axis| SplitAxis {
         index,
         rule,
         axis,
@@ -56,19 +56,19 @@ pub(super) fn place(
     Ok(match &rule.operation {
         Operation::Split { axis, successors } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
-            line(*axis).fill(0..sizes.len(), &sizes, |part| strip(*axis, part))?
+            along(*axis).fill(0..sizes.len(), &sizes, |part| strip(*axis, part))?
         }
         Operation::Repeat { axis, successors } => {
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
-            let times = line(*axis).periods(&sizes, &[], 2)?;
+            let times = along(*axis).periods(&sizes, &[], 2)?;
             let order = (0..times).flat_map(|_| 0..sizes.len());
-            line(*axis).fill(order, &sizes, |part| strip(*axis, part))?
+            along(*axis).fill(order, &sizes, |part| strip(*axis, part))?
         }
         Operation::RepeatAba { axis, a, b } => {
             let sizes = [a.size, b.size];
-            let times = line(*axis).periods(&sizes, &sizes[..1], 1)?;
+            let times = along(*axis).periods(&sizes, &sizes[..1], 1)?;
             let order = (0..2 * times + 1).map(|i| i % 2);
-            line(*axis).fill(order, &sizes, |part| strip(*axis, part))?
+            along(*axis).fill(order, &sizes, |part| strip(*axis, part))?
         }
         Operation::SymSplit {
             axis,
@@ -78,12 +78,13 @@ pub(super) fn place(
             let sizes: Vec<Size> = successors.iter().map(|s| s.size).collect();
             let mirrored = sizes.len() - usize::from(*center);
             let order = (0..sizes.len()).chain((0..mirrored).rev());
-            line(*axis).fill(order, &sizes, |part| strip(*axis, part))?
+            along(*axis).fill(order, &sizes, |part| strip(*axis, part))?
         }
         Operation::GridSplit { columns, rows, .. } => {
             let (mut across, mut up) = (Vec::new(), Vec::new());
-            let factor = line(Axis::X).fill(0..columns.len(), columns, |part| across.push(part))?;
-            let other = line(Axis::Y).fill(0..rows.len(), rows, |part| up.push(part))?;
+            let factor =
+                along(Axis::X).fill(0..columns.len(), columns, |part| across.push(part))?;
+            let other = along(Axis::Y).fill(0..rows.len(), rows, |part| up.push(part))?;
             for &(j, y, height) in &up {
                 for &(i, x, width) in &across {
                     let cell = Rect::new(rect.x + x, rect.y + y, width, height);
@@ -118,7 +119,7 @@ pub fn laid_out(
 }
 
 /// One axis of the region that a rule splits.
-struct Line<'a> {
+struct SplitAxis<'a> {
     index: usize,
     rule: &'a Rule,
     axis: Axis,
@@ -127,7 +128,7 @@ struct Line<'a> {
     fit: Fit,
 }
 
-impl Line<'_> {
+impl SplitAxis<'_> {
     /// The number of periods of `sizes` that fit beside `fixed` (the closing A of `repeat_aba`).
     fn periods(&self, sizes: &[Size], fixed: &[Size], least: u32) -> Result<usize, GrammarError> {
         let period: f64 = sizes.iter().map(|s| s.value()).sum();

@@ -1,6 +1,7 @@
 //! Bytes to values and back: every file format of facades and grammars.
 //!
-//! Readers check everything at the door and name the file and the place of what is wrong. Writers
+//! Readers check everything at the door and name the file and the place of what is wrong; bytes that are in no file are
+//! parsed at [`IN_NO_FILE`]. Writers
 //! go through [`write_atomic`], so that a failed run leaves nothing half-written. [`read_facade`] and
 //! [`write_facade`] tell the format by the file name. Every text format is also read gzipped.
 
@@ -48,6 +49,17 @@ pub use facade_file::{
 pub use grammar_file::{read_grammar, write_grammar};
 pub use label_map::LabelMap;
 pub use packed::read_bytes;
+
+/// The path of bytes that are in no file: errors then tell the place in the bytes alone, and what a reader would look for beside
+/// its file is sought in the working folder.
+///
+/// # Examples
+/// ```
+/// use edifice_io::{IN_NO_FILE, facade_json};
+/// let error = facade_json::parse(b"{", IN_NO_FILE.as_ref()).unwrap_err();
+/// assert!(error.to_string().starts_with("line 1"), "{error}");
+/// ```
+pub const IN_NO_FILE: &str = "";
 
 /// Name of a facade that carries none: the file name up to its first dot.
 fn file_stem(path: &Path) -> String {

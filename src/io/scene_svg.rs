@@ -6,6 +6,7 @@
 use std::fmt::Write;
 
 use edifice_scene::Scene;
+use edifice_shape::vec3::{cross, dot};
 
 /// Pixels per metre, and room around each view (m).
 const SCALE: f64 = 24.0;
@@ -64,18 +65,6 @@ fn triangles(scene: &Scene) -> Vec<Triangle> {
         }
     }
     out
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// The triangles that face the eye, farthest first, with the width and height that they take.

@@ -95,7 +95,8 @@ impl Default for Stopping {
 }
 
 /// Why a [`run`] ended, in [`Fit::outcome`]; none is an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// No parameter moved by more than the tolerance.
     Converged,

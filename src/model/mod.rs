@@ -54,6 +54,7 @@
 
 pub mod boosting;
 pub(crate) mod chunks;
+mod column;
 pub mod conjugate;
 pub mod density;
 pub mod elimination;
@@ -65,7 +66,6 @@ pub mod gmm;
 pub(crate) mod graph;
 pub mod hierarchy;
 mod information;
-pub(crate) mod kmeans;
 pub(crate) mod linalg;
 pub mod log_linear;
 pub mod low_rank;
@@ -75,6 +75,11 @@ pub(crate) mod standardize;
 mod table;
 pub mod tables;
 mod translate;
+
+/// The version of `nalgebra` whose matrices are in signatures here.
+pub use nalgebra;
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
 
 pub use error::ModelError;
 pub use table::{Cell, Column, Table};

@@ -2,82 +2,8 @@
 
 use super::error::ModelError;
 
-/// Code of a missing category.
-pub(crate) const MISSING: u32 = u32::MAX;
-
-/// One cell of a [`Table`], by [`Column::cell`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cell {
-    /// Not observed.
-    Missing,
-    /// A finite number, in the column's own unit.
-    Real(f64),
-    /// Index into the column's categories.
-    Code(usize),
-}
-
-/// Values of a column.
-#[derive(Clone, Debug)]
-pub(crate) enum Values {
-    /// Finite numbers; NaN marks a missing one and never leaves the module.
-    Real(Vec<f64>),
-    /// Indices into `categories`, or [`MISSING`].
-    Codes {
-        categories: Vec<String>,
-        codes: Vec<u32>,
-    },
-}
-
-/// A named column of n cells: real numbers in a unit of its own, or categories. Made by [`Table`]'s methods, whose example reads
-/// some; 8 bytes a real cell, 4 a category.
-#[derive(Clone, Debug)]
-pub struct Column {
-    pub(crate) name: String,
-    pub(crate) values: Values,
-}
-
-impl Column {
-    /// The column's name.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Categories of a categorical column (`no`, `yes` for a binary one), `None` for a real one.
-    pub fn categories(&self) -> Option<&[String]> {
-        match &self.values {
-            Values::Real(_) => None,
-            Values::Codes { categories, .. } => Some(categories),
-        }
-    }
-
-    /// The cell at `row`; [`Cell::Missing`] past the end.
-    pub fn cell(&self, row: usize) -> Cell {
-        match &self.values {
-            Values::Real(v) => match v.get(row) {
-                Some(x) if x.is_finite() => Cell::Real(*x),
-                _ => Cell::Missing,
-            },
-            Values::Codes { codes, .. } => match codes.get(row) {
-                Some(&c) if c != MISSING => Cell::Code(c as usize),
-                _ => Cell::Missing,
-            },
-        }
-    }
-
-    pub(crate) fn kind(&self) -> &'static str {
-        match self.values {
-            Values::Real(_) => "real",
-            Values::Codes { .. } => "categorical",
-        }
-    }
-
-    fn len(&self) -> usize {
-        match &self.values {
-            Values::Real(v) => v.len(),
-            Values::Codes { codes, .. } => codes.len(),
-        }
-    }
-}
+pub use super::column::{Cell, Column};
+pub(crate) use super::column::{MISSING, Values};
 
 /// A table of named columns with the same number of rows, the data of every model that has columns.
 ///

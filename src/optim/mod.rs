@@ -31,5 +31,10 @@ mod run;
 pub mod tempering;
 mod triplets;
 
+/// The version of `nalgebra` whose matrices are in signatures here.
+pub use nalgebra;
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
+
 pub use limits::{Answer, Limits};
 pub use run::{Outcome, Run, Step, tell};

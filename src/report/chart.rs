@@ -134,7 +134,7 @@ impl Chart {
         let x = self.x.fit(self.xs());
         let y = self.y.fit(self.ys());
         let plot = frame::axes(out, area, (&x, &self.x), (&y, &self.y));
-        let place = Place { plot, x, y };
+        let place = Axes { plot, x, y };
         for (value, name) in &self.levels {
             if let Some(at) = place.y.place(*value) {
                 let y = plot.bottom() - at * plot.height;
@@ -169,13 +169,13 @@ impl Chart {
     }
 }
 
-struct Place {
+struct Axes {
     plot: Area,
     x: Fitted,
     y: Fitted,
 }
 
-impl Place {
+impl Axes {
     fn at(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let (x, y) = (self.x.place(x)?, self.y.place(y)?);
         Some((
@@ -190,7 +190,7 @@ impl Series {
         self.colour.unwrap_or_else(|| category(i))
     }
 
-    fn shade_band(&self, out: &mut Drawing, place: &Place, i: usize) {
+    fn shade_band(&self, out: &mut Drawing, place: &Axes, i: usize) {
         let upper = self.band.iter().filter_map(|b| place.at((b.0, b.2)));
         let lower = self.band.iter().rev().filter_map(|b| place.at((b.0, b.1)));
         let outline: Vec<_> = upper.chain(lower).collect();
@@ -199,7 +199,7 @@ impl Series {
         }
     }
 
-    fn draw(&self, out: &mut Drawing, place: &Place, i: usize) {
+    fn draw(&self, out: &mut Drawing, place: &Axes, i: usize) {
         let colour = self.shade(i);
         let points: Vec<_> = self.points.iter().filter_map(|&p| place.at(p)).collect();
         match self.kind {

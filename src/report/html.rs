@@ -70,7 +70,7 @@ pub fn index(pages: &[Page]) -> String {
                         @for section in &page.sections { (artefact(&page.slug, section)) }
                     }
                 }
-                footer { "Pictures lead to their vector form where it is small enough to ship. Numbers, seeds, settings and digests of the data stand in the " code { "run.json" } " of each paper." }
+                footer { "Pictures lead to their vector form where it is small enough to ship. Numbers, seeds, settings and digests of the data stand in the " code { "run.json" } " of each paper, commits, times and machines in its " code { "provenance.json" } "." }
                 script { (PreEscaped(SCRIPT)) }
             }
         }
@@ -162,7 +162,7 @@ fn artefact(slug: &str, s: &Section) -> Markup {
     html! {
         section id=(format!("{slug}-{}", s.name)) {
             h3 { (s.heading) }
-            (markdown::html(&s.markdown, markdown::Place { folder: slug, files: &s.files }))
+            (markdown::html(&s.markdown, markdown::LinkTargets { folder: slug, files: &s.files }))
             @if !s.command.is_empty() { p.made { "Made again by " code { (s.command) } } }
             p.made {
                 (s.made) ". Files: "

@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 /// The targets of the links of a page.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub(crate) struct LinkTargets<'a> {
     /// Folder that links and pictures are relative to.
     pub folder: &'a str,
     /// Files in it: a picture links to its vector form where there is one.
@@ -12,7 +12,7 @@ pub(crate) struct Place<'a> {
 }
 
 /// Renders the page of an artefact. The first heading is left out, since the index has its own.
-pub(crate) fn html(text: &str, place: Place) -> Markup {
+pub(crate) fn html(text: &str, place: LinkTargets) -> Markup {
     let blocks: Vec<&str> = text
         .split("\n\n")
         .map(str::trim)
@@ -37,7 +37,7 @@ const MOST_ROWS: usize = 40;
 /// Rows from which on a table is folded.
 const FOLDED: usize = 14;
 
-fn table(block: &str, place: Place) -> Markup {
+fn table(block: &str, place: LinkTargets) -> Markup {
     let cells = |line: &str| -> Vec<String> {
         let line = line.trim().trim_start_matches('|').trim_end_matches('|');
         let line = line.replace("\\|", "\u{1}");
@@ -77,7 +77,7 @@ fn table(block: &str, place: Place) -> Markup {
 }
 
 /// Pictures, links, bold and code within a line.
-fn inline(text: &str, place: Place) -> Markup {
+fn inline(text: &str, place: LinkTargets) -> Markup {
     let mut out = String::new();
     let mut rest = text;
     while let Some(at) = rest.find(['!', '[', '*', '`']) {
@@ -92,7 +92,7 @@ fn inline(text: &str, place: Place) -> Markup {
 }
 
 /// The construct that `text` starts with, and its length; one plain character when there is none.
-fn special(text: &str, place: Place) -> (Markup, usize) {
+fn special(text: &str, place: LinkTargets) -> (Markup, usize) {
     let picture = text.starts_with("![");
     if let Some((name, target, used)) = link(text.strip_prefix('!').unwrap_or(text)) {
         let vector = target.strip_suffix(".png").map(|t| format!("{t}.svg"));
@@ -141,7 +141,7 @@ mod tests {
     fn tables_links_and_escapes() {
         let text = "# Title\n\n| a | b |\n| --- | --: |\n| x \\| y | **1.5** |\n\n![plot](p.png)\n\n1 < 2, see [csv](t.csv) and `code` [1] 2*3!";
         let files = ["q.svg".to_string()];
-        let place = Place {
+        let place = LinkTargets {
             folder: "facade_grammar",
             files: &files,
         };
@@ -169,7 +169,7 @@ mod tests {
     fn long_tables_are_cut_and_say_so() {
         let rows = "| 1 |\n".repeat(MOST_ROWS + 3);
         let files = ["t.md".to_string()];
-        let place = Place {
+        let place = LinkTargets {
             folder: "x",
             files: &files,
         };

@@ -5,6 +5,7 @@
 //! - [`Building`]: boxes, roofs and facade pieces (Fan and Wonka 2016, Sec. 4.1).
 //! - [`solid`]: houses as unions of prisms, and their closed surface.
 //! - [`triangles`]: cities and buildings as triangles, and what is measured on them.
+//! - [`vec3`]: arithmetic of points and directions.
 //! - [`LabelGrid`]: a labelled image or any overlay of rectangles, as an irregular grid of cells.
 
 mod annotated;
@@ -23,12 +24,17 @@ mod label_grid;
 mod labelled;
 mod photograph;
 mod rect;
+pub mod rectification;
 pub mod solid;
 mod splittable;
 #[cfg(test)]
 mod tests;
 mod tiling;
 pub mod triangles;
+pub mod vec3;
+
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
 
 pub use annotated::{AnnotatedFacade, AnnotationError, Note};
 pub use building::{

@@ -38,7 +38,7 @@ pub struct IndexedLayout {
 
 /// Part of the skyline: from its key to `right`, covered up to row `top` by region `owner`.
 #[derive(Clone, Copy)]
-struct Step {
+struct SkylineSegment {
     right: usize,
     top: usize,
     owner: Option<usize>,
@@ -112,7 +112,7 @@ impl Facade {
 
         let mut order: Vec<usize> = (0..layout.spans.len()).collect();
         order.sort_unstable_by_key(|&i| (layout.spans[i].bottom, layout.spans[i].left, i));
-        let ground = Step {
+        let ground = SkylineSegment {
             right: columns,
             top: 0,
             owner: None,
@@ -124,7 +124,7 @@ impl Facade {
                 .range(..=span.left)
                 .next_back()
                 .unwrap_or((&0, &ground));
-            let covered: Vec<(usize, Step)> = skyline
+            let covered: Vec<(usize, SkylineSegment)> = skyline
                 .range(first..span.right)
                 .map(|(&left, &step)| (left, step))
                 .collect();
@@ -144,13 +144,13 @@ impl Facade {
                 skyline.remove(&left);
                 if left < span.left {
                     let right = span.left;
-                    skyline.insert(left, Step { right, ..step });
+                    skyline.insert(left, SkylineSegment { right, ..step });
                 }
                 if step.right > span.right {
                     skyline.insert(span.right, step);
                 }
             }
-            let step = Step {
+            let step = SkylineSegment {
                 right: span.right,
                 top: span.top,
                 owner: Some(index),

@@ -17,7 +17,7 @@ use tokio::time::timeout;
 
 use super::document::SaveError;
 use super::jobs::{End, Job};
-use super::{Open, Studio, assets};
+use super::{Open, Studio, assets, compressed};
 use edifice_editing::examples::{example, examples};
 use edifice_editing::history::steps;
 use edifice_editing::work::Stopped;
@@ -80,6 +80,7 @@ pub fn router(studio: Arc<Studio>) -> Router {
         .route("/api/jobs/{id}/stop", post(stop))
         .fallback(assets::asset)
         .with_state(studio)
+        .layer(axum::middleware::from_fn(compressed::compressed))
 }
 
 fn answer(value: &Value) -> Response {
@@ -288,24 +289,39 @@ async fn stop(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answ
     Ok(answer(&json!({"job": job.shown()})))
 }
 
-async fn undo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
+/// A step back or forth, for a page that shows a revision.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct Turn {
+    #[serde(default)]
+    shows: Option<u64>,
+}
+
+async fn turn(
+    studio: Arc<Studio>,
+    id: String,
+    bytes: Bytes,
+    step: fn(&mut Open, Option<&std::path::Path>),
+) -> Answer {
+    let wanted: Turn = match bytes.is_empty() {
+        true => Turn::default(),
+        false => body(&bytes)?,
+    };
     let own = studio.clone();
     on(&studio, id, move |open, id| {
         free(open)?;
-        open.undo(own.journals());
-        Ok(answer(&open.whole(id)?))
+        step(open, own.journals());
+        Ok(answer(&open.whole_for(id, wanted.shows)?))
     })
     .await
 }
 
-async fn redo(State(studio): State<Arc<Studio>>, Path(id): Path<String>) -> Answer {
-    let own = studio.clone();
-    on(&studio, id, move |open, id| {
-        free(open)?;
-        open.redo(own.journals());
-        Ok(answer(&open.whole(id)?))
-    })
-    .await
+async fn undo(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
+    turn(studio, id, bytes, Open::undo).await
+}
+
+async fn redo(State(studio): State<Arc<Studio>>, Path(id): Path<String>, bytes: Bytes) -> Answer {
+    turn(studio, id, bytes, Open::redo).await
 }
 
 #[derive(Deserialize)]

@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 
 use super::difference::difference;
 use super::jobs::Job;
-use super::journal::{Journal, Line, Source};
+use super::journal::{Journal, JournalEntry, Source};
 use edifice_base::file::write_atomic;
 use edifice_base::{Error, Result};
 use edifice_editing as editing;
 use edifice_editing::history::{Document, steps};
 use edifice_editing::script::is_written;
 use edifice_editing::work::Work;
-use edifice_editing::{State, Step};
+use edifice_editing::{Applied, State};
 use edifice_io as io;
 
 /// An open document.
@@ -166,32 +166,32 @@ impl Open {
     pub fn take(
         &mut self,
         commands: &[Value],
-        steps: Vec<Step>,
+        steps: Vec<Applied>,
         milliseconds: f64,
         journals: Option<&Path>,
     ) {
         self.document.take(commands, steps);
         self.milliseconds = milliseconds;
-        self.note(&Line::Did(commands.to_vec()), journals);
+        self.note(&JournalEntry::Did(commands.to_vec()), journals);
     }
 
     /// Takes back the last edit.
     pub fn undo(&mut self, journals: Option<&Path>) {
         if self.document.undo() {
-            self.note(&Line::Undo, journals);
+            self.note(&JournalEntry::Undo, journals);
         }
     }
 
     /// Does again what was taken back.
     pub fn redo(&mut self, journals: Option<&Path>) {
         if self.document.redo() {
-            self.note(&Line::Redo, journals);
+            self.note(&JournalEntry::Redo, journals);
         }
     }
 
     /// Adds a line to the journal, which begins with the first one. A journal that cannot be written is told of, and the
     /// document goes on without.
-    fn note(&mut self, line: &Line, journals: Option<&Path>) {
+    fn note(&mut self, line: &JournalEntry, journals: Option<&Path>) {
         let noted = match (&mut self.journal, journals) {
             (Some(journal), _) => journal.add(line),
             (None, Some(folder)) => self.begin_journal(folder, std::slice::from_ref(line)),
@@ -213,7 +213,7 @@ impl Open {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(super) fn begin_journal(&mut self, folder: &Path, lines: &[Line]) -> Result<()> {
+    pub(super) fn begin_journal(&mut self, folder: &Path, lines: &[JournalEntry]) -> Result<()> {
         let Some(source) = self.source.take() else {
             return Ok(());
         };
@@ -270,7 +270,7 @@ impl Open {
         self.saved_at = self.document.revision();
         self.warning = None;
         if self.journal.is_some() {
-            self.note(&Line::Saved, None);
+            self.note(&JournalEntry::Saved, None);
         }
         Ok([self.file.clone(), script])
     }

@@ -16,11 +16,11 @@ pub struct Job {
     /// The work itself, which tells its progress and can be stopped.
     pub work: Work,
     start: Instant,
-    place: Mutex<Place>,
+    place: Mutex<JobState>,
 }
 
 /// The document of a job, and the job's end.
-struct Place {
+struct JobState {
     document: Option<String>,
     end: Option<(End, f64)>,
 }
@@ -99,7 +99,7 @@ impl Jobs {
             id: format!("j{count}"),
             work: Work::default(),
             start: Instant::now(),
-            place: Mutex::new(Place {
+            place: Mutex::new(JobState {
                 document: document.map(str::to_owned),
                 end: None,
             }),

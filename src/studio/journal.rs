@@ -59,10 +59,10 @@ pub(crate) enum Start {
     },
 }
 
-/// A further line.
+/// The content of a further line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Line {
+pub(crate) enum JournalEntry {
     /// Commands that were done at once.
     Did(Vec<Value>),
     /// An edit was taken back.
@@ -95,7 +95,7 @@ pub(crate) struct Found {
     /// Its first line.
     pub head: Head,
     /// The other lines.
-    pub lines: Vec<Line>,
+    pub lines: Vec<JournalEntry>,
     /// The last change of the journal.
     pub changed: Option<SystemTime>,
 }
@@ -172,7 +172,7 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(crate) fn add(&mut self, line: &Line) -> Result<()> {
+    pub(crate) fn add(&mut self, line: &JournalEntry) -> Result<()> {
         self.line(line)
     }
 
@@ -234,7 +234,8 @@ impl Journal {
         if head.format != FORMAT || head.version != VERSION {
             return None;
         }
-        let lines: std::result::Result<Vec<Line>, _> = lines.map(serde_json::from_slice).collect();
+        let lines: std::result::Result<Vec<JournalEntry>, _> =
+            lines.map(serde_json::from_slice).collect();
         let lines = lines.ok()?;
         if whole < text.len() {
             journal.file.set_len(whole as u64).ok()?;
@@ -251,12 +252,12 @@ impl Journal {
 impl Found {
     /// True if there is something in it that was not saved.
     pub(crate) fn has_unsaved(&self) -> bool {
-        self.lines.last().is_some_and(|l| *l != Line::Saved)
+        self.lines.last().is_some_and(|l| *l != JournalEntry::Saved)
     }
 
     /// Number of edits.
     pub(crate) fn edits(&self) -> usize {
-        let did = |l: &&Line| matches!(l, Line::Did(_));
+        let did = |l: &&JournalEntry| matches!(l, JournalEntry::Did(_));
         self.lines.iter().filter(did).count()
     }
 }
@@ -276,9 +277,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut journal = begun(folder.path());
         let lines = [
-            Line::Did(vec![json!({"do": "edit"})]),
-            Line::Undo,
-            Line::Redo,
+            JournalEntry::Did(vec![json!({"do": "edit"})]),
+            JournalEntry::Undo,
+            JournalEntry::Redo,
         ];
         for line in &lines {
             journal.add(line).unwrap();
@@ -300,8 +301,8 @@ mod tests {
     fn what_was_saved_is_not_offered() {
         let folder = tempfile::tempdir().unwrap();
         let mut journal = begun(folder.path());
-        journal.add(&Line::Did(Vec::new())).unwrap();
-        journal.add(&Line::Saved).unwrap();
+        journal.add(&JournalEntry::Did(Vec::new())).unwrap();
+        journal.add(&JournalEntry::Saved).unwrap();
         let path = journal.path.clone();
         drop(journal);
         assert!(!Journal::take(&path).unwrap().has_unsaved());

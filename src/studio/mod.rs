@@ -11,7 +11,7 @@
 //! | `GET /api/documents/ID` | | a document; with `?shows=N` as for an edit |
 //! | `POST /api/documents/ID/edit` | `{"commands": [...], "revision": N}` | the document after the [commands](edifice_editing), or a job |
 //! | `POST /api/documents/ID/ask` | `{"ask": ...}`, or `{"preview": [...]}` with commands | what the editor says, or the `view` that the commands would make; the document stays as it is |
-//! | `POST /api/documents/ID/undo`, `redo` | `{}` | the document |
+//! | `POST /api/documents/ID/undo`, `redo` | `{}`, or `{"shows": N}` as for an edit | the document |
 //! | `POST /api/documents/ID/save` | `{"overwrite": true}` or `{}` | `file`, `script`: names of the files written |
 //! | `POST /api/documents/ID/close` | `{"discard": true}` or `{}` | `{}`; 409 for a document with unsaved work that is not to be discarded |
 //! | `GET /api/documents/ID/script` | | the commands as a shell script |
@@ -28,7 +28,8 @@
 //!
 //! A document: `id`, `kind`, `name`, `revision`, `undo`, `redo`, `unsaved`, `file`, `formats`, `warnings`, `log` (each `said`,
 //! `commands`, `done`), `milliseconds` of the last edit, and `view`, what its editor shows. Whoever edits with `"shows": N`, the
-//! revision whose view he has, may get `difference` in place of `view`: `set`, `at` and `gone` (`difference`).
+//! revision whose view he has, may get `difference` in place of `view`: `set`, `at`, `numbers` and `gone` (`difference`). Long answers
+//! are compressed with gzip for who accepts it.
 //!
 //! # What is kept
 //! What is done to a document stands in its `journal` before it is answered, so that a studio that is killed loses at most the
@@ -41,6 +42,7 @@
 
 mod api;
 mod assets;
+mod compressed;
 mod difference;
 mod document;
 pub mod guard;

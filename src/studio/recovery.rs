@@ -5,7 +5,7 @@ use std::time::SystemTime;
 
 use serde_json::{Value, json};
 
-use super::journal::{ENDING, Found, Head, Journal, Line, Source, Start, state_of};
+use super::journal::{ENDING, Found, Head, Journal, JournalEntry, Source, Start, state_of};
 use super::{Open, private};
 use edifice_base::{Error, Result};
 use edifice_editing as editing;
@@ -94,10 +94,10 @@ impl Offered {
             let part = k as f64 / count as f64;
             work.tell("doing the edits again", Some(part))?;
             match line {
-                Line::Undo => _ = open.document.undo(),
-                Line::Redo => _ = open.document.redo(),
-                Line::Saved => open.was_saved()?,
-                Line::Did(commands) => match steps(open.document.state(), commands, work) {
+                JournalEntry::Undo => _ = open.document.undo(),
+                JournalEntry::Redo => _ = open.document.redo(),
+                JournalEntry::Saved => open.was_saved()?,
+                JournalEntry::Did(commands) => match steps(open.document.state(), commands, work) {
                     Ok(steps) => open.document.take(commands, steps),
                     Err(error) if work.is_stopped() => return Err(error),
                     Err(error) => {

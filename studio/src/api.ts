@@ -128,7 +128,37 @@ async function document(path: string, body: unknown, tell: (job: Job) => void, s
 
 /** A document as it is told, perhaps by the difference of its view to the one that the page shows. */
 interface Told extends Doc {
-  difference?: { set: Record<string, unknown>; at: Record<string, Record<string, unknown>>; gone: string[] };
+  difference?: {
+    set: Record<string, unknown>;
+    at: Record<string, Record<string, unknown>>;
+    numbers: Record<string, Numbers>;
+    gone: string[];
+  };
+}
+
+/** The changes of a list in which only numbers of hundredths changed, as `src/studio/difference.rs` describes them. */
+interface Numbers {
+  rows: number[];
+  columns: { path: number[]; times: number; off: number[] }[];
+}
+
+/** The list after the changes; entries that stay are shared with the old one. */
+function renumbered(old: unknown[], { rows, columns }: Numbers): unknown[] {
+  const list = [...old];
+  let row = 0;
+  const places = rows.map((gap) => (row += gap));
+  for (const place of places) list[place] = structuredClone(list[place]);
+  for (const { path, times, off } of columns) {
+    const by = new Map<number, number>();
+    for (let k = 0, at = 0; k < off.length; k += 2) by.set((at += off[k]), off[k + 1]);
+    const last = path[path.length - 1];
+    places.forEach((place, k) => {
+      let holder = list[place] as unknown[];
+      for (const step of path.slice(0, -1)) holder = holder[step] as unknown[];
+      holder[last] = (Math.floor(100 * times * (holder[last] as number) + 0.5) + (by.get(k) ?? 0)) / 100;
+    });
+  }
+  return list;
 }
 
 /** The document with its view. */
@@ -141,6 +171,7 @@ function seen({ difference, ...doc }: Told, shown?: Doc): Doc {
     for (const [k, value] of Object.entries(entries)) list[Number(k)] = value;
     view[key] = list;
   }
+  for (const [key, changes] of Object.entries(difference.numbers)) view[key] = renumbered(view[key] as unknown[], changes);
   return { ...doc, view };
 }
 
@@ -156,8 +187,10 @@ export const edit = (shown: Doc, commands: unknown[], tell: (job: Job) => void) 
   document(`/documents/${shown.id}/edit`, { commands, revision: shown.revision, shows: shows(shown) }, tell, shown);
 export const stop = (job: string) => json<{ job: Job }>(`/jobs/${job}/stop`, {});
 export const question = <T>(id: string, asked: unknown) => json<T>(`/documents/${id}/ask`, asked);
-export const undo = (id: string) => json<Doc>(`/documents/${id}/undo`, {});
-export const redo = (id: string) => json<Doc>(`/documents/${id}/redo`, {});
+const turned = async (shown: Doc, way: "undo" | "redo") =>
+  seen(await json<Told>(`/documents/${shown.id}/${way}`, { shows: shows(shown) }), shown);
+export const undo = (shown: Doc) => turned(shown, "undo");
+export const redo = (shown: Doc) => turned(shown, "redo");
 export const save = (id: string, overwrite: boolean) =>
   json<{ file: string; script: string }>(`/documents/${id}/save`, { overwrite });
 export const close = (id: string, discard: boolean) => json<object>(`/documents/${id}/close`, { discard });

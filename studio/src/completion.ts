@@ -3,7 +3,7 @@
 import type { Doc } from "./api";
 import { button, field, h, s, section, swap, tidy } from "./dom";
 import { arrow, Drawing, place, type Rect, snap } from "./drawing";
-import { rectified } from "./photograph";
+import { address, corners, held } from "./photograph";
 import type { Editor, Session } from "./session";
 
 interface Element_ extends Rect {
@@ -21,6 +21,8 @@ type Corners = [number, number, number, number];
 interface View {
   /** Which photograph is under the drawing. */
   photograph: string | null;
+  /** The photograph that the drawing was opened from, until its corners are known. */
+  original: { file: string; width: number; height: number } | null;
   unit: string;
   width: number;
   height: number;
@@ -92,11 +94,45 @@ export function completion(session: Session<View>): Editor<View> {
       const wish = complete();
       return [command, { ...wish, pins: wish.pins.filter((p) => !gone.has(p)) }];
     });
+  /** Shows the rest as it would be completed after edits that are still under way. */
+  function completed(edits: string[]) {
+    if (!live || session.doc.view.answers.length === 0) return;
+    const gone = new Set(edits.map((e) => e.split(" ")[1].split("=")[0]));
+    const wish = complete();
+    const pins = wish.pins.filter((p) => !gone.has(p));
+    void session.preview([{ do: "edit", edits }, { ...wish, count: 1, pins }], (view) => {
+      for (const node of drawing.layer.querySelectorAll("g.element.added")) if (!gone.has(node.getAttribute("data-id") ?? "")) node.remove();
+      const added = view.elements.filter((e) => !e.observed && !e.pinned).sort(below);
+      const nodes = added.map((e) => {
+        const node = picture(e);
+        node.classList.add("added");
+        return node;
+      });
+      drawing.layer.querySelector("rect.wall")?.after(...nodes);
+    });
+  }
   const again = (change: Partial<ReturnType<typeof complete>> = {}) => session.run(() => [{ ...complete(), ...change }]);
 
   /** Another photograph, or none; where there were answers, the same again over it. */
   const put = (picture: string | null) =>
     session.run(() => [{ do: "photograph", picture }, ...(session.doc.view.answers.length > 0 ? [complete()] : [])]);
+
+  /** A photograph as the rectangle between its corners; where there were answers, the same again over it. */
+  const straighten = (wish: { picture: string | null; corners: [number, number][]; height: number | null }) =>
+    session.run(() => [{ do: "straighten", ...wish }, ...(session.doc.view.answers.length > 0 ? [complete()] : [])]);
+
+  /** Asks for the corners of the photograph that the drawing was opened from. */
+  const straightenOriginal = (original: NonNullable<View["original"]>) =>
+    session.calmly(async () => {
+      const said = await session.ask<{ picture: string | null }>({ ask: "original" });
+      if (!said?.picture) return;
+      const source = held(said.picture);
+      const empty = session.doc.view.elements.length === 0;
+      const placed = await corners(source, [original.width, original.height], empty ? "new" : "kept");
+      if (placed !== null) await straighten({ picture: null, ...placed });
+    });
+  /** True once the corners were asked for unasked. */
+  let offered = false;
 
   /** The address of the photograph under the drawing, asked for once: it is not in every answer of the server. */
   function under(id: string | null): string | null {
@@ -166,7 +202,10 @@ export function completion(session: Session<View>): Editor<View> {
       return (dx, dy, done) => {
         const [x, y] = [snap(e.x + dx, grid()) - e.x, snap(e.y + dy, grid()) - e.y];
         for (const node of nodes) node?.setAttribute("transform", `translate(${x},${y})`);
-        if (done && (x !== 0 || y !== 0)) void edit(...own.map((o) => `move ${o.id}=${four(o.x + x)},${four(o.y + y)}`));
+        if (x === 0 && y === 0) return;
+        const moves = own.map((o) => `move ${o.id}=${four(o.x + x)},${four(o.y + y)}`);
+        if (done) void edit(...moves);
+        else completed(moves);
       };
     });
     return g;
@@ -212,8 +251,10 @@ export function completion(session: Session<View>): Editor<View> {
       const chosen = file.files?.[0];
       if (!chosen) return;
       await session.calmly(async () => {
-        const made = await rectified(chosen, view.width / view.height);
-        if (made !== null) await put(made);
+        const sent = await address(chosen);
+        const empty = view.elements.length === 0;
+        const placed = await corners(chosen, [sent.width, sent.height], empty ? "new" : "kept");
+        if (placed !== null) await straighten({ picture: sent.text, ...placed });
       });
     });
     swap(
@@ -224,6 +265,7 @@ export function completion(session: Session<View>): Editor<View> {
           show(session.doc);
         }, { "aria-pressed": String(tool === id), class: `tool ${id}` }),
       ),
+      view.original === null ? null : button("Straighten", () => straightenOriginal(view.original!), { class: "tool" }),
       h("label", { class: "tool file" }, "Photograph", file),
       view.photograph === null ? null : button("No photograph", () => put(null), { class: "tool" }),
     );
@@ -280,6 +322,10 @@ export function completion(session: Session<View>): Editor<View> {
     );
     if (focused) (drawing.layer.querySelector(`[data-id="${CSS.escape(focused)}"]`) as SVGGElement | null)?.focus();
     toolbar(view);
+    if (view.original && !offered && view.elements.length === 0) {
+      offered = true;
+      void straightenOriginal(view.original);
+    }
     const box = h("input", { type: "checkbox", checked: live });
     box.addEventListener("change", () => (live = box.checked));
     const answers = view.answers.map((a, k) =>

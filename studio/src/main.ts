@@ -7,6 +7,7 @@ import { completion } from "./completion";
 import { button, h } from "./dom";
 import { grammar } from "./grammar";
 import { house } from "./house";
+import { address, corners } from "./photograph";
 import { type Editor, Session } from "./session";
 
 const EDITORS = { house, completion, grammar, city } as unknown as Record<
@@ -88,6 +89,33 @@ async function start(): Promise<void> {
     }
   };
   const examples = all.examples.map((e) => card(e.title, e.about, e.kind, openBy(e.title, (tell) => api.openExample(e.id, tell))));
+  /** Begins a drawing over a photograph. */
+  const photograph = async (file: File) => {
+    try {
+      const sent = await address(file);
+      const placed = await corners(file, [sent.width, sent.height], "new");
+      if (placed === null) return;
+      const doc = await api.openExample("sketch", () => {});
+      await api.edit(doc, [{ do: "straighten", picture: sent.text, ...placed }], () => {});
+      go(doc.id);
+    } catch (error) {
+      fail(error);
+    }
+  };
+  const file = h("input", { type: "file", accept: "image/*", class: "hidden", "aria-label": "A photograph of a facade" });
+  file.addEventListener("change", () => file.files?.[0] && void photograph(file.files[0]));
+  const drop = h(
+    "li",
+    {},
+    h(
+      "label",
+      { class: "card drop" },
+      h("span", { class: "kind" }, kindName("completion")),
+      h("strong", {}, "A photograph"),
+      h("span", {}, "Drop the picture of a facade here, or choose it: put its corners, draw a few windows, and have it completed."),
+      file,
+    ),
+  );
   const unsaved = all.unsaved.map((u) =>
     removable(
       card(u.name, `${u.edits} ${u.edits === 1 ? "edit" : "edits"} not saved${u.seconds === null ? "" : `, ${ago(u.seconds)}`}: open it again`, u.kind, openBy(u.name, (tell) => api.recover(u.id, tell))),
@@ -99,21 +127,30 @@ async function start(): Promise<void> {
     ),
   );
   document.title = "Edifice studio";
-  app.replaceChildren(
-    h(
-      "main",
-      { class: "start" },
+  const page = h("main", { class: "start" });
+  page.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    page.classList.add("dropping");
+  });
+  page.addEventListener("dragleave", () => page.classList.remove("dropping"));
+  page.addEventListener("drop", (event) => {
+    event.preventDefault();
+    page.classList.remove("dropping");
+    const picture = [...(event.dataTransfer?.files ?? [])].find((f) => f.type.startsWith("image/"));
+    if (picture) void photograph(picture);
+    else say("Drop a picture here; other files are opened with edifice studio FILE", "note");
+  });
+  page.append(
       h("h1", {}, "Edifice studio"),
       working,
       h("p", { class: "lead" }, "Draw a part, and see what a method makes of the rest. What you fix stays; every edit is a command that can be run again without this page."),
       ...(unsaved.length > 0 ? [h("h2", {}, "Not saved when the studio ended"), h("ul", { class: "cards unsaved" }, ...unsaved)] : []),
       ...(opened.length > 0 ? [h("h2", {}, "Open"), h("ul", { class: "cards" }, ...opened)] : []),
       h("h2", {}, "Begin with"),
-      h("ul", { class: "cards" }, ...examples),
+      h("ul", { class: "cards" }, drop, ...examples),
       h("p", { class: "hint" }, `Edifice ${all.version}${all.readOnly ? " · read only" : ""} · files are opened with edifice studio FILE`),
-    ),
-    notice,
   );
+  app.replaceChildren(page, notice);
 }
 
 async function edit(id: string) {

@@ -141,11 +141,11 @@ export class Session<View = never> {
   }
 
   async undo() {
-    await this.calmly(async () => this.take(await api.undo(this.doc.id)));
+    await this.calmly(async () => this.take(await api.undo(this.doc as api.Doc)));
   }
 
   async redo() {
-    await this.calmly(async () => this.take(await api.redo(this.doc.id)));
+    await this.calmly(async () => this.take(await api.redo(this.doc as api.Doc)));
   }
 
   async save() {
@@ -177,7 +177,7 @@ export class Session<View = never> {
       }
       if (own?.revision === this.doc.revision && own.unsaved === this.doc.unsaved) return;
     }
-    const doc = await api.get(this.doc.id);
+    const doc = await api.get(this.doc.id, this.doc as api.Doc);
     if (!this.busy) this.take(doc);
   }
 

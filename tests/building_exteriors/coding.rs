@@ -95,6 +95,29 @@ fn draws_of_a_coded_model_are_possible() {
 }
 
 #[test]
+fn columns_are_those_of_draws() {
+    for file in ["made.houses.json", "real.houses.json"] {
+        let text = std::fs::read_to_string(shipped(file)).unwrap();
+        let model = ModelFile::from_json(&text).unwrap();
+        let columns = model.columns().unwrap();
+        assert_eq!(columns.rows(), 0);
+        let drawn = model
+            .sample(20, &mut stream(1, "columns", 0))
+            .unwrap()
+            .table;
+        assert!(!drawn.columns().is_empty());
+        for column in drawn.columns() {
+            let asked = columns.column(column.name()).unwrap();
+            assert_eq!(asked.categories(), column.categories());
+        }
+        let attributes = model.attributes();
+        for name in attributes.iter().flat_map(|g| &g.columns) {
+            columns.column(name).unwrap();
+        }
+    }
+}
+
+#[test]
 fn what_is_given_stays_to_the_bit() {
     let model = small_model();
     for group in GROUPS

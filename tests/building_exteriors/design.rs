@@ -9,7 +9,7 @@ use edifice::methods::building_exteriors::house::{
     Database, GenerateError, Method, Options, generate,
 };
 use edifice::methods::building_exteriors::mass::footprint::PlanError;
-use edifice::methods::building_exteriors::mass::{Search, iou};
+use edifice::methods::building_exteriors::mass::{SearchLimits, iou};
 use edifice::rng::stream;
 use edifice::shape::{BoxStyle, Building, PlanUnion, Side};
 
@@ -27,9 +27,9 @@ fn row(database: &Database, i: usize) -> [f64; 49] {
 
 fn without(i: usize) -> Options {
     Options {
-        search: Search {
+        search: SearchLimits {
             leave_out: Some(i),
-            ..Search::default()
+            ..SearchLimits::default()
         },
         ..Options::default()
     }

@@ -6,7 +6,7 @@ use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Database, Joining, Options, generate, model};
 use edifice::methods::building_exteriors::mass::contradiction::{Contradiction, check};
 use edifice::methods::building_exteriors::mass::{
-    MassTarget, Search, is_sound, search, variations,
+    MassTarget, SearchLimits, is_sound, search, variations,
 };
 use edifice::rng::stream;
 use edifice::shape::solid::exact::{Line, Plane};
@@ -138,9 +138,9 @@ fn left_out_houses_are_built_anew() {
     for i in (0..database.rows.len()).step_by(9) {
         let wanted = row(&database, i);
         let options = Options {
-            search: Search {
+            search: SearchLimits {
                 leave_out: Some(i),
-                ..Search::default()
+                ..SearchLimits::default()
             },
             ..Options::default()
         };
@@ -224,7 +224,7 @@ fn variations_differ() {
         0.02,
         &[],
         &database,
-        &Search::default(),
+        &SearchLimits::default(),
         &mut rng,
     );
     assert!(found.len() >= 4, "{}", found.len());
@@ -249,9 +249,9 @@ fn frozen_boxes_keep_their_bits() {
         roof: building.boxes[0].roof,
         frozen: true,
     };
-    let options = Search {
+    let options = SearchLimits {
         leave_out: Some(5),
-        ..Search::default()
+        ..SearchLimits::default()
     };
     let mut rng = stream(1, "tests/frozen", 0);
     let found = search(&target, &[frozen], &database, &options, &mut rng).unwrap();

@@ -7,7 +7,7 @@ use edifice::io::building_json;
 use edifice::methods::building_exteriors::attributes::attributes;
 use edifice::methods::building_exteriors::design::{possible_rows, wanted_rows};
 use edifice::methods::building_exteriors::house::{Database, Options, generate};
-use edifice::methods::building_exteriors::mass::{Search, least_z};
+use edifice::methods::building_exteriors::mass::{SearchLimits, least_z};
 use edifice::methods::building_exteriors::model_file::ModelFile;
 use edifice::rng::stream;
 use rand::RngExt;
@@ -34,9 +34,9 @@ fn no_house_is_nearer_than_the_bound() {
         assert_eq!(least_z(&whole(row), &database.deviations), 0.0);
     }
     let options = Options {
-        search: Search {
+        search: SearchLimits {
             rounds: 1,
-            ..Search::default()
+            ..SearchLimits::default()
         },
         ..Options::default()
     };

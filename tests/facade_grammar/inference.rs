@@ -15,7 +15,7 @@ use proptest::prelude::*;
 use rand::RngExt;
 
 const METHODS: [Method; 6] = [
-    Method::AdpBest,
+    Method::Lagrangian,
     Method::AdpPaper,
     Method::Importance,
     Method::Greedy,
@@ -57,14 +57,14 @@ fn ten_seeds(method: Method, operations: Operations) -> Vec<f64> {
 
 #[test]
 fn best_reaches_38_1_with_split_and_repeat_from_at_least_five_of_ten_seeds() {
-    let costs = ten_seeds(Method::AdpBest, Operations::default());
+    let costs = ten_seeds(Method::Lagrangian, Operations::default());
     let reached = costs.iter().filter(|c| **c < 38.1 + 1e-6).count();
     assert!(reached >= 5, "{costs:?}");
 }
 
 #[test]
 fn best_reaches_38_6_with_split_only_from_at_least_five_of_ten_seeds() {
-    let costs = ten_seeds(Method::AdpBest, Operations::split_only());
+    let costs = ten_seeds(Method::Lagrangian, Operations::split_only());
     let reached = costs.iter().filter(|c| **c < 38.6 + 1e-6).count();
     assert!(reached >= 5, "{costs:?}");
 }
@@ -206,7 +206,7 @@ fn a_grid_of_different_panes_is_one_rule_when_grids_are_allowed() {
         rect: Rect::new(f64::from(k % 3), f64::from(k / 3) * 2.0, 1.0, 2.0),
     });
     let facade = Facade::new("panes", "m", 3.0, 4.0, panes.collect()).unwrap();
-    for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
+    for method in [Method::Lagrangian, Method::AdpPaper, Method::Importance] {
         let with = |ops: &str| Settings {
             method,
             iterations: 200,
@@ -319,7 +319,7 @@ fn random_layout(seed: u64, depth: u32) -> Facade {
 #[test]
 fn observers_are_told_of_every_step_in_order() {
     let facade = random_layout(3, 5);
-    for method in [Method::AdpBest, Method::AdpPaper, Method::Importance] {
+    for method in [Method::Lagrangian, Method::AdpPaper, Method::Importance] {
         let settings = Settings {
             method,
             iterations: 40,
@@ -338,7 +338,7 @@ fn observers_are_told_of_every_step_in_order() {
         )
         .unwrap();
         let steps = steps.into_inner().unwrap();
-        if method == Method::AdpBest {
+        if method == Method::Lagrangian {
             // It stops once its grammar is proven optimal.
             assert!((1..=settings.steps()).contains(&(steps.len() as u64)));
         } else {
@@ -368,7 +368,7 @@ proptest! {
     fn best_is_never_dearer_than_the_others(seed in 0u64..1_000_000) {
         let facade = random_layout(seed, 6);
         let run = |method| cost(&facade, &Settings { method, iterations: 60, seed, ..Settings::default() });
-        let best = run(Method::AdpBest);
+        let best = run(Method::Lagrangian);
         prop_assert!(best <= run(Method::AdpPaper) + 1e-9);
         prop_assert!(best <= run(Method::Greedy) + 1e-9);
         prop_assert!(best <= run(Method::Bayesian) + 1e-9);

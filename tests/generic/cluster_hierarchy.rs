@@ -1,11 +1,11 @@
 //! Ward's hierarchy, k-means and communities against slow, obvious oracles.
 
 use edifice::cluster::{
-    WardError, WeightedGraph, girvan_newman, kmeans, lloyd, louvain, means, modularity,
-    sum_of_squares, ward, weighted_graph,
+    WardError, WeightedGraph, girvan_newman, kmeans, kmeans_unweighted, lloyd, louvain, means,
+    modularity, sum_of_squares, ward, weighted_graph,
 };
-use edifice::rng::{Stream, stream};
-use rand::RngExt;
+use edifice::rng::{Stream, categorical, stream};
+use rand::{Rng, RngExt};
 
 /// Greedy Ward: the cheapest of all pairs merges. Returns the sum of squared errors by number of clusters.
 fn naive_ward(points: &[f64], d: usize, weights: &[f64]) -> Vec<f64> {
@@ -132,6 +132,62 @@ fn lloyd_never_raises_the_sum_and_centres_are_nearest() {
     // As many centres as points: nothing is left.
     let all = kmeans(&points, 3, &weights, 300, 3, &mut rng);
     assert!(all.sse < 1e-12);
+}
+
+/// k-means++ and Lloyd by all distances: the labels.
+fn slow_kmeans(points: &[Vec<f64>], k: usize, rounds: usize, rng: &mut impl Rng) -> Vec<usize> {
+    let square =
+        |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum() };
+    let nearest = |p: &[f64], centres: &[Vec<f64>]| {
+        let far = centres.iter().map(|c| square(p, c));
+        let first_least = far.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        first_least.expect("there is a centre")
+    };
+    let mut centres = vec![points[rng.random_range(0..points.len())].clone()];
+    while centres.len() < k {
+        let mass: Vec<f64> = points.iter().map(|p| nearest(p, &centres).1).collect();
+        centres.push(points[categorical(&mass, rng)].clone());
+    }
+    let assigned = |centres: &[Vec<f64>]| -> Vec<usize> {
+        points.iter().map(|p| nearest(p, centres).0).collect()
+    };
+    let mut labels = assigned(&centres);
+    for _ in 0..rounds {
+        for (c, centre) in centres.iter_mut().enumerate() {
+            let own: Vec<&Vec<f64>> = (points.iter().zip(&labels))
+                .filter_map(|(p, l)| (*l == c).then_some(p))
+                .collect();
+            for (d, value) in centre.iter_mut().enumerate().filter(|_| !own.is_empty()) {
+                *value = own.iter().map(|p| p[d]).sum::<f64>() / own.len() as f64;
+            }
+        }
+        labels = assigned(&centres);
+    }
+    labels
+}
+
+#[test]
+fn k_means_without_weights_is_that_by_all_distances() {
+    for seed in 0..400 {
+        let mut rng = stream(seed, "unweighted", 0);
+        let (n, width) = (rng.random_range(1..60), rng.random_range(1..5));
+        // Few whole numbers: equal points, ties, and fewer distinct points than centres.
+        let most = if seed % 2 == 0 { 3 } else { 1000 };
+        let one = |rng: &mut Stream| {
+            (0..width)
+                .map(|_| f64::from(rng.random_range(0..most)))
+                .collect()
+        };
+        let points: Vec<Vec<f64>> = (0..n).map(|_| one(&mut rng)).collect();
+        let (k, rounds) = (rng.random_range(1..12), rng.random_range(0..8));
+        let expected = slow_kmeans(&points, k, rounds, &mut stream(seed, "start", 0));
+        let flat = points.concat();
+        let found = kmeans_unweighted(&flat, width, k, rounds, &mut stream(seed, "start", 0));
+        assert_eq!(
+            found.labels, expected,
+            "seed {seed}: {n} points, {k} centres"
+        );
+    }
 }
 
 #[test]

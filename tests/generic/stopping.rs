@@ -14,7 +14,7 @@ use edifice::methods::facade_grammar::{self, infer};
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
 use edifice::methods::structure_completion::model::Model;
 use edifice::model::Table;
-use edifice::model::network::structure::{Score, Search, score, search, search_while};
+use edifice::model::network::structure::{Score, SearchSettings, score, search, search_while};
 use edifice::rng::stream;
 use edifice::shape::{Facade, Rect, Region};
 use edifice::{Ended, Progress, Watch, unwatched};
@@ -137,12 +137,12 @@ fn chain(columns: usize, rows: usize) -> Table {
 #[test]
 fn structure_search() {
     let data = chain(30, 1_000);
-    let whole = search(&data, &Search::default(), 1).expect("a structure");
+    let whole = search(&data, &SearchSettings::default(), 1).expect("a structure");
     assert!(!whole.interrupted);
     for after in [2, 10, 30] {
         let found = stopped(after, |watch| {
             let goes_on = || watch(Progress::stage("moves")).is_continue();
-            search_while(&data, &Search::default(), 1, &goes_on).expect("ends")
+            search_while(&data, &SearchSettings::default(), 1, &goes_on).expect("ends")
         });
         assert!(found.interrupted);
         assert!(found.score <= whole.score && found.moves <= whole.moves);

@@ -7,7 +7,7 @@ use edifice::model::ModelError;
 use edifice::model::Table;
 use edifice::model::em::Outcome;
 use edifice::model::hierarchy::{
-    Group, Settings, Step, Sweep, Variant, fit_observed, learn, learn_observed, refine,
+    Group, SearchStep, Settings, Sweep, Variant, fit_observed, learn, learn_observed, refine,
 };
 use edifice::rng::stream;
 use rand::RngExt;
@@ -47,7 +47,9 @@ fn settings() -> Settings {
 fn an_observer_changes_nothing_and_hears_every_step() {
     let (data, groups) = table(150, 1);
     let heard = AtomicUsize::new(0);
-    let watched = learn_observed(&data, &groups, &settings(), 1, &|step: Option<&Step>| {
+    let watched = learn_observed(&data, &groups, &settings(), 1, &|step: Option<
+        &SearchStep,
+    >| {
         heard.fetch_add(usize::from(step.is_some()), Ordering::Relaxed);
         ControlFlow::Continue(())
     })
@@ -77,7 +79,7 @@ fn a_search_ended_at_any_time_returns_a_model_and_goes_on_from_it() {
         assert!(ended.interrupted && ended.score.is_finite());
         let logs = ended.model.log_likelihood(&data).unwrap();
         assert!(logs.iter().all(|l| l.is_finite()));
-        let go_on = |_: Option<&Step>| ControlFlow::Continue(());
+        let go_on = |_: Option<&SearchStep>| ControlFlow::Continue(());
         let refined = refine(&ended.model, &data, &settings(), 1, &go_on).unwrap();
         assert!(!refined.interrupted);
         // EM raises the posterior, not the score: near the end both may differ by what is left of it.
@@ -139,7 +141,7 @@ fn a_sweep_of_few_styles_finds_what_one_of_all_does() {
 #[test]
 fn a_fit_can_be_ended_and_a_model_of_another_variant_is_refused() {
     let (data, groups) = table(200, 5);
-    let end = |_: Option<&Step>| ControlFlow::Break(());
+    let end = |_: Option<&SearchStep>| ControlFlow::Break(());
     let fitted = fit_observed(&data, &groups, 3, &[2, 2], &settings(), 1, &end).unwrap();
     assert_eq!(fitted.outcome, Outcome::Interrupted);
     let error = refine(&fitted.model, &data, &settings(), 1, &end).unwrap_err();

@@ -112,6 +112,14 @@ fn relations_are_found_and_every_draw_keeps_them() {
     let names = drawn.columns().iter().map(|c| c.name());
     assert!(names.eq(table.columns().iter().map(|c| c.name())));
     (0..300).for_each(|row| kept(&drawn, row));
+    let kinds = |t: &Table| -> Vec<_> {
+        let columns = t.columns().iter();
+        columns
+            .map(|c| (c.name().to_owned(), c.categories().map(<[String]>::to_vec)))
+            .collect()
+    };
+    let columns = read.columns().unwrap();
+    assert_eq!((columns.rows(), kinds(&columns)), (0, kinds(&drawn)));
     // The spread of what is computed is that of the table: 200 rows, 300 draws.
     let mean =
         |t: &Table| (0..t.rows()).map(|r| real(t, "total", r)).sum::<f64>() / t.rows() as f64;

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use edifice::model::network::structure::{Score, Search, score, search};
+use edifice::model::network::structure::{Score, SearchSettings, score, search};
 use edifice::model::network::{Evidence, Network};
 use edifice::model::{Cell, ModelError, Table};
 use edifice::rng::stream;
@@ -130,7 +130,7 @@ proptest! {
     ) {
         let data = random(&sizes, rows, seed);
         let kind = if bic { Score::Bic } else { Score::Bdeu(1.0 + (seed % 7) as f64) };
-        let settings = Search { score: kind, restarts: 5, ..Search::default() };
+        let settings = SearchSettings { score: kind, restarts: 5, ..SearchSettings::default() };
         let found = search(&data, &settings, seed).unwrap();
         let parents = parents_of(&found.network, &data);
         prop_assert!(acyclic(&parents));
@@ -171,7 +171,7 @@ fn sampled(network: &Network, rows: usize, seed: u64) -> Table {
 fn the_skeleton_of_asia_comes_back() {
     let truth = asia();
     let data = sampled(&truth, 10_000, 1);
-    let found = search(&data, &Search::default(), 1).unwrap();
+    let found = search(&data, &SearchSettings::default(), 1).unwrap();
     let undirected = |edges: &[(String, String)]| {
         let both = edges
             .iter()
@@ -189,7 +189,12 @@ fn the_skeleton_of_asia_comes_back() {
     assert!(known.difference(&learned).count() <= 2, "{learned:?}");
     assert!(learned.difference(&known).count() <= 1, "{learned:?}");
     // The structure found is at least as good as the true one.
-    let truth_score = score(&data, &parents_of(&truth, &data), Search::default().score).unwrap();
+    let truth_score = score(
+        &data,
+        &parents_of(&truth, &data),
+        SearchSettings::default().score,
+    )
+    .unwrap();
     assert!(found.score >= truth_score - 1e-6);
 }
 
@@ -197,12 +202,12 @@ fn the_skeleton_of_asia_comes_back() {
 fn constraints_hold() {
     let data = sampled(&asia(), 2000, 2);
     let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
-    let settings = Search {
+    let settings = SearchSettings {
         required: vec![pair("dysp", "asia")],
         forbidden: vec![pair("smoke", "lung"), pair("lung", "smoke")],
         tiers: vec![vec!["smoke".into()], vec!["xray".into(), "dysp".into()]],
         most_parents: 2,
-        ..Search::default()
+        ..SearchSettings::default()
     };
     let found = search(&data, &settings, 1).unwrap();
     assert!(found.edges.contains(&pair("dysp", "asia")));
@@ -216,22 +221,22 @@ fn constraints_hold() {
             .iter()
             .all(|p| p.len() <= 2)
     );
-    let bad = |change: Search| search(&data, &change, 1).unwrap_err();
+    let bad = |change: SearchSettings| search(&data, &change, 1).unwrap_err();
     let circle = vec![pair("asia", "tub"), pair("tub", "asia")];
-    let circle = bad(Search {
+    let circle = bad(SearchSettings {
         required: circle,
-        ..Search::default()
+        ..SearchSettings::default()
     });
     assert!(matches!(circle, ModelError::Cycle { .. }), "{circle}");
-    let both = bad(Search {
+    let both = bad(SearchSettings {
         required: vec![pair("asia", "tub")],
         forbidden: vec![pair("asia", "tub")],
-        ..Search::default()
+        ..SearchSettings::default()
     });
     assert!(both.to_string().contains("asia"), "{both}");
-    let unknown = bad(Search {
+    let unknown = bad(SearchSettings {
         forbidden: vec![pair("asia", "nobody")],
-        ..Search::default()
+        ..SearchSettings::default()
     });
     assert_eq!(
         unknown,
@@ -239,9 +244,9 @@ fn constraints_hold() {
             name: "nobody".into()
         }
     );
-    let ess = bad(Search {
+    let ess = bad(SearchSettings {
         score: Score::Bdeu(f64::NAN),
-        ..Search::default()
+        ..SearchSettings::default()
     });
     assert!(matches!(ess, ModelError::Parameter { .. }), "{ess}");
 }
@@ -250,11 +255,11 @@ fn constraints_hold() {
 fn what_cannot_be_counted_is_named() {
     let real = Table::new().real("w", [Some(1.0), Some(2.0)]).unwrap();
     assert!(matches!(
-        search(&real, &Search::default(), 1),
+        search(&real, &SearchSettings::default(), 1),
         Err(ModelError::Kind { .. })
     ));
     let missing = Table::new().binary("b", [Some(true), None]).unwrap();
-    let error = search(&missing, &Search::default(), 1).unwrap_err();
+    let error = search(&missing, &SearchSettings::default(), 1).unwrap_err();
     assert_eq!(
         error,
         ModelError::Missing {
@@ -262,10 +267,10 @@ fn what_cannot_be_counted_is_named() {
             row: 1
         }
     );
-    assert!(search(&Table::new(), &Search::default(), 1).is_err());
+    assert!(search(&Table::new(), &SearchSettings::default(), 1).is_err());
     // One column, and columns that never vary.
     let one = Table::new().binary("b", [Some(true); 3]).unwrap();
-    let found = search(&one, &Search::default(), 1).unwrap();
+    let found = search(&one, &SearchSettings::default(), 1).unwrap();
     assert!(found.edges.is_empty() && found.score.is_finite());
 }
 
@@ -275,7 +280,7 @@ fn the_same_seed_gives_the_same_structure_with_any_number_of_threads() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap()
-            .install(|| search(&data, &Search::default(), 7).unwrap())
+            .install(|| search(&data, &SearchSettings::default(), 7).unwrap())
     };
     let (one, two) = (with(1), with(2));
     assert_eq!(one.edges, two.edges);

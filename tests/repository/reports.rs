@@ -20,19 +20,32 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// All kept artefacts: `paper/name`, and what `run.json` says of them.
+fn artefacts(path: &Path) -> serde_json::Map<String, Value> {
+    let text = std::fs::read_to_string(path).expect("a file of the report");
+    let mut run: Value = serde_json::from_str(&text).expect("JSON");
+    match run["artefacts"].take() {
+        Value::Object(artefacts) => artefacts,
+        other => panic!("{}: {other}", path.display()),
+    }
+}
+
+/// All kept artefacts: `paper/name`, and what `run.json` and `provenance.json` say of them.
 fn kept() -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for experiment in ALL {
-        let path = root()
-            .join("reports")
-            .join(experiment.slug)
-            .join("run.json");
-        let text = std::fs::read_to_string(path).expect("run.json");
-        let run: Value = serde_json::from_str(&text).expect("JSON");
-        let artefacts = run["artefacts"].as_object().expect("artefacts");
-        let named =
-            |(name, made): (&String, &Value)| (format!("{}/{name}", experiment.slug), made.clone());
+        let folder = root().join("reports").join(experiment.slug);
+        let artefacts = artefacts(&folder.join("run.json"));
+        let builds = self::artefacts(&folder.join("provenance.json"));
+        assert!(artefacts.keys().eq(builds.keys()), "{}", experiment.slug);
+        let named = |(name, made): (&String, &Value)| {
+            let mut made = made.clone();
+            for (key, value) in builds[name].as_object().expect("an object") {
+                // What differs from one run to the next stands apart.
+                assert!(made[key].is_null(), "{name} has {key} in run.json");
+                made[key] = value.clone();
+            }
+            (format!("{}/{name}", experiment.slug), made)
+        };
         all.extend(artefacts.iter().map(named));
     }
     assert!(all.len() > 60, "{}", all.len());

@@ -4,7 +4,7 @@ use edifice::methods::structure_completion::annealing::{self, anneal};
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
 use edifice::methods::structure_completion::partial::PartialLayout;
 use edifice::methods::structure_completion::policy::{
-    Budget, PaperModel, Policy, Scene, grow, optimize, rollouts,
+    Budget, CompletionProblem, PaperModel, Policy, grow, optimize, rollouts,
 };
 use edifice::methods::structure_completion::task::Task;
 use edifice::rng::stream;
@@ -59,10 +59,10 @@ fn candidates_keep_to_what_is_known() {
         let mut rng = stream(4, "candidates", i as u64);
         let (mut partial, _) = task.hide(&layout(6, 4), &mut rng);
         partial.forbidden = vec![Rect::new(50.0, 60.0, 30.0, 30.0)];
-        let scene = Scene::new(&model, &partial);
+        let problem = CompletionProblem::new(&model, &partial);
         for _ in 0..20 {
             let policy = Policy::random(&mut rng);
-            let elements = grow(&scene, &policy, &mut rng);
+            let elements = grow(&problem, &policy, &mut rng);
             let (observed, added) = elements.split_at(partial.observed.len());
             assert!(partial.observed.iter().all(|o| observed.contains(o)));
             check(&partial, added);
@@ -71,7 +71,7 @@ fn candidates_keep_to_what_is_known() {
             evaluations: 2000,
             ..annealing::Settings::default()
         };
-        let (added, score) = anneal(&scene, &partial, &settings, 1).unwrap();
+        let (added, score) = anneal(&problem, &partial, &settings, 1).unwrap();
         check(&partial, &added);
         let whole: Vec<Element> = partial.observed.iter().chain(&added).copied().collect();
         let anew = model
@@ -86,22 +86,22 @@ fn evolved_policies_beat_a_random_one_and_repeat() {
     let model = PaperModel::of_densities(&database(), 1).unwrap();
     let mut rng = stream(5, "side", 0);
     let (partial, _) = Task::Side50.hide(&layout(6, 4), &mut rng);
-    let scene = Scene::new(&model, &partial);
-    let found = optimize(&scene, &FEW, 5, 3, &unwatched).unwrap();
+    let problem = CompletionProblem::new(&model, &partial);
+    let found = optimize(&problem, &FEW, 5, 3, &unwatched).unwrap();
     assert_eq!(found.made, FEW.candidates());
     assert_eq!(Budget::PAPER.candidates(), 10_000);
     assert!(found.candidates.windows(2).all(|w| w[0].score > w[1].score));
-    assert_eq!(found, optimize(&scene, &FEW, 5, 3, &unwatched).unwrap());
+    assert_eq!(found, optimize(&problem, &FEW, 5, 3, &unwatched).unwrap());
     let score = |elements: &[Element]| {
-        let evaluation = model.score.evaluate(scene.facade, elements);
+        let evaluation = model.score.evaluate(problem.facade, elements);
         model.score.score(&evaluation.features)
     };
     let random = (0..10).map(|_| {
         let policy = Policy::random(&mut rng);
-        score(&grow(&scene, &policy, &mut rng))
+        score(&grow(&problem, &policy, &mut rng))
     });
     assert!(found.candidates[0].score > random.sum::<f64>() / 10.0);
-    let (added, value) = rollouts(&scene, found.policy, 2, 1).unwrap();
+    let (added, value) = rollouts(&problem, found.policy, 2, 1).unwrap();
     check(&partial, &added);
     assert!(value.is_finite());
 }
@@ -116,8 +116,8 @@ fn nothing_observed_adds_nothing() {
         unknown: None,
         forbidden: Vec::new(),
     };
-    let scene = Scene::new(&model, &partial);
-    let found = optimize(&scene, &FEW, 3, 1, &unwatched).unwrap();
+    let problem = CompletionProblem::new(&model, &partial);
+    let found = optimize(&problem, &FEW, 3, 1, &unwatched).unwrap();
     assert!(found.candidates.iter().all(|c| c.added.is_empty()));
     // A model survives its file.
     let text = serde_json::to_string(&model).unwrap();

@@ -1,5 +1,6 @@
 //! Cities of the size of a district and of an island, and what is asked of them.
 
+use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
@@ -85,6 +86,20 @@ fn a_city_of_five_thousand_buildings_opens() {
     assert!(buildings >= 5000);
     assert!(seconds <= 3.0, "{seconds} s");
     assert!(bytes <= 5_000_000, "{bytes} bytes");
+}
+
+#[test]
+fn a_city_of_twelve_thousand_buildings_opens_in_three_seconds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("made.city-grammar.json.gz");
+    grammar_json::write(&made(12_000), &path).expect("written");
+    let (seconds, bytes, buildings) = opened(&path);
+    println!(
+        "{buildings} buildings: {seconds:.2} s, {:.2} MB",
+        bytes as f64 / 1e6
+    );
+    assert!(buildings >= 12_000);
+    assert!(seconds <= 3.0, "{seconds} s");
 }
 
 #[test]
@@ -247,4 +262,56 @@ fn an_edit_is_told_by_its_difference() {
         );
         assert!(told["view"].is_object() && told["difference"].is_null());
     }
+}
+
+/// An edit of a city of the size of an island, as the browser gets it: every instance of a template changes, some twice so that
+/// their numbers are rounded, and the step back.
+#[test]
+fn an_edit_of_an_island_is_short() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("made.city-grammar.json.gz");
+    grammar_json::write(&made(47_815), &path).expect("written");
+    let api = Api::new(&Settings {
+        files: vec![path],
+        ..Settings::default()
+    });
+    let opened = api.get("/api/documents/d1");
+    let symbol = opened["view"]["templates"][0]["symbol"].as_str();
+    let symbol = symbol.expect("a name").to_owned();
+    let instances = opened["view"]["instances"].as_array().expect("instances");
+    let own = instances.iter().filter(|i| i[0] == 0).count();
+    assert!(own > 5000, "{own}");
+    let mut shown = 0;
+    let told = |way: &str, body: Value| {
+        let mut path = format!("/api/documents/d1/{way}");
+        let (mut status, mut bytes) = api.bytes("POST", &path, &body, "gzip");
+        if status == 202 {
+            let job: Value = serde_json::from_slice(&bytes).expect("JSON");
+            assert_eq!(api.ended(&job["job"])["state"], "done");
+            path = format!("/api/documents/d1?shows={}", body["shows"]);
+            (status, bytes) = api.bytes("GET", &path, &Value::Null, "gzip");
+        }
+        assert_eq!(status, 200);
+        assert!(bytes.len() <= 100_000, "{way}: {} bytes", bytes.len());
+        println!("{way}: {} bytes", bytes.len());
+        let mut text = String::new();
+        let long = bytes.starts_with(&[0x1f, 0x8b]);
+        let read: Value = match long {
+            true => {
+                flate2::read::GzDecoder::new(&bytes[..])
+                    .read_to_string(&mut text)
+                    .expect("gzip");
+                serde_json::from_str(&text).expect("JSON")
+            }
+            false => serde_json::from_slice(&bytes).expect("JSON"),
+        };
+        assert!(read["view"].is_null());
+        read["revision"].as_u64().expect("a number")
+    };
+    for factors in ["1.1,1.2,0.9", "1.07,0.93,1.3"] {
+        let edit = format!("scale {symbol}={factors}");
+        let body = json!({"commands": [{"do": "edit", "edits": [edit]}], "revision": shown, "shows": shown});
+        shown = told("edit", body);
+    }
+    told("undo", json!({"shows": shown}));
 }

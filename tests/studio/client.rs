@@ -32,6 +32,20 @@ impl Api {
 
     /// Status and answer of a request.
     pub(crate) fn send(&self, verb: &str, path: &str, body: &Value) -> (StatusCode, Value) {
+        let (status, bytes) = self.bytes(verb, path, body, "identity");
+        let value = serde_json::from_slice(&bytes);
+        let text = || Value::String(String::from_utf8_lossy(&bytes).into_owned());
+        (status, value.unwrap_or_else(|_| text()))
+    }
+
+    /// Status and bytes of the answer to a request that accepts an encoding.
+    pub(crate) fn bytes(
+        &self,
+        verb: &str,
+        path: &str,
+        body: &Value,
+        encoding: &str,
+    ) -> (StatusCode, Vec<u8>) {
         let body = if body.is_null() {
             Body::empty()
         } else {
@@ -40,15 +54,14 @@ impl Api {
         let request = Request::builder()
             .method(verb)
             .uri(path)
+            .header("accept-encoding", encoding)
             .body(body)
             .expect("a request");
         self.runtime().block_on(async {
             let answer = self.router.clone().oneshot(request).await.expect("answers");
             let status = answer.status();
             let bytes = to_bytes(answer.into_body(), 1 << 26).await.expect("whole");
-            let value = serde_json::from_slice(&bytes);
-            let text = || Value::String(String::from_utf8_lossy(&bytes).into_owned());
-            (status, value.unwrap_or_else(|_| text()))
+            (status, bytes.to_vec())
         })
     }
 

@@ -19,3 +19,4 @@ mod scripts;
 mod secrets;
 mod socket;
 mod speed;
+mod straighten;

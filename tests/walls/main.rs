@@ -5,6 +5,7 @@ mod circles;
 mod crates;
 mod models;
 mod slugs;
+mod surface;
 
 use std::path::{Path, PathBuf};
 

@@ -25,6 +25,7 @@ const REGISTRIES: &[&str] = &[
     "src/lib.rs",
     "src/cli/mod.rs",
     "src/editing/mod.rs",
+    "experiments/generators/mod.rs",
     "experiments/mod.rs",
     "experiments/peers.rs",
 ];

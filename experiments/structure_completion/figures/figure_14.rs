@@ -12,7 +12,7 @@ use edifice_report::{Align, Figure, Table};
 use edifice_structure_completion::layout::Element;
 use edifice_structure_completion::measure::agreement;
 use edifice_structure_completion::method::{Method, complete};
-use edifice_structure_completion::policy::{Scene, paper_model};
+use edifice_structure_completion::policy::{CompletionProblem, paper_model};
 use edifice_structure_completion::task::Task;
 
 /// Facades in the picture.
@@ -46,9 +46,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         |(_, i)| format!("{}/{}", i.dataset, i.layout.name),
         |(k, item)| {
             let (partial, hidden) = hide(*k, item);
-            let scene = Scene::new(&paper, &partial);
+            let problem = CompletionProblem::new(&paper, &partial);
             let mut found = Found {
-                scores: vec![scene.score(&item.layout.elements)],
+                scores: vec![problem.score(&item.layout.elements)],
                 f1: Vec::new(),
                 added: Vec::new(),
             };
@@ -56,7 +56,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
                 let mut rng = stream(seed, "figure 14: completion", *k as u64);
                 let added = first(&complete(method, &partial, &model, 1, &mut rng));
                 let made: Vec<Element> = partial.observed.iter().chain(&added).copied().collect();
-                found.scores.push(scene.score(&made));
+                found.scores.push(problem.score(&made));
                 found.f1.push(agreement(&added, &hidden, 0.5).f1);
                 found.added.push(added);
             }

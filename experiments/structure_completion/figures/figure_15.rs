@@ -18,14 +18,14 @@ const WIDTH: f64 = 10.7;
 const HEIGHT: f64 = 13.4;
 
 /// A step of the sequence: its letter, what the user did, and the sketched elements.
-type Step = (char, &'static str, Vec<Element>);
+type SketchStep = (char, &'static str, Vec<Element>);
 
 fn element(class: Class, x: f64, y: f64, width: f64, height: f64) -> Element {
     Element::new(class, Rect::new(x, y, width, height))
 }
 
 /// The sketch, and what becomes of it.
-fn steps() -> [Step; 4] {
+fn steps() -> [SketchStep; 4] {
     let window = |x: f64, y: f64| element(Class::Window, x, y, 1.1, 1.8);
     let sketch = |second: f64, last: Element| {
         let windows = [window(1.2, 4.2), window(second, 4.2), window(1.2, 7.4)];

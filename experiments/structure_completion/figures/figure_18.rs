@@ -13,7 +13,7 @@ use edifice_report::{Align, Figure, Table, Tiles};
 use edifice_structure_completion::layout::{Element, Layout};
 use edifice_structure_completion::measure::agreement;
 use edifice_structure_completion::partial::PartialLayout;
-use edifice_structure_completion::policy::{Budget, PaperModel, Scene, optimize};
+use edifice_structure_completion::policy::{Budget, CompletionProblem, PaperModel, optimize};
 use edifice_structure_completion::score::{TERMS, Term};
 use edifice_structure_completion::task::Task;
 
@@ -68,13 +68,13 @@ pub(crate) fn without(
     budget: &Budget,
     seed: u64,
 ) -> Result<Vec<Element>> {
-    let mut scene = Scene::new(model, partial);
+    let mut problem = CompletionProblem::new(model, partial);
     for &term in left_out {
-        if let Some(weight) = scene.weights.get_mut(term) {
+        if let Some(weight) = problem.weights.get_mut(term) {
             *weight = 0.0;
         }
     }
-    let found = optimize(&scene, budget, 1, seed, &unwatched).map_err(Error::method)?;
+    let found = optimize(&problem, budget, 1, seed, &unwatched).map_err(Error::method)?;
     let best = found.candidates.into_iter().next();
     Ok(best.map_or(Vec::new(), |c| c.added))
 }

@@ -12,7 +12,7 @@ use edifice_base::{Error, Result};
 use edifice_report::{Align, Figure, Table};
 use edifice_structure_completion::layout::Element;
 use edifice_structure_completion::measure::agreement;
-use edifice_structure_completion::policy::{Budget, Policy, Scene, grow, optimize};
+use edifice_structure_completion::policy::{Budget, CompletionProblem, Policy, grow, optimize};
 use edifice_structure_completion::task::Task;
 
 /// Facades in the picture.
@@ -29,7 +29,7 @@ struct Found {
 /// Completes known halves by as many candidates of either kind; the best by score counts.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
-    let (shown, rest) = split(&items, ctx.budget().choose(2, 12, 60));
+    let (shown, rest) = split(&items, ctx.budget().choose(2, 6, 60));
     let model = paper(&rest, ctx.seed())?;
     let budget = ctx
         .budget()
@@ -45,16 +45,16 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         |(_, i)| format!("{}/{}", i.dataset, i.layout.name),
         |(k, item)| {
             let (partial, hidden) = hide(*k, item);
-            let scene = Scene::new(&model, &partial);
+            let problem = CompletionProblem::new(&model, &partial);
             let optimized =
-                optimize(&scene, &budget, 1, seed, &unwatched).map_err(Error::method)?;
+                optimize(&problem, &budget, 1, seed, &unwatched).map_err(Error::method)?;
             let best = optimized.candidates.into_iter().next();
             let best = best.map_or((f64::NEG_INFINITY, Vec::new()), |c| (c.score, c.added));
             let mut rng = stream(seed, "figure 8: fixed", *k as u64);
             let mut fixed = (f64::NEG_INFINITY, Vec::new());
             for _ in 0..budget.candidates() {
-                let elements = grow(&scene, &Policy::FIXED, &mut rng);
-                let score = scene.score(&elements);
+                let elements = grow(&problem, &Policy::FIXED, &mut rng);
+                let score = problem.score(&elements);
                 if score > fixed.0 {
                     fixed = (score, elements[partial.observed.len()..].to_vec());
                 }

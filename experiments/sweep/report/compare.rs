@@ -55,7 +55,7 @@ pub(crate) type Values = Vec<Vec<BTreeMap<u64, f64>>>;
 
 /// The results of one arm.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct ArmResult {
     /// Mean over the units that all arms have.
     pub interval: Option<Interval>,
     /// Mean paired difference to the reference; none for the reference itself.
@@ -78,7 +78,7 @@ pub struct Comparison {
     /// The question.
     pub question: Question,
     /// The results, one line for each arm.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ArmResult>,
     /// The unit that a comparison counts: `instances`; of a sweep over one instance its `seeds`, which number the
     /// splits of it, or its parts.
     pub unit: &'static str,
@@ -167,7 +167,7 @@ pub fn compare(plan: &Plan, study: &Study, records: &[Record]) -> Comparison {
                 _ => counts.2 += 1,
             }
         }
-        lines.push(Line {
+        lines.push(ArmResult {
             interval: bootstrap(&own, &mut rng("mean")),
             difference: (arm != reference)
                 .then(|| bootstrap(&paired, &mut rng("difference")))

@@ -4,7 +4,7 @@ mod compare;
 mod figures;
 mod publish;
 
-pub use compare::{Comparison, Line, Question, compare};
+pub use compare::{ArmResult, Comparison, Question, compare};
 pub use publish::publish;
 
 use std::path::Path;
@@ -14,7 +14,7 @@ use super::journal::Keep;
 use super::plan::Plan;
 use super::record::Record;
 use super::study::Study;
-use edifice_base::{Error, Result, file};
+use edifice_base::{Error, Result, csv, file};
 use edifice_report::{Align, Figure, Page, Section, Table, index, write_figure};
 
 /// Folder of the report in a sweep's folder.
@@ -208,7 +208,7 @@ fn csv(plan: &Plan, comparison: &Comparison) -> String {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     for (arm, line) in plan.head.arms.iter().zip(&comparison.lines) {
         let cells = [
-            format!("\"{}\"", arm.name.replace('"', "\"\"")),
+            csv::quoted(&arm.name),
             number(line.interval.map(|i| i.mean)),
             number(line.interval.map(|i| i.low)),
             number(line.interval.map(|i| i.high)),

@@ -15,7 +15,7 @@ use edifice_base::{Error, Result, file};
 /// Name of the one artefact of a sweep.
 const ARTEFACT: &str = "report";
 
-/// Writes `run.json` into the folder of a report: what was run, by which program.
+/// Writes `run.json` and `provenance.json` into the folder of a report: what was run, by which program.
 pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path) -> Result<()> {
     let head = &plan.head;
     let mut settings = BTreeMap::new();
@@ -55,7 +55,7 @@ pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path
         artefacts: BTreeMap::from([(ARTEFACT.to_owned(), made)]),
         order: vec![ARTEFACT.to_owned()],
     };
-    run.write(&folder.join("run.json"))
+    run.write(folder)
 }
 
 /// Names of what a page may show or link to, in order.
@@ -95,12 +95,12 @@ pub fn publish(sweep: &Path, out: &Path, into: &Path) -> Result<PathBuf> {
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
         file::write_atomic(&target.join(name), &bytes)?;
     }
-    let mut run = Run::read(&folder.join("run.json"));
+    let mut run = Run::read(&folder);
     run.experiment = slug;
     run.paper = format!("{}: {}", run.paper, name.to_string_lossy());
     if let Some(made) = run.artefacts.get_mut(ARTEFACT) {
         made.files = files(&target)?;
     }
-    run.write(&target.join("run.json"))?;
+    run.write(&target)?;
     write_index(into)
 }

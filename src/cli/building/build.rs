@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS};
-use edifice_building_exteriors::data::filled;
 use edifice_building_exteriors::design::MOVED;
 use edifice_building_exteriors::house::Options;
 use edifice_building_exteriors::observations::cell;
@@ -116,10 +115,14 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
     let own = args.model.as_deref().map(data::model).transpose()?;
     let mut rng = stream(args.output.seed, "building/fill", 0);
     if let Some(model) = &own {
-        rows = filled(rows, model, &mut rng).map_err(|e| Error::content(path, e))?;
+        rows = model
+            .filled(rows, &mut rng)
+            .map_err(|e| Error::content(path, e))?;
     }
     if rows.iter().flatten().any(Option::is_none) {
-        rows = filled(rows, shipped_model()?, &mut rng).map_err(|e| Error::content(path, e))?;
+        rows = shipped_model()?
+            .filled(rows, &mut rng)
+            .map_err(|e| Error::content(path, e))?;
     }
     let orders = names.into_iter().zip(rows).zip(given);
     Ok(orders

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::inspect::{faults, implausible};
-use edifice_building_exteriors::house::{Model, model};
+use edifice_building_exteriors::house::{Joining, Model, model};
 use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_shape::Building;
 
 use super::output::{row, street, write_png};
-use super::produce::RoofOption;
+use super::produce::ROOFS;
+use crate::choice::one_of;
 use crate::print::{self, Json};
 
 /// Options of `check`.
@@ -19,8 +20,8 @@ pub(crate) struct CheckArgs {
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Roofs of each box, or one joined roof.
-    #[arg(long, value_enum, default_value = "boxes")]
-    roof: RoofOption,
+    #[arg(long, value_parser = one_of(ROOFS), default_value = "boxes")]
+    roof: Joining,
     /// Also list what a house may have but hardly any has: stubs, several pitches, porches without a door, windows of
     /// unusual size.
     #[arg(long)]
@@ -40,8 +41,8 @@ pub(crate) struct DrawArgs {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Roofs of each box, or one joined roof.
-    #[arg(long, value_enum, default_value = "boxes")]
-    roof: RoofOption,
+    #[arg(long, value_parser = one_of(ROOFS), default_value = "boxes")]
+    roof: Joining,
     #[command(flatten)]
     json: Json,
 }
@@ -72,7 +73,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<()> {
         }
         let mut names = std::collections::HashSet::new();
         for building in building_json::read(path)? {
-            let mut faults = faults(&building, args.roof.joining());
+            let mut faults = faults(&building, args.roof);
             if !names.insert(building.name.clone()) {
                 faults.push("name: another house of the file has it".into());
             }
@@ -114,7 +115,7 @@ pub(super) fn draw(args: &DrawArgs) -> Result<()> {
     let mut houses: Vec<(Building, Model)> = Vec::new();
     for path in &args.files {
         for building in building_json::read(path)? {
-            let made = model(&building, args.roof.joining());
+            let made = model(&building, args.roof);
             let made = made.map_err(|e| Error::content(path, format!("{}: {e}", building.name)))?;
             houses.push((building, made));
         }

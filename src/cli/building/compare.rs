@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{COLUMNS, attributes};
-use edifice_building_exteriors::house::{Database, model};
+use edifice_building_exteriors::house::{Database, Joining, model};
 use edifice_building_exteriors::mass::is_sound;
 use edifice_io::building_json;
 use edifice_shape::Building;
 use serde_json::json;
 
-use super::produce::RoofOption;
+use super::produce::ROOFS;
+use crate::choice::one_of;
 use crate::print;
 
 /// Options of `compare`.
@@ -26,8 +27,8 @@ pub(crate) struct Args {
     /// Houses to judge, as many
     predicted: PathBuf,
     /// Roofs of each box, or one joined roof
-    #[arg(long, value_enum, default_value = "boxes")]
-    roof: RoofOption,
+    #[arg(long, value_parser = one_of(ROOFS), default_value = "boxes")]
+    roof: Joining,
     /// Print one JSON object as the last line
     #[arg(long)]
     json: bool,
@@ -89,6 +90,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
 }
 
 /// True if the surface of a house is one closed shell.
-fn is_watertight(house: &Building, roof: RoofOption) -> bool {
-    model(house, roof.joining()).is_ok_and(|made| made.report.shells == 1)
+fn is_watertight(house: &Building, roof: Joining) -> bool {
+    model(house, roof).is_ok_and(|made| made.report.shells == 1)
 }

@@ -10,7 +10,7 @@ use edifice_building_exteriors::model_file::ModelFile;
 use edifice_editing::building_exteriors::draws::{Draws, drawn_table, given_table, style_table};
 use edifice_editing::building_exteriors::is_file_name;
 use edifice_io::building_json;
-use edifice_model::{Cell, Table};
+use edifice_model::Table;
 
 use super::data::{self, Input};
 use super::produce::Making;
@@ -98,15 +98,15 @@ pub(crate) struct CompleteArgs {
 /// Runs `sample`.
 pub(super) fn sample(args: &SampleArgs) -> Result<()> {
     let file = data::model(&args.model)?;
-    let mut rng = stream(args.draw.seed, "building/sample", 0);
     if args.draw.count() == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
     if let Some(style) = args.style {
+        let mut rng = stream(args.draw.seed, "building/sample", 0);
         let table = style_table(&file, style, args.draw.count(), &mut rng)?;
         return print_table(&table, args.json);
     }
-    let given = given_table(&file, &args.given, &mut rng)?;
+    let given = given_table(&file, &args.given)?;
     print_table(
         &drawn_table(&file, &given, &args.draw.draws(), 0)?,
         args.json,
@@ -155,8 +155,7 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
     if count == 0 {
         return Err(Error::option("--count", "must be at least 1"));
     }
-    let mut rng = stream(args.draw.seed, "building/kinds", 0);
-    let given = given_table(file, &args.given, &mut rng)?;
+    let given = given_table(file, &args.given)?;
     let database = args.making.database()?;
     let options = args.making.options();
     let mut all = Vec::new();
@@ -167,10 +166,8 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
         }
         let mut row = observed(&partial, &args.keep).map_err(|e| named(e.to_string()))?;
         for (value, name) in row.iter_mut().zip(COLUMNS) {
-            match given.column(name).map(|c| c.cell(0)) {
-                Ok(Cell::Real(v)) => *value = Some(v),
-                Ok(Cell::Code(code)) => *value = Some(code as f64),
-                _ => {}
+            if let Ok(column) = given.column(name) {
+                *value = column.cell(0).number().or(*value);
             }
         }
         let seed = args.draw.seed;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, csv};
 use edifice_building_exteriors::survey::{Candidate, Limits, Refused, Surveyed, survey_all};
 use edifice_io::{building_json, city, write_atomic};
 use edifice_shape::Building;
@@ -172,13 +172,12 @@ impl Counts {
 }
 
 fn line(name: &str, outcome: &std::result::Result<Surveyed, Refused>) -> String {
-    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     match outcome {
         Ok(s) => {
             let year = s.year.map_or(String::new(), |y| y.to_string());
             format!(
                 "{},house,{},{:.4},{:.4},{:.3},{},{year},\n",
-                quoted(name),
+                csv::quoted(name),
                 s.building.name,
                 s.fit.iou,
                 s.fit.volume,
@@ -188,9 +187,9 @@ fn line(name: &str, outcome: &std::result::Result<Surveyed, Refused>) -> String 
         }
         Err(why) => format!(
             "{},{},,,,,,,{}\n",
-            quoted(name),
+            csv::quoted(name),
             why.reason(),
-            quoted(&why.to_string())
+            csv::quoted(&why.to_string())
         ),
     }
 }

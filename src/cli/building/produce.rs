@@ -14,10 +14,24 @@ use edifice_shape::Building;
 use rayon::prelude::*;
 
 use super::output::{self, Format};
+use crate::choice::{Choice, one_of};
 use crate::print;
 
 /// Most houses that are in memory and written together.
 const CHUNK: usize = 64;
+
+/// The joining of roofs.
+#[rustfmt::skip]
+pub(super) const ROOFS: &[Choice<Joining>] = &[
+    ("boxes", "Each box has its own", Joining::Boxes),
+    ("merged", "One for all boxes of a height", Joining::Merged),
+];
+
+#[rustfmt::skip]
+const METHODS: &[Choice<Method>] = &[
+    ("best", "Boxes of similar houses fitted by least squares, facades side by side: reaches the attributes in milliseconds", Method::Best),
+    ("paper", "Simulated annealing and a genetic algorithm as in the paper: seconds a house", Method::Paper),
+];
 
 /// The folder of the houses, and their form.
 #[derive(clap::Args)]
@@ -48,42 +62,14 @@ pub(super) struct Making {
     #[arg(long, value_name = "FILE")]
     pub database: Option<PathBuf>,
     /// Roofs of each box, or one joined roof for all boxes of a height.
-    #[arg(long, value_enum, default_value = "boxes")]
-    pub roof: RoofOption,
+    #[arg(long, value_parser = one_of(ROOFS), default_value = "boxes")]
+    pub roof: Joining,
     /// Method for mass models and facades.
-    #[arg(long, value_enum, default_value = "best")]
-    pub method: MethodOption,
+    #[arg(long, value_parser = one_of(METHODS), default_value = "best")]
+    pub method: Method,
     /// Never cut a strip of wall in two for the sake of symmetry.
     #[arg(long)]
     pub no_cuts: bool,
-}
-
-/// The joining of roofs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum RoofOption {
-    /// Each box has its own.
-    Boxes,
-    /// One for all boxes of a height.
-    Merged,
-}
-
-impl RoofOption {
-    /// As the library knows it.
-    pub(super) fn joining(self) -> Joining {
-        match self {
-            Self::Boxes => Joining::Boxes,
-            Self::Merged => Joining::Merged,
-        }
-    }
-}
-
-/// The method for mass models and facades.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum MethodOption {
-    /// Boxes of similar houses fitted by least squares, facades side by side: reaches the attributes in milliseconds.
-    Best,
-    /// Simulated annealing and a genetic algorithm as in the paper: seconds a house.
-    Paper,
 }
 
 impl Making {
@@ -110,12 +96,9 @@ impl Making {
     /// The settings of generation.
     pub(super) fn options(&self) -> Options {
         Options {
-            joining: self.roof.joining(),
+            joining: self.roof,
             no_cuts: self.no_cuts,
-            method: match self.method {
-                MethodOption::Best => Method::Best,
-                MethodOption::Paper => Method::Paper,
-            },
+            method: self.method,
             ..Options::default()
         }
     }

@@ -6,56 +6,46 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use clap::ValueEnum;
 use edifice_base::{Error, Progress, Result, unwatched};
 use edifice_city_proceduralization as method;
 use edifice_city_proceduralization::{
-    Budget, Detection, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings, judge,
+    Budget, Detection, Mode, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
+    judge,
 };
 use edifice_grammar::instance::{InstanceGrammar, Kept};
 use edifice_io::city::{self, glb, grammar_file};
 use edifice_shape::triangles::{City, MeshFaults};
 
 use super::residuals::Residuals;
+use crate::choice::{Choice, one_of};
 use crate::print;
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Mode {
-    /// Geometric features, Ward, medoids.
-    Best,
-    /// As the paper writes.
-    Paper,
-}
+#[rustfmt::skip]
+const MODES: &[Choice<Mode>] = &[
+    ("best", "Geometric features, Ward, medoids", Mode::Best),
+    ("paper", "As the paper writes", Mode::Paper),
+];
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Steps {
-    /// Millimetres, ten-thousandths of degrees, templates on 16 bits.
-    Mm,
-    /// Centimetres, hundredths of degrees, templates on 12 bits.
-    Cm,
-    /// Decimetres, half degrees, templates on 7 bits.
-    Dm,
-}
+#[rustfmt::skip]
+const PRECISIONS: &[Choice<Precision>] = &[
+    ("mm", "Millimetres, ten-thousandths of degrees, templates on 16 bits", Precision::Millimetre),
+    ("cm", "Centimetres, hundredths of degrees, templates on 12 bits", Precision::Centimetre),
+    ("dm", "Decimetres, half degrees, templates on 7 bits", Precision::Decimetre),
+];
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Communities {
-    /// As the paper does; slow on graphs of many thousand edges.
-    GirvanNewman,
-    /// Blondel et al. 2008.
-    Louvain,
-}
+#[rustfmt::skip]
+const COMMUNITIES: &[Choice<Detection>] = &[
+    ("girvan-newman", "As the paper does; slow on graphs of many thousand edges", Detection::GirvanNewman),
+    ("louvain", "Blondel et al. 2008", Detection::Louvain),
+];
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Keep {
-    /// Everything.
-    All,
-    /// Identifiers, no attributes.
-    Ids,
-    /// Identifiers, and neither textures nor patterns for synthesis.
-    Buildings,
-    /// No attributes, identifiers, textures or patterns for synthesis.
-    Shape,
-}
+#[rustfmt::skip]
+const KEEPS: &[Choice<Kept>] = &[
+    ("all", "Everything", Kept::All),
+    ("ids", "Identifiers, no attributes", Kept::Identifiers),
+    ("buildings", "Identifiers, and neither textures nor patterns for synthesis", Kept::Buildings),
+    ("shape", "No attributes, identifiers, textures or patterns for synthesis", Kept::Shape),
+];
 
 /// Options.
 #[derive(clap::Args)]
@@ -64,7 +54,7 @@ pub(crate) struct Args {
     #[arg(required = true)]
     input: Vec<PathBuf>,
     /// Method that finds types.
-    #[arg(long, value_enum, default_value = "best")]
+    #[arg(long, value_parser = one_of(MODES), default_value = "best")]
     mode: Mode,
     /// Number of templates, or `all`.
     #[arg(long, value_name = "K", group = "budget")]
@@ -82,8 +72,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F=W,...")]
     weights: Option<String>,
     /// Method that finds communities, with `--mode paper`.
-    #[arg(long, value_enum, default_value = "girvan-newman")]
-    communities: Communities,
+    #[arg(long, value_parser = one_of(COMMUNITIES), default_value = "girvan-newman")]
+    communities: Detection,
     /// Represent a type by its member of fewest polygons; with `--mode best`, weigh triangles against volume: half as many, fewer bytes,
     /// a lower intersection over union.
     #[arg(long)]
@@ -93,14 +83,14 @@ pub(crate) struct Args {
     seed: u64,
     /// Step of the numbers written, with `--mode best` [default: mm with `--templates all`, dm in `.city-grammar.bin`,
     /// cm otherwise].
-    #[arg(long, value_enum)]
-    precision: Option<Steps>,
+    #[arg(long, value_parser = one_of(PRECISIONS))]
+    precision: Option<Precision>,
     /// Most pixels along a side of a template's textures; 0 for no textures.
     #[arg(long, value_name = "N", default_value_t = 128)]
     texture_pixels: usize,
     /// Part of the buildings that is kept.
-    #[arg(long, value_enum, default_value = "all")]
-    keep: Keep,
+    #[arg(long, value_parser = one_of(KEEPS), default_value = "all")]
+    keep: Kept,
     /// Treatment of parts that the rules do not put exactly: keep where they stand, or let the rules alone say.
     #[arg(long, value_enum, default_value = "keep")]
     residuals: Residuals,
@@ -219,13 +209,10 @@ impl Args {
     /// The bytes of the file that a grammar is written to.
     fn bytes_of(&self, grammar: &InstanceGrammar) -> Result<Vec<u8>> {
         let grammar = &*self.said(grammar);
-        let kept = match self.keep {
-            Keep::All => return grammar_file::to_bytes(grammar, &self.output),
-            Keep::Ids => Kept::Identifiers,
-            Keep::Buildings => Kept::Buildings,
-            Keep::Shape => Kept::Shape,
-        };
-        grammar_file::to_bytes(&grammar.keeping(kept), &self.output)
+        match self.keep {
+            Kept::All => grammar_file::to_bytes(grammar, &self.output),
+            kept => grammar_file::to_bytes(&grammar.keeping(kept), &self.output),
+        }
     }
 
     /// A grammar with residuals, or without.
@@ -238,9 +225,7 @@ impl Args {
 
     fn precision(&self) -> Option<Precision> {
         match self.precision {
-            Some(Steps::Mm) => Some(Precision::Millimetre),
-            Some(Steps::Cm) => Some(Precision::Centimetre),
-            Some(Steps::Dm) => Some(Precision::Decimetre),
+            Some(precision) => Some(precision),
             None if self.templates.as_deref() == Some("all") => None,
             None => grammar_file::is_compact(&self.output).then_some(Precision::Decimetre),
         }
@@ -249,19 +234,13 @@ impl Args {
 
 fn settings(args: &Args) -> Result<Settings> {
     let mut settings = Settings {
-        mode: match args.mode {
-            Mode::Best => method::Mode::Best,
-            Mode::Paper => method::Mode::Paper,
-        },
+        mode: args.mode,
         representative: match args.poly {
             true => Representative::FewestPolygons,
             false => Representative::Nearest,
         },
         seed: args.seed,
-        detection: match args.communities {
-            Communities::GirvanNewman => Detection::GirvanNewman,
-            Communities::Louvain => Detection::Louvain,
-        },
+        detection: args.communities,
         precision: args.precision(),
         ..Settings::default()
     };

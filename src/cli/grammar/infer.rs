@@ -13,6 +13,7 @@ use edifice_io as io;
 use edifice_shape::Facade;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::choice::{Choice, one_of};
 use crate::cleaning::Cleaning;
 use crate::print;
 use crate::reading::{self, Reading};
@@ -36,8 +37,8 @@ pub(crate) struct Args {
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
     /// Method of search
-    #[arg(long, value_enum, default_value = "adp")]
-    method: MethodName,
+    #[arg(long, value_parser = one_of(METHODS), default_value = "lagrangian")]
+    method: Solver,
     /// Sizes written into the rules, or as parameters of them
     #[arg(long, value_enum, default_value = "fixed")]
     sizes: Sizes,
@@ -83,24 +84,24 @@ enum Sizes {
     Free,
 }
 
-/// Names of the contract.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MethodName {
-    /// A Lagrangian bound, which proves most grammars optimal; else also walks and annealing over the set of non-terminal types
-    Adp,
-    /// Approximate dynamic programming as Wu et al. 2014 describe it
-    AdpPaper,
-    /// Importance sampling with the splitting heuristic
-    Importance,
-    /// Always the best rule by the splitting heuristic
-    Greedy,
-    /// Binary splits of Weissenberg et al. 2013, made n-ary
+/// A method of the crate that infers grammars, or the rules of the procedural logic.
+#[derive(Clone, Copy)]
+enum Solver {
+    Own(Method),
     ProceduralLogic,
-    /// Initial step of Martinovic and Van Gool 2013
-    Bayesian,
-    /// Splitting heuristic of Zhang et al. 2013
-    Symmetry,
 }
+
+#[rustfmt::skip]
+const METHODS: &[Choice<Solver>] = &[
+    ("lagrangian", "A Lagrangian bound with branching, which proves most grammars optimal; else also walks and annealing over the set of non-terminal types", Solver::Own(Method::Lagrangian)),
+    ("adp", "", Solver::Own(Method::Lagrangian)),
+    ("adp-paper", "Approximate dynamic programming as Wu et al. 2014 describe it", Solver::Own(Method::AdpPaper)),
+    ("importance", "Importance sampling with the splitting heuristic", Solver::Own(Method::Importance)),
+    ("greedy", "Always the best rule by the splitting heuristic", Solver::Own(Method::Greedy)),
+    ("procedural-logic", "Binary splits of Weissenberg et al. 2013, made n-ary", Solver::ProceduralLogic),
+    ("bayesian", "Initial step of Martinovic and Van Gool 2013", Solver::Own(Method::Bayesian)),
+    ("symmetry", "Splitting heuristic of Zhang et al. 2013", Solver::Own(Method::Symmetry)),
+];
 
 /// Runs the command.
 pub(super) fn run(args: &Args) -> Result<()> {
@@ -151,13 +152,8 @@ fn read(args: &Args, costs: Costs) -> Result<Vec<Facade>> {
 
 fn search(args: &Args, facades: &[Facade], costs: Costs) -> Result<Outcome> {
     let method = match args.method {
-        MethodName::Adp => Method::AdpBest,
-        MethodName::AdpPaper => Method::AdpPaper,
-        MethodName::Importance => Method::Importance,
-        MethodName::Greedy => Method::Greedy,
-        MethodName::Bayesian => Method::Bayesian,
-        MethodName::Symmetry => Method::Symmetry,
-        MethodName::ProceduralLogic => return procedural_logic_grammar(facades),
+        Solver::Own(method) => method,
+        Solver::ProceduralLogic => return procedural_logic_grammar(facades),
     };
     let mut settings = Settings {
         method,

@@ -3,15 +3,22 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_cluster::{Dendrogram, agglomerate};
-use edifice_procedural_logic as procedural_logic;
-use edifice_procedural_logic::Model;
+use edifice_cluster::{Dendrogram, Linkage, agglomerate};
+use edifice_procedural_logic::{Measure, Model};
 use edifice_report as report;
 use edifice_report::{Figure, HeatMap, Merge};
 use nalgebra::DMatrix;
 
-use super::input::{Energy, Facades, Linkage, Measure, model};
+use super::input::{Energy, Facades, MEASURES, model};
+use crate::choice::{Choice, one_of};
 use crate::print::{self, Json};
+
+#[rustfmt::skip]
+const LINKAGES: &[Choice<Linkage>] = &[
+    ("single", "Smallest distance", Linkage::Single),
+    ("complete", "Largest distance", Linkage::Complete),
+    ("average", "Mean distance", Linkage::Average),
+];
 
 /// Options of `logic cluster`.
 #[derive(clap::Args)]
@@ -27,10 +34,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     energy: Energy,
     /// Distance between facades.
-    #[arg(long, value_enum, default_value_t = Measure::Powerset)]
+    #[arg(long, value_parser = one_of(MEASURES), default_value = "powerset")]
     measure: Measure,
     /// Distance between clusters.
-    #[arg(long, value_enum, default_value_t = Linkage::Average)]
+    #[arg(long, value_parser = one_of(LINKAGES), default_value = "average")]
     linkage: Linkage,
     /// Clusters to tell apart.
     #[arg(long, value_name = "K", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]
@@ -46,8 +53,8 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<()> {
     let model = model(args.model.as_deref(), &args.facades, &args.energy)?;
     let profiles = model.profiles().map_err(Error::method)?;
-    let distances = procedural_logic::Measure::from(args.measure).matrix(&profiles);
-    let tree = agglomerate(&distances, args.linkage.into()).map_err(Error::method)?;
+    let distances = args.measure.matrix(&profiles);
+    let tree = agglomerate(&distances, args.linkage).map_err(Error::method)?;
     let clusters = tree.cut(args.clusters as usize);
     if let Some(path) = &args.output {
         draw(&model, &tree, &distances, &clusters, path)?;

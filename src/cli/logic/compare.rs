@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, csv};
 use edifice_io::write_atomic;
-use edifice_procedural_logic as procedural_logic;
-use edifice_procedural_logic::Model;
+use edifice_procedural_logic::{Measure, Model};
 use nalgebra::DMatrix;
 
-use super::input::{Energy, Facades, Measure, model};
+use super::input::{Energy, Facades, MEASURES, model};
+use crate::choice::one_of;
 use crate::print;
 
 /// Options of `logic compare`.
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     energy: Energy,
     /// Distance.
-    #[arg(long, value_enum, default_value_t = Measure::Powerset)]
+    #[arg(long, value_parser = one_of(MEASURES), default_value = "powerset")]
     measure: Measure,
     /// Rank the facades by distance from the one of this name only.
     #[arg(long, value_name = "NAME")]
@@ -51,7 +51,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         let message = format!("there is no facade called {wanted}");
         return Err(Error::option("--query", message));
     }
-    let distances = procedural_logic::Measure::from(args.measure).matrix(&profiles);
+    let distances = args.measure.matrix(&profiles);
     if let Some(path) = &args.output {
         write_atomic(path, csv(&model, &distances).as_bytes())?;
     }
@@ -124,8 +124,7 @@ fn equal(a: f64, b: f64) -> bool {
 
 /// The matrix with the names of the facades.
 fn csv(model: &Model, distances: &DMatrix<f64>) -> String {
-    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let names: Vec<String> = model.facades.iter().map(|f| quoted(&f.name)).collect();
+    let names: Vec<String> = model.facades.iter().map(|f| csv::quoted(&f.name)).collect();
     let mut text = format!("facade,{}\n", names.join(","));
     for (row, name) in names.iter().enumerate() {
         let values: Vec<String> = distances.row(row).iter().map(f64::to_string).collect();

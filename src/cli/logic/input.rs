@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_cluster as cluster;
 use edifice_io as io;
 use edifice_io::json;
-use edifice_procedural_logic as procedural_logic;
-use edifice_procedural_logic::{MODEL_FORMAT, MODEL_VERSION, Model, ModelFile, Parameters};
+use edifice_procedural_logic::{
+    MODEL_FORMAT, MODEL_VERSION, Measure, Model, ModelFile, Parameters,
+};
 use edifice_shape::LabelGrid;
 use rayon::prelude::*;
 
+use crate::choice::Choice;
 use crate::cleaning::Cleaning;
 use crate::print;
 use crate::reading::{self, Reading};
@@ -169,47 +170,11 @@ pub(super) fn model(path: Option<&Path>, facades: &Facades, energy: &Energy) -> 
     Ok(model)
 }
 
-/// Distances on the command line.
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Measure {
-    /// Chi-square over operations and labels of the parts of the parse trees.
-    Powerset,
-    /// Chi-square over the rules that two facades share.
-    CommonRules,
-    /// Chi-square over the rules of two facades.
-    AllRules,
-    /// Rules of both facades together over the sum of the rules of each.
-    RuleUnion,
-}
-
-impl From<Measure> for procedural_logic::Measure {
-    fn from(measure: Measure) -> Self {
-        match measure {
-            Measure::Powerset => Self::Powerset,
-            Measure::CommonRules => Self::CommonRules,
-            Measure::AllRules => Self::AllRules,
-            Measure::RuleUnion => Self::RuleUnion,
-        }
-    }
-}
-
-/// Linkages on the command line.
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Linkage {
-    /// Smallest distance.
-    Single,
-    /// Largest distance.
-    Complete,
-    /// Mean distance.
-    Average,
-}
-
-impl From<Linkage> for cluster::Linkage {
-    fn from(linkage: Linkage) -> Self {
-        match linkage {
-            Linkage::Single => Self::Single,
-            Linkage::Complete => Self::Complete,
-            Linkage::Average => Self::Average,
-        }
-    }
-}
+/// Distances between facades.
+#[rustfmt::skip]
+pub(super) const MEASURES: &[Choice<Measure>] = &[
+    ("powerset", "Chi-square over operations and labels of the parts of the parse trees", Measure::Powerset),
+    ("common-rules", "Chi-square over the rules that two facades share", Measure::CommonRules),
+    ("all-rules", "Chi-square over the rules of two facades", Measure::AllRules),
+    ("rule-union", "Rules of both facades together over the sum of the rules of each", Measure::RuleUnion),
+];

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, csv};
 use edifice_io::building_csv::{self, TextTable};
 use edifice_io::{json, read_bytes};
 use edifice_model::tables::Dataset;
@@ -166,14 +166,7 @@ impl Completed {
 
 /// A table as lines of CSV, the header first; categories by name, missing cells empty.
 pub(crate) fn csv_lines(table: &Table) -> Vec<String> {
-    let quoted = |text: &str| {
-        if text.contains([',', '"', '\n']) {
-            format!("\"{}\"", text.replace('"', "\"\""))
-        } else {
-            text.to_owned()
-        }
-    };
-    let names = table.columns().iter().map(|c| quoted(c.name()));
+    let names = table.columns().iter().map(|c| csv::cell(c.name()));
     let mut lines = vec![names.collect::<Vec<_>>().join(",")];
     for row in 0..table.rows() {
         let cells = table.columns().iter().map(|column| match column.cell(row) {
@@ -181,7 +174,7 @@ pub(crate) fn csv_lines(table: &Table) -> Vec<String> {
             Cell::Real(value) => value.to_string(),
             Cell::Code(code) => {
                 let names = column.categories().unwrap_or_default();
-                quoted(names.get(code).map_or("", String::as_str))
+                csv::cell(names.get(code).map_or("", String::as_str)).into_owned()
             }
         });
         lines.push(cells.collect::<Vec<_>>().join(","));

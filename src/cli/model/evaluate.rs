@@ -12,7 +12,7 @@ use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split, sum
 
 use super::data::TableInput;
 use super::learning::{heed_interrupts, interrupted, seconds};
-use super::search::Search;
+use super::search::SearchOptions;
 use crate::print::{self, Json};
 
 /// Time between two looks at the clock.
@@ -48,7 +48,7 @@ pub(crate) struct Splits {
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
     #[command(flatten)]
-    search: Search,
+    search: SearchOptions,
     #[command(flatten)]
     json: Json,
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::rng::stream;
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, csv};
 use edifice_io::building_csv::TextTable;
 use edifice_model::network::{Evidence, FitSettings, Network};
 use edifice_model::tables::table_model::LogParts;
@@ -261,15 +261,11 @@ impl<'t> Passed<'t> {
     }
 
     fn before(&self, cells: &[String], line: &str) -> String {
-        let quoted = |text: &String| match text.contains([',', '"', '\n']) {
-            true => format!("\"{}\"", text.replace('"', "\"\"")),
-            false => text.clone(),
-        };
         let own = self
             .columns
             .iter()
             .filter_map(|&c| cells.get(c))
-            .map(quoted);
+            .map(|text| csv::cell(text).into_owned());
         own.chain([line.to_owned()]).collect::<Vec<_>>().join(",")
     }
 }

@@ -10,13 +10,13 @@ use std::time::{Duration, Instant};
 use edifice_base::{Error, Result};
 use edifice_model::em::Outcome;
 use edifice_model::hierarchy::{
-    Hierarchy, Learned, Settings, Step, fit_observed, learn_observed, refine,
+    Hierarchy, Learned, SearchStep, Settings, fit_observed, learn_observed, refine,
 };
 use edifice_model::tables::Dataset;
 use edifice_model::tables::joined::{Joined, Tried, learn_joined};
 use edifice_model::{ModelError, Table};
 
-use super::search::{Search, warnings};
+use super::search::{SearchOptions, warnings};
 use crate::print;
 
 /// Time between two lines of progress.
@@ -29,7 +29,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 #[derive(clap::Args)]
 pub(crate) struct Learning {
     #[command(flatten)]
-    pub search: Search,
+    pub search: SearchOptions,
     /// Seconds after which to end with the best model so far (as Ctrl-C does).
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
@@ -112,7 +112,7 @@ impl Learning {
         watch: &Watch,
     ) -> std::result::Result<Found, ModelError> {
         let seed = self.search.seed;
-        let observer = |step: Option<&Step>| watch.tell(step);
+        let observer = |step: Option<&SearchStep>| watch.tell(step);
         if let (Some(styles), Some(kinds)) = (self.styles, self.kinds) {
             let states = vec![kinds; data.real_groups()];
             let (table, groups) = (&data.table, &data.groups);
@@ -201,7 +201,7 @@ struct Watch {
 #[derive(Default)]
 struct State {
     tried: usize,
-    best: Option<Step>,
+    best: Option<SearchStep>,
     told: Duration,
 }
 
@@ -215,7 +215,7 @@ impl Watch {
         }
     }
 
-    fn tell(&self, step: Option<&Step>) -> ControlFlow<()> {
+    fn tell(&self, step: Option<&SearchStep>) -> ControlFlow<()> {
         let elapsed = self.start.elapsed();
         if let Ok(mut state) = self.state.lock() {
             state.accept(step);
@@ -232,7 +232,7 @@ impl Watch {
 }
 
 impl State {
-    fn accept(&mut self, step: Option<&Step>) {
+    fn accept(&mut self, step: Option<&SearchStep>) {
         let Some(step) = step else { return };
         self.tried += 1;
         if self.best.as_ref().is_none_or(|b| step.score > b.score) {

@@ -6,7 +6,7 @@ use edifice_model::{Cell, Table};
 
 /// The options of learning.
 #[derive(clap::Args)]
-pub(crate) struct Search {
+pub(crate) struct SearchOptions {
     /// Fewest styles tried.
     #[arg(long, default_value_t = 2)]
     min_styles: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Search {
     pub seed: u64,
 }
 
-impl Search {
+impl SearchOptions {
     /// The settings of the model layer; `background` is the share that is meant where none is given.
     pub(crate) fn settings(&self, background: f64) -> edifice_base::Result<Settings> {
         let background = self.background.unwrap_or(background);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use edifice_base::{Error, Result};
-use edifice_model::network::structure::{Score, Search, search_incomplete};
+use edifice_model::network::structure::{Score, SearchSettings, search_incomplete};
 use edifice_model::tables::bins::binned;
 
 use super::data::TableInput;
@@ -26,7 +26,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 1.0)]
     ess: f64,
     /// Most parents of one variable.
-    #[arg(long, default_value_t = Search::default().most_parents)]
+    #[arg(long, default_value_t = SearchSettings::default().most_parents)]
     max_parents: usize,
     /// An edge that must be there: PARENT>CHILD; repeatable.
     #[arg(long, value_name = "EDGE")]
@@ -38,7 +38,7 @@ pub(crate) struct Args {
     #[arg(long)]
     tier: Vec<String>,
     /// New climbs from the best after random moves.
-    #[arg(long, default_value_t = Search::default().restarts)]
+    #[arg(long, default_value_t = SearchSettings::default().restarts)]
     restarts: usize,
     /// Seed of all random streams.
     #[arg(long, default_value_t = 1)]
@@ -72,7 +72,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let (data, _) = args.input.read()?;
     // While the table was read, an interrupt ended the process.
     heed_interrupts();
-    let settings = Search {
+    let settings = SearchSettings {
         score: match args.score {
             Kind::Bdeu => Score::Bdeu(args.ess),
             Kind::Bic => Score::Bic,
@@ -82,7 +82,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         forbidden: edges("--forbid", &args.forbid)?,
         tiers: args.tier.iter().map(|t| words(t)).collect(),
         restarts: args.restarts,
-        ..Search::default()
+        ..SearchSettings::default()
     };
     let at = |e| Error::content(&args.input.table, e);
     let (table, cut) = binned(&data.table).map_err(at)?;

@@ -244,8 +244,8 @@ pub(super) fn sample(args: &SampleArgs) -> Result<()> {
     }
     let model = read_model(&args.model)?;
     let mut rng = stream(args.seed, "model/sample", 0);
-    let kinds = model.sample(1, &mut rng).map_err(Error::method)?;
-    let given = evidence(&model.schema.groups(), &kinds, &args.given)
+    let columns = model.columns().map_err(Error::method)?;
+    let given = evidence(&model.schema.groups(), &columns, &args.given)
         .map_err(|e| Error::option("--given", e.to_string()))?;
     let draws = match args.given.is_empty() {
         true => model.sample(args.count, &mut rng),

@@ -6,7 +6,7 @@ use edifice_base::rng::{Stream, stream};
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::coding::attribute_rows;
-use edifice_building_exteriors::data::{filled, table};
+use edifice_building_exteriors::data::table;
 use edifice_building_exteriors::design::{Possible, possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
 use edifice_building_exteriors::mass::contradiction::check_given;
@@ -152,12 +152,12 @@ pub(super) fn sampler<'a>(
     plan: Option<&[Rect]>,
     part: u64,
 ) -> Result<(Sampler<'a>, Table)> {
-    let mut rng = stream(draws.seed, "building/sample", part);
     if let Some(style) = draws.style {
+        let mut rng = stream(draws.seed, "building/sample", part);
         let batch = move || style_table(file, style, draws.count, &mut rng);
         return Ok((Box::new(batch), Table::new()));
     }
-    let mut given = given_table(file, &draws.given, &mut rng)?;
+    let mut given = given_table(file, &draws.given)?;
     for (c, value) in plan.into_iter().flat_map(decided) {
         // What is given of the plan is checked against it when the houses are made.
         if given.column(COLUMNS[c]).is_err() {
@@ -187,13 +187,13 @@ pub fn style_table(
     Ok(draws.map_err(|e| wrong(e.to_string()))?.table)
 }
 
-/// Evidence as a table of one row. A sample of the model tells the kinds of the columns.
+/// Evidence as a table of one row.
 ///
 /// # Errors
 /// [`Error::Option`] for evidence that the model does not know.
-pub fn given_table(file: &ModelFile, given: &[String], rng: &mut Stream) -> Result<Table> {
-    let kinds = file.sample(1, rng).map_err(Error::method)?;
-    evidence(&file.attributes(), &kinds.table, given)
+pub fn given_table(file: &ModelFile, given: &[String]) -> Result<Table> {
+    let columns = file.columns().map_err(Error::method)?;
+    evidence(&file.attributes(), &columns, given)
         .map_err(|e| Error::option("--given", e.to_string()))
 }
 
@@ -230,6 +230,6 @@ pub(super) fn whole(drawn: Table, given: &Table, rng: &mut Stream) -> Result<Tab
             *value = known.or(*value);
         }
     }
-    let rows = filled(rows, shipped_model()?, rng).map_err(Error::method)?;
+    let rows = shipped_model()?.filled(rows, rng).map_err(Error::method)?;
     table(&rows).map_err(Error::method)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::script::Shell;
 use super::super::work::Work;
-use super::super::{CommandError, Step, answer, count_of_answers};
+use super::super::{Applied, CommandError, answer, count_of_answers};
 use super::{
     House, Wishes, edit, given, shipped_database, shipped_model, text, variations, view, wished,
     words,
@@ -16,7 +16,7 @@ use edifice_building_exteriors::house::Options;
 const MOST: usize = 12;
 
 impl House {
-    pub(super) fn edit(&self, texts: &[String], suggest: bool, seed: u64) -> Result<Step> {
+    pub(super) fn edit(&self, texts: &[String], suggest: bool, seed: u64) -> Result<Applied> {
         let edits = text::parse_all(texts)?;
         let database = shipped_database()?;
         let learned = match suggest {
@@ -45,7 +45,7 @@ impl House {
         if suggest {
             said.push_str(", the rest suggested");
         }
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(self.made(made, locked)),
             said,
             shell,
@@ -53,7 +53,7 @@ impl House {
         })
     }
 
-    pub(super) fn variations(&self, count: usize, seed: u64) -> Result<Step> {
+    pub(super) fn variations(&self, count: usize, seed: u64) -> Result<Applied> {
         let count = count_of_answers(count, MOST)?;
         let options = Options::default();
         let answers = variations(&self.building, count, shipped_database()?, &options, seed);
@@ -66,7 +66,7 @@ impl House {
             ));
         }
         let shell = Shell::new(["building", "variations", "<"]).option("--count", count);
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(Self {
                 answers,
                 chosen: None,
@@ -85,7 +85,7 @@ impl House {
         keep: bool,
         seed: u64,
         work: &Work,
-    ) -> Result<Step> {
+    ) -> Result<Applied> {
         // A style says of all columns what they are.
         let keep = keep && style.is_none();
         let wishes = Wishes {
@@ -113,7 +113,7 @@ impl House {
         let mut said = style.map_or(String::new(), |s| format!("style {s} "));
         said.push_str(&texts.join(", "));
         let boxes = made.building.boxes.len();
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(Self {
                 wishes: texts,
                 style,
@@ -126,14 +126,14 @@ impl House {
         })
     }
 
-    pub(super) fn choose(&self, wanted: usize) -> Result<Step> {
+    pub(super) fn choose(&self, wanted: usize) -> Result<Applied> {
         let chosen = answer(&self.answers, wanted)?.clone();
         let state = Self {
             answers: self.answers.clone(),
             chosen: Some(wanted),
             ..self.made(chosen.clone(), vec![false; chosen.building.boxes.len()])
         };
-        Ok(Step {
+        Ok(Applied {
             shell: Shell::default().gives("", Some(state.file())),
             state: Arc::new(state),
             said: format!("take plan {wanted}"),

@@ -2,8 +2,8 @@
 
 use super::error::{GrammarEditError, known};
 use super::floors;
-use super::line::{Line, unfit};
 use super::place::Place;
+use super::rule_axis::{RuleAxis, unfit};
 use edifice_grammar::{Grammar, Operation, Successor, check, size_independent};
 
 /// One edit. Rules are counted from 0 in the order of the file; PART is a [`Place`] in one: a part, or a column or row of a grid.
@@ -69,40 +69,40 @@ fn apply(grammar: &mut Grammar, edit: &GrammarEdit) -> Result<(), GrammarEditErr
             *symbol(grammar, *rule, *part)? = name.clone();
         }
         GrammarEdit::Resize(rule, part, size) => {
-            let mut line = Line::of(grammar, *rule, *part)?;
+            let mut axis = RuleAxis::of(grammar, *rule, *part)?;
             let k = part.index();
-            let old = line.sizes()[k];
+            let old = axis.sizes()[k];
             // A part that stands twice takes from the others twice.
-            line.set(k, *size)?;
-            let more = line.times(k) * (old - size);
-            line.give_way(Some(k), more)?;
+            axis.set(k, *size)?;
+            let more = axis.times(k) * (old - size);
+            axis.give_way(Some(k), more)?;
         }
         GrammarEdit::Border(rule, part, shift) => {
             let k = part.index();
-            let mut line = Line::of(grammar, *rule, part.at(k.saturating_add(1)))?;
-            let (a, b) = (line.sizes()[k], line.sizes()[k + 1]);
+            let mut axis = RuleAxis::of(grammar, *rule, part.at(k.saturating_add(1)))?;
+            let (a, b) = (axis.sizes()[k], axis.sizes()[k + 1]);
             if a + shift <= 0.0 || b - shift <= 0.0 {
-                return Err(line.error(k, a + shift, a + b));
+                return Err(axis.error(k, a + shift, a + b));
             }
-            line.change(k, |v| v + shift);
-            line.change(k + 1, |v| v - shift);
+            axis.change(k, |v| v + shift);
+            axis.change(k + 1, |v| v - shift);
         }
         GrammarEdit::Insert(rule, part, name, size) => {
             let k = part.index();
             // A new one may stand behind the last; a copy is of one that is there.
             let near = name.as_ref().map_or(k, |_| k.saturating_sub(1));
-            let mut line = Line::of(grammar, *rule, part.at(near))?;
-            let before = line.total();
-            line.insert(k, name.as_deref(), *size)?;
-            line.set(k, *size)?;
-            line.give_way(Some(k), before - line.total())?;
+            let mut axis = RuleAxis::of(grammar, *rule, part.at(near))?;
+            let before = axis.total();
+            axis.insert(k, name.as_deref(), *size)?;
+            axis.set(k, *size)?;
+            axis.give_way(Some(k), before - axis.total())?;
         }
         GrammarEdit::Remove(rule, part) => {
-            let mut line = Line::of(grammar, *rule, *part)?;
+            let mut axis = RuleAxis::of(grammar, *rule, *part)?;
             let k = part.index();
-            let before = line.total();
-            line.remove(k)?;
-            line.give_way(None, before - line.total())?;
+            let before = axis.total();
+            axis.remove(k)?;
+            axis.give_way(None, before - axis.total())?;
         }
     }
     Ok(())

@@ -8,9 +8,9 @@
 //! for its number of periods ([`settle`]), which may be another one in another region of its rule.
 
 use super::error::GrammarEditError;
-use super::line::{Line, along_mut, repeats, totals};
 use super::place::Place;
 use super::reach::{LEAST_GROWTH, Laid, Reach, periods, reach};
+use super::rule_axis::{RuleAxis, along_mut, repeats, totals};
 use edifice_grammar::{Grammar, GrammarError, Size};
 use edifice_shape::Axis;
 
@@ -28,18 +28,18 @@ pub(super) fn change(
     place: Place,
     grows: bool,
 ) -> Result<(), GrammarEditError> {
-    let axis = Line::of(grammar, rule, place)?.axis;
+    let axis = RuleAxis::of(grammar, rule, place)?.axis;
     let found = (0..grammar.starts.len()).map(|k| reach(grammar, rule, axis, k));
     let found: Vec<Option<Reach>> = found.collect::<Result<_, _>>()?;
     let before = grammar.rules[rule].operation.clone();
     let index = place.index();
-    let mut line = Line::of(grammar, rule, place)?;
-    let size = line.sizes()[index];
-    let counted = repeats(line.operation);
+    let mut along = RuleAxis::of(grammar, rule, place)?;
+    let size = along.sizes()[index];
+    let counted = repeats(along.operation);
     match (counted, grows) {
         (true, _) => {}
-        (false, true) => line.insert(index, None, size)?,
-        (false, false) => line.remove(index)?,
+        (false, true) => along.insert(index, None, size)?,
+        (false, false) => along.remove(index)?,
     }
     let after = grammar.rules[rule].operation.clone();
     let mut first = true;

@@ -5,10 +5,10 @@ mod derivation;
 mod edits;
 mod error;
 mod floors;
-mod line;
 mod place;
 mod reach;
 mod relief;
+mod rule_axis;
 mod text;
 
 pub use derivation::{DeriveError, Derived, Wish, derived};

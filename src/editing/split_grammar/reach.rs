@@ -1,6 +1,6 @@
 //! The region of a rule that floors and columns are put into, and what is around it.
 
-use super::line::{along, index_along, repeats, totals};
+use super::rule_axis::{along, index_along, repeats, totals};
 use edifice_base::rng;
 use edifice_grammar::{Derivation, Grammar, GrammarError, Operation, Size, derive_at, laid_out};
 use edifice_shape::{Axis, Rect};

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::super::script::{Shell, Word};
-use super::super::{Step, parse};
+use super::super::{Applied, parse};
 use super::{ENDING, Sketch};
 use edifice_base::{Error, Result};
 use edifice_io::photograph;
@@ -18,6 +18,8 @@ use edifice_shape::AnnotatedFacade;
 enum Question {
     /// The picture under it.
     Photograph,
+    /// The picture that it was opened from, whose corners are not known yet.
+    Original,
 }
 
 /// Answers a question.
@@ -25,14 +27,16 @@ enum Question {
 /// # Errors
 /// [`CommandError::Form`](super::super::CommandError::Form) for none.
 pub(super) fn answer(sketch: &Sketch, question: &Value) -> Result<Value> {
-    let Question::Photograph = parse(question)?;
-    let picture = sketch.layout.photograph.as_ref();
-    Ok(json!({"picture": picture.map(photograph::address)}))
+    let picture = match parse(question)? {
+        Question::Photograph => sketch.layout.photograph.as_ref().map(photograph::address),
+        Question::Original => sketch.original.as_ref().map(|o| o.address()),
+    };
+    Ok(json!({"picture": picture}))
 }
 
 impl Sketch {
     /// Another photograph under the drawing, or none; a completion of it begins anew.
-    pub(super) fn photograph(&self, address: Option<&str>) -> Result<Step> {
+    pub(super) fn photograph(&self, address: Option<&str>) -> Result<Applied> {
         let read = address.map(photograph::of_address).transpose();
         let picture = read.map_err(Error::method)?;
         let shell = Shell::new(["facade", "edit", "--output", ">"]);
@@ -57,7 +61,7 @@ impl Sketch {
             forbidden: self.forbidden.clone(),
             ..Self::new(layout)
         };
-        Ok(Step {
+        Ok(Applied {
             state: Arc::new(state),
             said,
             shell,

@@ -28,6 +28,7 @@ pub(super) fn view(sketch: &Sketch) -> Value {
     let picture = sketch.layout.photograph.as_ref();
     json!({
         "photograph": picture.map(|p| format!("{:016x}", p.id())),
+        "original": sketch.original.as_ref().map(|o| o.shown()),
         "unit": facade.unit, "width": facade.width, "height": facade.height,
         "elements": elements(&sketch.layout, &sketch.pins),
         "unknown": unknown.map(|u| u.iter().map(corners).collect::<Vec<_>>()),

@@ -37,14 +37,14 @@ const PRIOR: [f64; PREDICTORS] = [
 pub(super) type Sizes = BTreeMap<u32, u32>;
 
 /// A slot of a rule in any repetition.
-pub(super) type Place = (u32, u32, u32);
+pub(super) type SlotKey = (u32, u32, u32);
 
 /// Sizes that were seen, by what they belong to.
 #[derive(Debug, Clone, Default)]
 pub struct SizeTable {
-    place: FxHashMap<Place, Sizes>,
+    place: FxHashMap<SlotKey, Sizes>,
     /// Sizes with the extent of their region.
-    share: FxHashMap<Place, BTreeMap<(u32, u32), u32>>,
+    share: FxHashMap<SlotKey, BTreeMap<(u32, u32), u32>>,
     symbol: FxHashMap<(Axis, Symbol), Sizes>,
     axis: [Sizes; 2],
 }
@@ -96,7 +96,7 @@ pub struct Question {
 }
 
 impl Question {
-    fn place(&self) -> Place {
+    fn place(&self) -> SlotKey {
         (self.rule, self.slot.item, self.slot.place)
     }
 }
@@ -104,8 +104,8 @@ impl Question {
 /// The sizes and cuts of the facade at hand so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SizeMemory {
-    slot: FxHashMap<(Place, u32), Sizes>,
-    place: FxHashMap<Place, Sizes>,
+    slot: FxHashMap<(SlotKey, u32), Sizes>,
+    place: FxHashMap<SlotKey, Sizes>,
     symbol: FxHashMap<(Axis, Symbol), Sizes>,
     axis: [Sizes; 2],
     cuts: [BTreeSet<u32>; 2],

@@ -7,6 +7,7 @@ mod legend;
 mod scene;
 mod terrain;
 
+use crate::scene_png::picture_png;
 use edifice_scene::render::{Picture, render};
 use edifice_scene::trace::framing_at;
 use edifice_shape::triangles::City;
@@ -83,23 +84,11 @@ pub fn draw(
             rgb[from..from + row.len()].copy_from_slice(row);
         }
     }
-    encoded(&Picture {
+    picture_png(&Picture {
         width: whole,
         height,
         rgb,
     })
-}
-
-fn encoded(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, picture.width as u32, picture.height as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_filter(png::Filter::Adaptive);
-    encoder.set_compression(png::Compression::Balanced);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&picture.rgb)?;
-    writer.finish()?;
-    Ok(bytes)
 }
 
 /// The least and the greatest corner of what is drawn of a city, relative to its origin; `None` where nothing is.

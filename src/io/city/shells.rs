@@ -68,15 +68,15 @@ fn over_edges(mesh: &TriangleMesh) -> Vec<usize> {
     (0..mesh.triangles.len()).map(|i| sets.root(i)).collect()
 }
 
-/// The plan of a surface.
-struct Plan {
+/// The convex hull of a surface in plan, and its bounds.
+struct PlanHull {
     hull: Vec<[f64; 2]>,
     middle: [f64; 2],
     low: [f64; 2],
     high: [f64; 2],
 }
 
-impl Plan {
+impl PlanHull {
     fn area(&self) -> f64 {
         let n = self.hull.len();
         let cross = |i: usize| {
@@ -98,7 +98,7 @@ impl Plan {
     }
 }
 
-fn plans(mesh: &TriangleMesh, labels: &[usize], count: usize) -> Vec<Plan> {
+fn plans(mesh: &TriangleMesh, labels: &[usize], count: usize) -> Vec<PlanHull> {
     let mut points: Vec<Vec<[f64; 2]>> = vec![Vec::new(); count];
     for (t, &l) in mesh.triangles.iter().zip(labels) {
         points[l].extend(t.iter().map(|&i| {
@@ -107,7 +107,7 @@ fn plans(mesh: &TriangleMesh, labels: &[usize], count: usize) -> Vec<Plan> {
         }));
     }
     let plan = |points: Vec<[f64; 2]>| {
-        let mut plan = Plan {
+        let mut plan = PlanHull {
             hull: convex_hull(points),
             middle: [0.0; 2],
             low: [f64::INFINITY; 2],
@@ -124,7 +124,7 @@ fn plans(mesh: &TriangleMesh, labels: &[usize], count: usize) -> Vec<Plan> {
 }
 
 /// Surfaces whose middle lies in the plan of a larger one, with the largest such.
-fn on_others(plans: &[Plan]) -> Vec<(usize, usize)> {
+fn on_others(plans: &[PlanHull]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..plans.len()).collect();
     order.sort_by(|&a, &b| plans[b].area().total_cmp(&plans[a].area()).then(a.cmp(&b)));
     let cell = |v: f64| (v / CELL).floor() as i64;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::areas::Areas;
 use super::counts;
 use super::error::RegularizeError;
-use super::projection::{Layout, Limits, Step};
+use super::projection::{Layout, Limits, Projected};
 use super::square::square;
 use edifice_shape::{
     Facade, IndexedLayout, LabelGrid, LayoutError, Rect, Region, decompose, is_background,
@@ -48,14 +48,14 @@ impl Picture {
 }
 
 impl Layout for Picture {
-    fn step(&self, limits: &Limits) -> Result<Option<Step<Self>>, RegularizeError> {
+    fn step(&self, limits: &Limits) -> Result<Option<Projected<Self>>, RegularizeError> {
         let (squared, nicks) = square(&self.grid, limits.depth);
         let moved = Areas::of_grid(&squared)?.regularize(limits)?;
         if moved.is_none() && nicks.count == 0 {
             return Ok(None);
         }
         let (xs, ys) = moved.unwrap_or_else(|| (squared.xs.clone(), squared.ys.clone()));
-        Ok(Some(Step {
+        Ok(Some(Projected {
             layout: Self::new(&moved_grid(&squared, &xs, &ys))?,
             moved: [pairs(&squared.xs, &xs), pairs(&squared.ys, &ys)],
             filled: nicks.deepest,
@@ -134,12 +134,12 @@ impl Tiling {
 }
 
 impl Layout for Tiling {
-    fn step(&self, limits: &Limits) -> Result<Option<Step<Self>>, RegularizeError> {
+    fn step(&self, limits: &Limits) -> Result<Option<Projected<Self>>, RegularizeError> {
         let areas = Areas::of_facade(&self.facade, &self.layout, &self.grid);
         let Some((xs, ys)) = areas.regularize(limits)? else {
             return Ok(None);
         };
-        Ok(Some(Step {
+        Ok(Some(Projected {
             layout: Self::new(self.moved(&xs, &ys)?)?,
             moved: [pairs(&self.grid.xs, &xs), pairs(&self.grid.ys, &ys)],
             filled: 0.0,

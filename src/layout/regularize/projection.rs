@@ -30,7 +30,7 @@ pub(super) trait Layout: Sized + Clone {
     ///
     /// # Errors
     /// [`RegularizeError`].
-    fn step(&self, limits: &Limits) -> Result<Option<Step<Self>>, RegularizeError>;
+    fn step(&self, limits: &Limits) -> Result<Option<Projected<Self>>, RegularizeError>;
 
     /// Coordinates of the cut lines along x and y.
     fn lines(&self) -> [&[f64]; 2];
@@ -57,7 +57,7 @@ pub(super) struct Limits {
 
 /// The result of one step.
 #[derive(Debug, Clone)]
-pub(super) struct Step<L> {
+pub(super) struct Projected<L> {
     /// The layout.
     pub layout: L,
     /// Lines along x and y before and after it.
@@ -181,7 +181,7 @@ impl<L: Layout> Made<L> {
         ranges
     }
 
-    fn after(&self, step: Step<L>) -> Self {
+    fn after(&self, step: Projected<L>) -> Self {
         let mut next = Self {
             filled: self.filled + step.filled,
             squared: self.squared + step.squared,

@@ -78,25 +78,25 @@ pub fn resized(
     };
     for (axis, target) in [(Axis::X, width), (Axis::Y, height)] {
         let k = usize::from(axis == Axis::Y);
-        let line = Line::new(&out.facade, axis)?;
-        if (target - line.side).abs() <= line.noise {
+        let view = AxisView::new(&out.facade, axis)?;
+        if (target - view.side).abs() <= view.noise {
             continue;
         }
-        let strict = line.plan(&line.bands(false), target);
+        let strict = view.plan(&view.bands(false), target);
         let mut best = strict;
         if (target / best.side).ln().abs() > SCALE {
-            let loose = line.plan(&line.bands(true), target);
+            let loose = view.plan(&view.bands(true), target);
             if (target / loose.side).ln().abs() < (target / best.side).ln().abs() {
                 best = loose;
             }
         }
-        let (pieces, cut) = line.applied(&best.counts);
+        let (pieces, cut) = view.applied(&best.counts);
         let scale = target / best.side;
         out.bands[k] = best.counts.iter().map(|(_, count)| count).sum();
         out.scale[k] = scale;
         out.cut.extend(cut);
         let ends = |at: f64| match at {
-            at if (at - best.side).abs() <= line.noise => target,
+            at if (at - best.side).abs() <= view.noise => target,
             at => at * scale,
         };
         let regions = pieces.iter().map(|piece| {
@@ -124,13 +124,13 @@ pub fn resized(
 type Band = (f64, f64);
 
 /// Counts of bands, and the side that they make.
-struct Plan {
+struct BandCounts {
     counts: Vec<(Band, i64)>,
     side: f64,
 }
 
 /// A facade seen along one axis.
-struct Line<'a> {
+struct AxisView<'a> {
     pieces: Vec<Piece<'a>>,
     cuts: Vec<f64>,
     /// For each column of cuts and each row, the index of its piece.
@@ -139,7 +139,7 @@ struct Line<'a> {
     noise: f64,
 }
 
-impl<'a> Line<'a> {
+impl<'a> AxisView<'a> {
     fn new(facade: &'a Facade, axis: Axis) -> Result<Self, edifice_shape::LayoutError> {
         let layout = facade.indexed()?;
         let other = axis.other();
@@ -233,10 +233,10 @@ impl<'a> Line<'a> {
     }
 
     /// Chooses the counts of bands.
-    fn plan(&self, bands: &[Band], target: f64) -> Plan {
+    fn plan(&self, bands: &[Band], target: f64) -> BandCounts {
         let more = target > self.side;
         let before = shares(&self.pieces, self.noise);
-        let mut plan = Plan {
+        let mut plan = BandCounts {
             counts: bands.iter().map(|&band| (band, 0)).collect(),
             side: self.side,
         };

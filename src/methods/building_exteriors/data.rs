@@ -1,10 +1,6 @@
 //! From attribute rows to the tables and groups of the model layer.
 
-use rand::Rng;
-
 use super::attributes::{AttributeRow, GROUPS, Level};
-use super::coding::attribute_rows;
-use super::model_file::ModelFile;
 use edifice_model::hierarchy::Group;
 use edifice_model::tables::Dataset;
 use edifice_model::{Cell, ModelError, Table};
@@ -70,30 +66,6 @@ pub fn table(rows: &[AttributeRow]) -> Result<Table, ModelError> {
         }
     }
     Ok(table)
-}
-
-/// The rows with what is missing drawn from a model given the rest; columns that the model does not know stay missing.
-///
-/// # Errors
-/// As [`ModelFile::complete`].
-pub fn filled(
-    mut rows: Vec<AttributeRow>,
-    model: &ModelFile,
-    rng: &mut impl Rng,
-) -> Result<Vec<AttributeRow>, ModelError> {
-    let holes = |row: &AttributeRow| row.iter().any(Option::is_none);
-    for row in rows.iter_mut().filter(|row| holes(row)) {
-        let drawn = match row.iter().all(Option::is_none) {
-            true => model.sample(1, rng)?,
-            false => model.complete(&table(std::slice::from_ref(row))?, 1, rng)?,
-        };
-        for own in attribute_rows(&drawn.table) {
-            for (value, drawn) in row.iter_mut().zip(own) {
-                *value = value.or(drawn);
-            }
-        }
-    }
-    Ok(rows)
 }
 
 /// The 13 attributes of the paper as groups of columns: seven of the mass model and three of the

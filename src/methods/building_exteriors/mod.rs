@@ -16,3 +16,6 @@ pub mod model_file;
 pub mod network;
 pub mod observations;
 pub mod survey;
+
+/// The version of `rand` whose generators the functions here take.
+pub use rand;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::attributes::{AttributeRow, GROUPS};
 use super::coding::{Coding, attribute_rows, coded_evidence, settled};
+use super::data;
 use edifice_model::hierarchy::{Draws, Group, Hierarchy};
 use edifice_model::{ModelError, Table};
 
@@ -74,6 +75,21 @@ impl ModelFile {
         }
     }
 
+    /// A table of the columns of [`Self::attributes`] without rows: their kinds.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::columns`].
+    pub fn columns(&self) -> Result<Table, ModelError> {
+        match self.coding {
+            Coding::Published => self.model.columns(),
+            Coding::Presence => {
+                let attributes = self.attributes();
+                let names = attributes.iter().flat_map(|g| &g.columns);
+                data::table(&[])?.in_order(&names.map(String::as_str).collect::<Vec<_>>())
+            }
+        }
+    }
+
     fn has(&self, column: &str) -> bool {
         self.groups
             .iter()
@@ -124,6 +140,30 @@ impl ModelFile {
             .iter()
             .flat_map(|row| std::iter::repeat_n(row.clone(), count));
         self.decoded(draws, &rows.collect::<Vec<_>>())
+    }
+
+    /// The rows with what is missing drawn given the rest; columns that the model does not know stay missing.
+    ///
+    /// # Errors
+    /// As [`Self::complete`].
+    pub fn filled<R: Rng>(
+        &self,
+        mut rows: Vec<AttributeRow>,
+        rng: &mut R,
+    ) -> Result<Vec<AttributeRow>, ModelError> {
+        let holes = |row: &AttributeRow| row.iter().any(Option::is_none);
+        for row in rows.iter_mut().filter(|row| holes(row)) {
+            let drawn = match row.iter().all(Option::is_none) {
+                true => self.sample(1, rng)?,
+                false => self.complete(&data::table(std::slice::from_ref(row))?, 1, rng)?,
+            };
+            for own in attribute_rows(&drawn.table) {
+                for (value, drawn) in row.iter_mut().zip(own) {
+                    *value = value.or(drawn);
+                }
+            }
+        }
+        Ok(rows)
     }
 
     /// The most probable completions of one row that differ; see [`Hierarchy::most_probable`].

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::adp::search::Search;
+use super::adp::search::Setup;
 use super::adp::walk::ShortestPathRules;
 use super::annealing::NonterminalSet;
 use super::bound::{few_rules, saved_by_grids};
@@ -19,7 +19,7 @@ use edifice_shape::Facade;
 /// Rules found, and a bound below which no grammar costs.
 type Found = (Vec<AddRule>, f64);
 
-impl Search<'_> {
+impl Setup<'_> {
     /// The default method, in stages:
     ///
     /// 1. several facades start from the union of their own grammars;
@@ -54,7 +54,7 @@ impl Search<'_> {
         self.second_stage(start, lower, Vec::new(), iterations, 1)
     }
 
-    /// [`Search::best`] where there are too many items for the Lagrangian bound.
+    /// [`Setup::best`] where there are too many items for the Lagrangian bound.
     fn best_unbounded(
         &self,
         facades: &[Facade],

@@ -53,7 +53,7 @@ impl fmt::Display for Weakness {
 }
 
 /// Bounds the cost of the grammars of a facade from below, as [`infer`] does (see [`super`]), but with as much
-/// work as `limits` allow; the upper bound starts from what [`Method::AdpBest`] finds with the other `settings`.
+/// work as `limits` allow; the upper bound starts from what [`Method::Lagrangian`] finds with the other `settings`.
 /// The same limits give the same bound, unless `watch` stops the search: then it is the greatest until then.
 ///
 /// Where the rules of a facade have more items than [`BoundLimits::items`], the bound is the weak one that every label is
@@ -78,7 +78,7 @@ pub fn lower_bound(
 ) -> Result<Bound, InferError> {
     let watched = &Watched::new(watch);
     let settings = Settings {
-        method: Method::AdpBest,
+        method: Method::Lagrangian,
         ..settings.clone()
     };
     let (costs, operations) = (&settings.costs, settings.operations);

@@ -1,6 +1,6 @@
 //! Inference: from facades to one grammar.
 
-use super::adp::search::Search;
+use super::adp::search::Setup;
 use super::baselines::importance_sampling::cheapest;
 use super::lagrangian::NOISE;
 use super::settings::{InferError, Method, Settings};
@@ -13,9 +13,9 @@ use edifice_shape::{Facade, splittable};
 pub struct Outcome {
     /// The grammar; its cost is for [`edifice_grammar`] to say.
     pub grammar: Grammar,
-    /// Iterations that the method was given; [`Method::AdpBest`] stops sooner once its grammar is proven optimal.
+    /// Iterations that the method was given; [`Method::Lagrangian`] stops sooner once its grammar is proven optimal.
     pub iterations: u64,
-    /// No grammar of these facades costs less, as far as [`Method::AdpBest`] found out (see [`super::lower_bound`]).
+    /// No grammar of these facades costs less, as far as [`Method::Lagrangian`] found out (see [`super::lower_bound`]).
     pub lower_bound: Option<f64>,
     /// Effective number of walks of [`Method::Importance`], weighted by `exp(-cost)` ([`super::weighted`]); `None` of other methods.
     pub effective: Option<f64>,
@@ -45,10 +45,10 @@ pub fn infer(
     settings.costs.check()?;
     check(facades)?;
     let watched = Watched::new(watch);
-    let search = Search::new(facades, settings, &watched)?;
+    let search = Setup::new(facades, settings, &watched)?;
     let (mut lower_bound, mut effective) = (None, None);
     let rules = match settings.method {
-        Method::AdpBest => {
+        Method::Lagrangian => {
             let (rules, lower) = search.best(facades)?;
             lower_bound = Some(lower);
             rules
@@ -64,7 +64,7 @@ pub fn infer(
         Method::Symmetry => search.symmetry_maximization(),
     };
     let iterations = match settings.method {
-        Method::AdpBest | Method::AdpPaper | Method::Importance => settings.iterations,
+        Method::Lagrangian | Method::AdpPaper | Method::Importance => settings.iterations,
         Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
     };
     Ok(Outcome {

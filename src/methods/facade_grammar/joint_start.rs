@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::adp::search::Search;
+use crate::adp::search::Setup;
 use crate::regions::{LayoutIndex, Region, Strips, TypeId, Types};
 use crate::rules::AddRule;
 use crate::rules::RuleCandidate;
@@ -23,7 +23,7 @@ use edifice_shape::{Axis, Facade};
 /// A rule and its cost.
 type Ruled = (f64, Rc<RuleCandidate>);
 
-impl Search<'_> {
+impl Setup<'_> {
     /// Rules of the union over the types of this search; `None` where equal sizes of one facade are told apart beside
     /// another facade, so that no rule over the union's types derives it.
     pub(crate) fn union(&self, facades: &[Facade]) -> Result<Option<Vec<AddRule>>, InferError> {
@@ -36,7 +36,7 @@ impl Search<'_> {
                     .tell(Progress::stage("a grammar of each facade"))
             };
             let watched = Watched::new(&one);
-            let search = Search::new(alone, self.settings, &watched)?;
+            let search = Setup::new(alone, self.settings, &watched)?;
             let (rules, _) = search.best(alone)?;
             let (from, to) = (&mut search.types.borrow_mut(), &mut self.types.borrow_mut());
             for rule in rules {

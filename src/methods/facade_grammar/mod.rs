@@ -13,7 +13,7 @@
 //! its [`Settings`]:
 //!
 //! - [`Method::AdpPaper`]: approximate dynamic programming, as the text can be read;
-//! - [`Method::AdpBest`]: a Lagrangian bound, below, which finds the optimum of most facades and proves it; where it
+//! - [`Method::Lagrangian`]: a Lagrangian bound, below, which finds the optimum of most facades and proves it; where it
 //!   leaves a gap, walks by shortest paths over all sets of lines, then annealing over the set of non-terminal
 //!   types;
 //! - the baselines of Sec. 6.1.
@@ -101,10 +101,10 @@
 //!   exploitation from the rules tried before (42.2 on average with one rule of each type, 41.3 with 64),
 //!   and protected regions drawn once for a run ([`Protect::Run`]: 42.5, and as large a difference between
 //!   runs as the text has). Neither is the default: the first leaves out rules that Eq. 4 minimizes over,
-//!   the second contradicts the text, and `best` would look better beside either.
+//!   the second contradicts the text, and the default method would look better beside either.
 //! - These readings can be set ([`Readings`]); the report's `readings` shows what each does.
-//! - *Iterations* are walks. Of `best` they are a measure of work: for each, the Lagrangian bound may look at 9,000 items;
-//!   for every eight there is one walk by shortest paths and one round of annealing. `best` stops once its
+//! - *Iterations* are walks. Of the default method they are a measure of work: for each, the Lagrangian bound may look at 9,000 items;
+//!   for every eight there is one walk by shortest paths and one round of annealing. It stops once its
 //!   grammar is proven optimal. Where there are too many occurrences for the bound it makes walks of
 //!   `paper` first, fewer the larger the facade, and ends when a limit of memory is reached. With grids allowed, the
 //!   bound looks for a start without them.

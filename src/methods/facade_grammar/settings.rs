@@ -17,9 +17,10 @@ use edifice_shape::LayoutError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// The Lagrangian bound; where it does not prove a grammar optimal, approximate dynamic programming, then annealing over the
-    /// set of non-terminal types.
-    AdpBest,
+    /// The Lagrangian bound with branching, which is exact where it proves a grammar optimal; elsewhere also approximate dynamic
+    /// programming, then annealing over the set of non-terminal types. Stored as `adp_best`.
+    #[serde(rename = "adp_best")]
+    Lagrangian,
     /// Approximate dynamic programming as the text describes it.
     AdpPaper,
     /// Only the splitting heuristic, the best of many walks.
@@ -37,7 +38,7 @@ pub enum Method {
 pub struct Settings {
     /// The method of inference.
     pub method: Method,
-    /// Walks, of the methods that repeat them. Of [`Method::AdpBest`] a measure of the work that it may do (see
+    /// Walks, of the methods that repeat them. Of [`Method::Lagrangian`] a measure of the work that it may do (see
     /// [`super`]): it stops once its grammar is proven optimal.
     pub iterations: u64,
     /// Seed of all randomness.
@@ -55,10 +56,10 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Steps that a watch is told of at most: the iterations, and of `best` what comes before and after.
+    /// Steps that a watch is told of at most: the iterations, and of [`Method::Lagrangian`] what comes before and after.
     pub fn steps(&self) -> u64 {
         match self.method {
-            Method::AdpBest => self.iterations + further_steps(self.iterations),
+            Method::Lagrangian => self.iterations + further_steps(self.iterations),
             Method::AdpPaper | Method::Importance => self.iterations,
             Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
         }
@@ -68,7 +69,7 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            method: Method::AdpBest,
+            method: Method::Lagrangian,
             iterations: 10_000,
             seed: 0,
             costs: Costs::default(),
@@ -130,7 +131,7 @@ pub enum InferError {
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Method::AdpBest => "adp",
+            Method::Lagrangian => "lagrangian",
             Method::AdpPaper => "adp-paper",
             Method::Importance => "importance",
             Method::Greedy => "greedy",
@@ -153,7 +154,7 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         Ok(match name {
-            "adp" => Method::AdpBest,
+            "lagrangian" | "adp" => Method::Lagrangian,
             "adp-paper" => Method::AdpPaper,
             "importance" => Method::Importance,
             "greedy" => Method::Greedy,
@@ -168,10 +169,10 @@ impl FromStr for Method {
     }
 }
 
-/// The second stage of `best` has one walk and one round of annealing for so many iterations.
+/// The second stage of [`Method::Lagrangian`] has one walk and one round of annealing for so many iterations.
 const SECOND_STAGE_SHARE: u64 = 8;
 
-/// Walks by shortest paths, and as many rounds of annealing, in the second stage of `best`.
+/// Walks by shortest paths, and as many rounds of annealing, in the second stage of [`Method::Lagrangian`].
 pub(super) fn second_stage_steps(iterations: u64) -> u64 {
     (iterations / SECOND_STAGE_SHARE).max(1)
 }

@@ -1,6 +1,6 @@
 //! Grammars of one set of facades as weighted draws.
 
-use super::adp::search::Search;
+use super::adp::search::Setup;
 use super::infer::check;
 use super::settings::{InferError, Settings};
 use edifice_base::{Ended, Watch, Watched};
@@ -74,7 +74,7 @@ pub fn weighted(
     settings.costs.check()?;
     check(facades)?;
     let watched = Watched::new(watch);
-    let search = Search::new(facades, settings, &watched)?;
+    let search = Setup::new(facades, settings, &watched)?;
     let walks = search.importance()?;
     let (effective, evidence, pareto_k) = (walks.ess(), walks.evidence, walks.pareto_k);
     let draws = walks.draws.into_iter().map(|draw| WeightedGrammar {

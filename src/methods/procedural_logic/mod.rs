@@ -67,6 +67,11 @@ mod search;
 mod split_grammar;
 mod synthesis;
 
+/// The version of `nalgebra` whose matrices are in signatures here.
+pub use nalgebra;
+/// The version of `rand` whose generators the functions here take.
+pub use rand;
+
 use parsing::{alphabet, canvas, lines, nary, parse};
 use split_grammar::{baseline, joining};
 

@@ -62,3 +62,6 @@ pub mod policy;
 pub mod score;
 pub mod sights;
 pub mod task;
+
+/// The version of `rand` whose generators the functions here take.
+pub use rand;

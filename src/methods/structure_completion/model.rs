@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::best::density::Spacing;
 use super::best::learn::learn;
-use super::layout::lines::{Line, lines, median};
+use super::layout::lines::{LatticeLine, lines, median};
 use super::layout::{Class, Layout};
 use super::model_file::ModelFileError;
 use super::policy::PaperModel;
@@ -19,9 +19,9 @@ pub struct Example {
     /// The layout.
     pub layout: Layout,
     /// Columns of its windows.
-    pub columns: Vec<Line>,
+    pub columns: Vec<LatticeLine>,
     /// Rows of its windows, from the bottom.
-    pub rows: Vec<Line>,
+    pub rows: Vec<LatticeLine>,
     /// Median width and height of its windows.
     pub size: (f64, f64),
 }

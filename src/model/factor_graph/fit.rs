@@ -56,7 +56,8 @@ const SETTLED: f64 = 1e-3;
 const LAST: usize = 20;
 
 /// The state in which [`fit`] ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// The gap would gain no more than a thousandth of a nat an example.
     Settled,

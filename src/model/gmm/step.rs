@@ -6,13 +6,13 @@ use rustc_hash::FxHashMap;
 use super::super::chunks;
 use super::super::em::Em;
 use super::super::error::ModelError;
-use super::super::kmeans::kmeans;
 use super::super::linalg::log_sum_exp;
 use super::block::{BLOCK, Work};
 use super::missing::Pattern;
 use super::mixture::Mixture;
 use super::problem::{Moments, Steps, add_row};
 use super::settings::Covariance;
+use edifice_cluster::kmeans_unweighted;
 
 /// Rows of one parallel piece of work.
 const CHUNK: usize = 2048;
@@ -31,7 +31,7 @@ impl Steps<'_> {
             // A missing value counts as the overall mean.
             scaled.extend(row.map(|((v, c), s)| if v.is_nan() { 0.0 } else { (v - c) / s }));
         }
-        let labels = kmeans(&scaled, d, self.k, 5, rng);
+        let labels = kmeans_unweighted(&scaled, d, self.k, 5, rng).labels;
         let mut moments = self.empty();
         let mut u = vec![1.0; d + 1];
         for (&i, label) in sample.iter().zip(labels) {

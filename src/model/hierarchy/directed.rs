@@ -24,7 +24,7 @@ enum Edge {
 }
 
 /// The data and settings by which families are scored.
-struct Search<'a> {
+struct FamilyScores<'a> {
     schema: &'a Schema,
     rows: &'a Rows,
     settings: &'a Settings,
@@ -36,7 +36,7 @@ pub(crate) fn propose(
     settings: &Settings,
     mut structure: Structure,
 ) -> Structure {
-    let search = &Search {
+    let search = &FamilyScores {
         schema,
         rows,
         settings,
@@ -146,7 +146,7 @@ fn allowed(
 }
 
 /// Evidence of a real group given its parents.
-fn group(search: &Search, structure: &Structure, sizes: &[usize], g: usize) -> f64 {
+fn group(search: &FamilyScores, structure: &Structure, sizes: &[usize], g: usize) -> f64 {
     let Selector::Codes(selector) = &structure.selectors[g] else {
         return f64::NEG_INFINITY;
     };
@@ -182,7 +182,7 @@ fn group(search: &Search, structure: &Structure, sizes: &[usize], g: usize) -> f
 }
 
 /// Evidence of a categorical column given its parents.
-fn table(search: &Search, structure: &Structure, sizes: &[usize], c: usize) -> f64 {
+fn table(search: &FamilyScores, structure: &Structure, sizes: &[usize], c: usize) -> f64 {
     let parents = &structure.code_parents[c];
     let rows: usize = parents.iter().map(|&p| sizes[p]).product();
     let mut counts = vec![0.0; rows * sizes[c]];

@@ -6,13 +6,13 @@ use super::super::chunks;
 use super::super::em::{Em, Fit, Outcome, Stopping, run_kept};
 use super::super::error::ModelError;
 use super::super::graph;
-use super::super::kmeans::kmeans;
 use super::super::table::MISSING;
 use super::Priors;
 use super::infer::{Scratch, assignments};
 use super::params::{Params, Shape, Stats};
 use super::schema::{Rows, Schema};
 use super::structure::{Selector, Structure, configuration};
+use edifice_cluster::kmeans_unweighted;
 
 /// Rows of one parallel piece of work.
 const CHUNK: usize = 512;
@@ -266,7 +266,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        kmeans(&points, width, k, 8, rng)
+        kmeans_unweighted(&points, width, k, 8, rng).labels
     }
 }
 

@@ -10,7 +10,7 @@ use super::super::table::Table;
 use super::fit::{Problem, Scored};
 use super::schema::{Rows, Schema};
 use super::search::{Rival, Search};
-use super::step::Step;
+use super::search_step::SearchStep;
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::{Group, Hierarchy, Observer, Priors, Settings, Variant};
@@ -33,7 +33,7 @@ pub struct Learned {
     /// Its BIC score `log P(O | Θ) - k/2 log n`, nats, on standardised columns of the same rows.
     pub bic: f64,
     /// Every accepted configuration, by |S|, then those of the searches above and around the best ones.
-    pub trace: Vec<Step>,
+    pub trace: Vec<SearchStep>,
     /// True if the observer ended the search: the model is the best so far.
     pub interrupted: bool,
     /// Rows that the parameters were fitted to and the scores are of: all, unless the observer ended a search on some of them.
@@ -235,7 +235,7 @@ impl<'a> Work<'a> {
         &self,
         rival: Option<Rival>,
         observer: &Observer,
-        search: impl FnOnce(&Search) -> Result<(Scored, Vec<Step>), ModelError>,
+        search: impl FnOnce(&Search) -> Result<(Scored, Vec<SearchStep>), ModelError>,
     ) -> Result<Learned, ModelError> {
         let watch = Watch::new(observer);
         let (settings, schema) = (self.settings, self.schema);
@@ -334,7 +334,7 @@ pub fn fit(
         stopping: *stopping,
         ..Settings::default()
     };
-    let go_on = |_: Option<&Step>| ControlFlow::Continue(());
+    let go_on = |_: Option<&SearchStep>| ControlFlow::Continue(());
     fit_observed(data, groups, styles, states, &settings, seed, &go_on)
 }
 

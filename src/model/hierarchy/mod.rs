@@ -85,8 +85,8 @@ mod restyle;
 mod revise;
 mod schema;
 mod search;
+mod search_step;
 mod split;
-mod step;
 mod store;
 pub(crate) mod structure;
 mod watch;
@@ -103,7 +103,7 @@ pub use learn::{Fitted, Learned, fit, fit_observed, learn, learn_observed, refin
 pub use query::Hierarchy;
 pub use schema::Group;
 pub(crate) use search::{Rival, SMALL};
-pub use step::Step;
+pub use search_step::SearchStep;
 pub use watch::Observer;
 
 /// Which of the paper's models to learn: the table in [the module](self).

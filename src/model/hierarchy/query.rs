@@ -75,6 +75,20 @@ impl Hierarchy {
         &self.params.style
     }
 
+    /// A table of the model's columns without rows, in the order of its draws: their kinds and categories.
+    ///
+    /// # Errors
+    /// [`ModelError::Duplicate`] for a model that was stored with two columns of one name.
+    pub fn columns(&self) -> Result<Table, ModelError> {
+        self.schema.decode(&Rows {
+            rows: 0,
+            d: self.schema.reals.len(),
+            c: self.schema.codes.len(),
+            reals: Vec::new(),
+            codes: Vec::new(),
+        })
+    }
+
     /// Names of the real groups, in the model's order.
     pub fn real_groups(&self) -> &[String] {
         &self.schema.groups

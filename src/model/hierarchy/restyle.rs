@@ -5,7 +5,6 @@ use rayon::prelude::*;
 
 use super::super::em::Stopping;
 use super::super::error::ModelError;
-use super::super::kmeans::kmeans;
 use super::fit::Scored;
 use super::infer::Scratch;
 use super::params::Params;
@@ -13,6 +12,7 @@ use super::search::{Search, better};
 use super::structure::Structure;
 use super::wide::states;
 use edifice_base::rng::stream;
+use edifice_cluster::kmeans_unweighted;
 
 /// Cardinalities of S that are fitted to the end on large tables, after short runs for all.
 const FINALISTS: usize = 3;
@@ -115,7 +115,7 @@ impl Search<'_> {
             if best.is_some() && self.watch.ended() {
                 break;
             }
-            let labels = kmeans(&features, width, styles, 12, rng);
+            let labels = kmeans_unweighted(&features, width, styles, 12, rng).labels;
             let start = problem.assigned(&all, &labels, &assigned)?;
             let start = Params {
                 linear: given.params.linear.clone(),

@@ -12,7 +12,7 @@ use super::params::Params;
 use super::search::{Search, better};
 use super::structure::{Selector, Structure};
 use super::wide::Wide;
-use super::{Step, Variant};
+use super::{SearchStep, Variant};
 use edifice_base::rng::stream;
 use rand::Rng;
 
@@ -27,7 +27,7 @@ impl Search<'_> {
         best: Scored,
         styles: &[usize],
         seed: u64,
-        trace: &mut Vec<Step>,
+        trace: &mut Vec<SearchStep>,
     ) -> Result<Scored, ModelError> {
         let s = best.shape.structure.styles;
         let (settled, other) = rayon::join(

@@ -11,7 +11,7 @@ use super::edges::propose;
 use super::fit::{Problem, Scored};
 use super::params::{MOST, MOST_SEARCHED, Params};
 use super::schema::{Rows, Schema};
-use super::step::Step;
+use super::search_step::SearchStep;
 use super::structure::{Selector, Structure};
 use super::watch::Watch;
 use super::wide::{Wide, wide};
@@ -56,9 +56,9 @@ impl<'a> Search<'a> {
     }
 
     /// Runs the search for every cardinality of S and keeps the first of highest score.
-    pub(super) fn run(&self, seed: u64) -> Result<(Scored, Vec<Step>), ModelError> {
+    pub(super) fn run(&self, seed: u64) -> Result<(Scored, Vec<SearchStep>), ModelError> {
         let styles = self.styles();
-        type Found = Option<(Scored, Vec<Step>)>;
+        type Found = Option<(Scored, Vec<SearchStep>)>;
         let swept = self.swept(&styles);
         let found: Result<Vec<Found>, ModelError> = swept
             .par_iter()
@@ -109,7 +109,7 @@ impl<'a> Search<'a> {
         structure: Structure,
         params: Params,
         seed: u64,
-    ) -> Result<(Scored, Vec<Step>), ModelError> {
+    ) -> Result<(Scored, Vec<SearchStep>), ModelError> {
         let problem = self.problem(structure)?;
         let mut best = self.fit(&problem, params, &self.settings.search)?;
         let mut trace = Vec::new();
@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
         &self,
         styles: usize,
         rng: &mut R,
-    ) -> Result<(Scored, Vec<Step>), ModelError> {
+    ) -> Result<(Scored, Vec<SearchStep>), ModelError> {
         let selector = match self.settings.variant {
             Variant::Full | Variant::NoLateral => Selector::Hidden(2),
             Variant::NoSecondLevel => Selector::Style,
@@ -253,7 +253,7 @@ impl<'a> Search<'a> {
     pub(super) fn grow(
         &self,
         mut best: Scored,
-        trace: &mut Vec<Step>,
+        trace: &mut Vec<SearchStep>,
     ) -> Result<Scored, ModelError> {
         for g in 0..self.schema.groups.len() {
             while best.shape.states(g) < self.settings.most_states && !self.watch.ended() {
@@ -316,15 +316,15 @@ impl<'a> Search<'a> {
     }
 
     /// Notes a configuration in the trace, and tells of it.
-    pub(super) fn accept(&self, scored: &Scored, trace: &mut Vec<Step>) {
+    pub(super) fn accept(&self, scored: &Scored, trace: &mut Vec<SearchStep>) {
         let step = self.step(scored);
         self.watch.accepted(&step);
         trace.push(step);
     }
 
-    fn step(&self, scored: &Scored) -> Step {
+    fn step(&self, scored: &Scored) -> SearchStep {
         let structure = &scored.shape.structure;
-        Step {
+        SearchStep {
             styles: structure.styles,
             cardinalities: (0..scored.shape.groups())
                 .map(|g| scored.shape.states(g))

@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::step::Step;
+use super::search_step::SearchStep;
 
 /// Called with every accepted configuration, and with `None` before every round of EM, from any thread.
 /// [`ControlFlow::Break`] ends the search with the best configuration so far; the observer is not called again.
 /// [`learn_observed`](super::learn_observed) has an example.
-pub type Observer<'a> = dyn Fn(Option<&Step>) -> ControlFlow<()> + Sync + 'a;
+pub type Observer<'a> = dyn Fn(Option<&SearchStep>) -> ControlFlow<()> + Sync + 'a;
 
 /// An observer, and whether it has ended the search.
 pub(crate) struct Watch<'a> {
@@ -31,7 +31,7 @@ impl<'a> Watch<'a> {
     }
 
     /// Tells of an accepted configuration.
-    pub(super) fn accepted(&self, step: &Step) {
+    pub(super) fn accepted(&self, step: &SearchStep) {
         self.tell(Some(step));
     }
 
@@ -39,7 +39,7 @@ impl<'a> Watch<'a> {
         self.ended.load(Ordering::Relaxed)
     }
 
-    fn tell(&self, step: Option<&Step>) {
+    fn tell(&self, step: Option<&SearchStep>) {
         if !self.ended() && (self.observer)(step).is_break() {
             self.ended.store(true, Ordering::Relaxed);
         }

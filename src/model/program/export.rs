@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use edifice_base::csv;
 use serde_json::{Value as Json, json};
 
 use super::posterior::{Posterior, name};
@@ -27,14 +28,10 @@ impl<T> Posterior<T> {
     /// ```
     pub fn to_csv(&self) -> String {
         let columns = self.columns();
-        let quoted = |text: String| match text.contains([',', '"', '\n']) {
-            true => format!("\"{}\"", text.replace('"', "\"\"")),
-            false => text,
-        };
         let mut text = "chain,draw,weight,log_prior,log_likelihood".to_owned();
         for (at, coordinate, _) in &columns {
             text += ",";
-            text += &quoted(name(at, *coordinate));
+            text += &csv::cell(&name(at, *coordinate));
         }
         text += "\n";
         let length = (self.draws.len() / self.chains().max(1)).max(1);

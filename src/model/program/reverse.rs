@@ -1,6 +1,6 @@
-//! Reverse-mode differentiation: every operation writes a line on a tape, and one pass back gives all derivatives.
+//! Reverse-mode differentiation: every operation writes a node on a tape, and one pass back gives all derivatives.
 //!
-//! For `y = f(a, b)` the tape holds the places of a and b and the partial derivatives `∂y/∂a`, `∂y/∂b`. From the last line back,
+//! For `y = f(a, b)` the tape holds the places of a and b and the partial derivatives `∂y/∂a`, `∂y/∂b`. From the last node back,
 //! the adjoint `ȳ = ∂out/∂y` is passed on as `ā += ȳ ∂y/∂a`. Time and memory are a small multiple of those of the program
 //! (Griewank and Walther 2008, Ch. 3).
 
@@ -22,12 +22,12 @@ use super::real::Real;
 /// ```
 #[derive(Debug, Default)]
 pub struct Tape {
-    lines: RefCell<Vec<Line>>,
+    nodes: RefCell<Vec<TapeNode>>,
 }
 
-/// Places of the two arguments and the derivatives by them; a place is that of the line itself where there is none.
+/// Places of the two arguments and the derivatives by them; a place is that of the node itself where there is none.
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct TapeNode {
     from: [u32; 2],
     slope: [f64; 2],
 }
@@ -48,18 +48,18 @@ impl Tape {
 
     /// Forgets everything, keeping the memory. Numbers made before have no meaning afterwards.
     pub fn clear(&mut self) {
-        self.lines.get_mut().clear();
+        self.nodes.get_mut().clear();
     }
 
-    /// Derivatives of `out` by the first `count` variables. O(lines of the tape).
+    /// Derivatives of `out` by the first `count` variables. O(nodes of the tape).
     pub fn gradient(&self, out: Var<'_>, count: usize) -> Vec<f64> {
-        let lines = self.lines.borrow();
-        let mut adjoint = vec![0.0; lines.len().max(count)];
+        let nodes = self.nodes.borrow();
+        let mut adjoint = vec![0.0; nodes.len().max(count)];
         if out.tape.is_some() {
             adjoint[out.place as usize] = 1.0;
             for place in (0..=out.place as usize).rev() {
-                let (line, own) = (lines[place], adjoint[place]);
-                for (from, slope) in line.from.iter().zip(line.slope) {
+                let (node, own) = (nodes[place], adjoint[place]);
+                for (from, slope) in node.from.iter().zip(node.slope) {
                     // A zero adjoint carries nothing, even along an infinite slope.
                     if *from as usize != place && own != 0.0 {
                         adjoint[*from as usize] += own * slope;
@@ -72,9 +72,9 @@ impl Tape {
     }
 
     fn push(&self, value: f64, from: [Option<u32>; 2], slope: [f64; 2]) -> Var<'_> {
-        let mut lines = self.lines.borrow_mut();
-        let place = lines.len() as u32;
-        lines.push(Line {
+        let mut nodes = self.nodes.borrow_mut();
+        let place = nodes.len() as u32;
+        nodes.push(TapeNode {
             from: from.map(|f| f.unwrap_or(place)),
             slope,
         });

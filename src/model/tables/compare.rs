@@ -9,7 +9,7 @@ use super::kernels::Kernels;
 use super::learn::{encode, extended, learn_encoded};
 use super::mixture::Baseline;
 use crate::ModelError;
-use crate::hierarchy::{Settings, Step, Variant, learn};
+use crate::hierarchy::{SearchStep, Settings, Variant, learn};
 
 /// Share of the background in comparisons ([`Settings::background`], of the mixture likewise): with none, a single row of an
 /// unforeseen kind decides a mean over hundreds.
@@ -108,7 +108,7 @@ pub fn held_out(
     seed: u64,
 ) -> Result<Vec<f64>, ModelError> {
     if let Contender::Extended | Contender::OneGroup | Contender::Apart = contender {
-        let go_on = |_: Option<&Step>| ControlFlow::Continue(());
+        let go_on = |_: Option<&SearchStep>| ControlFlow::Continue(());
         let (encoding, model) = match contender {
             Contender::OneGroup => {
                 let (encoding, encoded) = encode(train, settings, seed, &go_on)?;

@@ -53,18 +53,18 @@ pub enum GivenError {
 }
 
 /// A table of one row with the given values and nothing else. `ATTRIBUTE=none` sets all numbers of
-/// an attribute to zero, as for a house without garage. `sample` is any row drawn
-/// from the model: it tells the kinds of the columns.
+/// an attribute to zero, as for a house without garage. `columns` has the columns of the model, whose kinds
+/// alone are read.
 ///
 /// # Errors
 /// [`GivenError`] names the text that is wrong.
-pub fn evidence(groups: &[Group], sample: &Table, given: &[String]) -> Result<Table, GivenError> {
+pub fn evidence(groups: &[Group], columns: &Table, given: &[String]) -> Result<Table, GivenError> {
     let mut table = Table::new();
     for text in given {
         let (name, value) = text
             .split_once('=')
             .ok_or_else(|| GivenError::Form { text: text.clone() })?;
-        if let Ok(column) = sample.column(name) {
+        if let Ok(column) = columns.column(name) {
             table = add(table, name, column.categories(), value)?;
             continue;
         }
@@ -83,7 +83,7 @@ pub fn evidence(groups: &[Group], sample: &Table, given: &[String]) -> Result<Ta
             });
         }
         for (column, value) in group.columns.iter().zip(values) {
-            let categories = sample.column(column)?.categories();
+            let categories = columns.column(column)?.categories();
             table = add(table, column, categories, value)?;
         }
     }

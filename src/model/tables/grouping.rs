@@ -189,7 +189,7 @@ mod tests {
         (data, groups)
     }
 
-    fn go_on(_: Option<&crate::hierarchy::Step>) -> ControlFlow<()> {
+    fn go_on(_: Option<&crate::hierarchy::SearchStep>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 

@@ -354,7 +354,7 @@ mod tests {
             restarts: 2,
             ..Settings::default()
         };
-        let go_on = |_: Option<&crate::hierarchy::Step>| ControlFlow::Continue(());
+        let go_on = |_: Option<&crate::hierarchy::SearchStep>| ControlFlow::Continue(());
         learn_joined(&data, &groups, &settings, 1, &go_on).unwrap()
     }
 
@@ -383,7 +383,7 @@ mod tests {
             styles: 1..=2,
             ..Settings::default()
         };
-        let stop = |step: Option<&crate::hierarchy::Step>| match step {
+        let stop = |step: Option<&crate::hierarchy::SearchStep>| match step {
             Some(_) => ControlFlow::Break(()),
             None => ControlFlow::Continue(()),
         };

@@ -113,6 +113,14 @@ impl TableModel {
         })
     }
 
+    /// A table of the columns without rows, in the order of the schema: their kinds and categories.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::columns`]; [`ModelError::Unknown`] for a column of the schema that the model lacks.
+    pub fn columns(&self) -> Result<Table, ModelError> {
+        self.decode(&self.model.columns()?)
+    }
+
     /// Draws `count` rows.
     ///
     /// # Errors

@@ -4,8 +4,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::arrangement::Cell;
 use super::exact::{Line, Plane};
-use super::segments::Plan;
+use super::segments::CellOutlines;
 use super::{Finish, Prism};
+use crate::vec3::{cross, norm, sub};
 
 /// The plane of a face and the way it looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -58,7 +59,7 @@ struct Piece {
     upright: Vec<Option<u32>>,
 }
 
-pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &Plan) -> Faces {
+pub(super) fn build(prisms: &[Prism], cells: &[Cell], plan: &CellOutlines) -> Faces {
     let mut vertices = Vertices {
         at: vec![Vec::new(); plan.points.len()],
         ..Vertices::default()
@@ -137,7 +138,7 @@ fn walls(
     cell: &Cell,
     other: Option<&Cell>,
     edge: Edge,
-    plan: &Plan,
+    plan: &CellOutlines,
     vertices: &mut Vertices,
     pieces: &mut Vec<Piece>,
 ) {
@@ -202,7 +203,7 @@ fn directed(line: Line, ends: &[super::exact::Point; 2]) -> Line {
 }
 
 impl Vertices {
-    fn get(&mut self, point: u32, plane: &Plane, plan: &Plan) -> u32 {
+    fn get(&mut self, point: u32, plane: &Plane, plan: &CellOutlines) -> u32 {
         let place = &plan.points[point as usize];
         let height = plane.at(place);
         *self.index.entry((point, height)).or_insert_with(|| {
@@ -365,15 +366,5 @@ fn simplified(mut faces: Vec<Face>, positions: Vec<[f64; 3]>) -> Faces {
 
 fn collinear(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
     let (p, q) = (sub(b, a), sub(c, b));
-    let cross = [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ];
-    let length = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    length(cross) <= 1e-9 * (1.0 + length(p) * length(q))
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+    norm(cross(p, q)) <= 1e-9 * (1.0 + norm(p) * norm(q))
 }

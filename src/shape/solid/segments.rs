@@ -6,7 +6,7 @@ use super::arrangement::Cell;
 use super::exact::{Line, Plane, Point};
 
 /// The cells' outlines with all vertices on them.
-pub(super) struct Plan {
+pub(super) struct CellOutlines {
     pub points: Vec<Point>,
     /// Outline of each cell: indices of points, counterclockwise.
     pub rings: Vec<Vec<u32>>,
@@ -19,7 +19,7 @@ pub(super) struct Plan {
 /// Points of one line in order along it.
 type OnLine = Vec<u32>;
 
-pub(super) fn connect(cells: &[Cell]) -> Plan {
+pub(super) fn connect(cells: &[Cell]) -> CellOutlines {
     let mut points = Points::default();
     let corners: Vec<Vec<u32>> = cells
         .iter()
@@ -61,7 +61,7 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
         }
     }
     if extra.is_empty() {
-        return Plan {
+        return CellOutlines {
             points: points.list,
             rings: first,
             lines,
@@ -76,7 +76,7 @@ pub(super) fn connect(cells: &[Cell]) -> Plan {
     }
     let (rings, lines) = rings(cells, &corners, &by_line);
     let left = owners(&rings);
-    Plan {
+    CellOutlines {
         points: points.list,
         rings,
         lines,

@@ -4,8 +4,9 @@
 use rustc_hash::FxHashMap;
 
 use super::TriangleMesh;
-use super::mesh::{cross, dot, norm, normal, sub};
+use super::mesh::normal;
 use super::triangulate::{nest, ring_area, triangles};
+use crate::vec3::{cross, dot, norm, sub};
 
 /// Merges coplanar neighbours: joined are triangles that share an edge and whose corners lie within
 /// `tolerance` metres of the plane of the first. A region whose outline cannot be triangulated to the same

@@ -1,7 +1,7 @@
 //! Exact distances from points to a set of triangles, by a tree of boxes.
 
 use super::Corners;
-use super::mesh::{cross, dot, norm, sub};
+use crate::vec3::{cross, dot, norm, sub};
 
 /// Triangles in a leaf of the tree at most.
 const LEAF: usize = 6;
@@ -128,7 +128,7 @@ pub fn surface_samples<R: rand::Rng>(
 ) -> Vec<[f64; 3]> {
     use rand::RngExt;
     let triangles: Vec<Corners> = triangles.collect();
-    let area = |t: &Corners| norm(super::mesh::normal(t)) / 2.0;
+    let area = |t: &Corners| norm(super::normal(t)) / 2.0;
     let step = triangles.iter().map(area).sum::<f64>() / count.max(1) as f64;
     let mut points = Vec::with_capacity(count);
     // One point in each stretch of `step` along the running sum of areas.

@@ -1,5 +1,7 @@
 //! Triangle meshes.
 
+use crate::vec3::{cross, norm, sub};
+
 /// The corners of a triangle.
 pub type Corners = [[f64; 3]; 3];
 
@@ -95,28 +97,8 @@ pub fn plan_area(t: &Corners) -> f64 {
     ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
 }
 
-/// Normal of a triangle, twice its area long.
-pub(super) fn normal(t: &Corners) -> [f64; 3] {
+/// Normal of a triangle by the right hand, twice its area long.
+pub fn normal(t: &Corners) -> [f64; 3] {
     let [a, b, c] = t;
     cross(sub(*b, *a), sub(*c, *a))
-}
-
-pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

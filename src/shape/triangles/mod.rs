@@ -33,7 +33,7 @@ pub use clip::clip_to_slabs;
 pub use coplanar::merge_coplanar;
 pub use distance::{SurfaceDistance, point_triangle_distance, surface_samples};
 pub use lid::{closing_lid, section_lid};
-pub use mesh::{Corners, TriangleMesh, plan_area};
+pub use mesh::{Corners, TriangleMesh, normal, plan_area};
 pub use oriented_box::{OrientedBox, convex_hull};
 pub use painted::{Painted, Surface, Texture, corner_bits, grey};
 pub use profile::SectionProfile;

@@ -4,7 +4,8 @@
 use rustc_hash::FxHashMap;
 
 use super::TriangleMesh;
-use super::mesh::{norm, normal};
+use super::mesh::normal;
+use crate::vec3::norm;
 
 /// Positions closer than this are the same, in metres.
 const WELD: f64 = 1e-4;

@@ -17,6 +17,60 @@ const slide = (slider, value) =>
     e.dispatchEvent(new Event("change", { bubbles: true }));
   }, String(value));
 
+/** A photograph taken from the side, as bytes: a facade with four windows, drawn here in perspective. */
+const street = (page) =>
+  page.evaluate(async () => {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [600, 480];
+    const context = canvas.getContext("2d");
+    context.fillStyle = "#8fb0d0";
+    context.fillRect(0, 0, 600, 480);
+    const quad = (points, colour) => {
+      context.fillStyle = colour;
+      context.beginPath();
+      points.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
+      context.fill();
+    };
+    quad([[60, 60], [540, 130], [540, 400], [60, 450]], "#c9a27e");
+    // Its right end is farther away: 390 pixels high at the left, 270 at the right.
+    const at = (u, v) => {
+      const s = (390 * u) / (270 + 120 * u);
+      const [top, bottom] = [60 + 70 * s, 450 - 50 * s];
+      return [60 + 480 * s, top + (bottom - top) * v];
+    };
+    for (const u of [0.15, 0.6]) for (const v of [0.15, 0.55]) quad([at(u, v), at(u + 0.22, v), at(u + 0.22, v + 0.25), at(u, v + 0.25)], "#33485c");
+    const blob = await new Promise((r) => canvas.toBlob(r, "image/png"));
+    return [...new Uint8Array(await blob.arrayBuffer())];
+  });
+
+/** The corners of its facade. */
+const CORNERS = { "upper left": [60, 60], "upper right": [540, 130], "lower right": [540, 400], "lower left": [60, 450] };
+
+/** Puts them in the dialog that asks for them, and straightens. */
+async function straighten(page, name) {
+  const dialog = page.getByRole("dialog", { name: "Corners of the facade in the photograph" });
+  await dialog.waitFor();
+  const box = await dialog.locator("canvas").boundingBox();
+  for (const [corner, [x, y]] of Object.entries(CORNERS)) {
+    const knob = await dialog.getByRole("button", { name: `The facade's ${corner} corner` }).boundingBox();
+    await page.mouse.move(knob.x + knob.width / 2, knob.y + knob.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + (x / 600) * box.width, box.y + (y / 480) * box.height, { steps: 4 });
+    await page.mouse.up();
+  }
+  await picture(page, name);
+  await dialog.getByRole("button", { name: "Straighten" }).click();
+}
+
+/** Draws an element over a share of the wall. */
+async function drawn(page, [u, v, width, height]) {
+  const wall = await page.locator("svg.drawing rect.wall").boundingBox();
+  await page.mouse.move(wall.x + u * wall.width, wall.y + v * wall.height);
+  await page.mouse.down();
+  await page.mouse.move(wall.x + (u + width) * wall.width, wall.y + (v + height) * wall.height, { steps: 5 });
+  await page.mouse.up();
+}
+
 export const designs = (begin, saved) => ({
   /** Sliders with the model's ranges, its styles, wishes that clash, and a walk. */
   async wishes(server, context) {
@@ -169,56 +223,13 @@ export const designs = (begin, saved) => ({
   /** A facade over a photograph whose corners are put on the facade's. */
   async photograph(server, context) {
     const { page, faults } = await begin(server, context, /An empty facade/);
-    // A photograph taken from the side: a facade with four windows, drawn here in perspective.
-    const bytes = await page.evaluate(async () => {
-      const canvas = document.createElement("canvas");
-      [canvas.width, canvas.height] = [600, 480];
-      const context = canvas.getContext("2d");
-      context.fillStyle = "#8fb0d0";
-      context.fillRect(0, 0, 600, 480);
-      const quad = (points, colour) => {
-        context.fillStyle = colour;
-        context.beginPath();
-        points.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
-        context.fill();
-      };
-      quad([[60, 60], [540, 130], [540, 400], [60, 450]], "#c9a27e");
-      // Its right end is farther away: 390 pixels high at the left, 270 at the right.
-      const at = (u, v) => {
-        const s = (390 * u) / (270 + 120 * u);
-        const [top, bottom] = [60 + 70 * s, 450 - 50 * s];
-        return [60 + 480 * s, top + (bottom - top) * v];
-      };
-      for (const u of [0.15, 0.6]) for (const v of [0.15, 0.55]) quad([at(u, v), at(u + 0.22, v), at(u + 0.22, v + 0.25), at(u, v + 0.25)], "#33485c");
-      const blob = await new Promise((r) => canvas.toBlob(r, "image/png"));
-      return [...new Uint8Array(await blob.arrayBuffer())];
-    });
+    const bytes = await street(page);
     await page.getByLabel("Photograph to draw over").setInputFiles({ name: "street.png", mimeType: "image/png", buffer: Buffer.from(bytes) });
-    const dialog = page.getByRole("dialog", { name: "Corners of the facade in the photograph" });
-    await dialog.waitFor();
-    const box = await dialog.locator("canvas").boundingBox();
-    const corners = { "upper left": [60, 60], "upper right": [540, 130], "lower right": [540, 400], "lower left": [60, 450] };
-    for (const [name, [x, y]] of Object.entries(corners)) {
-      const knob = await dialog.getByRole("button", { name: `The facade's ${name} corner` }).boundingBox();
-      await page.mouse.move(knob.x + knob.width / 2, knob.y + knob.height / 2);
-      await page.mouse.down();
-      await page.mouse.move(box.x + (x / 600) * box.width, box.y + (y / 480) * box.height, { steps: 4 });
-      await page.mouse.up();
-    }
-    await picture(page, "photograph_corners");
-    await dialog.getByRole("button", { name: "Straighten" }).click();
+    await straighten(page, "photograph_corners");
     await page.locator("svg.drawing image").waitFor();
     // The windows of the photograph are drawn over, and the rest is completed.
     await page.getByRole("button", { name: "Window", exact: true }).click();
-    const wall = await page.locator("svg.drawing rect.wall").boundingBox();
-    for (const [u, v] of [[0.15, 0.15], [0.6, 0.15], [0.15, 0.55]]) {
-      await changed(page, async () => {
-        await page.mouse.move(wall.x + u * wall.width, wall.y + v * wall.height);
-        await page.mouse.down();
-        await page.mouse.move(wall.x + (u + 0.22) * wall.width, wall.y + (v + 0.25) * wall.height, { steps: 5 });
-        await page.mouse.up();
-      });
-    }
+    for (const [u, v] of [[0.15, 0.15], [0.6, 0.15], [0.15, 0.55]]) await changed(page, () => drawn(page, [u, v, 0.22, 0.25]));
     let doc = await shown(page);
     const given = doc.view.elements.filter((e) => e.observed);
     assert.equal(given.length, 3);
@@ -269,6 +280,45 @@ export const designs = (begin, saved) => ({
     await picture(second.page, "photograph_again");
     await second.page.close();
     await again.end();
+    return faults.concat(second.faults);
+  },
+
+  /** From a photograph to a completion in three actions: the corners, a tool, a window; then dropped on the first page, too. */
+  async photograph_first(_server, context) {
+    const folder = mkdtempSync(join(tmpdir(), "studio-"));
+    const blank = await context.newPage();
+    const bytes = Buffer.from(await street(blank));
+    await blank.close();
+    const file = join(folder, "street.png");
+    writeFileSync(file, bytes);
+    const server = await studio([file]);
+    const { page, faults } = await open(context, server.address);
+    await page.getByRole("button", { name: /street/ }).first().click();
+    // The corners are asked for unasked.
+    await straighten(page, "photograph_first_corners");
+    await page.locator("svg.drawing image").waitFor();
+    await page.getByRole("button", { name: "Window", exact: true }).click();
+    const doc = await changed(page, () => drawn(page, [0.15, 0.15, 0.22, 0.25]));
+    assert.ok(doc.view.answers.length > 0 && doc.view.elements.length > 1, "it was completed after the first window");
+    assert.equal(doc.view.height, 12);
+    await picture(page, "photograph_first");
+    await page.close();
+    await server.end();
+    const other = await studio();
+    const second = await open(context, other.address);
+    await second.page.locator("main.start").waitFor();
+    await picture(second.page, "start");
+    const data = await second.page.evaluateHandle((list) => {
+      const data = new DataTransfer();
+      data.items.add(new File([new Uint8Array(list)], "street.png", { type: "image/png" }));
+      return data;
+    }, [...bytes]);
+    await second.page.dispatchEvent("main.start", "drop", { dataTransfer: data });
+    await straighten(second.page, "photograph_dropped");
+    await second.page.locator("svg.drawing image").waitFor();
+    assert.equal((await shown(second.page)).view.width, doc.view.width);
+    await second.page.close();
+    await other.end();
     return faults.concat(second.faults);
   },
 

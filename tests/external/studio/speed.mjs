@@ -21,6 +21,16 @@ async function timed(page, commands) {
   }, commands);
 }
 
+/** Shows what commands would make of the document, as while something is dragged; the milliseconds until the next picture. */
+async function previewed(page, commands) {
+  return page.evaluate(async (list) => {
+    const start = performance.now();
+    await window.studio.preview(list, (view) => window.studio.previewed(view));
+    await new Promise((r) => requestAnimationFrame(() => setTimeout(r, 0)));
+    return performance.now() - start;
+  }, commands);
+}
+
 function told(name, times, used, wanted, note) {
   const at = (k, q) => {
     const sorted = times.map((t) => t[k]).sort((a, b) => a - b);
@@ -62,6 +72,8 @@ const measured = {
     return () => [{ do: "edit", edits: [`border ${rule}.0=${(size * (0.1 * next() - 0.05)).toFixed(4)}`] }];
   },
 };
+/** The commands of an edit as those of a preview. */
+const previews = { completion: ([edit, complete]) => [edit, { ...complete, count: 1 }], grammar: (commands) => commands };
 const examples = { completion: [/Four elements/, 150], house: [/A house without/, 200], grammar: [/A boulevard/, 100] };
 
 const chrome = await browser();
@@ -91,6 +103,16 @@ for (const [name, prepare] of Object.entries(measured)) {
     else refused += 1;
   }
   if (!told(name, times, server.used() - before, examples[name][1], refused > 0 ? `${refused} refused` : "")) slow += 1;
+  if (previews[name]) {
+    // What the editor draws of a preview is little: the elements or regions anew.
+    await page.evaluate(() => (window.studio.previewed = () => {}));
+    const waits = [];
+    for (let k = 0; k < EDITS; k++) waits.push(await previewed(page, previews[name](command(k))));
+    waits.sort((a, b) => a - b);
+    const p95 = waits[Math.floor(0.95 * (waits.length - 1))];
+    console.log(`| ${name}, preview | ${EDITS} | | | ${waits[EDITS >> 1].toFixed(1)} | ${p95.toFixed(1)} | | | | 33 |`);
+    if (p95 > 33) slow += 1;
+  }
   await context.close();
   await server.end();
 }

@@ -32,7 +32,7 @@ use super::attributes::{self, AttributeRow, COLUMNS, GROUPS, Level};
 use super::mass::target::PARTS;
 use edifice_model::hierarchy::Group;
 use edifice_model::tables::Dataset;
-use edifice_model::{Cell, ModelError, Table};
+use edifice_model::{ModelError, Table};
 
 /// Columns of presence, in the order of garage, front and back porch.
 pub const THERE: [&str; 3] = ["garage.there", "porch.front.there", "porch.back.there"];
@@ -210,11 +210,7 @@ pub fn coded_evidence(given: &[AttributeRow], columns: &[String]) -> Result<Tabl
 /// The attributes of each row of a table; a column that it lacks is missing.
 pub fn attribute_rows(table: &Table) -> Vec<AttributeRow> {
     let columns: Vec<_> = COLUMNS.iter().map(|n| table.column(n).ok()).collect();
-    let value = |row: usize, c: usize| match columns[c].map(|column| column.cell(row)) {
-        Some(Cell::Real(v)) => Some(v),
-        Some(Cell::Code(code)) => Some(code as f64),
-        _ => None,
-    };
+    let value = |row: usize, c: usize| columns[c]?.cell(row).number();
     let row = |r: usize| (0..COLUMNS.len()).map(|c| value(r, c)).collect();
     (0..table.rows()).map(row).collect()
 }

@@ -17,7 +17,9 @@ use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, W
 use crate::mass::contradiction::check_given;
 use crate::mass::repair::{changes, repair};
 use crate::mass::target::{PARTS, part_of};
-use crate::mass::{Block, MASS, MassError, MassModel, MassTarget, Search, is_sound, max_z, search};
+use crate::mass::{
+    Block, MASS, MassError, MassModel, MassTarget, SearchLimits, is_sound, max_z, search,
+};
 use crate::model_file::ModelFile;
 use edifice_base::rng::stream;
 use edifice_shape::{BoxStyle, Building, MassBox};
@@ -52,7 +54,7 @@ pub fn completions(
     let mut rng = stream(seed, "building/complete", 0);
     // An answer that does not fit the observed boxes is not worth a long search: there are others.
     let options = &Options {
-        search: Search {
+        search: SearchLimits {
             rounds: options.search.rounds.min(ROUNDS),
             enough: ENOUGH,
             ..options.search.clone()
@@ -199,7 +201,7 @@ fn placed(
         })
         .collect();
     // Observed boxes bind arrangements: it takes more of them to reach the attributes.
-    let options_of_search = Search {
+    let options_of_search = SearchLimits {
         rounds: MORE * options.search.rounds,
         ..options.search.clone()
     };

@@ -9,7 +9,7 @@ use crate::attributes::{AttributeRow, COLUMNS, attributes};
 use crate::data::table;
 use crate::house::{Database, Draft, Frozen, GenerateError, Generated, Options, Wish, draft};
 use crate::mass::target::{PARTS, bounds};
-use crate::mass::{MASS, MassModel, Search, is_sound};
+use crate::mass::{MASS, MassModel, SearchLimits, is_sound};
 use crate::model_file::ModelFile;
 use edifice_shape::{BoxStyle, Building, BuildingError, MassBox, Ridge, Roof, RoofStyle};
 
@@ -224,7 +224,7 @@ pub fn suggested(
     // From the boxes of the house itself, then from those of any house.
     for (database, rounds) in [(&donor, 0), (database, ROUNDS)] {
         let options = Options {
-            search: Search {
+            search: SearchLimits {
                 rounds,
                 ..options.search.clone()
             },

@@ -44,10 +44,9 @@ pub fn observed(partial: &Building, keep: &[String]) -> Result<AttributeRow, Att
 
 /// The 49 columns of each row of a table; missing cells and columns are 0.
 pub fn wanted_rows(table: &Table) -> Vec<[f64; 49]> {
-    let value = |row: usize, name: &str| match table.column(name).map(|c| c.cell(row)) {
-        Ok(Cell::Real(v)) => v,
-        Ok(Cell::Code(code)) => code as f64,
-        _ => 0.0,
+    let value = |row: usize, name: &str| {
+        let cell = table.column(name).map(|c| c.cell(row));
+        cell.ok().and_then(Cell::number).unwrap_or(0.0)
     };
     let row = |r: usize| std::array::from_fn(|c| value(r, COLUMNS[c]));
     (0..table.rows()).map(row).collect()

@@ -51,7 +51,7 @@ pub fn breed(
     let mut places = Vec::new();
     for (s, strips) in walls.strips.iter().enumerate() {
         for (k, strip) in strips.iter().enumerate() {
-            places.extend(strip.rooms.iter().map(|room| Place {
+            places.extend(strip.rooms.iter().map(|room| WallSection {
                 room,
                 side: Side::ALL[s],
                 start: millimetres(strip.start),
@@ -108,7 +108,7 @@ fn measured(pieces: &[FacadePiece], floor_height: f64) -> Vec<f64> {
 }
 
 /// A wall piece of the house.
-struct Place<'a> {
+struct WallSection<'a> {
     room: &'a Room,
     side: Side,
     start: f64,
@@ -119,7 +119,7 @@ struct Place<'a> {
 
 struct House<'a> {
     walls: &'a Walls<'a>,
-    places: Vec<Place<'a>>,
+    places: Vec<WallSection<'a>>,
     elements: &'a Elements,
     target: &'a FacadeTarget,
     deviations: &'a [f64],
@@ -132,7 +132,7 @@ type Gene = Vec<FacadeElement>;
 impl House<'_> {
     fn pieces(&self, genome: &[Gene]) -> Vec<FacadePiece> {
         let floor_height = self.walls.floor_height;
-        let piece = |(place, gene): (&Place, &Gene)| match &place.room.fixed {
+        let piece = |(place, gene): (&WallSection, &Gene)| match &place.room.fixed {
             Some(fixed) => fixed.clone(),
             None => FacadePiece {
                 side: place.side,
@@ -156,7 +156,7 @@ impl House<'_> {
     }
 
     /// A random layout that Eq. 5 can size: of one sub-style or of several, in equal parts.
-    fn layout(&self, place: &Place, rng: &mut impl Rng) -> Gene {
+    fn layout(&self, place: &WallSection, rng: &mut impl Rng) -> Gene {
         let doors = &self.elements.doors;
         for _ in 0..DRAWS {
             let count = rng.random_range(0..=MOST);
@@ -186,7 +186,7 @@ impl House<'_> {
 
     /// Eq. 5: walls and elements alternate and fill the piece. Elements that a roof, a porch or a garage door hides are
     /// left out; `None` when no widths fit.
-    fn sized(&self, place: &Place, chosen: &[SubStyle]) -> Option<Gene> {
+    fn sized(&self, place: &WallSection, chosen: &[SubStyle]) -> Option<Gene> {
         let mut average = vec![self.elements.gap];
         for e in chosen {
             average.extend([e.width, self.elements.gap]);
@@ -207,7 +207,13 @@ impl House<'_> {
         Some(gene)
     }
 
-    fn placed(&self, place: &Place, e: &SubStyle, at: f64, width: f64) -> Option<FacadeElement> {
+    fn placed(
+        &self,
+        place: &WallSection,
+        e: &SubStyle,
+        at: f64,
+        width: f64,
+    ) -> Option<FacadeElement> {
         let start = place.room.piece.start.max(place.start) + at;
         let free = self.walls.free(place.room, [start, start + width])?;
         let is_door = e.style == ElementStyle::Door;

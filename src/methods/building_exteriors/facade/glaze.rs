@@ -22,7 +22,7 @@ pub(super) fn usual_count(area: f64) -> f64 {
 
 /// The plan by which a strip is furnished.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Plan {
+pub(super) struct Furnishing {
     pub symmetric: bool,
     pub aligned: bool,
     pub style: ElementStyle,
@@ -43,7 +43,7 @@ struct Slot {
 pub(super) fn glaze(
     walls: &Walls,
     strips: &[Strip],
-    plans: &[Plan],
+    plans: &[Furnishing],
     ratio: f64,
     spacing: f64,
 ) -> Vec<FacadePiece> {
@@ -117,7 +117,13 @@ pub(super) fn glaze(
 
 /// Places for windows on a piece, all of one size: those that the wall has room for and, on a symmetric piece, whose
 /// mirror images it has room for, too.
-fn openings(walls: &Walls, strip: &Strip, room: &Room, plan: &Plan, spacing: f64) -> Vec<Slot> {
+fn openings(
+    walls: &Walls,
+    strip: &Strip,
+    room: &Room,
+    plan: &Furnishing,
+    spacing: f64,
+) -> Vec<Slot> {
     let places = centres(strip.width(), room.piece.floor, plan, spacing);
     let Some(&(_, widest)) = places.first() else {
         return Vec::new();
@@ -162,7 +168,7 @@ fn openings(walls: &Walls, strip: &Strip, room: &Room, plan: &Plan, spacing: f64
 
 /// True if some window can stand on a piece off its middle.
 pub(super) fn holds_asymmetric(walls: &Walls, strip: &Strip, room: &Room, spacing: f64) -> bool {
-    let plan = Plan {
+    let plan = Furnishing {
         symmetric: false,
         aligned: true,
         style: ElementStyle::Fixed,
@@ -176,7 +182,7 @@ fn door_place(
     walls: &Walls,
     strip: &Strip,
     room: &Room,
-    plan: &Plan,
+    plan: &Furnishing,
     slots: &[Slot],
 ) -> Option<usize> {
     let fits = |k: &usize| {
@@ -196,7 +202,7 @@ fn door_place(
 }
 
 /// Centres and greatest widths of the windows of a piece.
-fn centres(width: f64, floor: usize, plan: &Plan, spacing: f64) -> Vec<(f64, f64)> {
+fn centres(width: f64, floor: usize, plan: &Furnishing, spacing: f64) -> Vec<(f64, f64)> {
     if width < NARROWEST {
         return Vec::new();
     }

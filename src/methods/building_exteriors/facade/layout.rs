@@ -2,7 +2,7 @@
 
 use super::cut::{Candidate, Choice, NARROWEST, choices};
 use super::doors::{completed, door_strip};
-use super::glaze::{DOOR, Plan, glaze, holds_asymmetric, millimetres, usual_count};
+use super::glaze::{DOOR, Furnishing, glaze, holds_asymmetric, millimetres, usual_count};
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
 use crate::attributes::facade_attributes;
@@ -237,11 +237,11 @@ impl SideSearch<'_> {
     }
 
     /// Strips, one of them cut in two, with what is to stand on each.
-    fn plans(&self, choice: &Choice, door: Option<usize>) -> (Vec<Strip>, Vec<Plan>) {
+    fn plans(&self, choice: &Choice, door: Option<usize>) -> (Vec<Strip>, Vec<Furnishing>) {
         let (mut strips, mut plans) = (Vec::new(), Vec::new());
         let main = self.styles.first().copied().unwrap_or(ElementStyle::Fixed);
         for (k, strip) in self.strips.iter().enumerate() {
-            let plan = Plan {
+            let plan = Furnishing {
                 symmetric: !choice.asymmetric[k],
                 aligned: true,
                 style: main,
@@ -256,11 +256,11 @@ impl SideSearch<'_> {
                     rest.start = at;
                     let roomy = rest.width() > first.width();
                     strips.extend([first, rest]);
-                    plans.push(Plan {
+                    plans.push(Furnishing {
                         door: plan.door && !roomy,
                         ..plan
                     });
-                    plans.push(Plan {
+                    plans.push(Furnishing {
                         symmetric: true,
                         door: plan.door && roomy,
                         ..plan
@@ -282,7 +282,7 @@ impl SideSearch<'_> {
     }
 
     /// Plans with subsets of the strips of several floors out of line: those with the wanted share of pairs first.
-    fn alignments(&self, strips: &[Strip], plans: Vec<Plan>) -> Vec<Vec<Plan>> {
+    fn alignments(&self, strips: &[Strip], plans: Vec<Furnishing>) -> Vec<Vec<Furnishing>> {
         let pairs: Vec<(usize, usize)> = strips
             .iter()
             .enumerate()

@@ -15,7 +15,9 @@ use crate::mass::anneal::{AnnealSettings, anneal};
 use crate::mass::contradiction::{Contradiction, check_given};
 use crate::mass::footprint::{DECIDED, PlanError, reconcile, stand};
 use crate::mass::repair::{Change, changes, repair};
-use crate::mass::{MASS, MassError, MassModel, MassTarget, Search, max_z, search, variations};
+use crate::mass::{
+    MASS, MassError, MassModel, MassTarget, SearchLimits, max_z, search, variations,
+};
 use edifice_optim::annealing::AnnealingError;
 use edifice_optim::genetic::{GeneticError, Settings};
 use edifice_shape::solid::{Faces, SurfaceError, faces};
@@ -62,7 +64,7 @@ pub struct Frozen {
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Limits of the search for mass models.
-    pub search: Search,
+    pub search: SearchLimits,
     /// The way in which roofs are joined.
     pub joining: Joining,
     /// True if no strip of a facade may be cut in two.
@@ -82,7 +84,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            search: Search::default(),
+            search: SearchLimits::default(),
             joining: Joining::default(),
             no_cuts: false,
             method: Method::default(),
@@ -211,7 +213,7 @@ pub fn generate(
         return best.build();
     }
     // The walls have no room for the wanted facades, or one would not believe the house: other plans may do better.
-    let few = Search {
+    let few = SearchLimits {
         rounds: ROUNDS,
         ..options.search.clone()
     };

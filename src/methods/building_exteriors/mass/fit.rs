@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::scheme::{Block, Line, Scheme};
+use super::scheme::{Block, GridLine, Scheme};
 use super::target::MassTarget;
 use super::{MASS, max_z};
 use crate::attributes::mass_attributes;
@@ -105,7 +105,7 @@ fn once(
     let x = fit.map_or_else(|| scheme.start.clone(), |run| run.best);
     let mut rounded = scheme.clone();
     for line in rounded.lines.iter_mut().flatten() {
-        if let Line::Fixed(at) = line {
+        if let GridLine::Fixed(at) = line {
             *at = millimetres(*at);
         }
     }

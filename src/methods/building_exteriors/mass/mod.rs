@@ -12,7 +12,7 @@
 //! ([`edifice_optim::least_squares`]). Schemes come from the nearest houses of the database with the same
 //! floors, garage and porches (plain and mirrored), then from random arrangements ([`random`]). Beside these stand *plain*
 //! plans, whose coverage and boundary are exact by construction (`plain.rs`). Of the sound ones within
-//! [`Search::enough`] the plainest is taken, else the nearest of all; lines are rounded to millimetres.
+//! [`SearchLimits::enough`] the plainest is taken, else the nearest of all; lines are rounded to millimetres.
 //!
 //! **`paper`** ([`anneal`]): Eq. 3 by simulated annealing, with the paper's moves and three restarts.
 //!
@@ -41,7 +41,7 @@ mod variations;
 
 pub use bound::least_z;
 pub use scheme::Block;
-pub use search::{MassError, MassModel, Search, nearest, search};
+pub use search::{MassError, MassModel, SearchLimits, nearest, search};
 pub use target::{MassTarget, PartTarget};
 pub use variations::{iou, variations};
 

@@ -5,7 +5,7 @@ use edifice_shape::{BoxStyle, Building, MassBox, Ridge, Roof, RoofStyle};
 
 /// A line across one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Line {
+pub(super) enum GridLine {
     Fixed(f64),
     /// The position is the variable of this index.
     Free(usize),
@@ -25,7 +25,7 @@ pub(super) struct OnLines {
 pub(super) struct Scheme {
     pub boxes: Vec<OnLines>,
     /// Lines along x and along y.
-    pub lines: [Vec<Line>; 2],
+    pub lines: [Vec<GridLine>; 2],
     /// Start values of the variables, in metres.
     pub start: Vec<f64>,
 }
@@ -74,7 +74,7 @@ impl Scheme {
         for (k, part) in target.parts.iter().enumerate() {
             let Some(part) = part else { continue };
             let mut fixed = |axis: usize, at: f64| {
-                scheme.lines[axis].push(Line::Fixed(at));
+                scheme.lines[axis].push(GridLine::Fixed(at));
                 scheme.lines[axis].len() - 1
             };
             let lines = [
@@ -115,14 +115,14 @@ impl Scheme {
                 .iter()
                 .any(|b| b.frozen && b.edges[axis].iter().any(|e| (e - value).abs() < SAME));
             let line = if is_frozen {
-                Line::Fixed(value)
+                GridLine::Fixed(value)
             } else if k == 0 && (value < 0.01 || !touched(0.0)) {
-                Line::Fixed(0.0)
+                GridLine::Fixed(0.0)
             } else if k == last && (value > extent - 0.01 || !touched(extent)) {
-                Line::Fixed(extent)
+                GridLine::Fixed(extent)
             } else {
                 self.start.push(value);
-                Line::Free(self.start.len() - 1)
+                GridLine::Free(self.start.len() - 1)
             };
             self.lines[axis].push(line);
         }
@@ -133,8 +133,8 @@ impl Scheme {
     /// Position of a line, in metres.
     pub(super) fn at(&self, axis: usize, line: usize, x: &[f64]) -> f64 {
         match self.lines[axis][line] {
-            Line::Fixed(at) => at,
-            Line::Free(variable) => x[variable],
+            GridLine::Fixed(at) => at,
+            GridLine::Free(variable) => x[variable],
         }
     }
 
@@ -199,12 +199,12 @@ impl Scheme {
         let mut changed = false;
         for axis in [0, 1] {
             for i in 0..out.lines[axis].len() {
-                let Line::Free(variable) = out.lines[axis][i] else {
+                let GridLine::Free(variable) = out.lines[axis][i] else {
                     continue;
                 };
                 let here = out.start[variable];
                 let others = (0..out.lines[axis].len())
-                    .filter(|&j| out.lines[axis][j] != Line::Free(variable));
+                    .filter(|&j| out.lines[axis][j] != GridLine::Free(variable));
                 let near = others
                     .map(|j| {
                         (
@@ -217,7 +217,7 @@ impl Scheme {
                 if let Some((line, _)) = near {
                     changed = true;
                     for l in &mut out.lines[axis] {
-                        if *l == Line::Free(variable) {
+                        if *l == GridLine::Free(variable) {
                             *l = line;
                         }
                     }

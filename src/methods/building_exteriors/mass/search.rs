@@ -14,7 +14,7 @@ use edifice_shape::{BoxStyle, Building, MassBox, Roof};
 
 /// Limits of a search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Search {
+pub struct SearchLimits {
     /// Donors tried at most.
     pub donors: usize,
     /// Rounds of random arrangements at most.
@@ -25,7 +25,7 @@ pub struct Search {
     pub leave_out: Option<usize>,
 }
 
-impl Default for Search {
+impl Default for SearchLimits {
     fn default() -> Self {
         Self {
             donors: 12,
@@ -78,7 +78,7 @@ pub fn search(
     target: &MassTarget,
     frozen: &[Block],
     database: &Database,
-    options: &Search,
+    options: &SearchLimits,
     rng: &mut impl Rng,
 ) -> Result<MassModel, MassError> {
     let deviations = &database.deviations[..MASS];
@@ -284,7 +284,11 @@ pub(super) fn has_boxes(building: &Building) -> bool {
 }
 
 /// The nearest houses with the same floors, garage and porches as far as they are known, and whether they serve mirrored.
-pub fn nearest(target: &MassTarget, database: &Database, options: &Search) -> Vec<(usize, bool)> {
+pub fn nearest(
+    target: &MassTarget,
+    database: &Database,
+    options: &SearchLimits,
+) -> Vec<(usize, bool)> {
     let mut found: Vec<(f64, usize, bool)> = Vec::new();
     for (index, row) in database.rows.iter().enumerate() {
         if options.leave_out == Some(index) {

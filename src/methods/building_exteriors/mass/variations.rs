@@ -5,7 +5,7 @@ use rand::Rng;
 use super::fit::fit;
 use super::plain::plain;
 use super::scheme::{Scheme, donated};
-use super::search::{MassModel, PLANS, Search, has_boxes, main_roof, nearest, random_scheme};
+use super::search::{MassModel, PLANS, SearchLimits, has_boxes, main_roof, nearest, random_scheme};
 use super::target::{MassTarget, bounds};
 use super::{MASS, is_sound};
 use crate::house::Database;
@@ -19,7 +19,7 @@ pub fn variations(
     apart: f64,
     unlike: &[Building],
     database: &Database,
-    options: &Search,
+    options: &SearchLimits,
     rng: &mut impl Rng,
 ) -> Vec<MassModel> {
     let mut found: Vec<MassModel> = Vec::new();
@@ -44,7 +44,7 @@ pub fn variations(
             donor,
         }
     };
-    let many = Search {
+    let many = SearchLimits {
         donors: 8 * count,
         ..options.clone()
     };

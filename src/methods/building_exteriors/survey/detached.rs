@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::surfaces::{is_wall, norm, normal, plan_area};
-use edifice_shape::triangles::TriangleMesh;
+use super::surfaces::{is_wall, plan_area};
+use edifice_shape::triangles::{TriangleMesh, normal};
+use edifice_shape::vec3::norm;
 
 /// Walls nearer than this touch (m); neighbours of a smaller plan (square metres) are sheds, which do not count.
 const TOUCHES: f64 = 0.4;

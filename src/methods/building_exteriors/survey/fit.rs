@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::heights::HeightMap;
-use super::surfaces::{ground, norm, normal, roof};
-use edifice_shape::triangles::{Corners, TriangleMesh, plan_area};
+use super::surfaces::{ground, roof};
+use edifice_shape::triangles::{Corners, TriangleMesh, normal, plan_area};
+use edifice_shape::vec3::norm;
 use edifice_shape::{MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 
 /// Nearness of a measured house.

@@ -1,8 +1,9 @@
 //! The height of a building over its plan, on a raster.
 
 use super::planes::Planes;
-use super::surfaces::{ground, is_wall, norm, normal};
-use edifice_shape::triangles::{Corners, TriangleMesh};
+use super::surfaces::{ground, is_wall};
+use edifice_shape::triangles::{Corners, TriangleMesh, normal};
+use edifice_shape::vec3::norm;
 
 /// Largest side of a sample (m).
 const STEP: f64 = 0.2;

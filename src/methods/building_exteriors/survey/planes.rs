@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::surfaces::{is_wall, norm, normal};
-use edifice_shape::triangles::TriangleMesh;
+use super::surfaces::is_wall;
+use edifice_shape::triangles::{TriangleMesh, normal};
+use edifice_shape::vec3::norm;
 
 /// Least cosine between the normals of one plane's triangles.
 const COPLANAR: f64 = 0.995;

@@ -1,24 +1,7 @@
 //! Triangles of a building: walls, roof, and the ground that it stands on.
 
-use edifice_shape::triangles::{Corners, TriangleMesh, plan_area as signed_plan_area};
-
-/// Twice the area times the unit normal.
-pub(super) fn normal(t: &Corners) -> [f64; 3] {
-    let [a, b, c] = t;
-    let (u, v) = (
-        [0, 1, 2].map(|k| b[k] - a[k]),
-        [0, 1, 2].map(|k| c[k] - a[k]),
-    );
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
-}
-
-pub(super) fn norm(v: [f64; 3]) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
+use edifice_shape::triangles::{Corners, TriangleMesh, normal, plan_area as signed_plan_area};
+use edifice_shape::vec3::norm;
 
 /// True if the triangle is upright.
 pub(super) fn is_wall(n: [f64; 3], length: f64) -> bool {

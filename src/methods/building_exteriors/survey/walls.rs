@@ -1,8 +1,9 @@
 //! Axes and grid lines from the walls of a building.
 
 use super::heights::HeightMap;
-use super::surfaces::{is_wall, norm, normal};
-use edifice_shape::triangles::TriangleMesh;
+use super::surfaces::is_wall;
+use edifice_shape::triangles::{TriangleMesh, normal};
+use edifice_shape::vec3::norm;
 
 /// Least share of the wall area within [`SLACK`] of the axes.
 pub(super) const RIGHT: f64 = 0.85;

@@ -21,7 +21,7 @@ use edifice_optim::tell;
 use edifice_shape::Facade;
 
 /// The common start of all methods: settings, facades, region types and the splitting heuristic; each method is a function of it.
-pub(crate) struct Search<'a> {
+pub(crate) struct Setup<'a> {
     pub settings: &'a Settings,
     /// The facades before symmetry detection.
     pub fresh: Types,
@@ -31,7 +31,7 @@ pub(crate) struct Search<'a> {
     pub watched: &'a Watched<'a>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> Setup<'a> {
     pub(crate) fn new(
         facades: &[Facade],
         settings: &'a Settings,

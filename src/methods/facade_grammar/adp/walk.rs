@@ -149,7 +149,7 @@ impl Heuristic<Inference> for Explore {
     }
 }
 
-/// The approximation of the `best` configuration: over all rules, by shortest paths, with the
+/// The approximation of the default method: over all rules, by shortest paths, with the
 /// learnt values as prices.
 #[derive(Debug)]
 pub(crate) struct ShortestPathRules {

@@ -1,4 +1,4 @@
-//! Second stage of `best`: annealing over the set of non-terminal types.
+//! Second stage of the default method: annealing over the set of non-terminal types.
 //!
 //! A grammar is determined by its set `N` of non-terminal region types: given `N`, the best rule of
 //! each type is a shortest path over strips that are terminals or members of `N` (or a grid of such

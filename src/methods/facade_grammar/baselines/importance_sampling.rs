@@ -24,7 +24,7 @@ use rand::{Rng, RngExt};
 
 use crate::adp::feasible_candidates::draw;
 use crate::adp::readings::Protect;
-use crate::adp::search::Search;
+use crate::adp::search::Setup;
 use crate::rules::AddRule;
 use crate::settings::InferError;
 
@@ -33,12 +33,12 @@ pub(crate) type Walked = (Vec<AddRule>, f64);
 
 /// A walk: which regions are protected (Sec. 4.7), then a rule for each type that needs one (Eq. 5).
 pub(crate) struct Walk<'a> {
-    search: &'a Search<'a>,
+    search: &'a Setup<'a>,
     protect: Protect,
 }
 
 impl<'a> Walk<'a> {
-    pub(crate) fn new(search: &'a Search<'a>) -> Self {
+    pub(crate) fn new(search: &'a Setup<'a>) -> Self {
         let protect = search.settings.readings.protection.anew();
         Self { search, protect }
     }
@@ -180,7 +180,7 @@ fn whole(stored: &Value, count: usize) -> Option<usize> {
     }
 }
 
-impl Search<'_> {
+impl Setup<'_> {
     /// Weighted walks, as many as the settings ask for iterations, unless the watch ends them or memory is used up.
     pub(crate) fn importance(&self) -> Result<Posterior<Walked>, InferError> {
         let (watch, process) = (self.watch("walks", 0), self.process());
@@ -266,7 +266,7 @@ mod tests {
             let facade = facade(5, 4, seed);
             let settings = settings(Protect::DRAWS, 200, seed);
             let watched = Watched::new(&unwatched);
-            let new = || Search::new(std::slice::from_ref(&facade), &settings, &watched).unwrap();
+            let new = || Setup::new(std::slice::from_ref(&facade), &settings, &watched).unwrap();
             let (search, other) = (new(), new());
             let own = search.importance().unwrap();
             let own: Vec<f64> = own.draws.iter().map(|d| d.out.1).collect();
@@ -286,7 +286,7 @@ mod tests {
             let facade = facade(3, 2, seed);
             let settings = settings(2, 3000, seed);
             let watched = Watched::new(&unwatched);
-            let search = Search::new(&[facade], &settings, &watched).unwrap();
+            let search = Setup::new(&[facade], &settings, &watched).unwrap();
             let truth = exact(&Walk::new(&search)).unwrap();
             let found = search.importance().unwrap();
             let (z, known) = (found.evidence.unwrap(), truth.evidence.unwrap());

@@ -11,7 +11,7 @@ use super::completion::{Completion, Reason};
 use super::layout::Element;
 use super::model::Model;
 use super::partial::PartialLayout;
-use super::policy::{Scene, added, paper_model};
+use super::policy::{CompletionProblem, added, paper_model};
 use super::score::{Change, Scored};
 use edifice_base::rng::Stream;
 use edifice_optim::annealing::{Annealing, AnnealingError, Cooling, Landscape};
@@ -43,7 +43,7 @@ impl Default for Settings {
 
 /// The landscape of completions: lower is better, the cost being the score, less.
 struct Completions<'a> {
-    scene: &'a Scene<'a>,
+    problem: &'a CompletionProblem<'a>,
     partial: &'a PartialLayout,
     scored: Scored<'a>,
     observed: usize,
@@ -60,7 +60,7 @@ impl Completions<'_> {
 
     /// An element of an observed or known class and size at a random place.
     fn random_element<R: Rng>(&self, rng: &mut R) -> Option<Element> {
-        let (class, size) = self.scene.random_label(rng)?;
+        let (class, size) = self.problem.random_label(rng)?;
         let x = rng.random::<f64>() * (self.partial.width - size[0]).max(0.0);
         let y = rng.random::<f64>() * (self.partial.height - size[1]).max(0.0);
         Some(Element::new(class, Rect::new(x, y, size[0], size[1])))
@@ -114,15 +114,15 @@ impl Landscape for Completions<'_> {
 /// # Errors
 /// [`AnnealingError`] for temperatures out of range.
 pub fn anneal(
-    scene: &Scene,
+    problem: &CompletionProblem,
     partial: &PartialLayout,
     settings: &Settings,
     seed: u64,
 ) -> Result<(Vec<Element>, f64), AnnealingError> {
-    let (model, observed) = (&scene.model.score, partial.observed.clone());
-    let scored = Scored::weighted(model, scene.weights, scene.facade, observed);
+    let (model, observed) = (&problem.model.score, partial.observed.clone());
+    let scored = Scored::weighted(model, problem.weights, problem.facade, observed);
     let mut landscape = Completions {
-        scene,
+        problem,
         partial,
         scored,
         observed: partial.observed.len(),
@@ -136,8 +136,8 @@ pub fn anneal(
 /// The completion by simulated annealing with 100,000 evaluations; without a database nothing is added.
 pub fn complete(partial: &PartialLayout, model: &Model, rng: &mut Stream) -> Vec<Completion> {
     let found = paper_model(model).and_then(|paper| {
-        let scene = Scene::new(&paper, partial);
-        anneal(&scene, partial, &Settings::default(), rng.random()).ok()
+        let problem = CompletionProblem::new(&paper, partial);
+        anneal(&problem, partial, &Settings::default(), rng.random()).ok()
     });
     let (elements, score) = found.unwrap_or_default();
     vec![added(elements, Reason::Annealing, score, 1.0)]

@@ -2,7 +2,7 @@
 
 use super::completion;
 use crate::completion::{Completion, Reason};
-use crate::layout::lines::{Line, lines, median};
+use crate::layout::lines::{LatticeLine, lines, median};
 use crate::layout::{Class, Element};
 use crate::partial::PartialLayout;
 use edifice_shape::{Axis, Rect};
@@ -33,7 +33,7 @@ pub fn lattice(partial: &PartialLayout, fill: bool) -> Completion {
 }
 
 /// Lines with further ones at the median gap, as long as they fit.
-fn continued(lines: &[Line], length: f64, fill: bool) -> Vec<Line> {
+fn continued(lines: &[LatticeLine], length: f64, fill: bool) -> Vec<LatticeLine> {
     let gaps: Vec<f64> = lines.windows(2).map(|w| w[1].at - w[0].at).collect();
     let mut all = lines.to_vec();
     let (Some(gap), Some(first), Some(last)) =
@@ -41,12 +41,12 @@ fn continued(lines: &[Line], length: f64, fill: bool) -> Vec<Line> {
     else {
         return all;
     };
-    let mut step = |from: &Line, direction: f64| {
+    let mut step = |from: &LatticeLine, direction: f64| {
         let inside = |at: f64| at - from.size / 2.0 >= 0.0 && at + from.size / 2.0 <= length;
         let next = |at: &f64| Some(at + direction * gap);
         let further = std::iter::successors(next(&from.at), next).take(MOST_LINES.into());
         let own = further.take_while(|at| inside(*at));
-        all.extend(own.map(|at| Line { at, ..*from }));
+        all.extend(own.map(|at| LatticeLine { at, ..*from }));
     };
     step(first, -1.0);
     step(last, 1.0);
@@ -55,7 +55,7 @@ fn continued(lines: &[Line], length: f64, fill: bool) -> Vec<Line> {
             let parts = (wide / gap).round().min(f64::from(MOST_LINES)) as usize;
             for k in 1..parts {
                 let at = pair[0].at + wide * k as f64 / parts as f64;
-                all.push(Line { at, ..pair[0] });
+                all.push(LatticeLine { at, ..pair[0] });
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::completion;
 use crate::completion::{Completion, Reason};
-use crate::layout::lines::{Line, lines};
+use crate::layout::lines::{LatticeLine, lines};
 use crate::layout::{Class, Element};
 use crate::partial::PartialLayout;
 use edifice_model::low_rank::{Limits, soft_impute};
@@ -16,9 +16,9 @@ const FILLED: f64 = 0.5;
 /// The completed matrix of cells of one class.
 pub(crate) struct Cells {
     /// The observed columns.
-    pub columns: Vec<Line>,
+    pub columns: Vec<LatticeLine>,
     /// The observed rows, from the bottom.
-    pub rows: Vec<Line>,
+    pub rows: Vec<LatticeLine>,
     /// Row by row: about 1 where an element is, about 0 where none is.
     values: Vec<f64>,
 }

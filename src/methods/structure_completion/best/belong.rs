@@ -6,7 +6,7 @@
 //! - Shops and doors stand as high, and as wide up to a ratio of 1.25, as the seen ones of their class, and on the column, the
 //!   middle between two columns, or the middle of the facade if one of these is nearer than a quarter of their width.
 
-use super::scene::{Scene, of};
+use super::observation::{Observation, of};
 use super::shared::Lines;
 use crate::completion::Reason;
 use crate::layout::lines::median;
@@ -89,7 +89,7 @@ impl Hanging {
 
 /// Places of the added elements `others` (indices of those that are no windows), in an order in which they may be added.
 pub(super) fn placed(
-    scene: &Scene,
+    observation: &Observation,
     hosts: &[Host],
     [columns, rows]: [&Lines; 2],
     added: &[(Element, Reason)],
@@ -99,27 +99,31 @@ pub(super) fn placed(
         let own = others.iter().filter(move |k| added[**k].0.class == class);
         own.map(|&k| (k, added[k].0.rect)).collect::<Vec<_>>()
     };
-    let is_wide = |r: &Rect| r.width > WIDE * scene.size.0;
+    let is_wide = |r: &Rect| r.width > WIDE * observation.size.0;
     let (wide, narrow): (Vec<_>, Vec<_>) = of_class(Class::Balcony)
         .into_iter()
         .partition(|(_, r)| is_wide(r));
-    let mut out = hanging(scene, hosts, &narrow);
-    out.extend(running(scene, rows, &wide));
+    let mut out = hanging(observation, hosts, &narrow);
+    out.extend(running(observation, rows, &wide));
     for class in [Class::Door, Class::Shop] {
-        out.extend(standing(scene, columns, class, &of_class(class)));
+        out.extend(standing(observation, columns, class, &of_class(class)));
     }
     out
 }
 
-fn hanging(scene: &Scene, hosts: &[Host], drawn: &[(usize, Rect)]) -> Vec<(usize, Rect)> {
+fn hanging(
+    observation: &Observation,
+    hosts: &[Host],
+    drawn: &[(usize, Rect)],
+) -> Vec<(usize, Rect)> {
     let seen_hosts: Vec<Host> = hosts
         .iter()
         .filter(|h| h.given.is_none())
         .copied()
         .collect();
     let pair = |hosts: &[Host], r: &Rect| Some(Hanging::new(host(hosts, r)?, r));
-    let seen: Vec<Hanging> = of(&scene.elements, Class::Balcony)
-        .filter(|b| b.rect.width <= WIDE * scene.size.0)
+    let seen: Vec<Hanging> = of(&observation.elements, Class::Balcony)
+        .filter(|b| b.rect.width <= WIDE * observation.size.0)
         .filter_map(|b| pair(&seen_hosts, &b.rect))
         .collect();
     let own: Vec<Hanging> = drawn.iter().filter_map(|(_, r)| pair(hosts, r)).collect();
@@ -147,7 +151,7 @@ fn hanging(scene: &Scene, hosts: &[Host], drawn: &[(usize, Rect)]) -> Vec<(usize
     out
 }
 
-fn running(scene: &Scene, rows: &Lines, drawn: &[(usize, Rect)]) -> Vec<(usize, Rect)> {
+fn running(observation: &Observation, rows: &Lines, drawn: &[(usize, Rect)]) -> Vec<(usize, Rect)> {
     // Height of the lower edge above the row, and the balcony.
     let above = |r: &Rect| {
         let distance = |at: f64| (r.y - at).abs();
@@ -155,8 +159,8 @@ fn running(scene: &Scene, rows: &Lines, drawn: &[(usize, Rect)]) -> Vec<(usize, 
         let near = near.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
         Some((near, r.y - near))
     };
-    let seen: Vec<(f64, Rect)> = of(&scene.elements, Class::Balcony)
-        .filter(|b| b.rect.width > WIDE * scene.size.0)
+    let seen: Vec<(f64, Rect)> = of(&observation.elements, Class::Balcony)
+        .filter(|b| b.rect.width > WIDE * observation.size.0)
         .filter_map(|b| Some((above(&b.rect)?.1, b.rect)))
         .collect();
     let place = |r: &Rect| {
@@ -172,7 +176,7 @@ fn running(scene: &Scene, rows: &Lines, drawn: &[(usize, Rect)]) -> Vec<(usize, 
         } else {
             (r.x, r.width)
         };
-        let near = (like.0 - own).abs() < 0.5 * scene.size.1;
+        let near = (like.0 - own).abs() < 0.5 * observation.size.1;
         let up = if near { like.0 } else { own };
         Some(Rect::new(x, row + up, width, like.1.height))
     };
@@ -183,12 +187,12 @@ fn running(scene: &Scene, rows: &Lines, drawn: &[(usize, Rect)]) -> Vec<(usize, 
 }
 
 fn standing(
-    scene: &Scene,
+    observation: &Observation,
     columns: &Lines,
     class: Class,
     drawn: &[(usize, Rect)],
 ) -> Vec<(usize, Rect)> {
-    let seen: Vec<Rect> = of(&scene.elements, class).map(|e| e.rect).collect();
+    let seen: Vec<Rect> = of(&observation.elements, class).map(|e| e.rect).collect();
     let typical = |value: fn(&Rect) -> f64| {
         let own = drawn.iter().map(|(_, r)| value(r));
         median(seen.iter().map(value)).or_else(|| median(own))
@@ -197,7 +201,7 @@ fn standing(
         return Vec::new();
     };
     let at: Vec<f64> = columns.all.iter().map(|l| l.at).collect();
-    let mut rules = vec![scene.partial.width / 2.0];
+    let mut rules = vec![observation.partial.width / 2.0];
     rules.extend(at.windows(2).map(|w| (w[0] + w[1]) / 2.0));
     rules.extend(at);
     let mut widths: Vec<f64> = seen.iter().map(|r| r.width).collect();

@@ -1,11 +1,11 @@
 //! Candidate elements: every distinct element of the pool, how much of the pool supports it, and its features.
 
 use super::fill::typical_gap;
+use super::observation::{Observation, of};
 use super::pool::{Draw, Origin};
-use super::scene::{Scene, of};
 use super::votes::Votes;
 use crate::completion::Reason;
-use crate::layout::lines::Line;
+use crate::layout::lines::LatticeLine;
 use crate::layout::{Class, Element};
 use edifice_model::boosting::Boosting;
 
@@ -47,9 +47,9 @@ fn likeness(iou: f64) -> f64 {
 
 impl Candidates {
     /// Collects the candidates of a pool.
-    pub fn new(scene: &Scene, draws: &[Draw]) -> Self {
+    pub fn new(observation: &Observation, draws: &[Draw]) -> Self {
         let (mut elements, mut reasons): (Vec<Element>, Vec<Reason>) = (Vec::new(), Vec::new());
-        let mut index = Index::new(scene);
+        let mut index = Index::new(observation);
         let mut of_draw = Vec::with_capacity(draws.len());
         for draw in draws {
             let mut own = Vec::with_capacity(draw.added.len());
@@ -103,7 +103,7 @@ impl Candidates {
             alike,
             index,
         };
-        candidates.add_features(scene);
+        candidates.add_features(observation);
         candidates
     }
 
@@ -130,8 +130,8 @@ impl Candidates {
         });
     }
 
-    fn add_features(&mut self, scene: &Scene) {
-        let context = Context::new(scene);
+    fn add_features(&mut self, observation: &Observation) {
+        let context = Context::new(observation);
         let total = |c: &Candidate| c.support[..5].iter().sum::<f64>();
         let rows: Vec<Vec<f64>> = self
             .all
@@ -191,12 +191,12 @@ struct Index {
 }
 
 impl Index {
-    fn new(scene: &Scene) -> Self {
-        let (width, height) = (scene.partial.width, scene.partial.height);
+    fn new(observation: &Observation) -> Self {
+        let (width, height) = (observation.partial.width, observation.partial.height);
         // At most 128 cells along an axis, however small a window is.
         let cell = (
-            (1.2 * scene.size.0).max(width / 128.0),
-            (1.2 * scene.size.1).max(height / 128.0),
+            (1.2 * observation.size.0).max(width / 128.0),
+            (1.2 * observation.size.1).max(height / 128.0),
         );
         let columns = (width / cell.0) as usize + 1;
         let rows = (height / cell.1) as usize + 1;
@@ -252,9 +252,9 @@ impl Index {
     }
 }
 
-/// The quantities of a scene that the features of all its candidates have in common.
+/// The quantities of an observation that the features of all its candidates have in common.
 struct Context<'a> {
-    scene: &'a Scene<'a>,
+    observation: &'a Observation<'a>,
     /// Observed elements by class, for each observed window.
     per_window: [f64; 4],
     hidden: f64,
@@ -265,36 +265,36 @@ struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    fn new(scene: &'a Scene<'a>) -> Self {
-        let windows = of(&scene.elements, Class::Window).count().max(1) as f64;
+    fn new(observation: &'a Observation<'a>) -> Self {
+        let windows = of(&observation.elements, Class::Window).count().max(1) as f64;
         let per_window =
-            Class::ALL.map(|class| of(&scene.elements, class).count() as f64 / windows);
-        let facade = scene.partial.width * scene.partial.height;
-        let hidden = scene
+            Class::ALL.map(|class| of(&observation.elements, class).count() as f64 / windows);
+        let facade = observation.partial.width * observation.partial.height;
+        let hidden = observation
             .partial
             .unknown
             .as_ref()
             .map(|unknown| unknown.iter().map(|r| r.area()).sum::<f64>() / facade);
         Self {
-            scene,
+            observation,
             per_window,
             hidden: hidden.unwrap_or(1.0),
             masked: f64::from(u8::from(hidden.is_some())),
-            gap: typical_gap(&scene.rows).unwrap_or(1.8 * scene.size.1),
-            votes: Votes::new(scene),
+            gap: typical_gap(&observation.rows).unwrap_or(1.8 * observation.size.1),
+            votes: Votes::new(observation),
         }
     }
 
     fn features(&self, candidate: &Candidate, rival: f64) -> Vec<f64> {
-        let scene = self.scene;
+        let observation = self.observation;
         let (class, r) = (candidate.element.class, candidate.element.rect);
         let (x, y) = r.centre();
-        let (width, height) = (scene.partial.width, scene.partial.height);
+        let (width, height) = (observation.partial.width, observation.partial.height);
         let (column, row) = (
-            nearest(&scene.columns, x, scene.size.0),
-            nearest(&scene.rows, y, scene.size.1),
+            nearest(&observation.columns, x, observation.size.0),
+            nearest(&observation.rows, y, observation.size.1),
         );
-        let same: Vec<(f64, f64)> = of(&scene.elements, class)
+        let same: Vec<(f64, f64)> = of(&observation.elements, class)
             .map(|e| e.rect.centre())
             .collect();
         let in_row = same.iter().filter(|c| (c.1 - y).abs() < 0.35 * r.height);
@@ -308,16 +308,16 @@ impl<'a> Context<'a> {
             .map(|c| (c.1 - y).abs() / r.height)
             .fold(20.0, f64::min);
         let (columns, rows) = (
-            scene.columns.len().max(1) as f64,
-            scene.rows.len().max(1) as f64,
+            observation.columns.len().max(1) as f64,
+            observation.rows.len().max(1) as f64,
         );
         let (row_share, column_share) = (
             in_row.clone().count() as f64 / columns,
             in_column.clone().count() as f64 / rows,
         );
-        let lowest = scene.rows.first().map_or(height / 2.0, |l| l.at);
+        let lowest = observation.rows.first().map_or(height / 2.0, |l| l.at);
         let windows_beside =
-            of(&scene.elements, Class::Window).filter(|w| w.rect.overlap(&r) > 0.0);
+            of(&observation.elements, Class::Window).filter(|w| w.rect.overlap(&r) > 0.0);
         let mean = candidate.support[..5].iter().sum::<f64>() / 5.0;
         let mut features = candidate.support.to_vec();
         features.extend([
@@ -335,28 +335,28 @@ impl<'a> Context<'a> {
             nearest_in_row,
             nearest_in_column,
             y / height,
-            y / scene.size.1,
+            y / observation.size.1,
             (x - width / 2.0).abs() / width,
-            r.width / scene.size.0,
-            r.height / scene.size.1,
-            scene.seen,
-            scene.elements.len() as f64,
+            r.width / observation.size.0,
+            r.height / observation.size.1,
+            observation.seen,
+            observation.elements.len() as f64,
             self.per_window[class.index()],
             windows_beside.count() as f64,
             r.y / r.height,
-            scene.columns.len() as f64,
-            scene.rows.len() as f64,
+            observation.columns.len() as f64,
+            observation.rows.len() as f64,
             row_share,
             column_share,
-            row_share * column_share / scene.seen.max(0.05),
+            row_share * column_share / observation.seen.max(0.05),
             (lowest - y) / self.gap,
             lowest / self.gap,
             self.per_window[Class::Door.index()],
             self.per_window[Class::Balcony.index()],
             self.per_window[Class::Shop.index()],
-            scene.size.0 / scene.size.1,
-            scene.size.0 / width,
-            scene.size.1 / height,
+            observation.size.0 / observation.size.1,
+            observation.size.0 / width,
+            observation.size.1 / height,
             candidate.support.iter().copied().fold(0.0, f64::max),
         ]);
         features.extend(self.votes.at(x, y));
@@ -366,7 +366,7 @@ impl<'a> Context<'a> {
 }
 
 /// Distance to the nearest line in units of `size`, at most 5, and the number of elements on it.
-fn nearest(lines: &[Line], at: f64, size: f64) -> (f64, f64) {
+fn nearest(lines: &[LatticeLine], at: f64, size: f64) -> (f64, f64) {
     let near = lines
         .iter()
         .min_by(|a, b| (a.at - at).abs().total_cmp(&(b.at - at).abs()));

@@ -6,9 +6,9 @@
 //! door gets the most probable one, where it is likely enough.
 
 use super::candidates::Candidates;
+use super::observation::{Observation, of};
 use super::pool::Draw;
 use super::regular::clash;
-use super::scene::{Scene, of};
 use crate::layout::{Class, Element};
 use edifice_shape::Rect;
 
@@ -23,9 +23,9 @@ const SHARE: f64 = 0.15;
 /// Columns nearer than this share of a window are one.
 const ONE_COLUMN: f64 = 0.3;
 
-/// A place of a door.
+/// A place where a door may be.
 #[derive(Debug, Clone)]
-pub struct Place {
+pub struct DoorCandidate {
     /// The door.
     pub element: Element,
     /// Features for its probability.
@@ -33,7 +33,7 @@ pub struct Place {
 }
 
 /// Columns that at least a share of the pool has, in order.
-fn columns(scene: &Scene, draws: &[Draw]) -> Vec<f64> {
+fn columns(observation: &Observation, draws: &[Draw]) -> Vec<f64> {
     let whole = draws.iter().filter(|d| d.origin.is_whole());
     let mut all: Vec<(f64, f64)> = whole
         .clone()
@@ -41,7 +41,7 @@ fn columns(scene: &Scene, draws: &[Draw]) -> Vec<f64> {
         .collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = whole.map(|d| d.weight).sum();
-    let reach = ONE_COLUMN * scene.size.0;
+    let reach = ONE_COLUMN * observation.size.0;
     let mut groups: Vec<(f64, f64, f64)> = Vec::new();
     for (x, weight) in all {
         match groups.last_mut() {
@@ -58,31 +58,38 @@ fn columns(scene: &Scene, draws: &[Draw]) -> Vec<f64> {
     enough.map(|g| g.1 / g.2).collect()
 }
 
-/// All places of a scene; none where a door is seen.
-pub fn places(scene: &Scene, draws: &[Draw], candidates: &Candidates) -> Vec<Place> {
-    if of(&scene.elements, Class::Door).next().is_some() {
+/// All places of an observation; none where a door is seen.
+pub fn places(
+    observation: &Observation,
+    draws: &[Draw],
+    candidates: &Candidates,
+) -> Vec<DoorCandidate> {
+    if of(&observation.elements, Class::Door).next().is_some() {
         return Vec::new();
     }
-    let columns = columns(scene, draws);
-    let middle = scene.partial.width / 2.0;
+    let columns = columns(observation, draws);
+    let middle = observation.partial.width / 2.0;
     let mut at: Vec<(f64, f64)> = columns.iter().map(|x| (*x, 0.0)).collect();
     at.extend(columns.windows(2).map(|w| ((w[0] + w[1]) / 2.0, 1.0)));
-    let taken = |x: f64| at.iter().any(|a| (a.0 - x).abs() < 0.1 * scene.size.0);
+    let taken = |x: f64| {
+        at.iter()
+            .any(|a| (a.0 - x).abs() < 0.1 * observation.size.0)
+    };
     if !taken(middle) {
         at.push((middle, 2.0));
     }
-    let around = Around::new(scene, draws, candidates, &columns);
+    let around = Around::new(observation, draws, candidates, &columns);
     let mut places = Vec::new();
     for (x, kind) in at {
         for wide in WIDTHS {
             for high in HEIGHTS {
-                let (width, height) = (wide * scene.size.0, high * scene.size.1);
+                let (width, height) = (wide * observation.size.0, high * observation.size.1);
                 let rect = Rect::new(x - width / 2.0, 0.0, width, height);
                 let element = Element::new(Class::Door, rect);
-                let free = scene.elements.iter().all(|e| !clash(e, &element));
-                if free && scene.partial.has_room(&element) {
+                let free = observation.elements.iter().all(|e| !clash(e, &element));
+                if free && observation.partial.has_room(&element) {
                     let features = around.features(&rect, kind, wide, high);
-                    places.push(Place { element, features });
+                    places.push(DoorCandidate { element, features });
                 }
             }
         }
@@ -92,7 +99,7 @@ pub fn places(scene: &Scene, draws: &[Draw], candidates: &Candidates) -> Vec<Pla
 
 /// Features that all places share.
 struct Around<'a> {
-    scene: &'a Scene<'a>,
+    observation: &'a Observation<'a>,
     columns: &'a [f64],
     gap: f64,
     rows: f64,
@@ -108,39 +115,43 @@ struct Around<'a> {
 
 impl<'a> Around<'a> {
     fn new(
-        scene: &'a Scene<'a>,
+        observation: &'a Observation<'a>,
         draws: &[Draw],
         candidates: &Candidates,
         columns: &'a [f64],
     ) -> Self {
-        let windows = of(&scene.elements, Class::Window).count().max(1) as f64;
+        let windows = of(&observation.elements, Class::Window).count().max(1) as f64;
         let support = |s: &[f64]| s[..5].iter().sum::<f64>() / 5.0;
         let (mut doors, mut others) = (Vec::new(), Vec::new());
         for c in &candidates.all {
             let (class, rect) = (c.element.class, c.element.rect);
             match class {
                 Class::Door => doors.push((rect, support(&c.support))),
-                _ if rect.y < 2.5 * scene.size.1 => others.push((class, rect, support(&c.support))),
+                _ if rect.y < 2.5 * observation.size.1 => {
+                    others.push((class, rect, support(&c.support)))
+                }
                 _ => {}
             }
         }
         let whole = draws.iter().filter(|d| d.origin.is_whole());
         let total: f64 = whole.clone().map(|d| d.weight).sum();
         let rows = whole.map(|d| d.weight * d.lattice.1 as f64).sum::<f64>() / total.max(1e-12);
-        let area = scene.partial.width * scene.partial.height;
-        let unknown = scene.partial.unknown.as_ref();
+        let area = observation.partial.width * observation.partial.height;
+        let unknown = observation.partial.unknown.as_ref();
         let hidden = unknown.map(|u| u.iter().map(|r| r.area()).sum::<f64>() / area);
         let gaps = columns.windows(2).map(|w| w[1] - w[0]);
         Self {
-            scene,
+            observation,
             columns,
-            gap: gaps.fold(f64::INFINITY, f64::min).min(scene.partial.width),
+            gap: gaps
+                .fold(f64::INFINITY, f64::min)
+                .min(observation.partial.width),
             rows,
-            lowest: scene
+            lowest: observation
                 .rows
                 .first()
-                .map_or(scene.partial.height, |r| r.at - r.size / 2.0),
-            per_window: Class::ALL.map(|c| of(&scene.elements, c).count() as f64 / windows),
+                .map_or(observation.partial.height, |r| r.at - r.size / 2.0),
+            per_window: Class::ALL.map(|c| of(&observation.elements, c).count() as f64 / windows),
             hidden: hidden.unwrap_or(1.0),
             masked: f64::from(u8::from(hidden.is_some())),
             doors,
@@ -149,8 +160,8 @@ impl<'a> Around<'a> {
     }
 
     fn features(&self, r: &Rect, kind: f64, wide: f64, high: f64) -> Vec<f64> {
-        let scene = self.scene;
-        let (facade, height) = (scene.partial.width, scene.partial.height);
+        let observation = self.observation;
+        let (facade, height) = (observation.partial.width, observation.partial.height);
         let (x, _) = r.centre();
         let before = self.columns.iter().filter(|c| **c < x - 1e-9).count();
         let after = self.columns.iter().filter(|c| **c > x + 1e-9).count();
@@ -169,12 +180,12 @@ impl<'a> Around<'a> {
         };
         let image = Rect::new(facade - r.right(), r.y, r.width, r.height);
         let seen_ground = |class: Class| {
-            let near = of(&scene.elements, class).filter(|e| e.rect.y < r.height);
+            let near = of(&observation.elements, class).filter(|e| e.rect.y < r.height);
             near.count() as f64
         };
         // A seen window of the ground floor that is as high as the door.
-        let top = of(&scene.elements, Class::Window).map(|e| (e.rect.top() - r.height).abs());
-        let top = top.fold(f64::INFINITY, f64::min) / scene.size.1;
+        let top = of(&observation.elements, Class::Window).map(|e| (e.rect.top() - r.height).abs());
+        let top = top.fold(f64::INFINITY, f64::min) / observation.size.1;
         let features = vec![
             kind,
             (x - facade / 2.0).abs() / facade,
@@ -188,7 +199,7 @@ impl<'a> Around<'a> {
             r.width / facade,
             r.height / height,
             (r.height / self.lowest.max(1e-3 * height)).min(9.0),
-            self.lowest / scene.size.1,
+            self.lowest / observation.size.1,
             self.rows,
             most(&mut like.map(|d| d.1)),
             most(&mut near.map(|d| d.1)),
@@ -196,16 +207,18 @@ impl<'a> Around<'a> {
             met(Class::Shop),
             self.masked,
             self.hidden,
-            scene.seen,
+            observation.seen,
             self.per_window[Class::Balcony.index()],
             self.per_window[Class::Shop.index()],
             seen_ground(Class::Window),
             seen_ground(Class::Shop),
             top.min(5.0),
             f64::from(u8::from(
-                scene.partial.is_unknown(image.centre().0, image.centre().1),
+                observation
+                    .partial
+                    .is_unknown(image.centre().0, image.centre().1),
             )),
-            scene.size.0 / scene.size.1,
+            observation.size.0 / observation.size.1,
         ];
         debug_assert_eq!(features.len(), FEATURES);
         features

@@ -11,8 +11,8 @@
 //!
 //! Margins that are equal up to a fiftieth of the gap are equal.
 
+use super::observation::{Observation, of};
 use super::regular::clash;
-use super::scene::{Scene, of};
 use crate::layout::{Class, Element};
 use edifice_shape::{Axis, Rect};
 
@@ -22,14 +22,16 @@ const EXACT: f64 = 0.02;
 const LEAST: usize = 3;
 
 /// The hidden windows of the exact lattice; `None` where the seen ones are none of one, or all of it.
-pub(super) fn hidden(scene: &Scene) -> Option<Vec<Element>> {
-    let seen: Vec<Rect> = of(&scene.elements, Class::Window).map(|e| e.rect).collect();
+pub(super) fn hidden(observation: &Observation) -> Option<Vec<Element>> {
+    let seen: Vec<Rect> = of(&observation.elements, Class::Window)
+        .map(|e| e.rect)
+        .collect();
     if seen.len() < LEAST {
         return None;
     }
     let [(columns, width), (rows, height)] = [
-        lattice_of(scene, &seen, Axis::X)?,
-        lattice_of(scene, &seen, Axis::Y)?,
+        lattice_of(observation, &seen, Axis::X)?,
+        lattice_of(observation, &seen, Axis::Y)?,
     ];
     let mut hidden = Vec::new();
     for &y in &rows {
@@ -39,10 +41,10 @@ pub(super) fn hidden(scene: &Scene) -> Option<Vec<Element>> {
             if seen.iter().any(|s| s.overlap(&rect) > 0.5 * rect.area()) {
                 continue;
             }
-            if scene.elements.iter().any(|e| clash(e, &window)) {
+            if observation.elements.iter().any(|e| clash(e, &window)) {
                 return None;
             }
-            hidden.push(with_room(scene, window)?);
+            hidden.push(with_room(observation, window)?);
         }
     }
     (!hidden.is_empty()).then_some(hidden)
@@ -52,8 +54,11 @@ pub(super) fn hidden(scene: &Scene) -> Option<Vec<Element>> {
 const EDGE: f64 = 1e-9;
 
 /// The window where there is room for it, on the unknown side of an edge that its centre is on.
-fn with_room(scene: &Scene, window: Element) -> Option<Element> {
-    let (dx, dy) = (EDGE * scene.partial.width, EDGE * scene.partial.height);
+fn with_room(observation: &Observation, window: Element) -> Option<Element> {
+    let (dx, dy) = (
+        EDGE * observation.partial.width,
+        EDGE * observation.partial.height,
+    );
     let ways = [(0.0, 0.0), (dx, 0.0), (-dx, 0.0), (0.0, dy), (0.0, -dy)];
     let mut moved = ways.into_iter().map(|(x, y)| {
         let mut window = window;
@@ -61,12 +66,12 @@ fn with_room(scene: &Scene, window: Element) -> Option<Element> {
         window.rect.y += y;
         window
     });
-    moved.find(|w| scene.partial.has_room(w))
+    moved.find(|w| observation.partial.has_room(w))
 }
 
 /// Centres of the lines of the exact lattice along an axis, and the extent of its windows.
-fn lattice_of(scene: &Scene, seen: &[Rect], axis: Axis) -> Option<(Vec<f64>, f64)> {
-    let length = scene.length(axis);
+fn lattice_of(observation: &Observation, seen: &[Rect], axis: Axis) -> Option<(Vec<f64>, f64)> {
+    let length = observation.length(axis);
     let size = seen[0].extent(axis);
     let tolerance = EXACT * size;
     if seen
@@ -101,11 +106,11 @@ fn lattice_of(scene: &Scene, seen: &[Rect], axis: Axis) -> Option<(Vec<f64>, f64
         return None;
     }
     // A further line crosses the seen ones where nothing is known.
-    let crossing = scene.lines(axis.other());
+    let crossing = observation.lines(axis.other());
     let open = |x: f64| {
         let unknown = |y: f64| match axis {
-            Axis::X => scene.partial.is_unknown(x, y),
-            Axis::Y => scene.partial.is_unknown(y, x),
+            Axis::X => observation.partial.is_unknown(x, y),
+            Axis::Y => observation.partial.is_unknown(y, x),
         };
         crossing.iter().all(|line| unknown(line.at))
     };
@@ -150,8 +155,8 @@ mod tests {
             unknown,
             forbidden: Vec::new(),
         };
-        let scene = Scene::new(&partial, observed, (12.0, 24.0));
-        hidden(&scene)
+        let observation = Observation::new(&partial, observed, (12.0, 24.0));
+        hidden(&observation)
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use rand::{Rng, RngExt};
 
 use super::by_place::ByPlace;
-use super::scene::{Scene, of};
-use crate::layout::lines::{Line, median};
+use super::observation::{Observation, of};
+use crate::layout::lines::{LatticeLine, median};
 use crate::layout::{Class, Element};
 use edifice_shape::Rect;
 
@@ -21,10 +21,15 @@ const DOORS: f64 = 0.1;
 /// A cell holds a window with the share of windows in the known cells of its row and of its column (with two
 /// pseudo-observations of `OCCUPANCY`). Its width is its column's, its height its row's. A window has a balcony
 /// with the share of windows with balconies in its row and its column, placed as the nearest one of them.
-pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R) -> Vec<Element> {
-    let lattice = Lattice::new(scene, columns, rows);
-    let facade = [scene.partial.width, scene.partial.height];
-    let mut added = ByPlace::new(facade, scene.size, rows.len() * columns.len());
+pub fn fill<R: Rng>(
+    observation: &Observation,
+    columns: &[LatticeLine],
+    rows: &[LatticeLine],
+    rng: &mut R,
+) -> Vec<Element> {
+    let lattice = Lattice::new(observation, columns, rows);
+    let facade = [observation.partial.width, observation.partial.height];
+    let mut added = ByPlace::new(facade, observation.size, rows.len() * columns.len());
     for (r, row) in rows.iter().enumerate() {
         for (c, column) in columns.iter().enumerate() {
             let cell = lattice.cell(r, c);
@@ -35,7 +40,7 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
                     let rect = Rect::new(column.at - wide / 2.0, row.at - high / 2.0, wide, high);
                     let element = Element::new(Class::Window, rect);
                     let share = lattice.share(r, c, |cell| cell.window.is_some());
-                    if !is_free(scene, &added, &element) || rng.random::<f64>() > share {
+                    if !is_free(observation, &added, &element) || rng.random::<f64>() > share {
                         continue;
                     }
                     added.push(element);
@@ -45,35 +50,41 @@ pub fn fill<R: Rng>(scene: &Scene, columns: &[Line], rows: &[Line], rng: &mut R)
             if cell.balcony.is_none()
                 && let Some(balcony) = lattice.balcony(r, c, window, rng)
             {
-                add(scene, Element::new(Class::Balcony, balcony), &mut added);
+                add(
+                    observation,
+                    Element::new(Class::Balcony, balcony),
+                    &mut added,
+                );
             }
         }
     }
     for (class, share) in [(Class::Shop, SHOPS), (Class::Door, DOORS)] {
-        for element in of(&scene.elements, class) {
-            repeat(scene, element, columns, share, rng, &mut added);
+        for element in of(&observation.elements, class) {
+            repeat(observation, element, columns, share, rng, &mut added);
         }
     }
     added.into_elements()
 }
 
-/// True if an element may stand there: observed elements are among those of the scene.
-fn is_free(scene: &Scene, added: &ByPlace, element: &Element) -> bool {
-    !scene.elements.exclude(element) && !added.exclude(element) && scene.partial.has_room(element)
+/// True if an element may stand there: observed elements are among those of the observation.
+fn is_free(observation: &Observation, added: &ByPlace, element: &Element) -> bool {
+    !observation.elements.exclude(element)
+        && !added.exclude(element)
+        && observation.partial.has_room(element)
 }
 
 /// Adds an element where it is allowed and free.
-fn add(scene: &Scene, element: Element, added: &mut ByPlace) {
-    if is_free(scene, added, &element) {
+fn add(observation: &Observation, element: Element, added: &mut ByPlace) {
+    if is_free(observation, added, &element) {
         added.push(element);
     }
 }
 
 /// Repeats an element of the ground floor on other columns, at the same offset, each with probability `share`.
 fn repeat<R: Rng>(
-    scene: &Scene,
+    observation: &Observation,
     element: &Element,
-    columns: &[Line],
+    columns: &[LatticeLine],
     share: f64,
     rng: &mut R,
     added: &mut ByPlace,
@@ -89,12 +100,12 @@ fn repeat<R: Rng>(
                 x: element.rect.x + column.at - own.at,
                 ..element.rect
             };
-            add(scene, Element::new(element.class, rect), added);
+            add(observation, Element::new(element.class, rect), added);
         }
     }
 }
 
-/// The observation in a cell of the lattice: known or not, its window, its balcony.
+/// The contents of a cell of the lattice, as seen: known or not, its window, its balcony.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell {
     known: bool,
@@ -109,38 +120,38 @@ struct Lattice {
 }
 
 /// The line nearest to a coordinate, within 0.6 of its extent.
-fn nearest(lines: &[Line], at: f64) -> Option<usize> {
-    let distance = |line: &Line| (line.at - at).abs();
+fn nearest(lines: &[LatticeLine], at: f64) -> Option<usize> {
+    let distance = |line: &LatticeLine| (line.at - at).abs();
     let index =
         (0..lines.len()).min_by(|&a, &b| distance(&lines[a]).total_cmp(&distance(&lines[b])))?;
     (distance(&lines[index]) < 0.6 * lines[index].size).then_some(index)
 }
 
 impl Lattice {
-    fn new(scene: &Scene, columns: &[Line], rows: &[Line]) -> Self {
-        let masked = scene.partial.unknown.is_some();
+    fn new(observation: &Observation, columns: &[LatticeLine], rows: &[LatticeLine]) -> Self {
+        let masked = observation.partial.unknown.is_some();
         let mut cells = vec![Cell::default(); columns.len() * rows.len()];
         for (r, row) in rows.iter().enumerate() {
             for (c, column) in columns.iter().enumerate() {
                 cells[r * columns.len() + c].known =
-                    masked && !scene.partial.is_unknown(column.at, row.at);
+                    masked && !observation.partial.is_unknown(column.at, row.at);
             }
         }
-        for window in of(&scene.elements, Class::Window) {
+        for window in of(&observation.elements, Class::Window) {
             let (x, y) = window.rect.centre();
             if let (Some(c), Some(r)) = (nearest(columns, x), nearest(rows, y)) {
                 let cell = &mut cells[r * columns.len() + c];
                 (cell.known, cell.window) = (true, Some(window.rect));
             }
         }
-        for balcony in of(&scene.elements, Class::Balcony) {
+        for balcony in of(&observation.elements, Class::Balcony) {
             let b = balcony.rect;
             let Some(c) = nearest(columns, b.centre().0) else {
                 continue;
             };
             let wide = b.width > 2.0 * columns[c].size;
             // A balcony reaches over the lower part of its window, or hangs right below it.
-            let under = |row: &Line| b.y < row.at && b.top() > row.at - 0.8 * row.size;
+            let under = |row: &LatticeLine| b.y < row.at && b.top() > row.at - 0.8 * row.size;
             if let (false, Some(r)) = (wide, rows.iter().position(under)) {
                 cells[r * columns.len() + c].balcony = Some(b);
             }
@@ -227,13 +238,13 @@ impl Lattice {
 }
 
 /// Lines by position: an observed line as it is, an invented one with the extent of the nearest observed one.
-pub fn lines_at(observed: &[Line], invented: &[f64], typical: f64) -> Vec<Line> {
+pub fn lines_at(observed: &[LatticeLine], invented: &[f64], typical: f64) -> Vec<LatticeLine> {
     let mut lines = observed.to_vec();
     for &at in invented {
         let near = observed
             .iter()
             .min_by(|a, b| (a.at - at).abs().total_cmp(&(b.at - at).abs()));
-        lines.push(Line {
+        lines.push(LatticeLine {
             at,
             size: near.map_or(typical, |l| l.size),
             count: 0,
@@ -244,6 +255,6 @@ pub fn lines_at(observed: &[Line], invented: &[f64], typical: f64) -> Vec<Line> 
 }
 
 /// Median gap of lines; `None` of fewer than two.
-pub fn typical_gap(lines: &[Line]) -> Option<f64> {
+pub fn typical_gap(lines: &[LatticeLine]) -> Option<f64> {
     median(lines.windows(2).map(|w| w[1].at - w[0].at))
 }

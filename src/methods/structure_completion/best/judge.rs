@@ -15,9 +15,9 @@
 
 use super::by_place::ByPlace;
 use super::candidates::Candidates;
+use super::observation::{Observation, of};
 use super::regular::{clash, regular, without_loners};
 use super::rows;
-use super::scene::{Scene, of};
 use crate::completion::Reason;
 use crate::layout::{Class, Element};
 use edifice_shape::Axis;
@@ -40,7 +40,7 @@ pub struct Layout {
 
 /// A judge of layouts by the values of their candidates.
 pub struct Judge<'a> {
-    scene: &'a Scene<'a>,
+    observation: &'a Observation<'a>,
     candidates: &'a Candidates,
     value: Vec<f64>,
     /// Candidates by falling value.
@@ -54,7 +54,7 @@ impl<'a> Judge<'a> {
     /// Judges by the value of each candidate (the mean of its probabilities) and the expected number of hidden elements;
     /// `door` is the one that the facade gets.
     pub fn new(
-        scene: &'a Scene<'a>,
+        observation: &'a Observation<'a>,
         candidates: &'a Candidates,
         value: Vec<f64>,
         door: Option<usize>,
@@ -63,7 +63,7 @@ impl<'a> Judge<'a> {
         let mut order: Vec<usize> = (0..value.len()).collect();
         order.sort_by(|&a, &b| value[b].total_cmp(&value[a]).then(a.cmp(&b)));
         Self {
-            scene,
+            observation,
             candidates,
             value,
             order,
@@ -84,11 +84,11 @@ impl<'a> Judge<'a> {
 
     /// The candidates that `allowed` allows, taken greedily.
     fn greedy(&self, allowed: impl Fn(&Element) -> bool) -> Vec<usize> {
-        let partial = self.scene.partial;
+        let partial = self.observation.partial;
         let facade = [partial.width, partial.height];
-        let mut taken = ByPlace::new(facade, self.scene.size, self.expected as usize);
+        let mut taken = ByPlace::new(facade, self.observation.size, self.expected as usize);
         // Only a facade that shows several doors gets more than the one that was asked for.
-        let several = of(&self.scene.elements, Class::Door).count() > 1;
+        let several = of(&self.observation.elements, Class::Door).count() > 1;
         let mut chosen: Vec<usize> = Vec::new();
         let (mut sum, mut score) = (0.0, 0.0);
         for c in self.door.into_iter().chain(self.order.iter().copied()) {
@@ -119,22 +119,22 @@ impl<'a> Judge<'a> {
             .iter()
             .map(|&c| (all[c].element, all[c].reason))
             .collect();
-        let made = regular(self.scene, &given);
-        let mut added: Vec<(Element, Reason, usize)> = without_loners(self.scene, made)
+        let made = regular(self.observation, &given);
+        let mut added: Vec<(Element, Reason, usize)> = without_loners(self.observation, made)
             .into_iter()
             .map(|(e, r, k)| (e, r, chosen[k]))
             .collect();
         let score = self.score(added.iter().map(|a| a.2));
         let whole = |added: &[(Element, Reason, usize)]| {
             let whole: Vec<(Element, Reason)> = added.iter().map(|(e, r, _)| (*e, *r)).collect();
-            regular(self.scene, &whole)
+            regular(self.observation, &whole)
         };
         let hosts = whole(&added).hosts;
         // A balcony pays where its value is above half of the score.
-        if let Some(balconies) =
-            rows::even(self.scene, &hosts, &added, score / 2.0, |b| self.like(b))
-        {
-            added.retain(|(e, ..)| !rows::is_single(self.scene, e));
+        if let Some(balconies) = rows::even(self.observation, &hosts, &added, score / 2.0, |b| {
+            self.like(b)
+        }) {
+            added.retain(|(e, ..)| !rows::is_single(self.observation, e));
             added.extend(balconies);
             let kept = whole(&added).added.into_iter();
             added = kept.map(|(e, r, k)| (e, r, added[k].2)).collect();
@@ -160,16 +160,17 @@ impl<'a> Judge<'a> {
     /// The best coherent layout on a lattice with columns and rows at these places.
     pub fn on_lattice(&self, lines: &[Vec<f64>; 2]) -> Layout {
         let near = |axis: Axis, lines: &[f64], at: f64| {
-            let reach = ON_LINE * self.scene.extent(axis);
+            let reach = ON_LINE * self.observation.extent(axis);
             let k = lines.partition_point(|&x| x < at - reach);
             lines.get(k).is_some_and(|&x| x <= at + reach)
         };
-        let seen = Axis::BOTH
-            .map(|axis| -> Vec<f64> { self.scene.lines(axis).iter().map(|l| l.at).collect() });
+        let seen = Axis::BOTH.map(|axis| -> Vec<f64> {
+            self.observation.lines(axis).iter().map(|l| l.at).collect()
+        });
         let on = |axis: Axis, at: f64| {
             let k = axis as usize;
             // Windows of a seen line may differ among themselves.
-            let reach = 0.35 * self.scene.extent(axis);
+            let reach = 0.35 * self.observation.extent(axis);
             near(axis, &lines[k], at) || seen[k].iter().any(|x| (x - at).abs() < reach)
         };
         let chosen = self.greedy(|e| {

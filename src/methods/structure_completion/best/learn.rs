@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::candidates::{Candidate, Candidates};
 use super::doors;
 use super::masses;
+use super::observation::Observation;
 use super::pool::{pool, weights};
-use super::scene::Scene;
 use crate::layout::{Class, Element, Layout};
 use crate::measure::agreement;
 use crate::model::Model;
@@ -114,16 +114,16 @@ fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorR
     }
     let draws = pool(&partial, model, without, &mut rng);
     let fallback = model.window_size(partial.width, partial.height);
-    let scene = Scene::new(&partial, partial.observed.clone(), fallback);
-    let candidates = Candidates::new(&scene, &draws);
+    let observation = Observation::new(&partial, partial.observed.clone(), fallback);
+    let candidates = Candidates::new(&observation, &draws);
     let truth = |c: &Candidate| {
         let own = hidden.iter().filter(|h| h.class == c.element.class);
         let best = own.map(|h| h.rect.iou(&c.element.rect)).fold(0.0, f64::max);
         OVERLAPS.map(|least| f64::from(u8::from(best >= least)))
     };
     let targets = candidates.all.iter().map(truth).collect();
-    let places = doors::places(&scene, &draws, &candidates);
-    let is_door = |p: &doors::Place| {
+    let places = doors::places(&observation, &draws, &candidates);
+    let is_door = |p: &doors::DoorCandidate| {
         let mut own = hidden.iter().filter(|h| h.class == Class::Door);
         f64::from(u8::from(
             own.any(|h| h.rect.iou(&p.element.rect) >= OVERLAPS[0]),
@@ -135,7 +135,7 @@ fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorR
     let shares = masses::shares(&draws, &weights(&draws));
     let example = &model.examples[index];
     let own = (example.columns.len(), example.rows.len());
-    let numbers = masses::features(&scene, &shares).into_iter();
+    let numbers = masses::features(&observation, &shares).into_iter();
     let of_numbers = numbers
         .map(|(lattice, features)| (features, f64::from(u8::from(lattice == own))))
         .unzip();

@@ -8,8 +8,8 @@
 
 use std::collections::BTreeMap;
 
+use super::observation::Observation;
 use super::pool::Draw;
-use super::scene::Scene;
 use edifice_model::boosting::Boosting;
 
 /// Number of features of a pair of numbers.
@@ -34,17 +34,23 @@ pub fn shares(draws: &[Draw], weights: &[f64]) -> BTreeMap<Lattice, f64> {
 }
 
 /// The features of each pair that has more than the least share.
-pub fn features(scene: &Scene, shares: &BTreeMap<Lattice, f64>) -> Vec<(Lattice, Vec<f64>)> {
+pub fn features(
+    observation: &Observation,
+    shares: &BTreeMap<Lattice, f64>,
+) -> Vec<(Lattice, Vec<f64>)> {
     let margin = |own: &dyn Fn(&Lattice) -> bool| -> f64 {
         shares.iter().filter(|(l, _)| own(l)).map(|(_, s)| s).sum()
     };
     let total: f64 = shares.values().sum::<f64>().max(1e-12);
     let most = shares.values().copied().fold(0.0, f64::max) / total;
     let spread: f64 = shares.values().map(|s| (s / total).powi(2)).sum();
-    let area = scene.partial.width * scene.partial.height;
-    let unknown = scene.partial.unknown.as_ref();
+    let area = observation.partial.width * observation.partial.height;
+    let unknown = observation.partial.unknown.as_ref();
     let hidden = unknown.map(|u| u.iter().map(|r| r.area()).sum::<f64>() / area);
-    let (columns, rows) = (scene.columns.len() as f64, scene.rows.len() as f64);
+    let (columns, rows) = (
+        observation.columns.len() as f64,
+        observation.rows.len() as f64,
+    );
     let each = shares.iter().filter(|(_, s)| **s >= LEAST * total);
     let features = each.map(|(&lattice, share)| {
         let rank = shares.values().filter(|s| *s > share).count();
@@ -62,10 +68,10 @@ pub fn features(scene: &Scene, shares: &BTreeMap<Lattice, f64>) -> Vec<(Lattice,
             lattice.1 as f64,
             hidden.unwrap_or(1.0),
             f64::from(u8::from(hidden.is_some())),
-            scene.seen,
+            observation.seen,
             columns,
             rows,
-            scene.elements.len() as f64,
+            observation.elements.len() as f64,
         ];
         debug_assert_eq!(features.len(), FEATURES);
         (lattice, features)
@@ -76,10 +82,10 @@ pub fn features(scene: &Scene, shares: &BTreeMap<Lattice, f64>) -> Vec<(Lattice,
 /// The learnt probability of each pair; pairs of next to no share have none.
 pub fn probabilities(
     learnt: &Boosting,
-    scene: &Scene,
+    observation: &Observation,
     shares: &BTreeMap<Lattice, f64>,
 ) -> BTreeMap<Lattice, f64> {
-    let all = features(scene, shares).into_iter();
+    let all = features(observation, shares).into_iter();
     let mut each: BTreeMap<Lattice, f64> = all
         .map(|(l, features)| (l, learnt.probability(&features)))
         .collect();

@@ -12,10 +12,10 @@ use super::doors;
 use super::exact;
 use super::judge::{Judge, Layout};
 use super::masses;
+use super::observation::{Observation, of};
 use super::pool::{Draw, SHARES, pool, weights};
 use super::regular::regular;
 use super::scattered;
-use super::scene::{Scene, of};
 use crate::completion::{Completed, Completion, Reason};
 use crate::layout::{Class, Element};
 use crate::model::Model;
@@ -48,17 +48,17 @@ pub struct Answer {
 pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut Stream) -> Answer {
     let draws = pool(partial, model, &[], rng);
     let fallback = model.window_size(partial.width, partial.height);
-    let scene = Scene::new(partial, partial.observed.clone(), fallback);
-    let mut candidates = Candidates::new(&scene, &draws);
+    let observation = Observation::new(partial, partial.observed.clone(), fallback);
+    let mut candidates = Candidates::new(&observation, &draws);
     let weights = weights(&draws);
     let mut loose = probabilities(model, &candidates);
     let mut tight: Vec<f64> = match &model.tight {
         Some(learnt) => candidates.probabilities(learnt),
         None => loose.iter().map(|p| TIGHT * p).collect(),
     };
-    scattered::weigh(&scene, &candidates, &mut loose);
-    scattered::weigh(&scene, &candidates, &mut tight);
-    let door = door(model, &scene, &draws, &mut candidates, &mut loose);
+    scattered::weigh(&observation, &candidates, &mut loose);
+    scattered::weigh(&observation, &candidates, &mut tight);
+    let door = door(model, &observation, &draws, &mut candidates, &mut loose);
     tight.resize(loose.len(), 0.0);
     if let Some(door) = door {
         tight[door] = TIGHT * loose[door];
@@ -66,7 +66,13 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     // What lies within three quarters lies within a half.
     let value = loose.iter().zip(&tight);
     let value: Vec<f64> = value.map(|(l, t)| (l + t.min(*l)) / 2.0).collect();
-    let judge = Judge::new(&scene, &candidates, value, door, expected(&draws, &weights));
+    let judge = Judge::new(
+        &observation,
+        &candidates,
+        value,
+        door,
+        expected(&draws, &weights),
+    );
     let windows = windows(partial, &draws);
     let mut modes = Modes::default();
     for (draw, weight) in draws
@@ -82,10 +88,10 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     let probability = |c: usize| loose[c].clamp(0.0, 1.0);
     let learnt = model.masses.as_ref().map(|learnt| {
         let shares = masses::shares(&draws, &weights);
-        masses::probabilities(learnt, &scene, &shares)
+        masses::probabilities(learnt, &observation, &shares)
     });
     let mut completions = modes.completions(probability, learnt.as_ref());
-    if let Some(hidden) = exact::hidden(&scene) {
+    if let Some(hidden) = exact::hidden(&observation) {
         completions.iter_mut().for_each(|c| c.mass *= 1.0 - EXACT);
         let added = hidden.into_iter().map(|element| Completed {
             element,
@@ -112,9 +118,9 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
 /// Elements put on lines that they share with the observed ones and among themselves, as every layout of the pool is.
 pub fn on_lines(partial: &PartialLayout, model: &Model, elements: &[Element]) -> Vec<Element> {
     let fallback = model.window_size(partial.width, partial.height);
-    let scene = Scene::new(partial, partial.observed.clone(), fallback);
+    let observation = Observation::new(partial, partial.observed.clone(), fallback);
     let given: Vec<(Element, Reason)> = elements.iter().map(|e| (*e, Reason::Lattice)).collect();
-    regular(&scene, &given)
+    regular(&observation, &given)
         .added
         .into_iter()
         .map(|a| a.0)
@@ -137,16 +143,16 @@ fn probabilities(model: &Model, candidates: &Candidates) -> Vec<f64> {
 /// The door that a facade without one gets, as a candidate; `None` where a door is seen, or none is likely enough.
 fn door(
     model: &Model,
-    scene: &Scene,
+    observation: &Observation,
     draws: &[Draw],
     candidates: &mut Candidates,
     loose: &mut Vec<f64>,
 ) -> Option<usize> {
-    if of(&scene.elements, Class::Door).next().is_some() {
+    if of(&observation.elements, Class::Door).next().is_some() {
         return None;
     }
     if let Some(learnt) = &model.doors {
-        let places = doors::places(scene, draws, candidates);
+        let places = doors::places(observation, draws, candidates);
         let each = places
             .into_iter()
             .map(|p| (learnt.probability(&p.features), p.element));

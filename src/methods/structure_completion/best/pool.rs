@@ -7,8 +7,8 @@ use super::categorical;
 use super::chain::{Chain, LineProblem};
 use super::density::Spacing;
 use super::fill::{fill, lines_at};
+use super::observation::Observation;
 use super::regular::regular;
-use super::scene::Scene;
 use super::symmetry;
 use super::transfer;
 use crate::baselines::lattice;
@@ -97,20 +97,20 @@ pub fn pool(
         .filter(|(index, _)| !without.contains(index))
         .collect();
     let fallback = model.window_size(partial.width, partial.height);
-    let scene = Scene::new(partial, partial.observed.clone(), fallback);
+    let observation = Observation::new(partial, partial.observed.clone(), fallback);
     let database = Database {
-        rows: transfer::Surroundings::new(&scene, &examples),
+        rows: transfer::Surroundings::new(&observation, &examples),
         examples: &examples,
     };
     let mut draws = Vec::new();
-    let rows = row_draws(&scene, &model.rows, 4 * DRAWS, rng);
-    let columns = column_draws(&scene, &model.columns, 2 * DRAWS, rng);
+    let rows = row_draws(&observation, &model.rows, 4 * DRAWS, rng);
+    let columns = column_draws(&observation, &model.columns, 2 * DRAWS, rng);
     let (plain, lower) = columns.split_at(columns.len() / 2);
     let mut rows = rows.iter().cycle();
     let mut next_rows = || rows.next().cloned().unwrap_or_default();
     for invented in plain {
         draws.push(whole(
-            &scene,
+            &observation,
             invented,
             &next_rows(),
             None,
@@ -121,7 +121,7 @@ pub fn pool(
     for invented in lower {
         let below = Some(&database);
         draws.push(whole(
-            &scene,
+            &observation,
             invented,
             &next_rows(),
             below,
@@ -129,12 +129,12 @@ pub fn pool(
             rng,
         ));
     }
-    if !scene.elements.is_empty() {
-        for (axis, count) in sampled_axes(&scene, &model.columns, DRAWS, rng) {
-            let added = symmetry::additions(&scene, axis);
-            let mut elements = scene.elements.to_vec();
+    if !observation.elements.is_empty() {
+        for (axis, count) in sampled_axes(&observation, &model.columns, DRAWS, rng) {
+            let added = symmetry::additions(&observation, axis);
+            let mut elements = observation.elements.to_vec();
             elements.extend(&added);
-            let mirrored = Scene::new(partial, elements, fallback);
+            let mirrored = Observation::new(partial, elements, fallback);
             let images: Vec<(Element, Reason)> =
                 added.iter().map(|e| (*e, Reason::Symmetry)).collect();
             draws.push(Draw {
@@ -160,17 +160,17 @@ pub fn pool(
             }
         }
     }
-    draws.extend(warped(&scene, &examples));
+    draws.extend(warped(&observation, &examples));
     let open = lattice(partial, false);
     draws.push(Draw {
         origin: Origin::Lattice,
         weight: 1.0,
         added: open.added.iter().map(|a| (a.element, a.reason)).collect(),
-        lattice: (scene.columns.len(), scene.rows.len()),
+        lattice: (observation.columns.len(), observation.rows.len()),
         lines: Default::default(),
     });
     for draw in &mut draws {
-        let made = regular(&scene, &draw.added);
+        let made = regular(&observation, &draw.added);
         let added = made.added.into_iter();
         draw.added = added.map(|(e, reason, _)| (e, reason)).collect();
         draw.lines = made.lines.map(|l| l.all.iter().map(|l| l.at).collect());
@@ -198,12 +198,12 @@ pub(super) fn weights(draws: &[Draw]) -> Vec<f64> {
 
 /// Axes with the number of draws for each.
 fn sampled_axes<R: Rng>(
-    scene: &Scene,
+    observation: &Observation,
     spacing: &Spacing,
     count: usize,
     rng: &mut R,
 ) -> Vec<(f64, usize)> {
-    let axes = symmetry::axes(scene, spacing);
+    let axes = symmetry::axes(observation, spacing);
     let weights: Vec<f64> = axes.iter().map(|a| a.1).collect();
     let mut counts = vec![0; axes.len()];
     for _ in 0..count {
@@ -215,39 +215,42 @@ fn sampled_axes<R: Rng>(
 
 /// One layout from invented columns and rows; with a database, what lies below the lowest seen row comes from there.
 fn whole<R: Rng>(
-    scene: &Scene,
+    observation: &Observation,
     columns: &[f64],
     rows: &[f64],
     database: Option<&Database>,
     origin: Origin,
     rng: &mut R,
 ) -> Draw {
-    let columns = lines_at(&scene.columns, columns, scene.size.0);
+    let columns = lines_at(&observation.columns, columns, observation.size.0);
     let mut transferred = Vec::new();
     let mut invented = rows.to_vec();
     let mut count = None;
-    if let (Some(database), Some(last)) = (database, scene.rows.first()) {
-        let choices = database.rows.choices(&columns, scene.size.0);
+    if let (Some(database), Some(last)) = (database, observation.rows.first()) {
+        let choices = database.rows.choices(&columns, observation.size.0);
         let weights: Vec<f64> = choices.iter().map(|b| b.weight).collect();
         if !choices.is_empty() {
             let choice = choices[categorical(&weights, rng)];
             let example = database.examples[choice.example].1;
-            transferred = transfer::below_elements(scene, &columns, example, choice.row);
+            transferred = transfer::below_elements(observation, &columns, example, choice.row);
             invented.retain(|&y| y > last.at);
             count = Some(choice.row);
         }
     }
-    let rows = lines_at(&scene.rows, &invented, scene.size.1);
-    let mut added: Vec<(Element, Reason)> = fill(scene, &columns, &rows, rng)
+    let rows = lines_at(&observation.rows, &invented, observation.size.1);
+    let mut added: Vec<(Element, Reason)> = fill(observation, &columns, &rows, rng)
         .into_iter()
         .map(|e| (e, Reason::Lattice))
         .collect();
-    let (width, height) = (scene.partial.width, scene.partial.height);
+    let (width, height) = (observation.partial.width, observation.partial.height);
     for mut element in transferred {
         element.rect = transfer::inside(element.rect, width, height);
-        let others = scene.elements.iter().chain(added.iter().map(|(e, _)| e));
+        let others = observation
+            .elements
+            .iter()
+            .chain(added.iter().map(|(e, _)| e));
         let taken = others.into_iter().any(|e| e.excludes(&element));
-        if !taken && scene.partial.allows(&element) {
+        if !taken && observation.partial.allows(&element) {
             added.push((element, Reason::Database));
         }
     }
@@ -261,10 +264,15 @@ fn whole<R: Rng>(
 }
 
 /// The best warped facades.
-fn warped(scene: &Scene, examples: &[(usize, &Example)]) -> Vec<Draw> {
+fn warped(observation: &Observation, examples: &[(usize, &Example)]) -> Vec<Draw> {
     let mut found: Vec<(transfer::Warped, (usize, usize))> = examples
         .iter()
-        .filter_map(|(_, e)| Some((transfer::warp(scene, e)?, (e.columns.len(), e.rows.len()))))
+        .filter_map(|(_, e)| {
+            Some((
+                transfer::warp(observation, e)?,
+                (e.columns.len(), e.rows.len()),
+            ))
+        })
         .collect();
     found.sort_by(|a, b| b.0.log_weight.total_cmp(&a.0.log_weight));
     found.truncate(DRAWS);
@@ -285,28 +293,33 @@ fn warped(scene: &Scene, examples: &[(usize, &Example)]) -> Vec<Draw> {
 
 /// Positions of invented columns.
 fn column_draws<R: Rng>(
-    scene: &Scene,
+    observation: &Observation,
     spacing: &Spacing,
     count: usize,
     rng: &mut R,
 ) -> Vec<Vec<f64>> {
-    draws(scene, Axis::X, spacing, count, rng)
+    draws(observation, Axis::X, spacing, count, rng)
 }
 
 /// Positions of invented rows; the chain runs from the top down.
-fn row_draws<R: Rng>(scene: &Scene, spacing: &Spacing, count: usize, rng: &mut R) -> Vec<Vec<f64>> {
-    draws(scene, Axis::Y, spacing, count, rng)
+fn row_draws<R: Rng>(
+    observation: &Observation,
+    spacing: &Spacing,
+    count: usize,
+    rng: &mut R,
+) -> Vec<Vec<f64>> {
+    draws(observation, Axis::Y, spacing, count, rng)
 }
 
 fn draws<R: Rng>(
-    scene: &Scene,
+    observation: &Observation,
     axis: Axis,
     spacing: &Spacing,
     count: usize,
     rng: &mut R,
 ) -> Vec<Vec<f64>> {
-    let length = scene.length(axis);
-    let (problem, bin) = line_problem(scene, axis);
+    let length = observation.length(axis);
+    let (problem, bin) = line_problem(observation, axis);
     let drawn = Chain::new(&problem, spacing, false).draw(count, rng);
     if drawn.is_empty() {
         return vec![Vec::new(); count];
@@ -324,15 +337,15 @@ fn draws<R: Rng>(
     drawn.into_iter().map(invented).collect()
 }
 
-/// The lines of a scene along an axis as a problem of the chain, and the length of a bin. Rows run down.
-pub fn line_problem(scene: &Scene, axis: Axis) -> (LineProblem, f64) {
-    let (length, size) = (scene.length(axis), scene.extent(axis));
+/// The lines of an observation along an axis as a problem of the chain, and the length of a bin. Rows run down.
+pub fn line_problem(observation: &Observation, axis: Axis) -> (LineProblem, f64) {
+    let (length, size) = (observation.length(axis), observation.extent(axis));
     let bins = (length / size * BINS_PER_SIZE)
         .ceil()
         .clamp(8.0, MOST_BINS as f64) as usize;
     let bin = length / bins as f64;
     let along = |at: f64| if axis == Axis::X { at } else { length - at };
-    let mut observed: Vec<usize> = (scene.lines(axis).iter())
+    let mut observed: Vec<usize> = (observation.lines(axis).iter())
         .map(|l| ((along(l.at) / bin) as usize).min(bins - 1))
         .collect();
     observed.sort_unstable();
@@ -342,7 +355,7 @@ pub fn line_problem(scene: &Scene, axis: Axis) -> (LineProblem, f64) {
     let size = size / bin;
     let least = (1.05 * size).ceil() as usize;
     let evidence = (0..bins)
-        .map(|b| scene.evidence(axis, along((b as f64 + 0.5) * bin)))
+        .map(|b| observation.evidence(axis, along((b as f64 + 0.5) * bin)))
         .collect();
     let problem = LineProblem {
         bins,

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 
 use super::belong::{self, Host};
 use super::by_place::ByPlace;
-use super::scene::{Scene, of};
+use super::observation::{Observation, of};
 use super::shared::Lines;
 use crate::completion::Reason;
 use crate::layout::{Class, Element};
@@ -40,12 +40,14 @@ pub(super) struct Regular {
 }
 
 /// Moves added elements to shared lines.
-pub(super) fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
-    let seen: Vec<Rect> = of(&scene.elements, Class::Window).map(|e| e.rect).collect();
+pub(super) fn regular(observation: &Observation, added: &[(Element, Reason)]) -> Regular {
+    let seen: Vec<Rect> = of(&observation.elements, Class::Window)
+        .map(|e| e.rect)
+        .collect();
     let is_window = |k: &usize| added[*k].0.class == Class::Window;
     let windows: Vec<usize> = (0..added.len()).filter(is_window).collect();
     let new: Vec<Rect> = windows.iter().map(|&k| added[k].0.rect).collect();
-    let [columns, rows] = Axis::BOTH.map(|axis| Lines::new(scene, axis, &seen, &new));
+    let [columns, rows] = Axis::BOTH.map(|axis| Lines::new(observation, axis, &seen, &new));
     let mut hosts: Vec<Host> = (seen.iter().enumerate())
         .map(|(k, &rect)| Host {
             column: columns.of_seen[k],
@@ -58,10 +60,10 @@ pub(super) fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
     for host in &hosts {
         taken[host.row * columns.all.len() + host.column] = true;
     }
-    let facade = [scene.partial.width, scene.partial.height];
+    let facade = [observation.partial.width, observation.partial.height];
     let mut kept = Kept {
-        scene,
-        elements: ByPlace::new(facade, scene.size, added.len()),
+        observation,
+        elements: ByPlace::new(facade, observation.size, added.len()),
         added: Vec::with_capacity(added.len()),
     };
     for (w, &k) in windows.iter().enumerate() {
@@ -85,7 +87,7 @@ pub(super) fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
         }
     }
     let others: Vec<usize> = (0..added.len()).filter(|k| !is_window(k)).collect();
-    let placed = belong::placed(scene, &hosts, [&columns, &rows], added, &others);
+    let placed = belong::placed(observation, &hosts, [&columns, &rows], added, &others);
     for (k, rect) in placed {
         kept.add(Element::new(added[k].0.class, rect), added[k].1, k);
     }
@@ -100,7 +102,7 @@ pub(super) fn regular(scene: &Scene, added: &[(Element, Reason)]) -> Regular {
 
 /// Elements that stand together.
 struct Kept<'a> {
-    scene: &'a Scene<'a>,
+    observation: &'a Observation<'a>,
     elements: ByPlace,
     added: Vec<(Element, Reason, usize)>,
 }
@@ -109,8 +111,8 @@ impl Kept<'_> {
     /// Adds an element where there is room; whether there was.
     fn add(&mut self, element: Element, reason: Reason, index: usize) -> bool {
         let free = |others: &ByPlace| !others.any_near(&element.rect, |o| clash(o, &element));
-        let room = self.scene.partial.has_room(&element);
-        if !room || !free(&self.scene.elements) || !free(&self.elements) {
+        let room = self.observation.partial.has_room(&element);
+        if !room || !free(&self.observation.elements) || !free(&self.elements) {
             return false;
         }
         self.elements.push(element);
@@ -120,7 +122,10 @@ impl Kept<'_> {
 }
 
 /// The layout without new windows that stand alone on a column or on a row, where others do not.
-pub(super) fn without_loners(scene: &Scene, layout: Regular) -> Vec<(Element, Reason, usize)> {
+pub(super) fn without_loners(
+    observation: &Observation,
+    layout: Regular,
+) -> Vec<(Element, Reason, usize)> {
     let mut hosts = layout.hosts;
     let [columns, rows] = layout.lines.map(|l| l.all.len());
     loop {
@@ -144,7 +149,7 @@ pub(super) fn without_loners(scene: &Scene, layout: Regular) -> Vec<(Element, Re
     let stands: HashSet<usize> = hosts.iter().filter_map(|h| h.given).collect();
     let held = |b: &Rect| {
         // A balcony of one window goes with it.
-        let wide = b.width > belong::WIDE * scene.size.0;
+        let wide = b.width > belong::WIDE * observation.size.0;
         wide || hosts.iter().any(|h| belong::is_host(&h.rect, b))
     };
     let mut added = layout.added;

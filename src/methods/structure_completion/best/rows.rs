@@ -15,8 +15,8 @@
 
 use super::belong;
 use super::belong::Host;
+use super::observation::{Observation, of};
 use super::regular::clash;
-use super::scene::{Scene, of};
 use super::shared::SAME_SIZE;
 use crate::completion::Reason;
 use crate::layout::{Class, Element};
@@ -48,25 +48,25 @@ struct Cell {
 }
 
 /// True for a balcony of one window.
-pub(super) fn is_single(scene: &Scene, element: &Element) -> bool {
-    element.class == Class::Balcony && element.rect.width <= belong::WIDE * scene.size.0
+pub(super) fn is_single(observation: &Observation, element: &Element) -> bool {
+    element.class == Class::Balcony && element.rect.width <= belong::WIDE * observation.size.0
 }
 
 /// The balconies of single windows that a layout gets, each with the candidate that stands for it; `None` where there are
 /// none to decide on. `hosts` are the windows of the layout, `added` what it adds, `like` gives the best candidate that is like
 /// an element with its value, and `least` what a further balcony must be worth.
 pub(super) fn even(
-    scene: &Scene,
+    observation: &Observation,
     hosts: &[Host],
     added: &[(Element, Reason, usize)],
     least: f64,
     like: impl Fn(&Element) -> Option<(usize, f64)>,
 ) -> Option<Vec<(Element, Reason, usize)>> {
-    let seen: Vec<Rect> = of(&scene.elements, Class::Balcony)
+    let seen: Vec<Rect> = of(&observation.elements, Class::Balcony)
         .map(|b| b.rect)
-        .filter(|r| r.width <= belong::WIDE * scene.size.0)
+        .filter(|r| r.width <= belong::WIDE * observation.size.0)
         .collect();
-    let drawn = added.iter().filter(|a| is_single(scene, &a.0));
+    let drawn = added.iter().filter(|a| is_single(observation, &a.0));
     let drawn: Vec<Rect> = drawn.map(|a| a.0.rect).collect();
     if drawn.is_empty() && seen.is_empty() {
         return None;
@@ -98,8 +98,10 @@ pub(super) fn even(
         let taken = |e: &Element| clash(e, &element);
         let known = match seen[h] {
             Some(_) => Known::With,
-            None if host.given.is_none() && !scene.partial.is_unknown(x, y) => Known::Without,
-            None if !scene.partial.has_room(&element) || scene.elements.any_near(&place, taken) => {
+            None if host.given.is_none() && !observation.partial.is_unknown(x, y) => Known::Without,
+            None if !observation.partial.has_room(&element)
+                || observation.elements.any_near(&place, taken) =>
+            {
                 Known::Blocked
             }
             None => Known::Open,
@@ -115,7 +117,7 @@ pub(super) fn even(
     let cells: Vec<Cell> = (0..hosts.len()).filter_map(cell).collect();
     let mut balconies = Vec::new();
     for group in groups(&cells) {
-        balconies.extend(decided(scene, &cells, &group, least));
+        balconies.extend(decided(observation, &cells, &group, least));
     }
     Some(balconies)
 }
@@ -155,7 +157,7 @@ fn groups(cells: &[Cell]) -> Vec<Vec<usize>> {
 
 /// The balconies that the open windows of a group get.
 fn decided(
-    scene: &Scene,
+    observation: &Observation,
     cells: &[Cell],
     group: &[usize],
     least: f64,
@@ -174,8 +176,8 @@ fn decided(
     };
     let has =
         |place: &dyn Fn(&Cell) -> bool| cells.iter().any(|c| c.known == Known::With && place(c));
-    let middle = scene.partial.width;
-    let reach = IMAGE * scene.size.0;
+    let middle = observation.partial.width;
+    let reach = IMAGE * observation.size.0;
     let row = cells[group[0]].host.row;
     let image = |k: usize| {
         let x = middle - cells[k].host.rect.centre().0;

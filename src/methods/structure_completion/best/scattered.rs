@@ -13,9 +13,9 @@
 //!   was learnt and of the completed matrix.
 
 use super::candidates::Candidates;
-use super::scene::{Scene, of};
+use super::observation::{Observation, of};
 use crate::baselines::{Cells, cells};
-use crate::layout::lines::Line;
+use crate::layout::lines::LatticeLine;
 use crate::layout::{Class, Element};
 use crate::partial::PartialLayout;
 use edifice_shape::{Axis, Rect};
@@ -43,28 +43,30 @@ struct Scattered {
 }
 
 /// Changes the probabilities of windows, one for each of the first candidates; with a mask none.
-pub(crate) fn weigh(scene: &Scene, candidates: &Candidates, probabilities: &mut [f64]) {
-    let Some(scattered) = Scattered::new(scene) else {
+pub(crate) fn weigh(observation: &Observation, candidates: &Candidates, probabilities: &mut [f64]) {
+    let Some(scattered) = Scattered::new(observation) else {
         return;
     };
     for (candidate, probability) in candidates.all.iter().zip(probabilities) {
         if candidate.element.class == Class::Window {
-            *probability = scattered.weighed(scene, &candidate.element, *probability);
+            *probability = scattered.weighed(observation, &candidate.element, *probability);
         }
     }
 }
 
 impl Scattered {
     /// `None` with a mask, without a window, and where one region is hidden.
-    fn new(scene: &Scene) -> Option<Self> {
-        let seen: Vec<Rect> = of(&scene.elements, Class::Window).map(|e| e.rect).collect();
-        if scene.partial.unknown.is_some() || seen.is_empty() {
+    fn new(observation: &Observation) -> Option<Self> {
+        let seen: Vec<Rect> = of(&observation.elements, Class::Window)
+            .map(|e| e.rect)
+            .collect();
+        if observation.partial.unknown.is_some() || seen.is_empty() {
             return None;
         }
-        let cells = cells(scene.partial, &seen);
+        let cells = cells(observation.partial, &seen);
         let filled = cells.filled().max(seen.len()) as f64;
         let share = seen.len() as f64 / filled;
-        let single = at_most(share, SINGLE) * reach(scene.partial, &cells);
+        let single = at_most(share, SINGLE) * reach(observation.partial, &cells);
         let hidden = [cells.columns.len(), cells.rows.len()].map(|lines| {
             // Each line has a seen window because it would not be a line otherwise; the fewest that give every line one
             // say nothing of the share.
@@ -81,10 +83,10 @@ impl Scattered {
     }
 
     /// The probability of one window.
-    fn weighed(&self, scene: &Scene, window: &Element, probability: f64) -> f64 {
+    fn weighed(&self, observation: &Observation, window: &Element, probability: f64) -> f64 {
         let (x, y) = window.rect.centre();
-        let on = |lines: &[Line], at: f64, axis: Axis| {
-            let near = |l: &Line| (l.at - at).abs() < ON_LINE * scene.extent(axis);
+        let on = |lines: &[LatticeLine], at: f64, axis: Axis| {
+            let near = |l: &LatticeLine| (l.at - at).abs() < ON_LINE * observation.extent(axis);
             lines.iter().position(near)
         };
         let (columns, rows) = (&self.cells.columns, &self.cells.rows);
@@ -114,7 +116,7 @@ fn reach(partial: &PartialLayout, cells: &Cells) -> f64 {
 }
 
 /// Room before the first line and after the last one, in distances of lines less the half of one that each line takes.
-fn room(lines: &[Line], extent: f64) -> [f64; 2] {
+fn room(lines: &[LatticeLine], extent: f64) -> [f64; 2] {
     let mut gaps: Vec<f64> = lines.windows(2).map(|l| l[1].at - l[0].at).collect();
     gaps.sort_unstable_by(f64::total_cmp);
     let distance = gaps.get(gaps.len() / 2).copied().unwrap_or(extent);
@@ -147,10 +149,10 @@ mod tests {
     }
 
     fn weighed_at(partial: &PartialLayout, row: usize, column: usize) -> f64 {
-        let scene = Scene::new(partial, partial.observed.clone(), (20.0, 30.0));
+        let observation = Observation::new(partial, partial.observed.clone(), (20.0, 30.0));
         let (x, y) = (40.0 * column as f64 + 10.0, 50.0 * row as f64 + 10.0);
         let window = Element::new(Class::Window, Rect::new(x, y, 20.0, 30.0));
-        Scattered::new(&scene).map_or(0.5, |s| s.weighed(&scene, &window, 0.5))
+        Scattered::new(&observation).map_or(0.5, |s| s.weighed(&observation, &window, 0.5))
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! the nearest one along the line where the windows on it differ by more than 0.12 of their extent (a ground floor
 //! with columns of its own).
 
-use super::scene::Scene;
+use super::observation::Observation;
 use super::spacing::by_rule;
 use crate::layout::lines::{lines, median};
 use edifice_shape::{Axis, Rect};
@@ -102,15 +102,15 @@ pub(super) struct Lines {
 
 impl Lines {
     /// Lines along `axis`: columns for x, rows for y.
-    pub(super) fn new(scene: &Scene, axis: Axis, seen: &[Rect], new: &[Rect]) -> Self {
+    pub(super) fn new(observation: &Observation, axis: Axis, seen: &[Rect], new: &[Rect]) -> Self {
         // A balcony of one window stands for a window that may be hidden itself.
         let standing = match axis {
-            Axis::X => scene.standing(),
+            Axis::X => observation.standing(),
             Axis::Y => seen.to_vec(),
         };
         let (mut all, mut of) = seen_lines(&standing, axis);
         let of_seen = of.split_off(standing.len() - seen.len());
-        let (typical, length) = (scene.extent(axis), scene.length(axis));
+        let (typical, length) = (observation.extent(axis), observation.length(axis));
         let centre = |r: &Rect| r.start(axis) + r.extent(axis) / 2.0;
         let count = all.len();
         let near = |r: &Rect| {

@@ -1,8 +1,8 @@
 //! Transfer from the database: what lies below the lowest seen row, and whole facades warped to the seen lines.
 
 use super::fill::typical_gap;
-use super::scene::{Scene, of};
-use crate::layout::lines::Line;
+use super::observation::{Observation, of};
+use crate::layout::lines::LatticeLine;
 use crate::layout::{Class, Element};
 use crate::model::Example;
 use edifice_shape::Rect;
@@ -29,7 +29,7 @@ struct Style {
 }
 
 impl Style {
-    fn new(elements: &[Element], columns: &[Line], size: (f64, f64), width: f64) -> Self {
+    fn new(elements: &[Element], columns: &[LatticeLine], size: (f64, f64), width: f64) -> Self {
         let windows = of(elements, Class::Window).count().max(1) as f64;
         let balconies: Vec<&Element> = of(elements, Class::Balcony).collect();
         let wide = balconies
@@ -48,7 +48,7 @@ impl Style {
 }
 
 /// The gap above a row, or the typical one.
-fn gap_above(rows: &[Line], row: usize, height: f64) -> f64 {
+fn gap_above(rows: &[LatticeLine], row: usize, height: f64) -> f64 {
     let next = rows.get(row + 1).map(|above| above.at - rows[row].at);
     next.or_else(|| typical_gap(rows)).unwrap_or(1.8 * height)
 }
@@ -62,7 +62,7 @@ const PLACE: [f64; 4] = [0.06, 0.1, 0.3, 3.0];
 /// Squared distance at which a weight falls to 1 / e.
 const FALL: f64 = 1.2;
 
-/// The rows of a database compared with the lowest seen row of a scene: space below and window height in units of the
+/// The rows of a database compared with the lowest seen row of an observation: space below and window height in units of the
 /// gap above, that gap in units of the next, balconies, shape of windows.
 pub struct Surroundings {
     /// Position of the example, its row, squared distance without what depends on columns.
@@ -73,22 +73,22 @@ pub struct Surroundings {
 
 impl Surroundings {
     /// Compares the rows; none without an observed row.
-    pub fn new(scene: &Scene, examples: &[(usize, &Example)]) -> Self {
+    pub fn new(observation: &Observation, examples: &[(usize, &Example)]) -> Self {
         let own = Style::new(
-            &scene.elements,
-            &scene.columns,
-            scene.size,
-            scene.partial.width,
+            &observation.elements,
+            &observation.columns,
+            observation.size,
+            observation.partial.width,
         );
         let log = |a: f64, b: f64| (a.max(1e-6) / b.max(1e-6)).ln();
         let (mut rows, mut columns) = (Vec::new(), Vec::new());
         for (position, (_, e)) in examples.iter().enumerate() {
             let other = Style::new(&e.layout.elements, &e.columns, e.size, e.layout.width);
             columns.push((other.columns.ln(), other.density.ln()));
-            let Some(last) = scene.rows.first() else {
+            let Some(last) = observation.rows.first() else {
                 continue;
             };
-            let gap = gap_above(&scene.rows, 0, scene.size.1);
+            let gap = gap_above(&observation.rows, 0, observation.size.1);
             let style = [
                 (own.balconies - other.balconies) / STYLE[1],
                 (own.wide - other.wide) / STYLE[2],
@@ -101,8 +101,11 @@ impl Surroundings {
                 let terms = [
                     log(last.at / gap, e.rows[row].at / other) / PLACE[0],
                     log(last.size / gap, e.rows[row].size / other) / PLACE[1],
-                    log(gap_above(&scene.rows, 1, scene.size.1) / gap, next / other) / PLACE[2],
-                    (scene.rows.len() as f64 - (e.rows.len() - row) as f64) / PLACE[3],
+                    log(
+                        gap_above(&observation.rows, 1, observation.size.1) / gap,
+                        next / other,
+                    ) / PLACE[2],
+                    (observation.rows.len() as f64 - (e.rows.len() - row) as f64) / PLACE[3],
                 ];
                 let distance = style + terms.iter().map(|t| t * t).sum::<f64>();
                 rows.push((position, row, distance));
@@ -111,8 +114,8 @@ impl Surroundings {
         Self { rows, columns }
     }
 
-    /// Rows with their weights for these columns of the scene.
-    pub fn choices(&self, columns: &[Line], width: f64) -> Vec<Below> {
+    /// Rows with their weights for these columns of the observation.
+    pub fn choices(&self, columns: &[LatticeLine], width: f64) -> Vec<Below> {
         let gap = typical_gap(columns).unwrap_or(2.0 * width);
         let own = ((columns.len().max(1) as f64).ln(), (width / gap).ln());
         let of_columns: Vec<f64> = (self.columns.iter())
@@ -169,18 +172,23 @@ impl Warp {
 }
 
 /// The column of `lines` on which an element stands.
-fn column_of(lines: &[Line], x: f64, size: f64) -> Option<usize> {
+fn column_of(lines: &[LatticeLine], x: f64, size: f64) -> Option<usize> {
     lines.iter().position(|l| (l.at - x).abs() < 0.35 * size)
 }
 
-/// The elements of an example below one of its rows, moved to below the lowest seen row of the scene: rows by the
+/// The elements of an example below one of its rows, moved to below the lowest seen row of the observation: rows by the
 /// ratio of the spaces below, what stands on a column to the columns that correspond, sizes by the ratio of windows.
-pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) -> Vec<Element> {
-    let (Some(last), false) = (scene.rows.first(), columns.is_empty()) else {
+pub fn below_elements(
+    observation: &Observation,
+    columns: &[LatticeLine],
+    e: &Example,
+    row: usize,
+) -> Vec<Element> {
+    let (Some(last), false) = (observation.rows.first(), columns.is_empty()) else {
         return Vec::new();
     };
     let down = last.at / e.rows[row].at;
-    let (sx, sy) = (scene.size.0 / e.size.0, last.size / e.rows[row].size);
+    let (sx, sy) = (observation.size.0 / e.size.0, last.size / e.rows[row].size);
     let limit = e.rows[row].at - 0.5 * e.rows[row].size;
     let (n, own) = (columns.len(), e.columns.len());
     let counterpart = |q: usize| match n {
@@ -199,7 +207,7 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
             (e.columns[own - 1].at, columns[n - 1].at),
         ]
     };
-    let across = Warp::new(e.layout.width, scene.partial.width, pairs);
+    let across = Warp::new(e.layout.width, observation.partial.width, pairs);
     let mut found = Vec::new();
     for element in &e.layout.elements {
         let r = element.rect;
@@ -265,7 +273,7 @@ pub fn below_elements(scene: &Scene, columns: &[Line], e: &Example, row: usize) 
 }
 
 /// The nearest line's position.
-fn snapped(lines: &[Line], at: f64) -> f64 {
+fn snapped(lines: &[LatticeLine], at: f64) -> f64 {
     let positions = lines.iter().map(|l| l.at);
     positions
         .min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs()))
@@ -281,16 +289,16 @@ pub struct Warped {
     pub log_weight: f64,
 }
 
-/// The example warped to the scene: seen lines are assigned to its lines in order, each to a line of its own, with the
+/// The example warped to the observation: seen lines are assigned to its lines in order, each to a line of its own, with the
 /// least sum of squared distances relative to the facade (dynamic programming). The weight falls with that
 /// distance and rises with the agreement of the known parts. `None` where it has fewer lines.
-pub fn warp(scene: &Scene, e: &Example) -> Option<Warped> {
-    let (width, height) = (scene.partial.width, scene.partial.height);
-    let (x_cost, x_pairs) = assign(&scene.columns, width, &e.columns, e.layout.width)?;
-    let (y_cost, y_pairs) = assign(&scene.rows, height, &e.rows, e.layout.height)?;
+pub fn warp(observation: &Observation, e: &Example) -> Option<Warped> {
+    let (width, height) = (observation.partial.width, observation.partial.height);
+    let (x_cost, x_pairs) = assign(&observation.columns, width, &e.columns, e.layout.width)?;
+    let (y_cost, y_pairs) = assign(&observation.rows, height, &e.rows, e.layout.height)?;
     let across = Warp::new(e.layout.width, width, x_pairs);
     let up = Warp::new(e.layout.height, height, y_pairs);
-    let (sx, sy) = (scene.size.0 / e.size.0, scene.size.1 / e.size.1);
+    let (sx, sy) = (observation.size.0 / e.size.0, observation.size.1 / e.size.1);
     let map = |element: &Element| {
         let r = element.rect;
         let (x, y) = r.centre();
@@ -314,21 +322,21 @@ pub fn warp(scene: &Scene, e: &Example) -> Option<Warped> {
     let mapped: Vec<Element> = e.layout.elements.iter().map(map).collect();
     // Agreement on what is known: observed elements found, and invented ones on known wall.
     let near = |a: &Element, b: &Element| a.class == b.class && a.rect.iou(&b.rect) > 0.4;
-    let found = scene
+    let found = observation
         .elements
         .iter()
         .filter(|o| mapped.iter().any(|m| near(o, m)))
         .count();
     let wrong = mapped.iter().filter(|m| {
         let (x, y) = m.rect.centre();
-        !scene.partial.is_unknown(x, y) && !scene.elements.iter().any(|o| near(o, m))
+        !observation.partial.is_unknown(x, y) && !observation.elements.iter().any(|o| near(o, m))
     });
     let agreement =
-        2.0 * found as f64 / (found + scene.elements.len() + wrong.count()).max(1) as f64;
+        2.0 * found as f64 / (found + observation.elements.len() + wrong.count()).max(1) as f64;
     Some(Warped {
         elements: mapped
             .into_iter()
-            .filter(|m| scene.partial.allows(m))
+            .filter(|m| observation.partial.allows(m))
             .collect(),
         log_weight: 8.0 * agreement - x_cost - y_cost,
     })
@@ -342,11 +350,11 @@ pub fn inside(r: Rect, width: f64, height: f64) -> Rect {
     Rect::new(x, y, w, h)
 }
 
-/// Assigns lines to distinct lines of an example in order; the cost, and pairs (example, scene).
+/// Assigns lines to distinct lines of an example in order; the cost, and pairs (example, observation).
 fn assign(
-    lines: &[Line],
+    lines: &[LatticeLine],
     length: f64,
-    others: &[Line],
+    others: &[LatticeLine],
     other_length: f64,
 ) -> Option<(f64, Vec<(f64, f64)>)> {
     let (n, m) = (lines.len(), others.len());

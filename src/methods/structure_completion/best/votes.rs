@@ -5,9 +5,9 @@
 //! other rows. The same holds for columns. (A vote of rows and columns completes lattices that lose cells at random
 //! better than the closure of their rows and columns.)
 
-use super::scene::{Scene, of};
+use super::observation::{Observation, of};
 use crate::layout::Class;
-use crate::layout::lines::Line;
+use crate::layout::lines::LatticeLine;
 
 /// A cell is on a line when it is nearer than this share of the typical extent.
 const ON_LINE: f64 = 0.35;
@@ -53,13 +53,13 @@ fn voted(lines: &[Vec<bool>]) -> Vec<Vec<f64>> {
 }
 
 impl Votes {
-    /// The votes of a scene; O(rows² columns + columns² rows).
-    pub(super) fn new(scene: &Scene) -> Self {
-        let at = |lines: &[Line]| lines.iter().map(|l| l.at).collect::<Vec<f64>>();
-        let (columns, rows) = (at(&scene.columns), at(&scene.rows));
-        let reach = [ON_LINE * scene.size.0, ON_LINE * scene.size.1];
+    /// The votes of an observation; O(rows² columns + columns² rows).
+    pub(super) fn new(observation: &Observation) -> Self {
+        let at = |lines: &[LatticeLine]| lines.iter().map(|l| l.at).collect::<Vec<f64>>();
+        let (columns, rows) = (at(&observation.columns), at(&observation.rows));
+        let reach = [ON_LINE * observation.size.0, ON_LINE * observation.size.1];
         let mut seen = vec![vec![false; columns.len()]; rows.len()];
-        for window in of(&scene.elements, Class::Window) {
+        for window in of(&observation.elements, Class::Window) {
             let (x, y) = window.rect.centre();
             let cell = (nearest(&rows, y, reach[1]), nearest(&columns, x, reach[0]));
             if let (Some(r), Some(c)) = cell {

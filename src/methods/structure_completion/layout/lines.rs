@@ -7,7 +7,7 @@ const SAME_LINE: f64 = 0.35;
 
 /// A line: the mean centre of its elements along the axis, and their mean extent.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
+pub struct LatticeLine {
     /// Mean centre.
     pub at: f64,
     /// Mean extent along the axis.
@@ -18,20 +18,20 @@ pub struct Line {
 
 /// The lines of rectangles along an axis, in order, and the line of each rectangle: sorted centres are
 /// split where two neighbours differ by more than 0.35 of the median extent.
-pub fn lines(rects: &[Rect], axis: Axis) -> (Vec<Line>, Vec<usize>) {
+pub fn lines(rects: &[Rect], axis: Axis) -> (Vec<LatticeLine>, Vec<usize>) {
     let centre = |r: &Rect| r.start(axis) + r.extent(axis) / 2.0;
     let Some(typical) = median(rects.iter().map(|r| r.extent(axis))) else {
         return (Vec::new(), Vec::new());
     };
     let mut order: Vec<usize> = (0..rects.len()).collect();
     order.sort_by(|&a, &b| centre(&rects[a]).total_cmp(&centre(&rects[b])));
-    let mut lines: Vec<Line> = Vec::new();
+    let mut lines: Vec<LatticeLine> = Vec::new();
     let mut of = vec![0; rects.len()];
     let mut last = f64::NEG_INFINITY;
     for index in order {
         let (at, size) = (centre(&rects[index]), rects[index].extent(axis));
         if at - last > SAME_LINE * typical {
-            lines.push(Line {
+            lines.push(LatticeLine {
                 at: 0.0,
                 size: 0.0,
                 count: 0,

@@ -4,8 +4,8 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::growing::{Growing, most};
-use super::scene::{Extent, Item, Scene};
-use super::tried::{Step, Tried};
+use super::problem::{CompletionProblem, Extent, Item};
+use super::tried::{SeedSpacing, Tried};
 use super::{Direction, FAILURES, Policy};
 use crate::layout::{Class, Element};
 use edifice_shape::Rect;
@@ -16,9 +16,9 @@ const SNAP: f64 = 0.3;
 const OFFSET: f64 = 0.1;
 
 /// A candidate of a policy: all elements, the observed ones first.
-pub fn grow<R: Rng>(scene: &Scene, policy: &Policy, rng: &mut R) -> Vec<Element> {
-    let (mut growing, mut tried) = (Growing::new(scene), Tried::default());
-    while let Some(item) = next(scene, &growing, &mut tried, policy, rng) {
+pub fn grow<R: Rng>(problem: &CompletionProblem, policy: &Policy, rng: &mut R) -> Vec<Element> {
+    let (mut growing, mut tried) = (Growing::new(problem), Tried::default());
+    while let Some(item) = next(problem, &growing, &mut tried, policy, rng) {
         growing.add(item);
     }
     growing.elements()
@@ -26,33 +26,33 @@ pub fn grow<R: Rng>(scene: &Scene, policy: &Policy, rng: &mut R) -> Vec<Element>
 
 /// The item that the policy adds next; `None` when the candidate is complete. `tried` belongs to this growing layout only.
 pub(super) fn next<R: Rng>(
-    scene: &Scene,
+    problem: &CompletionProblem,
     growing: &Growing,
     tried: &mut Tried,
     policy: &Policy,
     rng: &mut R,
 ) -> Option<Item> {
-    if growing.items.is_empty() || growing.items.len() >= most(scene.start.items.len()) {
+    if growing.items.is_empty() || growing.items.len() >= most(problem.start.items.len()) {
         return None;
     }
-    (0..FAILURES).find_map(|_| action(scene, growing, tried, policy, rng))
+    (0..FAILURES).find_map(|_| action(problem, growing, tried, policy, rng))
 }
 
 /// Seed, direction, label, spacing.
 fn action<R: Rng>(
-    scene: &Scene,
+    problem: &CompletionProblem,
     growing: &Growing,
     tried: &mut Tried,
     policy: &Policy,
     rng: &mut R,
 ) -> Option<Item> {
     let lambda = &policy.0;
-    let number = seed(scene, growing, policy, rng);
+    let number = seed(problem, growing, policy, rng);
     let seed = &growing.items[number];
     if rng.random::<f64>() < lambda[10] {
-        return mirrored(scene, growing, seed);
+        return mirrored(problem, growing, seed);
     }
-    let (class, size, empty) = label(scene, seed, policy, rng);
+    let (class, size, empty) = label(problem, seed, policy, rng);
     let alike = (class, size) == (seed.element.class, seed.size());
     let grid = match alike {
         true => seed.grid,
@@ -60,7 +60,7 @@ fn action<R: Rng>(
     };
     let snap = rng.random::<f64>() < lambda[9];
     let mut extended = |direction: (usize, bool), inside: Option<&Extent>, rng: &mut R| {
-        let step = spacing(scene, growing, tried, number, direction, policy, rng);
+        let step = spacing(problem, growing, tried, number, direction, policy, rng);
         if alike && tried.is_taken(growing, number, direction, step, snap) {
             return None;
         }
@@ -75,7 +75,7 @@ fn action<R: Rng>(
         }
         let low = [0, 1].map(|axis| at[axis] - size[axis] / 2.0);
         let element = Element::new(class, Rect::new(low[0], low[1], size[0], size[1]));
-        let fits = growing.fits(scene, &element);
+        let fits = growing.fits(problem, &element);
         if alike && !fits {
             tried.take(growing, number, direction, step, snap);
         }
@@ -102,16 +102,21 @@ fn action<R: Rng>(
 }
 
 /// Number of a seed at random, or of one of highest rank (Eq. 23).
-fn seed<R: Rng>(scene: &Scene, growing: &Growing, policy: &Policy, rng: &mut R) -> usize {
+fn seed<R: Rng>(
+    problem: &CompletionProblem,
+    growing: &Growing,
+    policy: &Policy,
+    rng: &mut R,
+) -> usize {
     if rng.random::<f64>() < policy.0[0] {
         return rng.random_range(0..growing.items.len());
     }
-    growing.highest(policy.0[1], scene.facade[0] * scene.facade[1], rng)
+    growing.highest(policy.0[1], problem.facade[0] * problem.facade[1], rng)
 }
 
 /// Class and size of the new element, and whether it is an empty place.
 fn label<R: Rng>(
-    scene: &Scene,
+    problem: &CompletionProblem,
     seed: &Item,
     policy: &Policy,
     rng: &mut R,
@@ -121,8 +126,8 @@ fn label<R: Rng>(
         return (own.0, own.1, false);
     }
     let from = match policy.option(5, 6, rng) {
-        0 => &scene.observed,
-        1 => &scene.database,
+        0 => &problem.observed,
+        1 => &problem.database,
         _ => return (own.0, own.1, true),
     };
     match from.len() {
@@ -136,46 +141,46 @@ fn label<R: Rng>(
 
 /// Spacing between the seed and the new element.
 fn spacing<R: Rng>(
-    scene: &Scene,
+    problem: &CompletionProblem,
     growing: &Growing,
     tried: &mut Tried,
     seed: usize,
     direction: (usize, bool),
     policy: &Policy,
     rng: &mut R,
-) -> Step {
+) -> SeedSpacing {
     let axis = direction.0;
     let method = policy.option(7, 8, rng);
     if method == 0
         && let Some(length) = tried.opposite(growing, seed, direction)
     {
-        return Step::Opposite(length);
+        return SeedSpacing::Opposite(length);
     }
-    let observed = &scene.spacings[axis];
-    let ratios = &scene.model.spacings[axis];
+    let observed = &problem.spacings[axis];
+    let ratios = &problem.model.spacings[axis];
     let size = growing.items[seed].size()[axis];
     let step = if !observed.is_empty() {
         let number = rng.random_range(0..observed.len());
-        Step::Observed(number, observed[number])
+        SeedSpacing::Observed(number, observed[number])
     } else if !ratios.is_empty() {
-        Step::Other(ratios[rng.random_range(0..ratios.len())] * size)
+        SeedSpacing::Other(ratios[rng.random_range(0..ratios.len())] * size)
     } else {
-        Step::Other(2.0 * size)
+        SeedSpacing::Other(2.0 * size)
     };
     match method {
         2 => {
             let offset = OFFSET * rng.sample::<f64, _>(StandardNormal);
-            Step::Other(step.length() * (1.0 + offset))
+            SeedSpacing::Other(step.length() * (1.0 + offset))
         }
         _ => step,
     }
 }
 
 /// The mirror image of the seed about the middle of the facade.
-fn mirrored(scene: &Scene, growing: &Growing, seed: &Item) -> Option<Item> {
+fn mirrored(problem: &CompletionProblem, growing: &Growing, seed: &Item) -> Option<Item> {
     let r = seed.element.rect;
-    let rect = Rect::new(scene.facade[0] - r.right(), r.y, r.width, r.height);
+    let rect = Rect::new(problem.facade[0] - r.right(), r.y, r.width, r.height);
     let element = Element::new(seed.element.class, rect);
-    let fits = growing.fits(scene, &element);
+    let fits = growing.fits(problem, &element);
     fits.then(|| Item::new(element, seed.grid, seed.empty))
 }

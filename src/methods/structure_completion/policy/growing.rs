@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::scene::{Extent, Item, Scene};
+use super::problem::{CompletionProblem, Extent, Item};
 use crate::layout::Element;
 
 use super::super::layout::places::Places;
@@ -77,8 +77,8 @@ impl Growing {
     }
 
     /// The observed layout.
-    pub(super) fn new(scene: &Scene) -> Self {
-        scene.start.clone()
+    pub(super) fn new(problem: &CompletionProblem) -> Self {
+        problem.start.clone()
     }
 
     /// All elements, the observed ones first.
@@ -118,9 +118,9 @@ impl Growing {
     }
 
     /// True if an element may be added.
-    pub(super) fn fits(&self, scene: &Scene, element: &Element) -> bool {
+    pub(super) fn fits(&self, problem: &CompletionProblem, element: &Element) -> bool {
         let excluded = |i: u32| self.items[i as usize].element.excludes(element);
-        scene.open.allows(element) && !self.places.any_near(&element.rect, excluded)
+        problem.open.allows(element) && !self.places.any_near(&element.rect, excluded)
     }
 
     /// Number of an item of highest rank `λ1 [inside its grid] + (1 - λ1)(1 - A(g) / A(F))` (Eq. 23), at random among equals.

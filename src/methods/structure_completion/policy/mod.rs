@@ -31,15 +31,15 @@ mod grow;
 mod growing;
 mod model;
 mod optimize;
+mod problem;
 mod process;
-mod scene;
 mod tried;
 
 pub use grow::grow;
 pub use model::{PaperModel, WEIGHTS, weight_states};
 pub use optimize::{Budget, Found, optimize};
+pub use problem::CompletionProblem;
 pub use process::{Growth, rollouts};
-pub use scene::Scene;
 
 use std::borrow::Cow;
 
@@ -153,9 +153,9 @@ pub fn complete(
     rng: &mut Stream,
 ) -> Vec<Completion> {
     let found = paper_model(model).and_then(|paper| {
-        let scene = Scene::new(&paper, partial);
+        let problem = CompletionProblem::new(&paper, partial);
         optimize(
-            &scene,
+            &problem,
             &Budget::PAPER,
             count.max(1),
             rng.random(),

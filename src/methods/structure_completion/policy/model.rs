@@ -5,7 +5,7 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use super::optimize::{Budget, optimize};
-use super::{PARAMETERS, Policy, Scene, grow};
+use super::{CompletionProblem, PARAMETERS, Policy, grow};
 use crate::layout::{Class, Layout};
 use crate::partial::PartialLayout;
 use crate::score::{ScoreModel, Sites, TERMS, Training, grids, learn_weights};
@@ -39,7 +39,7 @@ pub const WEIGHTS: Settings = Settings {
 /// Labels with sizes, and ratios of spacing to size, that are kept.
 const EXEMPLARS: usize = 400;
 
-/// A label with a size: relative to the mean window in the model, absolute in a scene.
+/// A label with a size: relative to the mean window in the model, absolute in a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Exemplar {
     pub class: Class,
@@ -131,16 +131,16 @@ impl PaperModel {
                 unknown: None,
                 forbidden: Vec::new(),
             };
-            let mut scene = Scene::new(self, &partial);
-            scene.weights = *weights;
+            let mut problem = CompletionProblem::new(self, &partial);
+            problem.weights = *weights;
             let candidate = |rng: &mut Stream| {
                 let known = self.policies.len();
                 let policy = match known {
                     0 => Policy::FIXED,
                     n => self.policies[rng.random_range(0..n)],
                 };
-                let elements = grow(&scene, &policy, rng);
-                (scene.score(&elements), elements)
+                let elements = grow(&problem, &policy, rng);
+                (problem.score(&elements), elements)
             };
             let all = (0..candidates.max(1)).map(|_| candidate(rng));
             if let Some((_, best)) = all.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -206,8 +206,8 @@ impl PaperModel {
             let mut rng = stream(seed, "policies", i as u64);
             let task = Task::ALL[rng.random_range(0..Task::ALL.len())];
             let (partial, _) = task.hide(layout, &mut rng);
-            let scene = Scene::new(self, &partial);
-            let found = optimize(&scene, &Budget::SMALL, 1, rng.random(), &watched.inner());
+            let problem = CompletionProblem::new(self, &partial);
+            let found = optimize(&problem, &Budget::SMALL, 1, rng.random(), &watched.inner());
             learnt.extend(found.map(|f| f.policy));
         }
         while self.policies.len() < POLICIES && !learnt.is_empty() {

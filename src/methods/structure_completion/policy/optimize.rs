@@ -2,7 +2,7 @@
 
 use rand::Rng;
 
-use super::{Policy, Scene, grow};
+use super::{CompletionProblem, Policy, grow};
 use crate::layout::Element;
 use edifice_base::Watch;
 use edifice_base::rng::{Stream, stream};
@@ -64,8 +64,8 @@ pub struct Found {
 }
 
 /// Policies for one facade.
-struct Search<'a> {
-    scene: &'a Scene<'a>,
+struct PolicySearch<'a> {
+    problem: &'a CompletionProblem<'a>,
     draws: usize,
     keep: usize,
     best: Vec<Candidate>,
@@ -73,14 +73,14 @@ struct Search<'a> {
     rng: Stream,
 }
 
-impl Search<'_> {
+impl PolicySearch<'_> {
     /// Keeps a candidate if it is among the best.
     fn note(&mut self, score: f64, elements: &[Element]) {
         let at = self.best.partition_point(|c| c.score > score);
         match self.best.get_mut(at) {
             Some(same) if same.score == score => same.times += 1,
             _ if at < self.keep => {
-                let added = elements[self.scene.start.items.len()..].to_vec();
+                let added = elements[self.problem.start.items.len()..].to_vec();
                 let times = 1;
                 self.best.insert(
                     at,
@@ -97,15 +97,15 @@ impl Search<'_> {
     }
 }
 
-impl Breed for Search<'_> {
+impl Breed for PolicySearch<'_> {
     type Genome = Policy;
 
     /// Less the mean score of the policy's candidates: the expectation of Eq. 24.
     fn cost(&mut self, policy: &Policy) -> f64 {
         let mut sum = 0.0;
         for _ in 0..self.draws {
-            let elements = grow(self.scene, policy, &mut self.rng);
-            let score = self.scene.score(&elements);
+            let elements = grow(self.problem, policy, &mut self.rng);
+            let score = self.problem.score(&elements);
             self.note(score, &elements);
             self.made += 1;
             sum += score;
@@ -131,7 +131,7 @@ impl Breed for Search<'_> {
 /// # Errors
 /// [`GeneticError`] for a budget out of range.
 pub fn optimize(
-    scene: &Scene,
+    problem: &CompletionProblem,
     budget: &Budget,
     keep: usize,
     seed: u64,
@@ -145,15 +145,15 @@ pub fn optimize(
         mutation: 0.8,
         ..Settings::default()
     };
-    let mut search = Search {
-        scene,
+    let mut search = PolicySearch {
+        problem,
         draws: budget.draws,
         keep,
         best: Vec::new(),
         made: 0,
         rng: stream(seed, "candidates", 0),
     };
-    let genetic = Genetic::new(settings, scene.model.policies.clone(), seed)?;
+    let genetic = Genetic::new(settings, problem.model.policies.clone(), seed)?;
     let (run, _) = genetic.run(&mut search, tell(watch, None))?;
     Ok(Found {
         candidates: search.best,

@@ -8,19 +8,19 @@ use rand::Rng;
 
 use super::grow::next;
 use super::growing::Growing;
-use super::scene::Item;
+use super::problem::Item;
 use super::tried::Tried;
-use super::{Policy, Scene};
+use super::{CompletionProblem, Policy};
 use crate::layout::Element;
 use edifice_base::rng::{Stream, stream};
 use edifice_optim::adp::{Adp, AdpError, Approximation, Epsilon, Heuristic, Process};
 
 /// Completion of one partial layout.
-pub struct Growth<'a>(pub &'a Scene<'a>);
+pub struct Growth<'a>(pub &'a CompletionProblem<'a>);
 
 /// An action: a new element or empty place, or the end.
 #[derive(Debug, Clone)]
-pub struct Step(Option<Item>);
+pub struct Action(Option<Item>);
 
 /// A layout, and whether it is complete.
 pub struct Walk {
@@ -36,7 +36,7 @@ impl Growth<'_> {
 
 impl Process for Growth<'_> {
     type State = Walk;
-    type Action = Step;
+    type Action = Action;
 
     fn initial(&self) -> Walk {
         Walk {
@@ -49,14 +49,14 @@ impl Process for Growth<'_> {
         state.complete
     }
 
-    fn cost(&self, state: &Walk, action: &Step) -> f64 {
+    fn cost(&self, state: &Walk, action: &Action) -> f64 {
         match action.0 {
             Some(_) => 0.0,
             None => self.loss(&state.growing),
         }
     }
 
-    fn apply(&self, state: &mut Walk, action: &Step) {
+    fn apply(&self, state: &mut Walk, action: &Action) {
         match action.0 {
             Some(item) => state.growing.add(item),
             None => state.complete = true,
@@ -65,9 +65,9 @@ impl Process for Growth<'_> {
 }
 
 impl Heuristic<Growth<'_>> for Policy {
-    fn sample<R: Rng>(&mut self, process: &mut Growth<'_>, state: &Walk, rng: &mut R) -> Step {
+    fn sample<R: Rng>(&mut self, process: &mut Growth<'_>, state: &Walk, rng: &mut R) -> Action {
         let tried = &mut Tried::default();
-        Step(next(process.0, &state.growing, tried, self, rng))
+        Action(next(process.0, &state.growing, tried, self, rng))
     }
 }
 
@@ -80,8 +80,8 @@ struct Rollouts {
 }
 
 impl Approximation<Growth<'_>> for Rollouts {
-    fn best(&mut self, process: &mut Growth<'_>, state: &Walk) -> Option<Step> {
-        let mut best: Option<(f64, Step)> = None;
+    fn best(&mut self, process: &mut Growth<'_>, state: &Walk) -> Option<Action> {
+        let mut best: Option<(f64, Action)> = None;
         for _ in 0..self.actions {
             let step = self.policy.sample(process, state, &mut self.rng);
             let Some(item) = step.0 else {
@@ -90,8 +90,8 @@ impl Approximation<Growth<'_>> for Rollouts {
             for _ in 0..self.walks {
                 let (mut growing, mut tried) = (state.growing.clone(), Tried::default());
                 growing.add(item);
-                let (scene, policy, rng) = (process.0, &self.policy, &mut self.rng);
-                while let Some(item) = next(scene, &growing, &mut tried, policy, rng) {
+                let (problem, policy, rng) = (process.0, &self.policy, &mut self.rng);
+                while let Some(item) = next(problem, &growing, &mut tried, policy, rng) {
                     growing.add(item);
                 }
                 let loss = process.loss(&growing);
@@ -104,7 +104,7 @@ impl Approximation<Growth<'_>> for Rollouts {
     }
 
     /// Rollouts start anew in every state.
-    fn learn(&mut self, _: &mut Growth<'_>, _: &[Step], _: &[f64]) {}
+    fn learn(&mut self, _: &mut Growth<'_>, _: &[Action], _: &[f64]) {}
 }
 
 /// Completes by `iterations` walks of approximate dynamic programming, which explore by the policy and exploit
@@ -113,7 +113,7 @@ impl Approximation<Growth<'_>> for Rollouts {
 /// # Errors
 /// [`AdpError`] without iterations.
 pub fn rollouts(
-    scene: &Scene,
+    problem: &CompletionProblem,
     policy: Policy,
     iterations: u64,
     seed: u64,
@@ -125,7 +125,7 @@ pub fn rollouts(
         rng: stream(seed, "rollouts", 0),
     };
     let adp = Adp::new(policy, approximation, Epsilon::default(), iterations, seed);
-    let run = adp.run(&mut Growth(scene), |_| {})?;
+    let run = adp.run(&mut Growth(problem), |_| {})?;
     let items = run.best.iter().filter_map(|step| step.0.as_ref());
     let added = items.filter(|i| !i.empty).map(|i| i.element);
     Ok((added.collect(), -run.cost))

@@ -7,7 +7,7 @@ use super::growing::Growing;
 
 /// Spacing of an extension.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Step {
+pub(super) enum SeedSpacing {
     /// That of the opposite neighbour.
     Opposite(f64),
     /// The observed one of this number.
@@ -16,19 +16,21 @@ pub(super) enum Step {
     Other(f64),
 }
 
-impl Step {
+impl SeedSpacing {
     pub(super) fn length(self) -> f64 {
         match self {
-            Step::Opposite(length) | Step::Observed(_, length) | Step::Other(length) => length,
+            SeedSpacing::Opposite(length)
+            | SeedSpacing::Observed(_, length)
+            | SeedSpacing::Other(length) => length,
         }
     }
 
     /// Its bit among the spacings that are remembered.
     fn bit(self) -> Option<u64> {
         match self {
-            Step::Opposite(_) => Some(1 << 63),
-            Step::Observed(number, _) if number < 63 => Some(1 << number),
-            Step::Observed(..) | Step::Other(_) => None,
+            SeedSpacing::Opposite(_) => Some(1 << 63),
+            SeedSpacing::Observed(number, _) if number < 63 => Some(1 << number),
+            SeedSpacing::Observed(..) | SeedSpacing::Other(_) => None,
         }
     }
 }
@@ -96,13 +98,13 @@ impl Tried {
         growing: &Growing,
         seed: usize,
         direction: (usize, bool),
-        step: Step,
+        step: SeedSpacing,
         snap: bool,
     ) -> bool {
         let known = self.of(seed, growing);
         let side = side(direction);
         let taken = match step {
-            Step::Observed(..) if !snap => known.lasting[side],
+            SeedSpacing::Observed(..) if !snap => known.lasting[side],
             _ => known.passing[usize::from(snap)][side],
         };
         step.bit().is_some_and(|bit| taken & bit != 0)
@@ -114,13 +116,13 @@ impl Tried {
         growing: &Growing,
         seed: usize,
         direction: (usize, bool),
-        step: Step,
+        step: SeedSpacing,
         snap: bool,
     ) {
         let known = self.of(seed, growing);
         let side = side(direction);
         let taken = match step {
-            Step::Observed(..) if !snap => &mut known.lasting[side],
+            SeedSpacing::Observed(..) if !snap => &mut known.lasting[side],
             _ => &mut known.passing[usize::from(snap)][side],
         };
         *taken |= step.bit().unwrap_or(0);

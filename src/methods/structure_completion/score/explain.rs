@@ -6,7 +6,7 @@ use super::{Evaluation, ScoreModel, Term, global};
 
 /// One term of a score.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct TermExplanation {
     /// The scoring function.
     pub term: Term,
     /// Its weight w.
@@ -28,7 +28,7 @@ fn named(grid: &Grid) -> String {
 
 impl ScoreModel {
     /// Every term of an evaluation with its culprit.
-    pub fn explain(&self, evaluation: &Evaluation, facade: [f64; 2]) -> Vec<Line> {
+    pub fn explain(&self, evaluation: &Evaluation, facade: [f64; 2]) -> Vec<TermExplanation> {
         let lines = Term::ALL.into_iter().enumerate().map(|(k, term)| {
             let (least, culprit) = match k {
                 0..4 => self.worst_grid(evaluation, k, facade),
@@ -39,7 +39,7 @@ impl ScoreModel {
                     self.of_facade(evaluation, facade, term),
                 ),
             };
-            Line {
+            TermExplanation {
                 term,
                 weight: self.weights[k],
                 feature: evaluation.features[k],

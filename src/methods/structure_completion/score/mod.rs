@@ -53,7 +53,7 @@ use self::grid::{Grid, clusters};
 use self::pair::Pattern;
 use super::layout::{Class, Element};
 use edifice_model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
-pub use explain::Line;
+pub use explain::TermExplanation;
 pub use learn::{Sites, State, learn_weights};
 pub use state::{Change, Scored};
 pub use train::Training;

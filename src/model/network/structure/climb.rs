@@ -7,7 +7,7 @@ use rand::{Rng, RngExt};
 use super::super::super::error::ModelError;
 use super::constraints::Allowed;
 use super::families::Families;
-use super::settings::Search;
+use super::settings::SearchSettings;
 
 /// Families counted between two questions if the search shall go on.
 const FAMILIES: usize = 4096;
@@ -40,7 +40,7 @@ impl Move {
 pub(super) struct Climb<'a, 'd> {
     families: &'a mut Families<'d>,
     allowed: &'a Allowed,
-    settings: &'a Search,
+    settings: &'a SearchSettings,
     goes_on: &'a (dyn Fn() -> bool + Sync),
     /// True once `goes_on` has said no.
     ended: bool,
@@ -60,7 +60,7 @@ impl<'a, 'd> Climb<'a, 'd> {
     pub(super) fn new(
         families: &'a mut Families<'d>,
         allowed: &'a Allowed,
-        settings: &'a Search,
+        settings: &'a SearchSettings,
         goes_on: &'a (dyn Fn() -> bool + Sync),
     ) -> Result<Self, ModelError> {
         let n = families.variables();

@@ -3,7 +3,7 @@
 use super::super::super::error::ModelError;
 use super::super::super::graph::order;
 use super::super::super::table::Table;
-use super::settings::Search;
+use super::settings::SearchSettings;
 
 /// Constraints by column.
 pub(super) struct Allowed {
@@ -14,7 +14,7 @@ pub(super) struct Allowed {
 }
 
 impl Allowed {
-    pub(super) fn new(data: &Table, settings: &Search) -> Result<Self, ModelError> {
+    pub(super) fn new(data: &Table, settings: &SearchSettings) -> Result<Self, ModelError> {
         let names: Vec<String> = data.columns().iter().map(|c| c.name().to_owned()).collect();
         let n = names.len();
         let place = |name: &String| {

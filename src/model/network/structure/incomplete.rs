@@ -20,7 +20,7 @@ use super::super::super::em::Stopping;
 use super::super::super::error::ModelError;
 use super::super::super::table::Table;
 use super::super::{FitSettings, Network, Variable};
-use super::{Found, Search, search_while};
+use super::{Found, SearchSettings, search_while};
 use edifice_base::rng::stream;
 
 /// Most rounds.
@@ -42,19 +42,19 @@ const EM_ROUNDS: usize = 100;
 ///
 /// # Examples
 /// ```
-/// use edifice_model::{Table, network::structure::{Search, search_incomplete}};
+/// use edifice_model::{Table, network::structure::{SearchSettings, search_incomplete}};
 /// let rain = (0..300).map(|i| (i % 7 != 0).then_some(i % 3 == 0));
 /// let wet = (0..300).map(|i| (i % 5 != 0).then_some(i % 3 == 0 || i % 50 == 1));
 /// let noise = (0..300).map(|i| Some(i / 7 % 2 == 0));
 /// let data = Table::new().binary("rain", rain)?.binary("wet", wet)?.binary("noise", noise)?;
-/// let found = search_incomplete(&data, &Search::default(), 1, &|| true)?;
+/// let found = search_incomplete(&data, &SearchSettings::default(), 1, &|| true)?;
 /// assert_eq!(found.edges.len(), 1);
 /// assert!(!found.edges[0].0.contains("noise") && !found.edges[0].1.contains("noise"));
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 pub fn search_incomplete(
     data: &Table,
-    settings: &Search,
+    settings: &SearchSettings,
     seed: u64,
     goes_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Found, ModelError> {

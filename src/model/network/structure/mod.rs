@@ -9,8 +9,8 @@
 //!       a_ijk = ess / (r_i q_i), a_ij = Σ_k a_ijk                                                   (Heckerman et al. 1995)
 //! ```
 //! The search adds, takes out and turns round one edge at a time, whichever gains most; moves that would undo one of the
-//! last [`Search::tabu`] are left out unless they lead above all before (Glover 1989), it goes on through
-//! [`Search::patience`] moves without a new best, and starts anew ([`Search::restarts`]) from a random structure of the best
+//! last [`SearchSettings::tabu`] are left out unless they lead above all before (Glover 1989), it goes on through
+//! [`SearchSettings::patience`] moves without a new best, and starts anew ([`SearchSettings::restarts`]) from a random structure of the best
 //! one's equivalence class, which has other neighbours (repeated covered arc reversal, Castelo and Kočka 2003), every second
 //! time with a few random moves besides. Families' scores are kept, so that each is counted once; a move changes the gains of moves into
 //! one or two variables only. Edges may be required or forbidden, variables ordered in tiers. Of up to six variables all structures
@@ -38,7 +38,7 @@ use constraints::Allowed;
 use edifice_base::rng::stream;
 use families::Families;
 pub use incomplete::search_incomplete;
-pub use settings::{Score, Search};
+pub use settings::{Score, SearchSettings};
 
 /// Scores that differ by less are those of one equivalence class, nats.
 const NOISE: f64 = 1e-9;
@@ -72,16 +72,16 @@ pub struct Found {
 ///
 /// # Examples
 /// ```
-/// use edifice_model::{Table, network::structure::{Search, search}};
+/// use edifice_model::{Table, network::structure::{SearchSettings, search}};
 /// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
 /// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
 /// let noise: Vec<Option<bool>> = (0..200).map(|i| Some(i / 7 % 2 == 0)).collect();
 /// let data = Table::new().binary("rain", rain)?.binary("wet", wet)?.binary("noise", noise)?;
-/// let found = search(&data, &Search::default(), 1)?;
+/// let found = search(&data, &SearchSettings::default(), 1)?;
 /// assert_eq!(found.edges.len(), 1);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
-pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, ModelError> {
+pub fn search(data: &Table, settings: &SearchSettings, seed: u64) -> Result<Found, ModelError> {
     search_while(data, settings, seed, &|| true)
 }
 
@@ -91,7 +91,7 @@ pub fn search(data: &Table, settings: &Search, seed: u64) -> Result<Found, Model
 /// As [`search`].
 pub fn search_while(
     data: &Table,
-    settings: &Search,
+    settings: &SearchSettings,
     seed: u64,
     goes_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Found, ModelError> {

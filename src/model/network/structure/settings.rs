@@ -26,27 +26,27 @@ pub enum Score {
 
 /// Settings of [`search`](super::search): the score, constraints on edges, and how long to search.
 ///
-/// A table has `r Π_p r_p` cells for r categories and parents of r_p categories each, so that [`Search::most_parents`] bounds the
+/// A table has `r Π_p r_p` cells for r categories and parents of r_p categories each, so that [`SearchSettings::most_parents`] bounds the
 /// cost of a family. Constraints are names of columns; they cut down the moves, and directions that data cannot tell apart
 /// (one equivalence class) they can decide.
 ///
 /// # Examples
 /// ```
-/// use edifice_model::{Table, network::structure::{Search, search}};
+/// use edifice_model::{Table, network::structure::{SearchSettings, search}};
 /// let rain: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0)).collect();
 /// let wet: Vec<Option<bool>> = (0..200).map(|i| Some(i % 3 == 0 || i % 50 == 1)).collect();
 /// let data = Table::new().binary("wet", wet)?.binary("rain", rain)?;
 /// let own = |name: &str| name.to_owned();
 /// let tiers = vec![vec![own("rain")], vec![own("wet")]];
-/// let found = search(&data, &Search { tiers, ..Search::default() }, 1)?;
+/// let found = search(&data, &SearchSettings { tiers, ..SearchSettings::default() }, 1)?;
 /// assert_eq!(found.edges, [(own("rain"), own("wet"))]);
 /// let forbidden = vec![(own("rain"), own("wet")), (own("wet"), own("rain"))];
-/// let none = search(&data, &Search { forbidden, ..Search::default() }, 1)?;
+/// let none = search(&data, &SearchSettings { forbidden, ..SearchSettings::default() }, 1)?;
 /// assert!(none.edges.is_empty() && none.score < found.score);
 /// # Ok::<(), edifice_model::ModelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Search {
+pub struct SearchSettings {
     /// The score that is maximised.
     pub score: Score,
     /// Most parents of one variable.
@@ -65,7 +65,7 @@ pub struct Search {
     pub restarts: usize,
 }
 
-impl Default for Search {
+impl Default for SearchSettings {
     fn default() -> Self {
         Self {
             score: Score::Bdeu(1.0),

@@ -1,4 +1,4 @@
-//! The scene in which a policy acts: the observed layout, its spacings, labels and grids.
+//! The problem that a policy solves: the observed layout, its spacings, labels and grids.
 
 use rand::{Rng, RngExt};
 
@@ -27,7 +27,7 @@ pub(super) struct Item {
 
 /// A partial layout, prepared for candidates.
 #[derive(Debug, Clone)]
-pub struct Scene<'a> {
+pub struct CompletionProblem<'a> {
     /// The model that rewards and that knows the database.
     pub model: &'a PaperModel,
     /// Weights of the scoring functions; the model's unless changed.
@@ -94,7 +94,7 @@ impl Item {
     }
 }
 
-impl Scene<'_> {
+impl CompletionProblem<'_> {
     /// The reward of a candidate.
     pub fn score(&self, elements: &[Element]) -> f64 {
         let features = self.model.score.evaluate(self.facade, elements).features;
@@ -112,7 +112,7 @@ impl Scene<'_> {
     }
 }
 
-impl<'a> Scene<'a> {
+impl<'a> CompletionProblem<'a> {
     /// Prepares a partial layout. Without observed elements nothing can be extended: candidates are empty.
     pub fn new(model: &'a PaperModel, partial: &PartialLayout) -> Self {
         let mut items = Vec::new();

@@ -98,20 +98,20 @@ pub(super) fn repeats(operation: &Operation) -> bool {
     )
 }
 
-/// The line of a rule that a place is in.
-pub(super) struct Line<'g> {
+/// One axis of a rule, along which its sizes are read and changed.
+pub(super) struct RuleAxis<'g> {
     rule: usize,
     place: Place,
-    /// The axis along which it lies.
+    /// Across or up.
     pub(super) axis: Axis,
     pub(super) operation: &'g mut Operation,
 }
 
-impl<'g> Line<'g> {
-    /// The line of a place that is there.
+impl<'g> RuleAxis<'g> {
+    /// The axis on which a place of the rule lies.
     ///
     /// # Errors
-    /// When there is no such rule, line or place.
+    /// When there is no such rule, axis or place.
     pub(super) fn of(
         grammar: &'g mut Grammar,
         rule: usize,

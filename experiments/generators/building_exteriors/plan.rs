@@ -20,10 +20,10 @@ use super::families::Family;
 use super::lengths::millimetres;
 use super::site::Site;
 use super::storeys;
-use super::styles::{Kinds, Place};
+use super::styles::{GaragePlace, Kinds};
 use edifice_shape::{MassBox, PlanUnion, Rect};
 
-pub(super) struct Plan {
+pub(super) struct FloorPlan {
     pub floor_height: f64,
     pub boxes: Vec<MassBox>,
     pub family: Family,
@@ -40,7 +40,7 @@ const NARROWEST: f64 = 1.2;
 const ROOM: f64 = 2.0;
 
 /// A plan of a family drawn at random, or `None` when the numbers do not fit together or into the family.
-pub(super) fn build(n: &Numbers, kinds: &Kinds, rng: &mut impl Rng) -> Option<Plan> {
+pub(super) fn build(n: &Numbers, kinds: &Kinds, rng: &mut impl Rng) -> Option<FloorPlan> {
     let site = Site::new(n, rng)?;
     let parts: Vec<Rect> = [site.garage, site.front, site.rear]
         .into_iter()
@@ -68,7 +68,7 @@ pub(super) fn build(n: &Numbers, kinds: &Kinds, rng: &mut impl Rng) -> Option<Pl
         return None;
     }
     let boxes = storeys::boxes(&site, n, kinds, &main, rng)?;
-    Some(Plan {
+    Some(FloorPlan {
         floor_height: millimetres(n.floor_height),
         boxes,
         family,
@@ -88,11 +88,11 @@ impl Site {
         let mut room = None;
         let mut left: f64 = 0.0;
         match (garage, n.place) {
-            (Some(g), Some(Place::Front)) => {
+            (Some(g), Some(GaragePlace::Front)) => {
                 stands_before(&g, step, d)?;
                 room = Some(g.right());
             }
-            (Some(g), Some(Place::Beside)) => {
+            (Some(g), Some(GaragePlace::Beside)) => {
                 let fits = g.x > CLEAR && g.right() > n.side_step + CLEAR && g.y > step + CLEAR;
                 let wing = d - g.top();
                 if !fits || wing < 0.6 {
@@ -104,7 +104,7 @@ impl Site {
                 free[2] = [g.top() - LAP, d];
                 deepest[0] = wing - THINNEST;
             }
-            (Some(g), Some(Place::Behind)) => {
+            (Some(g), Some(GaragePlace::Behind)) => {
                 if g.x < CLEAR || g.top() > d - CLEAR || g.y > d - n.yard - LAP {
                     return None;
                 }

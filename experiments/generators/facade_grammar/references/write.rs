@@ -1,14 +1,14 @@
 //! A plan as a grammar of one kind.
 
 use super::kind::Kind;
-use super::plan::{Plan, Tile};
-use crate::facade_grammar::made::composition::run;
-use crate::facade_grammar::made::draft::{Draft, Part, leaf};
-use crate::facade_grammar::made::elements::door;
+use super::plan::{Tile, TilePlan};
+use crate::facade_grammar::composition::run;
+use crate::facade_grammar::draft::{Draft, Part, leaf};
+use crate::facade_grammar::elements::door;
 use edifice_grammar::Grammar;
 use edifice_shape::Axis;
 
-impl Plan {
+impl TilePlan {
     /// The grammar of a kind; all kinds derive the same terminals.
     pub(crate) fn grammar(&self, name: &str, kind: Kind) -> Grammar {
         let mut writer = Writer::new(self);
@@ -51,14 +51,14 @@ impl Plan {
 }
 
 struct Writer<'a> {
-    plan: &'a Plan,
+    plan: &'a TilePlan,
     draft: Draft,
     /// `tiles[floor][column]`.
     tiles: Vec<Vec<Part>>,
 }
 
 impl<'a> Writer<'a> {
-    fn new(plan: &'a Plan) -> Self {
+    fn new(plan: &'a TilePlan) -> Self {
         let mut draft = Draft::default();
         let tiles = plan.tiles.iter().zip(&plan.heights).map(|(row, &height)| {
             let tiles = row.iter().zip(&plan.sides);
@@ -155,7 +155,7 @@ impl<'a> Writer<'a> {
 }
 
 /// A window or a door between walls.
-fn tile(draft: &mut Draft, plan: &Plan, what: Tile, side: u32, height: u32) -> Part {
+fn tile(draft: &mut Draft, plan: &TilePlan, what: Tile, side: u32, height: u32) -> Part {
     let middle = match what {
         Tile::Window(kind, change) => plan.style.column(draft, kind, height, change),
         Tile::Door => door(draft, plan.style.column, height),

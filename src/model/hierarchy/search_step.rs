@@ -2,7 +2,7 @@
 
 /// One accepted configuration of the search, for [`Learned::trace`](super::Learned::trace) and [`Observer`](super::Observer)s.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Step {
+pub struct SearchStep {
     /// |S|.
     pub styles: usize,
     /// |H_g| of every real group, in order.

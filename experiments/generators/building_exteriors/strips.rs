@@ -1,7 +1,7 @@
 //! Each side of a house as vertical strips.
 
 use super::lengths::millimetres;
-use super::plan::Plan;
+use super::plan::FloorPlan;
 use edifice_shape::{BoxStyle, ElementStyle, MassBox, PlanEdge, PlanUnion, Rect, Side};
 
 /// Narrowest strip with windows, and narrowest that can be seen to be asymmetric (m).
@@ -72,7 +72,7 @@ impl Strip {
 /// The strips of all sides, all symmetric so far: cut wherever the outline of some floor has a corner and where the
 /// roof of a porch ends. A door leads to each porch from the wall behind it; what else its roof hides is blank, and so
 /// is the wall for the garage door. `None` when the garage has no wall for a door.
-pub(super) fn strips(plan: &Plan, floors: usize) -> Option<[Vec<Strip>; 4]> {
+pub(super) fn strips(plan: &FloorPlan, floors: usize) -> Option<[Vec<Strip>; 4]> {
     let outlines: Vec<_> = (0..floors).map(|k| outline(plan, k)).collect();
     let mut sides = Side::ALL.map(|side| cut(side, &outlines, &porches(plan)));
     let garages: Vec<Rect> = plan
@@ -88,13 +88,13 @@ pub(super) fn strips(plan: &Plan, floors: usize) -> Option<[Vec<Strip>; 4]> {
     Some(sides)
 }
 
-fn porches(plan: &Plan) -> Vec<Rect> {
+fn porches(plan: &FloorPlan) -> Vec<Rect> {
     let porches = plan.boxes.iter().filter(|b| b.style == BoxStyle::Porch);
     porches.map(MassBox::plan).collect()
 }
 
 /// Outline of the walls of floor `k`: porches have none.
-fn outline(plan: &Plan, k: usize) -> Vec<PlanEdge> {
+fn outline(plan: &FloorPlan, k: usize) -> Vec<PlanEdge> {
     let reaching = |b: &&MassBox| {
         b.style != BoxStyle::Porch && (k == 0 || b.height > (k as f64 + 0.5) * plan.floor_height)
     };

@@ -1,7 +1,7 @@
 //! The lattice of a partial layout: lines of its windows, the share of them that is seen, typical sizes.
 
 use super::by_place::ByPlace;
-use crate::layout::lines::{Line, lines, median};
+use crate::layout::lines::{LatticeLine, lines, median};
 use crate::layout::{Class, Element};
 use crate::partial::PartialLayout;
 use edifice_shape::{Axis, Rect};
@@ -15,22 +15,22 @@ const REGION: [f64; 2] = [0.65, 0.85];
 
 /// A partial layout with the lattice of its elements.
 #[derive(Debug, Clone)]
-pub struct Scene<'a> {
+pub struct Observation<'a> {
     /// The partial layout to complete.
     pub partial: &'a PartialLayout,
     /// Observed elements, and those that are taken as observed (mirrored ones).
     pub elements: ByPlace,
     /// Columns of the windows.
-    pub columns: Vec<Line>,
+    pub columns: Vec<LatticeLine>,
     /// Rows of the windows, from the bottom.
-    pub rows: Vec<Line>,
+    pub rows: Vec<LatticeLine>,
     /// Typical width and height of a window.
     pub size: (f64, f64),
     /// Share of the cells of the observed lattice that hold an observed window.
     pub seen: f64,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> Observation<'a> {
     /// The lattice of `elements`; `fallback` is a typical window size where there is no window.
     pub fn new(partial: &'a PartialLayout, elements: Vec<Element>, fallback: (f64, f64)) -> Self {
         let windows: Vec<Rect> = of(&elements, Class::Window).map(|e| e.rect).collect();
@@ -64,7 +64,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The lines along an axis.
-    pub fn lines(&self, axis: Axis) -> &[Line] {
+    pub fn lines(&self, axis: Axis) -> &[LatticeLine] {
         match axis {
             Axis::X => &self.columns,
             Axis::Y => &self.rows,
@@ -92,7 +92,7 @@ impl<'a> Scene<'a> {
     /// probability that a region is seen.
     pub fn evidence(&self, axis: Axis, at: f64) -> f64 {
         let crossing = self.lines(axis.other());
-        let factor = |line: &Line| {
+        let factor = |line: &LatticeLine| {
             let (x, y) = match axis {
                 Axis::X => (at, line.at),
                 Axis::Y => (line.at, at),

@@ -37,7 +37,7 @@ pub(super) struct Kinds {
 
 /// The place of a garage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum GaragePlace {
     /// Before the front wall, on the left.
     Front,
     /// Beside the left wall.
@@ -47,13 +47,13 @@ pub(super) enum Place {
 }
 
 /// Kinds of garages: cars and place.
-pub(super) const GARAGES: [Option<(usize, Place)>; 6] = [
+pub(super) const GARAGES: [Option<(usize, GaragePlace)>; 6] = [
     None,
-    Some((1, Place::Front)),
-    Some((2, Place::Front)),
-    Some((1, Place::Beside)),
-    Some((2, Place::Beside)),
-    Some((1, Place::Behind)),
+    Some((1, GaragePlace::Front)),
+    Some((2, GaragePlace::Front)),
+    Some((1, GaragePlace::Beside)),
+    Some((2, GaragePlace::Beside)),
+    Some((1, GaragePlace::Behind)),
 ];
 
 /// Kinds of porches.

@@ -9,14 +9,14 @@ use rand::{Rng, RngExt};
 
 use super::draw::Numbers;
 use super::glaze::glaze;
-use super::plan::Plan;
+use super::plan::FloorPlan;
 use super::strips::{NARROWEST_FREE, Strip, Use, make_symmetric, strips};
 use super::styles::Kinds;
 use edifice_shape::{ElementStyle, FacadePiece, Side};
 
 /// The facade pieces, or `None` when the numbers cannot be met.
 pub(super) fn build(
-    plan: &Plan,
+    plan: &FloorPlan,
     numbers: &Numbers,
     kinds: &Kinds,
     rng: &mut impl Rng,

@@ -4,7 +4,7 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::styles::{GARAGES, Kinds, Place};
+use super::styles::{GARAGES, GaragePlace, Kinds};
 
 /// The wanted numbers of the plan and the walls; lengths in metres, positions as shares of the bounding box of the
 /// ground floor, before a mirrored house is mirrored.
@@ -25,7 +25,7 @@ pub(super) struct Numbers {
     /// Length by which the wall behind a garage steps in, if the garage is behind the house.
     pub yard: f64,
     pub garage: Option<Part>,
-    pub place: Option<Place>,
+    pub place: Option<GaragePlace>,
     pub front_porch: Option<Part>,
     pub back_porch: Option<Part>,
     /// Length by which the back wall steps in beside a back porch.
@@ -102,9 +102,9 @@ pub(super) fn numbers(kinds: &Kinds, rng: &mut impl Rng) -> Numbers {
         let in_left = 0.5 + noise(0.12) + w / 2.0;
         let in_front = noise(0.09) + d / 2.0;
         let y = match place {
-            Place::Front => 0.45 + in_front,
-            Place::Beside => FRONT_STEP + 0.7 + in_front,
-            Place::Behind => depth - 0.45 - in_front,
+            GaragePlace::Front => 0.45 + in_front,
+            GaragePlace::Beside => FRONT_STEP + 0.7 + in_front,
+            GaragePlace::Behind => depth - 0.45 - in_front,
         };
         Part {
             x: in_left / width,

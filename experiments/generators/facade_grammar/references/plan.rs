@@ -3,8 +3,8 @@
 use rand::RngExt;
 
 use super::kind::Kind;
-use crate::facade_grammar::made::elements::{Break, Glazing, Style};
-use crate::facade_grammar::made::theme::Rhythm;
+use crate::facade_grammar::elements::{Break, Glazing, Style};
+use crate::facade_grammar::theme::Rhythm;
 use edifice_base::rng::Stream;
 
 /// A tile's content.
@@ -18,7 +18,7 @@ pub(crate) enum Tile {
 
 /// A layout before its terminals are cut.
 #[derive(Debug, Clone)]
-pub(crate) struct Plan {
+pub(crate) struct TilePlan {
     /// Sizes and kinds of windows.
     pub style: Style,
     /// Wall on each side of the window or door, by column.
@@ -55,7 +55,7 @@ const RHYTHMS: &[Rhythm] = &[
 /// Rhythms that mirror themselves.
 const MIRRORED: &[Rhythm] = &[Rhythm::Same, Rhythm::Ends, Rhythm::Middle, Rhythm::Mirror];
 
-impl Plan {
+impl TilePlan {
     /// Draws a layout of a kind.
     pub(crate) fn draw(rng: &mut Stream, kind: Kind) -> Self {
         let glazing = GLAZING[rng.random_range(0..GLAZING.len())];

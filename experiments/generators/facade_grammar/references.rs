@@ -33,7 +33,7 @@ use edifice_grammar::{Grammar, GrammarError, derive};
 use edifice_shape::Facade;
 
 pub use kind::Kind;
-use plan::Plan;
+use plan::TilePlan;
 
 /// A made layout with a grammar of each kind.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ pub fn referenced(seed: u64, each: usize) -> Result<Vec<Referenced>, GrammarErro
         .flat_map(|kind| (1..=each).map(move |number| (kind, number)));
     let made = designs.map(|(own, number)| {
         let name = format!("{}_{number}", own.name());
-        let plan = Plan::draw(&mut stream(seed, &name, 0), own);
+        let plan = TilePlan::draw(&mut stream(seed, &name, 0), own);
         let grammars = Kind::ALL.map(|kind| plan.grammar(&name, kind));
         let facade = derive(&grammars[0], 0)?;
         Ok(Referenced {
