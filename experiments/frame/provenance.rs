@@ -68,7 +68,7 @@ pub(crate) struct Made {
     pub skipped: Option<String>,
 }
 
-/// What `provenance.json` says of the artefacts of one paper.
+/// Builds and machines of the artefacts of one paper, `provenance.json`.
 #[derive(Debug, Serialize, Deserialize)]
 struct Provenance {
     format: String,

@@ -23,7 +23,7 @@ use super::triplets::Triplets;
 
 /// Systems solved at most.
 const MOST: u32 = 8;
-/// What is added to the diagonal, in units of the largest entry of P's or 1, so that the system has a factor.
+/// Number added to the diagonal, in units of the largest entry of P's or 1, so that the system has a factor.
 const SHIFT: f64 = 1e-8;
 /// Rounds of refinement, which take away what the shift did.
 const REFINEMENTS: usize = 12;
@@ -158,12 +158,12 @@ fn with_tight(form: &Form, linear: &[f64], tight: &[bool]) -> Option<Pair> {
     };
     let mut free = Vec::new();
     let mut seat = vec![None; n];
-    for j in 0..n {
+    for (j, seat) in seat.iter_mut().enumerate() {
         match at(j) {
             (Some(row), _) => pair.x[j] = form.right[row],
             (None, Some(row)) => pair.x[j] = -form.right[row],
             (None, None) => {
-                seat[j] = Some(free.len());
+                *seat = Some(free.len());
                 free.push(j);
             }
         }

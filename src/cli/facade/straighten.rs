@@ -14,13 +14,13 @@ use crate::reading::Reading;
 /// Options of `facade straighten`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  edifice facade straighten datasets/examples/photo_1.jpg --corners 12,9,228,14,225,168,15,172 --height 11.5 -o house.facade.json
-  edifice facade straighten datasets/examples/photo_1.jpg --height 11.5 -o whole.facade.json
+  edifice facade straighten datasets/examples/photo_1.jpg --corners 12,9,228,14,225,168,15,172 --height 11.5 -o straight.facade.json
+  edifice facade straighten datasets/examples/photo_1.jpg --height 11.5 -o taken_whole.facade.json
 
 The corners are those of the facade in the picture, in pixels from its upper left corner: upper left, upper right, lower right,
 lower left; without them the picture is taken whole. Width over height follows from the perspective (Zhang and He 2007), or, where
 the camera was held level so that it does not follow, with the focal length of a phone's camera; one length gives the scale. The
-file holds the rectangle as a photograph to draw over: `edifice studio house.facade.json`.")]
+file holds the rectangle as a photograph to draw over: `edifice studio straight.facade.json`.")]
 pub(crate) struct Args {
     /// Photograph to read: .jpg, .png, or a text file with its data: address
     #[arg(value_name = "PHOTOGRAPH")]

@@ -103,7 +103,7 @@ pub(super) struct Original {
 }
 
 impl Original {
-    /// What a page has to know to ask for its corners.
+    /// Its file and size, by which a page asks for its corners.
     pub(super) fn shown(&self) -> Value {
         json!({"file": self.file, "width": self.size[0], "height": self.size[1]})
     }

@@ -126,7 +126,7 @@ struct Level {
     searched: f64,
 }
 
-/// What is known while groupings are tried.
+/// The state of the search while groupings are tried.
 struct Trial<'a> {
     data: &'a Table,
     settings: &'a Settings,
