@@ -39,6 +39,17 @@ fn cost(facade: &Facade, settings: &Settings) -> f64 {
         .cost
 }
 
+#[test]
+fn methods_are_read_by_the_names_that_they_print() {
+    for method in METHODS {
+        assert_eq!(method.to_string().parse(), Ok(method));
+    }
+    // Older names: on the command line, and where a method is stored.
+    assert_eq!("adp".parse(), Ok(Method::Lagrangian));
+    let stored = serde_json::to_string(&Method::Lagrangian).unwrap();
+    assert_eq!(stored, "\"adp_best\"");
+}
+
 fn ten_seeds(method: Method, operations: Operations) -> Vec<f64> {
     (0..10)
         .map(|seed| {

@@ -73,6 +73,28 @@ fn infer_says_when_its_grammar_is_optimal() {
 }
 
 #[test]
+fn the_default_method_is_read_by_its_name_and_by_its_older_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let facade = fig9().replace(".cga", ".facade.json");
+    let written = |name: &str, method: &[&str]| {
+        let path = folder.path().join(name).with_extension("grammar.json");
+        let own = ["infer", &facade, "-o", path.to_str().unwrap()];
+        let (code, _, err) = edifice(&[&own, method].concat());
+        assert_eq!(code, 0, "{err}");
+        std::fs::read(path).unwrap()
+    };
+    let usual = written("usual", &[]);
+    assert_eq!(usual, written("new", &["--method", "lagrangian"]));
+    assert_eq!(usual, written("old", &["--method", "adp"]));
+    assert_ne!(usual, written("greedy", &["--method", "greedy"]));
+    // The older name is read and not listed.
+    let (code, _, message) = edifice(&["infer", &facade, "--method", "guess"]);
+    assert_eq!(code, 2);
+    let listed = "[possible values: lagrangian, adp-paper, importance,";
+    assert!(message.contains(listed), "{message}");
+}
+
+#[test]
 fn derive_writes_every_format_at_every_size() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.facade.json", "a.svg", "a.png"] {
