@@ -18,7 +18,7 @@ use clarabel::solver::{
 };
 
 use super::qp_form::Form;
-pub use super::qp_problem::{QpError, QuadraticProgram, Row};
+pub use super::qp_problem::{Duals, QpError, QuadraticProgram, Row};
 use super::qp_warm::{Pair, solve_near};
 use super::run::{Outcome, Search};
 
@@ -59,23 +59,6 @@ pub struct Solution {
     pub iterations: u32,
     /// True if the solution before led here without the interior-point method.
     pub warm: bool,
-}
-
-/// Multipliers of the constraints: by how much the least cost falls for each unit by which the right-hand side of a row, or an upper bound, is
-/// raised, or a lower bound lowered.
-///
-/// At the solution `P x + q + E' y + A' z + (upper - lower) = 0`; all but those of equalities are at least 0, and 0 where the
-/// constraint is not tight. Source: Boyd and Vandenberghe 2004, Sec. 5.6.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Duals {
-    /// y, of each equality.
-    pub equalities: Vec<f64>,
-    /// z, of each inequality.
-    pub inequalities: Vec<f64>,
-    /// Of each lower bound; 0 where there is none.
-    pub lower: Vec<f64>,
-    /// Of each upper bound; 0 where there is none.
-    pub upper: Vec<f64>,
 }
 
 /// Solves a convex quadratic program.

@@ -3,8 +3,7 @@
 
 use clarabel::algebra::CscMatrix;
 
-use super::qp::Duals;
-use super::qp_problem::QuadraticProgram;
+use super::qp_problem::{Duals, QuadraticProgram};
 use super::triplets::Triplets;
 
 /// The matrices of a program of n variables and m rows.

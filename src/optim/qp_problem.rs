@@ -74,6 +74,23 @@ impl Row {
     }
 }
 
+/// Multipliers of the constraints: by how much the least cost falls for each unit by which the right-hand side of a row, or an upper bound, is
+/// raised, or a lower bound lowered.
+///
+/// At the solution `P x + q + E' y + A' z + (upper - lower) = 0`; all but those of equalities are at least 0, and 0 where the
+/// constraint is not tight. Source: Boyd and Vandenberghe 2004, Sec. 5.6.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Duals {
+    /// y, of each equality.
+    pub equalities: Vec<f64>,
+    /// z, of each inequality.
+    pub inequalities: Vec<f64>,
+    /// Of each lower bound; 0 where there is none.
+    pub lower: Vec<f64>,
+    /// Of each upper bound; 0 where there is none.
+    pub upper: Vec<f64>,
+}
+
 /// Why numbers are not a convex quadratic program: from [`QuadraticProgram::check`], and through it from
 /// [`solve`](super::qp::solve). That there is no solution is an [`Outcome`](super::Outcome), not an error.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

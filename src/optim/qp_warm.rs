@@ -158,12 +158,12 @@ fn with_tight(form: &Form, linear: &[f64], tight: &[bool]) -> Option<Pair> {
     };
     let mut free = Vec::new();
     let mut seat = vec![None; n];
-    for j in 0..n {
+    for (j, seat) in seat.iter_mut().enumerate() {
         match at(j) {
             (Some(row), _) => pair.x[j] = form.right[row],
             (None, Some(row)) => pair.x[j] = -form.right[row],
             (None, None) => {
-                seat[j] = Some(free.len());
+                *seat = Some(free.len());
                 free.push(j);
             }
         }
