@@ -1,7 +1,6 @@
 //! Inference: from facades to one grammar.
 
 use super::adp::search::Setup;
-use super::baselines::importance_sampling::cheapest;
 use super::lagrangian::NOISE;
 use super::settings::{InferError, Method, Settings};
 use edifice_base::{Ended, Watch, Watched};
@@ -55,9 +54,9 @@ pub fn infer(
         }
         Method::AdpPaper => search.paper(settings.iterations)?.0,
         Method::Importance => {
-            let walks = search.importance()?;
-            effective = Some(walks.ess());
-            cheapest(walks)
+            let (rules, count) = search.importance()?;
+            effective = Some(count);
+            rules
         }
         Method::Greedy => search.greedy(),
         Method::Bayesian => search.all_lines(),

@@ -39,7 +39,7 @@ pub struct Weighted {
 ///
 /// `settings` give the number of walks (the iterations), seed, costs, operations, the weights of Eq. 5 and protection; their method is
 /// not read. The cheapest draw is what [`infer`](super::infer()) returns for [`Method::Importance`](super::Method::Importance) with the same
-/// settings. The time is that of the walks, and one extraction of a grammar for each. Source: Wu et al. 2014, Sec. 6.1 (the walks); Robert and
+/// settings. The time is twice that of the walks, and one extraction of a grammar for each; all walks are kept. Source: Wu et al. 2014, Sec. 6.1 (the walks); Robert and
 /// Casella 2004, Ch. 3 (the weights).
 ///
 /// # Errors
@@ -75,7 +75,7 @@ pub fn weighted(
     check(facades)?;
     let watched = Watched::new(watch);
     let search = Setup::new(facades, settings, &watched)?;
-    let walks = search.importance()?;
+    let walks = search.weighted_walks()?;
     let (effective, evidence, pareto_k) = (walks.ess(), walks.evidence, walks.pareto_k);
     let draws = walks.draws.into_iter().map(|draw| WeightedGrammar {
         grammar: search.grammar(facades, &draw.out.0),

@@ -29,6 +29,7 @@ pub(super) mod bayesian;
 pub(super) mod greedy;
 pub(super) mod importance_sampling;
 pub(super) mod symmetry;
+pub(super) mod weighted_walks;
 
 use std::rc::Rc;
 
