@@ -3,12 +3,12 @@
 //! A schema of one attribute a column gives each real column a hidden variable of its own, so that columns depend on each other through the
 //! style and lateral edges alone. Where they move together, on a curve say, one vector-valued attribute is far better: a mixture of full
 //! Gaussians, of all real columns or of those of a group. Groupings from all in one to none are learned, each a
-//! split of the one before ([`levels`](super::grouping)), and the Cheeseman-Stutz score chooses, which is the logarithm of the evidence of the
+//! split of the one before (`grouping`), and the Cheeseman-Stutz score chooses, which is the logarithm of the evidence of the
 //! same rows of the same standardised columns.
 //!
 //! # Deviations and readings
 //! - Of large tables (more than 10,000 real values searched on) coarse groupings come first, 1, 2, 4, 8, .. groups, until one scores less than the
-//!   one before: the coarser, the quicker. From [`MANY`] groups on the doubling has to gain 1 nat a row, or the search ends there. Else
+//!   one before: the coarser, the quicker. From `MANY` groups on the doubling has to gain 1 nat a row, or the search ends there. Else
 //!   the groups as given come last.
 //! - Of small tables both ends are learned, then those next to the better end, until two in a row do not score more than the best.
 //! - A search is given up where it stays far behind the best so far: of the groups as given 2 nats a row before any
