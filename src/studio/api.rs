@@ -15,6 +15,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use tokio::time::timeout;
 
+use super::answers::{Refusal, answer};
 use super::document::SaveError;
 use super::jobs::{End, Job};
 use super::{Open, Studio, assets, compressed};
@@ -24,38 +25,6 @@ use edifice_editing::work::Stopped;
 
 /// Work that takes longer than this is a job.
 const PATIENCE: Duration = Duration::from_millis(300);
-
-/// The refusal of a request: its status, and the reason.
-struct Refusal(StatusCode, String);
-
-impl IntoResponse for Refusal {
-    fn into_response(self) -> Response {
-        (self.0, answer(&json!({"error": self.1}))).into_response()
-    }
-}
-
-impl From<edifice_base::Error> for Refusal {
-    fn from(error: edifice_base::Error) -> Self {
-        Self(StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
-    }
-}
-
-impl From<Stopped> for Refusal {
-    fn from(stopped: Stopped) -> Self {
-        Self(StatusCode::CONFLICT, stopped.to_string())
-    }
-}
-
-impl From<SaveError> for Refusal {
-    fn from(error: SaveError) -> Self {
-        let status = match &error {
-            SaveError::ReadOnly | SaveError::Link(_) => StatusCode::FORBIDDEN,
-            SaveError::Changed(_) => StatusCode::CONFLICT,
-            SaveError::File(_) => StatusCode::UNPROCESSABLE_ENTITY,
-        };
-        Self(status, error.to_string())
-    }
-}
 
 type Answer = Result<Response, Refusal>;
 
@@ -81,11 +50,6 @@ pub fn router(studio: Arc<Studio>) -> Router {
         .fallback(assets::asset)
         .with_state(studio)
         .layer(axum::middleware::from_fn(compressed::compressed))
-}
-
-fn answer(value: &Value) -> Response {
-    let kind = [(header::CONTENT_TYPE, "application/json")];
-    (kind, value.to_string()).into_response()
 }
 
 fn body<T: DeserializeOwned>(bytes: &Bytes) -> Result<T, Refusal> {

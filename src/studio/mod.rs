@@ -40,6 +40,7 @@
 //! Only a page of this server, opened by whoever started it ([`guard`]): requests are looked at before they are routed.
 //! Files are named by the command line alone; the page knows them by an id.
 
+mod answers;
 mod api;
 mod assets;
 mod compressed;

@@ -7,27 +7,8 @@ use edifice_shape::Axis;
 
 /// The sizes that an operation writes along an axis; none where it does not split along it.
 pub(super) fn along(operation: &Operation, axis: Axis) -> Vec<Size> {
-    match operation {
-        Operation::Split {
-            axis: own,
-            successors,
-        }
-        | Operation::Repeat {
-            axis: own,
-            successors,
-        }
-        | Operation::SymSplit {
-            axis: own,
-            successors,
-            ..
-        } if *own == axis => successors.iter().map(|s| s.size).collect(),
-        Operation::RepeatAba { axis: own, a, b } if *own == axis => vec![a.size, b.size],
-        Operation::GridSplit { columns, rows, .. } => match axis {
-            Axis::X => columns.clone(),
-            Axis::Y => rows.clone(),
-        },
-        _ => Vec::new(),
-    }
+    let mut copy = operation.clone();
+    along_mut(&mut copy, axis).into_iter().map(|s| *s).collect()
 }
 
 /// The sizes that an operation writes along an axis, to be changed.

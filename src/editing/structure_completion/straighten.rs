@@ -68,6 +68,16 @@ pub fn straightened(
     corners: Option<[[f64; 2]; 4]>,
     outline: Outline,
 ) -> std::result::Result<AnnotatedFacade, StraightenError> {
+    over(name, &Picture::of_bytes(bytes)?, corners, outline)
+}
+
+/// The same over a picture that was read.
+fn over(
+    name: &str,
+    picture: &Picture,
+    corners: Option<[[f64; 2]; 4]>,
+    outline: Outline,
+) -> std::result::Result<AnnotatedFacade, StraightenError> {
     let told = match outline {
         Outline::Height(h) => Some(("height", h)),
         Outline::Width(w) => Some(("width", w)),
@@ -76,7 +86,6 @@ pub fn straightened(
     if let Some((dimension, value)) = told.filter(|(_, v)| !(v.is_finite() && *v > 0.0)) {
         return Err(LayoutError::FacadeSize { dimension, value }.into());
     }
-    let picture = Picture::of_bytes(bytes)?;
     let corners = match corners {
         Some(places) => Corners::new(places)?,
         None => Corners::whole(picture.size())?,
@@ -120,9 +129,8 @@ pub(super) fn open(path: &Path, bytes: &[u8]) -> Result<Sketch> {
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     let outline = Outline::Height(USUAL_HEIGHT);
     let read = || {
-        let drawing = straightened(&name, bytes, None, outline)?;
-        let size = Picture::of_bytes(bytes)?.size();
-        Ok((drawing, size))
+        let picture = Picture::of_bytes(bytes)?;
+        Ok((over(&name, &picture, None, outline)?, picture.size()))
     };
     let (drawing, size) = read().map_err(|e: StraightenError| Error::content(path, e))?;
     let original = Original {
