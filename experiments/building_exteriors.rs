@@ -19,7 +19,7 @@ mod speed;
 pub mod study;
 mod views;
 
-use super::{Artefact, Context, Experiment};
+use super::{Artefact, Context, Experiment, Pictured};
 use edifice_model::hierarchy::{Constant, Settings, Sweep};
 
 /// The paper's tables and figures.
@@ -27,7 +27,20 @@ pub const EXPERIMENT: Experiment = Experiment {
     slug: "building_exteriors",
     paper: "Fan, Wonka 2016: A Probabilistic Model for Exteriors of Residential Buildings",
     artefacts: ARTEFACTS,
+    documents,
 };
+
+/// The made houses that a figure shows.
+fn documents(artefact: &str) -> Vec<Pictured> {
+    let lines = match artefact {
+        "figure_8" | "figure_9" => vec![facade_figures::HOUSE],
+        "figure_16" => design_figures::first_held_out(),
+        "figure_19" => design_figures::first_without_garage(),
+        _ => Vec::new(),
+    };
+    let line = |line| Pictured::Line(data::HOUSES.to_owned(), line);
+    lines.into_iter().map(line).collect()
+}
 
 const ARTEFACTS: &[Artefact] = &[
     Artefact {

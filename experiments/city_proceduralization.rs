@@ -28,6 +28,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     slug: "city_proceduralization",
     paper: "Demir, Aliaga, Benes 2014: Proceduralization of Buildings at City Scale",
     artefacts: ARTEFACTS,
+    documents: |_| Vec::new(),
 };
 
 const ARTEFACTS: &[Artefact] = &[

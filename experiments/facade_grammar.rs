@@ -38,7 +38,7 @@ mod told_apart;
 mod tolerance;
 mod trial;
 
-use super::{Artefact, Budget, Experiment, picture};
+use super::{Artefact, Budget, Experiment, Pictured, picture};
 use edifice_facade_grammar::Method;
 
 /// This project's configuration of approximate dynamic programming.
@@ -56,7 +56,37 @@ pub const EXPERIMENT: Experiment = Experiment {
     slug: "facade_grammar",
     paper: "Wu, Yan, Dong, Zhang, Wonka 2014: Inverse Procedural Modeling of Facade Layouts",
     artefacts: ARTEFACTS,
+    documents,
 };
+
+/// The shipped facades that a figure shows or begins from.
+fn documents(artefact: &str) -> Vec<Pictured> {
+    let made = |names: &[&str]| {
+        let place = |name: &&str| format!("facade_grammar/layouts/{name}.facade.json");
+        names.iter().map(place).map(Pictured::File).collect()
+    };
+    let example =
+        |ending: &str| Pictured::File(format!("facade_grammar/{}{ending}", data::FIGURE_9));
+    match artefact {
+        // The grammar that the paper prints.
+        "figure_9" => vec![example(".cga")],
+        "figure_10" => {
+            let layouts = edifice_datasets::files().into_iter().map(|(path, _)| path);
+            let layouts = layouts.filter(|p| {
+                p.starts_with("facade_grammar/layouts/") && p.ends_with(".facade.json")
+            });
+            let all = [example(".facade.json")].into_iter();
+            all.chain(layouts.map(Pictured::File)).collect()
+        }
+        "figure_11" => vec![example(".facade.json")],
+        "figure_12" => made(&[figure_12::FACADE]),
+        "figure_13" => made(&figure_13::FACADES),
+        "figure_14" => made(&figure_14::FACADES),
+        "figure_15" => made(&city::LOW_RISE.concat()),
+        "figure_16" => made(&city::HIGH_RISE.concat()),
+        _ => Vec::new(),
+    }
+}
 
 const ARTEFACTS: &[Artefact] = &[
     Artefact {

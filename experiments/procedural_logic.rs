@@ -35,6 +35,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     slug: "procedural_logic",
     paper: "Weissenberg, Riemenschneider, Prasad, Van Gool 2013: Is there a Procedural Logic to Architecture?",
     artefacts: ARTEFACTS,
+    documents: |_| Vec::new(),
 };
 
 /// The grammar of one facade with the parameters for compression, for comparisons with other papers.

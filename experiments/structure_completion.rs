@@ -30,6 +30,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     slug: "structure_completion",
     paper: "Fan, Musialski, Liu, Wonka 2014: Structure Completion for Facade Layouts",
     artefacts: ARTEFACTS,
+    documents: |_| Vec::new(),
 };
 
 const ARTEFACTS: &[Artefact] = &[

@@ -22,6 +22,9 @@ pub(crate) struct Truth {
     pub dependencies: Vec<(String, String)>,
 }
 
+/// The made houses, a line each, by their name below `datasets/`.
+pub(crate) const HOUSES: &str = "building_exteriors/houses.buildings.jsonl";
+
 /// The shipped database.
 pub(crate) struct Shipped {
     pub buildings: Vec<Building>,
@@ -31,7 +34,7 @@ pub(crate) struct Shipped {
 
 /// Reads the shipped database and, for judging only, its truth.
 pub(crate) fn shipped(ctx: &mut Context) -> Result<Shipped> {
-    let path = ctx.shipped("building_exteriors/houses.buildings.jsonl")?;
+    let path = ctx.shipped(HOUSES)?;
     let buildings = building_json::read(&path)?;
     let path = ctx.shipped("building_exteriors/truth.json")?;
     let truth: Truth = json::parse_json(&read_bytes(&path)?, &path)?;

@@ -1,5 +1,7 @@
 //! Completion and design: Fig. 16 to 19 of Fan and Wonka 2016, on made houses that the model has not seen.
 
+use std::path::Path;
+
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
 use crate::Context;
@@ -11,6 +13,7 @@ use edifice_building_exteriors::house::walls::walls_of_pieces;
 use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
 use edifice_building_exteriors::mass::iou;
 use edifice_building_exteriors::model_file::ModelFile;
+use edifice_io::building_json;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::{BoxStyle, Building, Side};
@@ -45,6 +48,34 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
         database: Database::new(buildings).map_err(Error::method)?,
         held_out,
     })
+}
+
+/// The held-out houses with their lines among the shipped ones.
+fn held_out_lines() -> Vec<(usize, Building)> {
+    let bytes = edifice_datasets::shipped_bytes(data::HOUSES).unwrap_or_default();
+    let houses = building_json::parse_lines(bytes, Path::new(data::HOUSES)).unwrap_or_default();
+    let known = houses.len().saturating_sub(HELD_OUT);
+    houses.into_iter().enumerate().skip(known).collect()
+}
+
+/// The line of the house whose completion Fig. 16 shows.
+pub(crate) fn first_held_out() -> Vec<usize> {
+    held_out_lines()
+        .first()
+        .map(|(line, _)| *line)
+        .into_iter()
+        .collect()
+}
+
+/// The line of the house that Fig. 19 begins from.
+pub(crate) fn first_without_garage() -> Vec<usize> {
+    let houses = held_out_lines();
+    let found = houses.iter().find(|(_, house)| has_no_garage(house));
+    found.map(|(line, _)| *line).into_iter().collect()
+}
+
+fn has_no_garage(house: &Building) -> bool {
+    house.boxes.iter().all(|b| b.style != BoxStyle::Garage)
 }
 
 /// The part of a house that a photograph from the front shows: the boxes whose walls face the street, and the facade
@@ -268,7 +299,7 @@ pub(crate) fn figure_19(ctx: &mut Context) -> Result<()> {
     let start = learned
         .held_out
         .iter()
-        .find(|h| h.boxes.iter().all(|b| b.style != BoxStyle::Garage))
+        .find(|house| has_no_garage(house))
         .unwrap_or(&learned.held_out[0]);
     let options = Options::default();
     let mut rng = stream(ctx.seed(), "building_exteriors/figure_19", 0);

@@ -21,7 +21,7 @@ use edifice_shape::solid::faces;
 
 /// Houses of Fig. 7, as in Fig. 6, and the house of Fig. 8 and 9.
 const HOUSES: [usize; 2] = [2, 40];
-const HOUSE: usize = 40;
+pub(crate) const HOUSE: usize = 40;
 /// Seeds that annealing may try until a plan is sound.
 const SEEDS: u64 = 6;
 

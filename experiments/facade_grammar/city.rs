@@ -15,12 +15,12 @@ use edifice_report::{Figure, Row};
 /// Layouts whose grammars are combined, group by group of similar structure.
 type Groups = &'static [&'static [&'static str]];
 
-const LOW_RISE: Groups = &[
+pub(crate) const LOW_RISE: Groups = &[
     &["boulevard_1", "boulevard_2", "boulevard_3", "boulevard_4"],
     &["tenement_1", "tenement_2", "tenement_3", "tenement_4"],
     &["townhouse_1", "townhouse_2", "townhouse_3", "townhouse_4"],
 ];
-const HIGH_RISE: Groups = &[&["office_1", "office_2", "office_3"]];
+pub(crate) const HIGH_RISE: Groups = &[&["office_1", "office_2", "office_3"]];
 
 /// Draws for a variation in the picture: that whose parts are nearest to their own size is shown.
 const DRAWS: usize = 4;

@@ -14,7 +14,7 @@ use edifice_report::{Align, Figure, Row, Table, Tile, Tiles};
 use edifice_shape::{Facade, Region, is_background};
 
 /// Facade of the figure.
-const FACADE: &str = "boulevard_1";
+pub(crate) const FACADE: &str = "boulevard_1";
 
 /// Sizes of the figure, and widths of the table over all layouts.
 const SIZES: [(f64, f64); 3] = [(1.4, 1.0), (0.8, 1.3), (2.0, 1.0)];

@@ -8,6 +8,9 @@ use edifice_base::Result;
 use edifice_report::{Align, Figure, Row, Table};
 use edifice_shape::Facade;
 
+/// The four terraces.
+pub(crate) const FACADES: [&str; 4] = ["terrace_a", "terrace_b", "terrace_c", "terrace_d"];
+
 /// Joint extraction from the four terraces, beside separate extraction.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let (few, many) = super::iterations(ctx.budget());
@@ -16,9 +19,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("iterations", iterations);
     ctx.setting("seeds", seeds);
     let folder = data::folder(ctx)?.join("layouts");
-    let facades: Result<Vec<Facade>> = ["a", "b", "c", "d"]
+    let facades: Result<Vec<Facade>> = FACADES
         .iter()
-        .map(|k| edifice_io::facade_json::read(&folder.join(format!("terrace_{k}.facade.json"))))
+        .map(|name| edifice_io::facade_json::read(&folder.join(format!("{name}.facade.json"))))
         .collect();
     let facades = facades?;
     // Each facade alone, then all of them.

@@ -26,7 +26,7 @@ struct Point {
 }
 
 /// Facades of the paper's middle sizes, the smallest first.
-const FACADES: [&str; 3] = ["tenement_1", "office_1", "boulevard_1"];
+pub(crate) const FACADES: [&str; 3] = ["tenement_1", "office_1", "boulevard_1"];
 
 /// Best cost so far and seconds per iteration of three methods on three facades.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {

@@ -2,6 +2,7 @@
 
 mod context;
 mod document;
+mod documents;
 mod journal;
 pub(super) mod lock;
 pub(super) mod memory;
@@ -13,6 +14,7 @@ mod run;
 mod verify;
 
 pub use context::Context;
+pub use documents::{Pictured, ReportDocument, Shown, documents, shown};
 pub use options::{Args, Budget, Options};
 pub use own::Own;
 pub(crate) use progress::Progress;
@@ -39,6 +41,8 @@ pub struct Experiment {
     pub paper: &'static str,
     /// Its tables and figures, in the order of the report.
     pub artefacts: &'static [Artefact],
+    /// The shipped documents that the picture of an artefact shows, by the artefact's name; none for most.
+    pub documents: fn(&str) -> Vec<Pictured>,
 }
 
 #[cfg(test)]

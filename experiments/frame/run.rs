@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use super::context::{Context, DATASETS, STOP, WORK};
 use super::document::readable;
+use super::documents;
 use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::{line, result};
@@ -267,6 +268,7 @@ fn page(folder: &Path, run: &Run) -> Page {
             files,
             absent,
             command: made.command.clone(),
+            studio: documents::command(&run.experiment, name, folder),
             beside: made.comparisons.iter().map(beside).collect(),
             skipped: made.skipped.clone(),
             // The same wherever it is made again; commit, time and machine are in `provenance.json`.

@@ -51,6 +51,7 @@ static FAKE: Experiment = Experiment {
             run: nothing,
         },
     ],
+    documents: |_| Vec::new(),
 };
 
 fn options(out: &std::path::Path) -> Options {

@@ -4,7 +4,8 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use edifice_base::Result;
+use edifice_base::{Error, Result};
+use edifice_experiments::{ReportDocument, documents};
 use edifice_studio::private::state_folder;
 use edifice_studio::redirect::Redirect;
 use edifice_studio::{Settings, start};
@@ -18,6 +19,8 @@ use super::print::{self, Json};
   edifice studio office_1.facade.json houses/house_0001.building.json
   edifice studio photo.jpg
   edifice studio fig9.grammar.json --port 8080 --no-open --read-only
+  edifice studio --report figure_16
+  edifice studio --report facade_grammar/figure_15/townhouse_1
 
 The first line on standard output is the address, with the token that opens it; Ctrl-C ends the studio. It listens on this
 machine only, and its page asks nothing of any other. Files open in the editor that suits them: whole facades and grammars
@@ -25,7 +28,10 @@ machine only, and its page asks nothing of any other. Files open in the editor t
 (.building.json), cities (.city-grammar.json, or triangles: .npz, .obj, .glb, .gltf, .city.json, .city.jsonl).
 Saving writes the file and, beside it, the edits as a shell script of edifice commands that writes the same bytes; a file or a
 script of somebody else is not replaced unasked. A photograph that is drawn over is kept in the file. What is not saved is kept in
-the user's state folder ($XDG_STATE_HOME/edifice/studio, by default ~/.local/state/edifice/studio) and offered at the next start.")]
+the user's state folder ($XDG_STATE_HOME/edifice/studio, by default ~/.local/state/edifice/studio) and offered at the next start.
+
+A picture of the report is named [PAPER/]ARTEFACT[/DOCUMENT]; of several documents all are opened. They are copies: the shipped
+files and the report stay as they are, and saving writes into the present folder.")]
 pub(crate) struct Args {
     /// Files to open; without any, the page begins with examples
     files: Vec<PathBuf>,
@@ -38,15 +44,36 @@ pub(crate) struct Args {
     /// Never write a file
     #[arg(long)]
     read_only: bool,
+    /// Open the documents of a picture of the report, for example figure_16 or facade_grammar/figure_16/office_1
+    #[arg(long, value_name = "NAME")]
+    report: Option<String>,
+    /// Folder of that report, written by `edifice reproduce` [default: reports]
+    #[arg(long = "in", value_name = "REPORT_DIR", requires = "report")]
+    within: Option<PathBuf>,
     #[command(flatten)]
     json: Json,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: Args) -> Result<()> {
+    let copies = match pictured(args.report.as_deref(), args.within.as_deref()) {
+        // A name that names nothing is wrong usage.
+        Err(error @ Error::Option { .. }) => {
+            print::error(&error);
+            std::process::exit(2)
+        }
+        read => read?,
+    };
+    if copies.len() > 1 {
+        print::message(&format!(
+            "opening {} documents; the grammar of a facade is inferred first, which takes some seconds each: NAME/DOCUMENT opens one",
+            copies.len()
+        ));
+    }
     let state = state_folder();
     let running = start(&Settings {
         files: args.files,
+        copies,
         port: args.port,
         read_only: args.read_only,
         state: state.clone(),
@@ -76,6 +103,18 @@ pub(crate) fn run(args: Args) -> Result<()> {
     }
     print::message("Ctrl-C ends the studio");
     running.serve_until_interrupted(ends)
+}
+
+/// The documents of a picture of the report.
+fn pictured(name: Option<&str>, folder: Option<&Path>) -> Result<Vec<ReportDocument>> {
+    let Some(name) = name else {
+        return Ok(Vec::new());
+    };
+    if let Some(folder) = folder {
+        // Documents that ship need no folder, but one that is named is there.
+        std::fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
+    }
+    documents(name, folder.unwrap_or(Path::new("reports")))
 }
 
 /// Asks whether the studio is to end with unsaved work; without a terminal it ends.

@@ -20,6 +20,8 @@ pub struct Section {
     pub absent: Vec<String>,
     /// The command that makes it.
     pub command: String,
+    /// The command that opens its documents in the studio; none for most.
+    pub studio: Option<String>,
     /// Seed, budget, version, time.
     pub made: String,
     /// Its quantities beside the printed ones.
@@ -163,6 +165,7 @@ fn artefact(slug: &str, s: &Section) -> Markup {
         section id=(format!("{slug}-{}", s.name)) {
             h3 { (s.heading) }
             (markdown::html(&s.markdown, markdown::LinkTargets { folder: slug, files: &s.files }))
+            @if let Some(command) = &s.studio { p.made { "Opened in the studio by " code { (command) } } }
             @if !s.command.is_empty() { p.made { "Made again by " code { (s.command) } } }
             p.made {
                 (s.made) ". Files: "
@@ -188,6 +191,7 @@ mod tests {
             files: vec!["table_1.csv".into()],
             absent: vec!["scene.glb".into()],
             command: "edifice reproduce facade_grammar --only table_1".into(),
+            studio: Some("edifice studio --report facade_grammar/table_1".into()),
             made: "seed 0".into(),
             beside: vec![Beside {
                 quantity: "cost".into(),

@@ -30,6 +30,41 @@ const FILES: &[(&str, &str, &[u8])] = &[
         "text/plain; charset=utf-8",
         include_bytes!("assets/licences.txt"),
     ),
+    (
+        "/examples/boulevard.png",
+        "image/png",
+        include_bytes!("assets/examples/boulevard.png"),
+    ),
+    (
+        "/examples/fig9.png",
+        "image/png",
+        include_bytes!("assets/examples/fig9.png"),
+    ),
+    (
+        "/examples/four.png",
+        "image/png",
+        include_bytes!("assets/examples/four.png"),
+    ),
+    (
+        "/examples/house.png",
+        "image/png",
+        include_bytes!("assets/examples/house.png"),
+    ),
+    (
+        "/examples/modern.png",
+        "image/png",
+        include_bytes!("assets/examples/modern.png"),
+    ),
+    (
+        "/examples/sketch.png",
+        "image/png",
+        include_bytes!("assets/examples/sketch.png"),
+    ),
+    (
+        "/examples/town.png",
+        "image/png",
+        include_bytes!("assets/examples/town.png"),
+    ),
 ];
 
 /// A file of the page.
@@ -40,5 +75,18 @@ pub(crate) async fn asset(method: Method, uri: Uri) -> Response {
             ([(header::CONTENT_TYPE, *kind)], *bytes).into_response()
         }
         _ => StatusCode::NOT_FOUND.into_response(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_has_a_picture() {
+        for example in edifice_editing::examples::examples() {
+            let path = format!("/examples/{}.png", example.id);
+            assert!(FILES.iter().any(|f| f.0 == path), "{path}");
+        }
     }
 }

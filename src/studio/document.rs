@@ -78,6 +78,17 @@ impl Open {
         Ok(open)
     }
 
+    /// Opens a copy of a document that stands elsewhere, which is not written again: it is saved in the present folder.
+    ///
+    /// # Errors
+    /// When no editor knows it.
+    pub fn copy(name: &str, bytes: &[u8]) -> Result<Self> {
+        let start = editing::open(Path::new(name), bytes, &Work::default())?;
+        let mut open = Self::new(start, None);
+        open.source = Some(Source::File(open.folder.join(name), bytes.to_vec()));
+        Ok(open)
+    }
+
     /// Opens an example that is known by its id.
     pub fn example(id: &str, start: Arc<dyn State>) -> Self {
         let mut open = Self::new(start, None);

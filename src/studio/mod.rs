@@ -69,6 +69,8 @@ use edifice_base::Result;
 pub struct Settings {
     /// Files to open.
     pub files: Vec<PathBuf>,
+    /// Documents to open that are copies of what stands elsewhere, each under a file name: they are saved in the present folder.
+    pub copies: Vec<(String, Vec<u8>)>,
     /// Port; 0 takes a free one.
     pub port: u16,
     /// Never write a file.
@@ -105,7 +107,7 @@ const MOST: usize = 200;
 struct TooMany;
 
 impl Studio {
-    /// Opens the files, and finds the unsaved work of studios that ended.
+    /// Opens the files and copies, and finds the unsaved work of studios that ended.
     ///
     /// # Errors
     /// The first file that cannot be read, or that no editor knows.
@@ -120,6 +122,9 @@ impl Studio {
         };
         for path in &settings.files {
             studio.add(Open::file(path)?)?;
+        }
+        for (name, bytes) in &settings.copies {
+            studio.add(Open::copy(name, bytes)?)?;
         }
         Ok(studio)
     }

@@ -1,7 +1,7 @@
 // What stands around every editor: the bar above, the log, the exports.
 
 import * as api from "./api";
-import { button, h, section, tidy } from "./dom";
+import { button, h, section, swap, tidy } from "./dom";
 import type { Session } from "./session";
 
 const KINDS = { house: "House", completion: "Completion", grammar: "Facade by its grammar", city: "City" };
@@ -11,16 +11,19 @@ export function kindName(kind: api.Summary["kind"]): string {
   return KINDS[kind];
 }
 
+/** The beginning of what a command is called. */
+const short = (said: string) => (said.length > 60 ? `${said.slice(0, 59)}…` : said);
+
 /** The bar above an editor. */
 export function bar(session: Session<unknown>, readOnly: boolean, leave: () => void): HTMLElement {
   const name = h("h1", {});
   const kind = h("span", { class: "kind" });
-  const undo = button("Undo", () => session.undo(), { "aria-keyshortcuts": "Control+Z", title: "Ctrl+Z" });
-  const redo = button("Redo", () => session.redo(), { "aria-keyshortcuts": "Control+Shift+Z", title: "Ctrl+Shift+Z" });
+  const undo = button("Undo", () => session.undo(), { "aria-keyshortcuts": "Control+Z", title: "Undo (Ctrl+Z)" });
+  const redo = button("Redo", () => session.redo(), { "aria-keyshortcuts": "Control+Shift+Z", title: "Redo (Ctrl+Shift+Z or Ctrl+Y)" });
   const save = button("Save", () => session.save(), {
     class: "primary",
     "aria-keyshortcuts": "Control+S",
-    title: readOnly ? "The studio was started with --read-only" : "Ctrl+S",
+    title: readOnly ? "The studio was started with --read-only" : "Write the file, and its commands as a script (Ctrl+S)",
     disabled: readOnly,
   });
   const seed = h("input", { type: "number", min: 0, step: 1, value: session.seed, "aria-label": "Seed" });
@@ -38,6 +41,10 @@ export function bar(session: Session<unknown>, readOnly: boolean, leave: () => v
     kind.textContent = kindName(session.doc.kind);
     undo.disabled = session.busy || !session.doc.undo;
     redo.disabled = session.busy || !session.doc.redo;
+    const { log } = session.doc;
+    const at = log.filter((l) => l.done).length;
+    undo.title = at > 0 ? `Undo ${short(log[at - 1].said)} (Ctrl+Z)` : "Nothing to undo (Ctrl+Z)";
+    redo.title = at < log.length ? `Redo ${short(log[at].said)} (Ctrl+Shift+Z or Ctrl+Y)` : "Nothing to redo (Ctrl+Shift+Z or Ctrl+Y)";
   };
   session.onWork(show);
   show();
@@ -74,7 +81,7 @@ export function progress(session: Session<unknown>): HTMLElement {
 /** The list of commands, and what the document can be written as. */
 export function footer(session: Session<unknown>): HTMLElement {
   const log = h("ol", { class: "log" });
-  const empty = h("p", { class: "hint" }, "Nothing was changed yet. Each edit is a command that is listed here.");
+  const empty = h("p", { class: "hint" }, "Nothing was changed yet. Each edit is a command that is listed here; a click goes back to it.");
   const time = h("p", { class: "hint" });
   const exports = h("div", { class: "row" });
   const keep = async (blob: Promise<Blob>, name: string) => {
@@ -86,7 +93,15 @@ export function footer(session: Session<unknown>): HTMLElement {
   };
   const show = () => {
     const { doc } = session;
-    log.replaceChildren(...doc.log.map((l) => h("li", { class: l.done ? "" : "undone" }, l.said)));
+    const at = doc.log.filter((l) => l.done).length;
+    const moment = (said: string, count: number, done: boolean) =>
+      h("li", { class: done ? "" : "undone" }, button(said, () => session.to(count), {
+        class: "quiet",
+        "aria-current": count === at ? "step" : null,
+        disabled: session.busy,
+        title: count < at ? "Undo all that came after" : count > at ? "Redo up to here" : "As it is shown",
+      }));
+    swap(log, ...(doc.log.length > 0 ? [moment("As it was opened", 0, true)] : []), ...doc.log.map((l, k) => moment(l.said, k + 1, l.done)));
     empty.hidden = doc.log.length > 0;
     time.textContent = doc.milliseconds > 0 ? `Last edit: ${tidy(doc.milliseconds, 0)} ms` : "";
     exports.replaceChildren(
@@ -97,6 +112,9 @@ export function footer(session: Session<unknown>): HTMLElement {
     );
   };
   session.onChange(show);
+  session.onWork(() => {
+    for (const step of log.querySelectorAll("button")) step.disabled = session.busy;
+  });
   show();
   return h("div", {}, section("Commands", empty, log, time), section("Download", exports));
 }

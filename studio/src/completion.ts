@@ -239,6 +239,13 @@ export function completion(session: Session<View>): Editor<View> {
     };
   }
 
+  /** What a tool does, and by which keys. */
+  const tips: Record<string, string> = {
+    select: "Click or drag an element; Shift adds to the selection, arrow keys move it, Delete removes it, Escape lets go",
+    unknown: "Drag over a part of which nothing is known",
+    forbid: "Drag over a part that is to stay empty",
+  };
+
   function toolbar(view: View) {
     const all: [string, string][] = [
       ["select", "Select"],
@@ -263,7 +270,7 @@ export function completion(session: Session<View>): Editor<View> {
         button(name, () => {
           tool = id;
           show(session.doc);
-        }, { "aria-pressed": String(tool === id), class: `tool ${id}` }),
+        }, { "aria-pressed": String(tool === id), class: `tool ${id}`, title: tips[id] ?? `Drag over the wall: ${id}` }),
       ),
       view.original === null ? null : button("Straighten", () => straightenOriginal(view.original!), { class: "tool" }),
       h("label", { class: "tool file" }, "Photograph", file),
@@ -275,7 +282,7 @@ export function completion(session: Session<View>): Editor<View> {
     const own = view.elements.filter((e) => selected.has(e.id));
     if (own.length === 0) return section("Element", h("p", { class: "hint" }, "Select an element, or draw one with a tool above. Shift adds to the selection."));
     if (own.length > 1)
-      return section(`${own.length} elements`, h("p", { class: "hint" }, "They move together."), button("Remove", () => edit(...own.map((e) => `remove ${e.id}`)), { class: "quiet" }));
+      return section(`${own.length} elements`, h("p", { class: "hint" }, "They move together."), button("Remove", () => edit(...own.map((e) => `remove ${e.id}`)), { class: "quiet", title: "Remove them (Delete, while the drawing is in focus)" }));
     const [e] = own;
     const label = h("select", { "aria-label": "Label" }, ...[...new Set([...view.labels, e.label])].map((l) => h("option", { value: l, selected: l === e.label }, l)));
     label.addEventListener("change", () => edit(`relabel ${e.id}=${label.value}`));
@@ -297,7 +304,7 @@ export function completion(session: Session<View>): Editor<View> {
         "div",
         { class: "row" },
         e.observed ? null : button(e.pinned ? "Unpin" : "Pin", () => again({ pins: pins() })),
-        button("Remove", () => edit(`remove ${e.id}`), { class: "quiet" }),
+        button("Remove", () => edit(`remove ${e.id}`), { class: "quiet", title: "Remove it (Delete, while the drawing is in focus)" }),
       ),
     );
   }
@@ -355,8 +362,8 @@ export function completion(session: Session<View>): Editor<View> {
       inspector(view),
       marks.length > 0 ? section("Marked", h("div", { class: "row" }, ...marks)) : null,
       section(
-        "Outline",
-        h("div", { class: "fields" }, field(`Width (${view.unit})`, view.width, (v) => edit(`outline ${four(v)},${four(view.height)}`)), field(`Height (${view.unit})`, view.height, (v) => edit(`outline ${four(view.width)},${four(v)}`))),
+        `Outline (${view.unit})`,
+        h("div", { class: "fields" }, field("Width", view.width, (v) => edit(`outline ${four(v)},${four(view.height)}`)), field("Height", view.height, (v) => edit(`outline ${four(view.width)},${four(v)}`))),
       ),
     );
   }

@@ -360,8 +360,8 @@ export function grammar(session: Session<View>): Editor<View> {
       inspector(view),
       section("Grammar", h("p", { class: "hint" }, `${view.rules.length} rules, cost ${tidy(view.cost)}${proof}; ${view.terminals.length} terminal regions`), h("ol", { class: "rules" }, ...rules)),
       section(
-        "Size",
-        h("div", { class: "fields" }, field(`Width (${view.unit})`, view.width, (v) => set(v, view.height)), field(`Height (${view.unit})`, view.height, (v) => set(view.width, v))),
+        `Size (${view.unit})`,
+        h("div", { class: "fields" }, field("Width", view.width, (v) => set(v, view.height)), field("Height", view.height, (v) => set(view.width, v))),
         h(
           "div",
           { class: "row" },

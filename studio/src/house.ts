@@ -70,7 +70,7 @@ export function house(session: Session<View>): Editor<View> {
   const walking = button("Walk around", () => {
     const on = view.walk(walking.getAttribute("aria-pressed") !== "true");
     walking.setAttribute("aria-pressed", String(on));
-  }, { class: "quiet", "aria-pressed": "false", title: "Arrow keys walk and turn, a drag looks around" });
+  }, { class: "quiet", "aria-pressed": "false", title: "Arrow keys or W, A, S, D walk and turn, a drag looks around" });
   const stage = h(
     "div",
     { class: "stage two" },
@@ -193,7 +193,7 @@ export function house(session: Session<View>): Editor<View> {
         field("Depth", b.depth, (v) => resizeTo(i, b.width, v, b.height), { min: 0.5 }),
         field("Height", b.height, (v) => resizeTo(i, b.width, b.depth, v), { min: 1 }),
       ),
-      h("div", { class: "row" }, h("span", { class: "hint" }, `${b.floors} ${b.floors === 1 ? "floor" : "floors"}, ${doc.view.locked[i] ? "fixed by you" : "given"}`), button("Remove", () => edit(`remove ${i}`), { class: "quiet" })),
+      h("div", { class: "row" }, h("span", { class: "hint" }, `${b.floors} ${b.floors === 1 ? "floor" : "floors"}, ${doc.view.locked[i] ? "fixed by you" : "given"}`), button("Remove", () => edit(`remove ${i}`), { class: "quiet", title: "Remove it (Delete, while the plan is in focus)" })),
     );
   }
 

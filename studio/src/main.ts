@@ -57,8 +57,8 @@ function ago(seconds: number): string {
 
 async function start(): Promise<void> {
   const all = await api.listing();
-  const card = (title: string, about: string, kind: api.Summary["kind"], act: () => void) =>
-    h("li", {}, h("button", { type: "button", class: "card", onclick: act }, h("span", { class: "kind" }, kindName(kind)), h("strong", {}, title), h("span", {}, about)));
+  const card = (title: string, about: string, kind: api.Summary["kind"], act: () => void, picture?: string) =>
+    h("li", {}, h("button", { type: "button", class: "card", onclick: act }, picture ? h("img", { src: picture, alt: "", width: 320, height: 180 }) : null, h("span", { class: "kind" }, kindName(kind)), h("strong", {}, title), h("span", {}, about)));
   /** A card with a button in its corner. */
   const removable = (item: HTMLElement, text: string, label: string, act: () => Promise<unknown>) => {
     item.append(button(text, () => act().then(start).catch(fail), { class: "quiet remove", "aria-label": label }));
@@ -88,7 +88,7 @@ async function start(): Promise<void> {
       fail(error);
     }
   };
-  const examples = all.examples.map((e) => card(e.title, e.about, e.kind, openBy(e.title, (tell) => api.openExample(e.id, tell))));
+  const examples = all.examples.map((e) => card(e.title, e.about, e.kind, openBy(e.title, (tell) => api.openExample(e.id, tell)), `/examples/${e.id}.png`));
   /** Begins a drawing over a photograph. */
   const photograph = async (file: File) => {
     try {

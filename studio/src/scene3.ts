@@ -35,6 +35,7 @@ export class Scene3 {
   private controls: OrbitControls | null = null;
   private sun = new THREE.DirectionalLight(0xfff4e2, 2.4);
   private ground: THREE.Mesh;
+  private plate: THREE.Mesh;
   /** Told when the view was turned, or somebody walked. */
   onMove: () => void = () => {};
   private size = 0;
@@ -49,7 +50,10 @@ export class Scene3 {
     this.ground = new THREE.Mesh(new THREE.CircleGeometry(1, 64), new THREE.ShadowMaterial({ opacity: 0.16 }));
     this.ground.rotateX(-Math.PI / 2);
     this.ground.receiveShadow = true;
-    this.scene.add(this.ground);
+    // A plate to stand on, which catches the eye less than what stands on it.
+    this.plate = new THREE.Mesh(new THREE.CircleGeometry(1, 96), new THREE.MeshBasicMaterial({ color: dark.matches ? 0x2a3037 : 0xefece6 }));
+    this.plate.rotateX(-Math.PI / 2);
+    this.scene.add(this.plate, this.ground);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0004;
@@ -113,6 +117,7 @@ export class Scene3 {
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
     this.element.querySelector("canvas")?.focus();
+    this.plate.scale.setScalar(40 * ball.radius);
     this.draw();
     return true;
   }
@@ -197,6 +202,22 @@ export class Scene3 {
     });
   }
 
+  /** How far from a point in this direction the camera stands to hold a box with a margin. */
+  private distance(box: THREE.Box3, centre: THREE.Vector3, away: THREE.Vector3): number {
+    const right = new THREE.Vector3(0, 1, 0).cross(away).normalize();
+    const up = away.clone().cross(right);
+    const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
+    const aspect = (this.element.clientWidth || 1) / (this.element.clientHeight || 1);
+    let far = 0;
+    for (let k = 0; k < 8; k++) {
+      const side = (bit: number, axis: "x" | "y" | "z") => ((k >> bit) & 1 ? box.max : box.min)[axis];
+      const corner = new THREE.Vector3(side(0, "x"), side(1, "y"), side(2, "z")).sub(centre);
+      const wide = Math.max(Math.abs(corner.dot(up)), Math.abs(corner.dot(right)) / aspect);
+      far = Math.max(far, (1.08 * wide) / tangent + corner.dot(away));
+    }
+    return far;
+  }
+
   /** Looks at all of the content, the first time and when it has grown or shrunk much. */
   frame(from: [number, number, number], again = false) {
     const box = new THREE.Box3().setFromObject(this.content);
@@ -204,6 +225,8 @@ export class Scene3 {
     const ball = box.getBoundingSphere(new THREE.Sphere());
     this.ground.scale.setScalar(ball.radius * 3);
     this.ground.position.set(ball.center.x, box.min.y - 0.01, ball.center.z);
+    this.plate.position.set(ball.center.x, box.min.y - 0.004 * ball.radius - 0.02, ball.center.z);
+    this.plate.scale.setScalar(this.walks ? 40 * ball.radius : 0.55 * Math.hypot(box.max.x - box.min.x, box.max.z - box.min.z));
     if (this.walks) return;
     this.sun.position.copy(ball.center).add(new THREE.Vector3(-0.9, 1.5, 1.1).multiplyScalar(ball.radius * 2));
     this.sun.target.position.copy(ball.center);
@@ -215,11 +238,9 @@ export class Scene3 {
     // From where the user looks at it, once there was something to look at.
     const turned = this.size > 0 && this.controls ? this.camera.position.clone().sub(this.controls.target) : new THREE.Vector3(...from);
     this.size = ball.radius;
-    // The narrower side of the picture holds the whole.
-    const narrow = Math.min(1, (this.element.clientWidth || 1) / (this.element.clientHeight || 1));
-    const distance = (ball.radius / Math.sin((this.camera.fov * Math.PI) / 360) / narrow) * 0.9;
-    const away = turned.normalize().multiplyScalar(distance);
-    this.camera.position.copy(ball.center).add(away);
+    const away = turned.normalize();
+    const distance = this.distance(box, ball.center, away);
+    this.camera.position.copy(ball.center).add(away.multiplyScalar(distance));
     this.camera.near = distance / 100;
     this.camera.far = distance * 10;
     this.camera.updateProjectionMatrix();

@@ -148,6 +148,19 @@ export class Session<View = never> {
     await this.calmly(async () => this.take(await api.redo(this.doc as api.Doc)));
   }
 
+  /** Goes back or forward to the moment after so many edits. */
+  async to(count: number) {
+    if (this.busy) return;
+    const done = () => this.doc.log.filter((l) => l.done).length;
+    await this.calmly(async () => {
+      while (done() !== count) {
+        const [before, back] = [done(), done() > count];
+        this.take(await (back ? api.undo : api.redo)(this.doc as api.Doc));
+        if (done() === before) return;
+      }
+    });
+  }
+
   async save() {
     await this.calmly(async () => {
       let done: { file: string; script: string };

@@ -36,9 +36,14 @@ impl Process {
             &[env!("CARGO_BIN_EXE_edifice"), "studio", "--no-open"],
         ]
         .concat();
-        let mut child = Command::new(words[0])
-            .args(&words[1..])
-            .arg(file)
+        let mut command = Command::new(words[0]);
+        command.args(&words[1..]).arg(file);
+        Self::run(command, state)
+    }
+
+    /// Runs a command that is a studio.
+    pub(crate) fn run(mut command: Command, state: &Path) -> Self {
+        let mut child = command
             .env("XDG_STATE_HOME", state)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -14,6 +14,7 @@ mod jobs;
 mod limits;
 mod photograph;
 mod recovery;
+mod report;
 mod saving;
 mod scripts;
 mod secrets;

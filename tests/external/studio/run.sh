@@ -3,7 +3,7 @@
 # playwright-core and axe-core from npm into a folder of its own, and chromium from Debian where there is none.
 #   tests/external/studio/run.sh [EDIFICE] [SCREENSHOTS] [SCRIPT [ARGUMENT]]
 # EDIFICE is the program (built by cargo where it is not given); pictures go to SCREENSHOTS, a new folder by default;
-# SCRIPT is stories.mjs (ARGUMENT: one story) or speed.mjs (page times of 200 edits of each editor).
+# SCRIPT is stories.mjs (ARGUMENT: one story), speed.mjs (page times of 200 edits of each editor) or thumbnails.mjs (pictures of the examples).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../../.."
 
