@@ -9,6 +9,7 @@ use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::{Database, Options, generate};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, search};
+use edifice_io::building_json;
 use edifice_io::scene_png::picture_png;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Chart, Figure, Scale, Series, Table};
@@ -131,6 +132,12 @@ pub(crate) fn figure_15(ctx: &mut Context) -> Result<()> {
     ctx.attach("figure_15.png", &bytes, "six synthesized houses")?;
     let glb = edifice_io::gltf::to_bytes(&scene).map_err(Error::method)?;
     ctx.attach("figure_15.glb", &glb, "the same as a scene")?;
+    for house in &houses {
+        let name = &house.building.name;
+        let text = building_json::to_string(&house.building).map_err(Error::method)?;
+        let file = format!("figure_15_{name}.building.json");
+        ctx.attach(&file, text.as_bytes(), name)?;
+    }
     let mut out = Table::new("Six houses drawn from the model, one of each of the first styles")
         .column("house", Align::Left)
         .numbers([

@@ -6,6 +6,7 @@ use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_io::city::grammar_json;
 use edifice_io::city::picture::side_by_side;
 use edifice_report::{Align, Table};
 
@@ -66,6 +67,12 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             side_by_side(&[&derivation.city(&new)], width, width * 3 / 4).map_err(Error::method)?;
         let what = format!("{name}: {} buildings in the shape 3DV", j.buildings);
         ctx.attach(&format!("figure_9_{name}.png"), &picture, &what)?;
+        if name == data::MADE {
+            // That of a real city holds its data.
+            let text = grammar_json::to_string(&new).map_err(Error::method)?;
+            let file = format!("figure_9_{name}.city-grammar.json");
+            ctx.attach(&file, text.as_bytes(), "the same as a grammar of instances")?;
+        }
     }
     ctx.table(&table);
     ctx.note("W1/std: Wasserstein distance of the sizes of buildings, and of the distances to the nearest one, over the standard deviation in the original. Divergence: Jensen-Shannon, of how often types stand within 30 m; floor between random halves of the original (squares of 100 m), shuffled with the types of the new city in random order. Overlap and inside: shares of plan area. Fill: built share of the shape over that of the original.");

@@ -210,6 +210,32 @@ const stories = {
     return faults;
   },
 
+  /** The document of a picture of the report, edited: its cost changes, and it is saved in the present folder. */
+  async pictured(_server, context) {
+    const server = await studio(["--report", "facade_grammar/figure_15/townhouse_1"]);
+    const { page, faults } = await open(context, server.address);
+    await page.getByRole("button", { name: /townhouse_1/ }).first().click();
+    const before = (await shown(page)).view;
+    await press(page, before.terminals.findIndex((t) => /window/i.test(t[0])));
+    const cost = page.getByText(/^\d+ rules, cost/);
+    const said = await cost.textContent();
+    const doc = await changed(page, async () => {
+      const symbol = page.getByLabel("Symbol of part 1");
+      await symbol.fill("Shop");
+      await symbol.press("Enter");
+    });
+    assert.notEqual(doc.view.cost, before.cost);
+    assert.notEqual(await cost.textContent(), said);
+    // Back and forward by the list of commands.
+    await changed(page, () => page.getByRole("button", { name: "As it was opened" }).click());
+    assert.equal((await shown(page)).view.cost, before.cost);
+    await changed(page, () => page.getByRole("button", { name: doc.log[0].said }).click());
+    await picture(page, "pictured");
+    await saved(server, page, ".grammar.json");
+    assert.equal(await server.end(), 0);
+    return faults;
+  },
+
   /** Names stay text. */
   async names(_server, context) {
     const folder = mkdtempSync(join(tmpdir(), "studio-"));
