@@ -6,6 +6,7 @@ mod elimination;
 mod encoding;
 mod factor_graph;
 mod files;
+mod fitted;
 mod gmm;
 mod gmm_missing;
 mod hierarchy;
