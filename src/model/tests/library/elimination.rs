@@ -1,9 +1,9 @@
 //! Variable elimination against enumeration, on random factors; approximate answers against exact ones.
 
+use edifice_base::rng::{Stream, stream};
 use edifice_model::ModelError;
 use edifice_model::elimination::{BucketTree, Factor, Mode, Order};
 use edifice_model::network::{Evidence, Network, Variable};
-use edifice_base::rng::{Stream, stream};
 use proptest::prelude::*;
 use rand::RngExt;
 

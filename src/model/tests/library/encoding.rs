@@ -1,5 +1,6 @@
 //! Atoms, transforms and edges from categories: densities integrate to one, and nothing is lost on the way.
 
+use edifice_base::rng::{Stream, stream};
 use edifice_model::hierarchy::{Group, Settings, learn};
 use edifice_model::network::Evidence;
 use edifice_model::tables::Dataset;
@@ -8,7 +9,6 @@ use edifice_model::tables::encoding::Encoding;
 use edifice_model::tables::learn::extended;
 use edifice_model::tables::transform::{Bounds, Tails, Transform};
 use edifice_model::{Cell, Table};
-use edifice_base::rng::{Stream, stream};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

@@ -1,8 +1,8 @@
 //! Bayesian networks: every answer against enumeration of the joint, on random networks.
 
+use edifice_base::rng::stream;
 use edifice_model::network::{Evidence, FitSettings, Network, Variable};
 use edifice_model::{Cell, ModelError};
-use edifice_base::rng::stream;
 use proptest::prelude::*;
 use rand::RngExt;
 

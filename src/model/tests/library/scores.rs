@@ -119,9 +119,8 @@ fn mode_is_a_maximum_of_the_posterior() {
         .collect();
     let m = scatter(&rows);
     let mode = PRIOR.mode(&m, 2, 1).unwrap();
-    let at = |l: &edifice_model::conjugate::Linear| {
-        l.expected_log_likelihood(&m) + PRIOR.log_density(l)
-    };
+    let at =
+        |l: &edifice_model::conjugate::Linear| l.expected_log_likelihood(&m) + PRIOR.log_density(l);
     let best = at(&mode);
     let (b, s) = (mode.coefficients().to_vec(), mode.covariance().to_vec());
     for (i, delta) in [

@@ -1,8 +1,8 @@
 //! Softmax weights learned inside networks: stationary points, known weights, hidden parents and children, units.
 
+use edifice_base::rng::stream;
 use edifice_model::Table;
 use edifice_model::network::{FitSettings, Network, Variable};
-use edifice_base::rng::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

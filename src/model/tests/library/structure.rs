@@ -3,10 +3,10 @@
 
 use std::collections::HashMap;
 
+use edifice_base::rng::stream;
 use edifice_model::network::structure::{Score, SearchSettings, score, search};
 use edifice_model::network::{Evidence, Network};
 use edifice_model::{Cell, ModelError, Table};
-use edifice_base::rng::stream;
 use proptest::prelude::*;
 use rand::RngExt;
 use statrs::function::gamma::ln_gamma;

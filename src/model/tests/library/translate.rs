@@ -1,9 +1,9 @@
 //! Two engines, one distribution: hierarchical models and the networks that they are.
 
+use edifice_base::rng::stream;
 use edifice_model::hierarchy::{Group, Hierarchy, Settings, Variant, learn};
 use edifice_model::network::Evidence;
 use edifice_model::{Cell, Table};
-use edifice_base::rng::stream;
 use rand::RngExt;
 
 const VARIANTS: [Variant; 4] = [
