@@ -18,7 +18,7 @@ pub(crate) fn left(ctx: &mut Context) -> Result<()> {
     ctx.setting("most_real_houses", most);
     let mut sets = vec![("shipped", shipped.data)];
     sets.extend(data::real(ctx, most)?);
-    let splits: u64 = ctx.budget().choose(1, 5, 5);
+    let splits: u64 = ctx.budget().choose(1, 2, 5);
     let mut units = Vec::new();
     for set in 0..sets.len() {
         for index in 0..splits {
@@ -176,7 +176,7 @@ pub(crate) fn right(ctx: &mut Context) -> Result<()> {
         vec![20, 40, 60, 80, 100, 120, 140, 160],
     );
     ctx.setting("sizes", sizes.clone());
-    let splits: u64 = ctx.budget().choose(1, 3, 5);
+    let splits: u64 = ctx.budget().choose(1, 2, 5);
     let mut units = Vec::new();
     for &size in &sizes {
         units.extend((0..splits).map(|index| (size, index)));

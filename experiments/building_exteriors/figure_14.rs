@@ -39,7 +39,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let settings = settings(ctx);
     let draws = ctx.budget().choose(5, 100, 500);
     ctx.setting("draws", draws);
-    let splits: Vec<u64> = (0..ctx.budget().choose(1, 3, 5)).collect();
+    let splits: Vec<u64> = (0..ctx.budget().choose(1, 2, 5)).collect();
     let seed = ctx.seed();
     let all = &shipped.data;
     let outcomes: Vec<Outcome> = ctx.units(

@@ -21,8 +21,8 @@ use edifice_shape::solid::faces;
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
-    let many = ctx.budget().choose(5, 100, 200);
-    let whole = ctx.budget().choose(10, 100, 1000);
+    let many = ctx.budget().choose(5, 30, 200);
+    let whole = ctx.budget().choose(10, 30, 1000);
     ctx.setting("houses", many);
     ctx.setting("whole_houses", whole);
     let row = |i: usize| -> [f64; 49] {

@@ -48,7 +48,7 @@ type Unit = (usize, Solver, usize, u64);
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let readings = readings();
     let (few, many) = iterations(ctx.budget());
-    let seeds = ctx.budget().choose(2, 30, 100);
+    let seeds = ctx.budget().choose(2, 12, 100);
     ctx.setting("iterations", vec![few, many]);
     ctx.setting("seeds_facade_i", seeds);
     let described = readings.iter().map(|(name, r)| format!("{name}: {r:?}"));

@@ -88,7 +88,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         _ => policy::Budget::PAPER,
     };
     let candidates = budget.candidates();
-    let searched = ctx.budget().choose(2, 25, 100);
+    let searched = ctx.budget().choose(2, 10, 100);
     let paper = policy::paper_model(&model);
     let paper = paper.ok_or_else(|| Error::option("--data", "no layout with elements"))?;
     for task in Task::ALL {

@@ -2,6 +2,11 @@
 
 use std::borrow::Cow;
 
+/// Texts that commonly mean "not known", in any table.
+pub const MISSING: [&str; 10] = [
+    "", "NA", "N/A", "NaN", "nan", "null", "NULL", "#N/A", "<NA>", "?",
+];
+
 /// A cell that reads back as `text`: in quotation marks where it has a comma, a quotation mark or an end of line.
 ///
 /// # Examples

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::packed::unpacked;
 use super::read_bytes;
-use super::table_text::{points, refuse, separator};
+use super::table_text::{mixed, points, refuse, separator};
 use edifice_base::{Error, Result};
 
 /// Most cells of a table: a compressed one may have half as many as bytes, each a text of its own.
@@ -44,9 +44,9 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
         Error::input(path, format!("line {line}"), e)
     };
     refuse(&text, path)?;
-    let mark = separator(&text);
+    let (mark, skipped) = separator(&text, path)?;
     let mut reader = csv::ReaderBuilder::new();
-    let mut reader = reader.delimiter(mark).from_reader(text.as_slice());
+    let mut reader = reader.delimiter(mark).from_reader(&text[skipped..]);
     let header = reader.headers().map_err(at)?;
     let mut header: Vec<String> = header.iter().map(str::to_owned).collect();
     let mut notes = Vec::new();
@@ -67,6 +67,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
         return Err(Error::content(path, "the table has no rows"));
     }
     notes.extend(points(&header, &mut rows, mark, path)?);
+    notes.extend(mixed(&header, &rows));
     Ok(TextTable {
         header,
         rows,

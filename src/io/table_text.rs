@@ -1,18 +1,19 @@
 //! The text of tables before it is cut into cells: what is no CSV, which separator it has, and numbers written with commas.
 //!
 //! A separator is looked for where the header line has no comma: among `;`, tab and `|` the one that stands in the header and equally often in
-//! each of the first lines (outside of quotes). A column whose known cells are all numbers, some of them with commas, is read with
+//! each of the first lines (outside of quotes), or that a first line names (`sep=;`). A column whose known cells are all numbers, some of them with commas, is read with
 //! points: decimal commas (`1,5`), thousands (`1,234` in a table separated by commas, `1.234,5` elsewhere). Where every such number could be either
 //! (`1,234` in a table separated by something else), the column is refused: the reader would guess.
 
 use std::path::Path;
 
+use edifice_base::csv::MISSING;
 use edifice_base::{Error, Result};
 
 /// Lines that a separator is judged by.
 const LINES: usize = 100;
-/// Texts that commonly mean "not known".
-const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
+/// Separators that a table may have instead of the comma.
+const OTHERS: [char; 3] = [';', '\t', '|'];
 
 /// Refuses files that are no text of a table, by name.
 ///
@@ -38,8 +39,9 @@ pub(crate) fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
         return refused(kind);
     }
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
+    let text = text.trim_start_matches('\u{feff}');
     // ARFF may begin with comments.
-    let first = text.trim_start_matches('\u{feff}').lines().map(str::trim);
+    let first = text.lines().map(str::trim);
     let first = first
         .into_iter()
         .find(|l| !l.is_empty() && !l.starts_with('%'));
@@ -66,11 +68,62 @@ pub(crate) fn refuse(bytes: &[u8], path: &Path) -> Result<()> {
     }
 }
 
-/// The separator of a table.
-pub(crate) fn separator(text: &[u8]) -> u8 {
+/// The separator of a table, and the bytes of a line in front of the header that only names it (`sep=;`, written by spreadsheets).
+///
+/// # Errors
+/// [`Error::Content`] where cells are separated by blanks, and where a comma and another mark stand in each line equally often.
+pub(crate) fn separator(text: &[u8], path: &Path) -> Result<(u8, usize)> {
     let text = String::from_utf8_lossy(&text[..text.len().min(1 << 20)]);
-    let mut lines: Vec<Vec<char>> = Vec::new();
-    let (mut line, mut quoted) = (Vec::new(), false);
+    if let Some((mark, length)) = named(&text) {
+        return Ok((mark, length));
+    }
+    let lines = unquoted(&text);
+    let count = |line: &str, c: char| line.matches(c).count();
+    let Some(header) = lines.first() else {
+        return Ok((b',', 0));
+    };
+    let fits = |c: char| {
+        let expected = count(header, c);
+        expected > 0 && lines.iter().all(|l| count(l, c) == expected)
+    };
+    let others = OTHERS.into_iter().filter(|c| fits(*c));
+    let found = others.max_by_key(|c| count(header, *c));
+    match found {
+        Some(mark) if fits(',') => {
+            let message = format!(
+                "cells may be separated by ',' or by {mark:?}, which stand in every line equally often: put texts with either in quotes"
+            );
+            Err(Error::content(path, message))
+        }
+        _ if header.contains(',') => Ok((b',', 0)),
+        Some(mark) => Ok((mark as u8, 0)),
+        None if are_parted_by_blanks(&lines) => {
+            let message = "cells seem to be separated by blanks: save the table as CSV";
+            Err(Error::content(path, message))
+        }
+        None => Ok((b',', 0)),
+    }
+}
+
+/// A first line that only names the separator, and its length.
+fn named(text: &str) -> Option<(u8, usize)> {
+    let line = text.lines().next()?;
+    let mark = line
+        .trim_start_matches('\u{feff}')
+        .trim_end_matches('\r')
+        .strip_prefix("sep=")?;
+    let mark = mark
+        .chars()
+        .next()
+        .filter(|c| *c == ',' || OTHERS.contains(c))?;
+    let length = text.find('\n')? + 1;
+    Some((mark as u8, length))
+}
+
+/// The first lines that are not blank, without what stands in quotes.
+fn unquoted(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    let (mut line, mut quoted) = (String::new(), false);
     for c in text.chars() {
         match c {
             '"' => quoted = !quoted,
@@ -87,23 +140,24 @@ pub(crate) fn separator(text: &[u8]) -> u8 {
     if !line.is_empty() && lines.len() < LINES {
         lines.push(line);
     }
-    lines.retain(|l| l.iter().any(|c| !c.is_whitespace()));
-    let count = |line: &[char], c: char| line.iter().filter(|x| **x == c).count();
-    let Some(header) = lines.first() else {
-        return b',';
-    };
-    if count(header, ',') > 0 {
-        return b',';
-    }
-    let fits = |c: &&char| {
-        let expected = count(header, **c);
-        expected > 0 && lines.iter().all(|l| count(l, **c) == expected)
-    };
-    let found = [';', '\t', '|']
+    lines.retain(|l| !l.trim().is_empty());
+    lines
+}
+
+/// True if every line has the same number of words, more than one, and one of its columns of words has only numbers below the header.
+fn are_parted_by_blanks(lines: &[String]) -> bool {
+    let words: Vec<Vec<&str>> = lines
         .iter()
-        .filter(fits)
-        .max_by_key(|c| count(header, **c));
-    found.map_or(b',', |c| *c as u8)
+        .map(|l| l.split_whitespace().collect())
+        .collect();
+    let Some((header, rows)) = words.split_first() else {
+        return false;
+    };
+    let all_numbers = |c: usize| rows.iter().all(|r| r[c].parse::<f64>().is_ok());
+    header.len() > 1
+        && !rows.is_empty()
+        && rows.iter().all(|r| r.len() == header.len())
+        && (0..header.len()).any(all_numbers)
 }
 
 /// A number with commas.
@@ -217,6 +271,27 @@ pub(crate) fn points(
         notes.push(format!("column `{name}`: numbers with {what}"));
     }
     Ok(notes)
+}
+
+/// A sentence for each column most of whose known cells are numbers, but not all: it will be read as categories or text.
+pub(crate) fn mixed(header: &[String], rows: &[Vec<String>]) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (c, name) in header.iter().enumerate() {
+        let cells = rows.iter().filter_map(|r| r.get(c)).map(|t| t.trim());
+        let known: Vec<&str> = cells.filter(|t| !MISSING.contains(t)).collect();
+        let others = known.iter().filter(|t| commas(t).is_none());
+        let count = others.clone().count();
+        if let Some(first) = others.clone().next()
+            && 2 * count < known.len()
+        {
+            notes.push(format!(
+                "column `{name}`: {} of {} known cells are numbers, but not {first:?}: the column is no number unless a schema calls that missing",
+                known.len() - count,
+                known.len()
+            ));
+        }
+    }
+    notes
 }
 
 #[cfg(test)]

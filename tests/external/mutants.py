@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Mutation testing of a random sample (needs `cargo install cargo-mutants --locked`).
 
-    tests/external/mutants.py GROUP NUMBER [--seed S] [--out DIR] [--in TREE]
+    tests/external/mutants.py GROUP NUMBER [--seed S] [--out DIR] [--survivors] --in TREE
 
 GROUP is `proofs` (grammar bounds, cost and derivation of grammars, elimination, expectation maximization, exact solids) or
 `rest` (every other file of the library's crates). The sample is the first NUMBER mutants of the group after a shuffle with the
-seed, so that a larger number holds a smaller one. Each crate's mutants are judged by the crate's own tests
-(`.cargo/mutants.toml`); survivors are written to DIR/missed.txt, to be judged by the end-to-end tests as well. Mutants run in
+seed, so that a larger number holds a smaller one. Each crate's mutants are judged by the crate's unit tests
+(`.cargo/mutants.toml`); with `--survivors` those that they missed are judged by the programs at the root that test the crate
+(`AT_THE_ROOT`) as well. What is left is written to DIR/missed.txt. Mutants run in
 TREE, a clean copy of the repository that is changed in place; outcomes that DIR holds already are kept, so that a run that was
 stopped goes on.
 """
@@ -28,6 +29,19 @@ PROOFS = re.compile(
 )
 # The command line, the studio and the experiments are judged end to end.
 ELSEWHERE = re.compile(r"src/(cli|studio|editing)/|experiments/|datasets/|src/main\.rs")
+# Programs in `tests/` of the root that judge survivors of a crate.
+AT_THE_ROOT = {
+    "edifice-model": ["model"],
+    "edifice-grammar": ["facade_grammar", "generic"],
+    "edifice-facade-grammar": ["facade_grammar"],
+    "edifice-shape": ["generic", "city_proceduralization"],
+    "edifice-layout": ["generic", "facade_grammar"],
+    "edifice-io": ["generic"],
+    "edifice-structure-completion": ["structure_completion"],
+    "edifice-procedural-logic": ["procedural_logic"],
+    "edifice-building-exteriors": ["building_exteriors"],
+    "edifice-city-proceduralization": ["city_proceduralization"],
+}
 KINDS = {"CaughtMutant": "caught", "MissedMutant": "missed", "Unviable": "unviable", "Timeout": "timeout"}
 
 
@@ -45,7 +59,7 @@ def sample(tree, out, group, number, seed):
 
 
 def outcomes(out):
-    """What became of each mutant so far: its name, its kind, the seconds it took."""
+    """What became of each mutant so far: its name, its kind, the seconds it took. Survivors' folders sort last."""
     found = {}
     for path in sorted(out.glob("*/mutants.out/outcomes.json")):
         for outcome in json.loads(path.read_text())["outcomes"]:
@@ -55,9 +69,10 @@ def outcomes(out):
     return found
 
 
-def run(tree, out, package, names):
+def run(tree, out, package, names, survivors=False):
     """Runs one crate's mutants; a folder of its own, so that nothing of an earlier run is lost."""
-    folder = out / f"{package}-{len(list(out.glob(package + '-*')))}"
+    stem = f"zz-{package}" if survivors else package
+    folder = out / f"{stem}-{len(list(out.glob(stem + '-*')))}"
     folder.mkdir(parents=True)
     command = ["cargo", "mutants", "--in-place", "--package", package, "--output", folder, "--no-times", "--colors=never"]
     for name in names:
@@ -65,6 +80,9 @@ def run(tree, out, package, names):
     # Mutants that delete a field of a struct pass every `--re` (cargo-mutants 27.1): only the files of the sample are asked.
     for file in sorted({name.split(":")[0] for name in names}):
         command += ["--file", file]
+    if survivors:
+        programs = AT_THE_ROOT.get(package, ["generic"])
+        command += ["--test-package", "edifice", "--"] + [word for p in programs for word in ("--test", p)]
     subprocess.run(command, cwd=tree, check=False)
 
 
@@ -76,6 +94,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("target/mutants"))
     parser.add_argument("--in", dest="tree", type=pathlib.Path, required=True)
+    parser.add_argument("--survivors", action="store_true", help="judge what unit tests missed by the tests at the root")
     parser.add_argument("--chunk", type=int, default=25, help="mutants between two writings of the table")
     arguments = parser.parse_args()
     out = arguments.out.resolve() / arguments.group
@@ -89,6 +108,14 @@ def main():
                 packages.setdefault(package, []).append(name)
         for package, names in sorted(packages.items()):
             run(arguments.tree, out, package, names)
+        table(arguments.group, chosen, outcomes(out), out)
+    if arguments.survivors:
+        known, packages = outcomes(out), {}
+        for name, package in chosen:
+            if known.get(name, ("",))[0] == "missed":
+                packages.setdefault(package, []).append(name)
+        for package, names in sorted(packages.items()):
+            run(arguments.tree, out, package, names, survivors=True)
         table(arguments.group, chosen, outcomes(out), out)
 
 

@@ -208,6 +208,27 @@ fn extensions_never_cost_more_than_split_and_repeat() {
     assert!(extended < 38.1 + 1e-6, "{extended}");
 }
 
+/// Splits alone are allowed wherever more is, so more may not cost more, even where too little work is allowed to prove anything.
+#[test]
+fn more_operations_never_cost_more_than_splits_alone() {
+    for seed in 0..20 {
+        let layout = random_layout_of(32.0, 24.0, seed, 10);
+        let settings = |operations| Settings {
+            operations,
+            iterations: 1 + seed % 3,
+            ..Settings::default()
+        };
+        let splits = cost(&layout, &settings(Operations::split_only()));
+        for operations in [Operations::default(), Operations::all()] {
+            let more = cost(&layout, &settings(operations));
+            assert!(
+                more <= splits + 1e-6,
+                "{seed} {operations}: {more} > {splits}"
+            );
+        }
+    }
+}
+
 /// Six different panes in three columns and two rows: one grid of six cells, 6 + 0.1; nested splits
 /// write the two rows and then the six panes, 2 + 6 + 3 * 0.1.
 #[test]
@@ -291,6 +312,10 @@ fn what_cannot_be_split_is_reported() {
 
 /// A layout made by cutting at random: every such layout can be split by full lines.
 fn random_layout(seed: u64, depth: u32) -> Facade {
+    random_layout_of(8.0, 6.0, seed, depth)
+}
+
+fn random_layout_of(width: f64, height: f64, seed: u64, depth: u32) -> Facade {
     fn cut(rect: Rect, depth: u32, rng: &mut edifice::rng::Stream, regions: &mut Vec<Region>) {
         let across = rng.random::<bool>();
         let extent = if across { rect.width } else { rect.height };
@@ -319,12 +344,12 @@ fn random_layout(seed: u64, depth: u32) -> Facade {
     }
     let mut regions = Vec::new();
     cut(
-        Rect::new(0.0, 0.0, 8.0, 6.0),
+        Rect::new(0.0, 0.0, width, height),
         depth,
         &mut stream(seed, "layout", 0),
         &mut regions,
     );
-    Facade::new("random", "m", 8.0, 6.0, regions).unwrap()
+    Facade::new("random", "m", width, height, regions).unwrap()
 }
 
 #[test]

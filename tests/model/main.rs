@@ -1,21 +1,8 @@
-//! The generic model layer against enumeration, other packages and its own invariances.
+//! Models and tables from files to files: every command of `edifice model`, and linfa beside our mixtures.
 
 mod commands;
-mod density;
-mod elimination;
-mod encoding;
-mod factor_graph;
 mod files;
-mod gmm;
-mod gmm_missing;
-mod hierarchy;
-mod learning;
+mod fitted;
 mod linfa;
-mod network;
 mod relations;
-mod scores;
-mod softmax;
-mod structure;
 mod tables;
-mod translate;
-mod units;

@@ -134,7 +134,7 @@ pub(crate) fn figure_18(ctx: &mut Context) -> Result<()> {
 /// Completes facades with each of some terms left out (`TERMS`: none).
 fn measure(ctx: &mut Context, terms: &[usize]) -> Result<(PaperModel, Vec<Item>, Vec<Vec<Found>>)> {
     let items = facades(ctx)?;
-    let (chosen, rest) = split(&items, ctx.budget().choose(1, 8, 40));
+    let (chosen, rest) = split(&items, ctx.budget().choose(1, 5, 40));
     let model = paper(&rest, ctx.seed())?;
     let budget = ctx
         .budget()

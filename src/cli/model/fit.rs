@@ -13,9 +13,6 @@ use super::data::{Completed, csv_lines, print_table, read_table};
 use super::{network, query};
 use crate::print::{self, Json};
 
-/// Texts that commonly mean "not known".
-const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
-
 /// Options of `fit`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -104,13 +101,13 @@ fn table(network: &Network, text: &TextTable) -> Result<Table, ModelError> {
         table = match categories {
             Some(all) => {
                 let names: Vec<&str> = all.iter().map(String::as_str).collect();
-                let known = |t: &&str| names.contains(t) || !MISSING.contains(t);
+                let known = |t: &&str| names.contains(t) || !csv::MISSING.contains(t);
                 table.categorical(&name, &names, cells.map(|t| Some(t).filter(known)))?
             }
             None => {
                 let mut values = Vec::with_capacity(text.rows.len());
                 for (row, cell) in cells.enumerate() {
-                    let number = match MISSING.contains(&cell) {
+                    let number = match csv::MISSING.contains(&cell) {
                         true => None,
                         false => Some(cell.parse::<f64>().map_err(|_| {
                             let problem = format!("row {}: {cell:?} is not a number", row + 1);

@@ -181,7 +181,7 @@ impl Setup<'_> {
     }
 
     /// Cost of the grammar of some rules (Eq. 1).
-    fn cost(&self, rules: &[AddRule]) -> f64 {
+    pub(crate) fn cost(&self, rules: &[AddRule]) -> f64 {
         let costs = &self.settings.costs;
         rules.iter().map(|r| r.candidate.cost(costs)).sum()
     }

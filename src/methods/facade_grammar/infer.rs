@@ -2,8 +2,9 @@
 
 use super::adp::search::Setup;
 use super::lagrangian::NOISE;
+use super::operations::Operations;
 use super::settings::{InferError, Method, Settings};
-use edifice_base::{Ended, Watch, Watched};
+use edifice_base::{Ended, Progress, Watch, Watched};
 use edifice_grammar::Grammar;
 use edifice_shape::{Facade, splittable};
 
@@ -45,11 +46,15 @@ pub fn infer(
     check(facades)?;
     let watched = Watched::new(watch);
     let search = Setup::new(facades, settings, &watched)?;
-    let (mut lower_bound, mut effective) = (None, None);
+    let (mut lower_bound, mut effective, mut splits) = (None, None, None);
     let rules = match settings.method {
         Method::Lagrangian => {
             let (rules, lower) = search.best(facades)?;
             lower_bound = Some(lower);
+            let unproven = search.cost(&rules) > lower + NOISE && !watched.is_stopped();
+            if unproven && settings.operations != Operations::split_only() {
+                splits = splits_alone(facades, settings, &watched, search.cost(&rules))?;
+            }
             rules
         }
         Method::AdpPaper => search.paper(settings.iterations)?.0,
@@ -67,12 +72,33 @@ pub fn infer(
         Method::Greedy | Method::Bayesian | Method::Symmetry => 1,
     };
     Ok(Outcome {
-        grammar: search.grammar(facades, &rules),
+        grammar: splits.unwrap_or_else(|| search.grammar(facades, &rules)),
         iterations,
         lower_bound,
         effective,
         ended: watched.ended(),
     })
+}
+
+/// The grammar of the default method with splits alone, which more operations allow as well, if it costs less than `cost`. The
+/// fewer rules of splits can be searched where those of all operations are too many. Of this search the watch is told of
+/// stages without a count of steps.
+fn splits_alone(
+    facades: &[Facade],
+    settings: &Settings,
+    watched: &Watched,
+    cost: f64,
+) -> Result<Option<Grammar>, InferError> {
+    let settings = Settings {
+        operations: Operations::split_only(),
+        ..settings.clone()
+    };
+    let stages = |progress: Progress| watched.tell(Progress::stage(progress.stage));
+    let inner = Watched::new(&stages);
+    let search = Setup::new(facades, &settings, &inner)?;
+    let (rules, _) = search.best(facades)?;
+    let cheaper = search.cost(&rules) < cost - NOISE;
+    Ok(cheaper.then(|| search.grammar(facades, &rules)))
 }
 
 /// Grid lines that a layout may have along one axis, and cells in all: what fits in memory.

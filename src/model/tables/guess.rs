@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use edifice_base::csv::MISSING;
 use rustc_hash::FxHashSet;
 
 use super::schema::{Kind, Schema, SchemaError, SchemaGroup};
 
-/// Texts that commonly mean "not known".
-const MISSING: [&str; 7] = ["", "NA", "N/A", "NaN", "nan", "null", "?"];
 /// Different texts up to which a column may be a category, whatever the number of rows.
 const FEW_CATEGORIES: usize = 10;
 /// Different texts beyond which it is free text, whatever the number of rows.

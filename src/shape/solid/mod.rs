@@ -25,6 +25,8 @@ mod faces;
 pub mod integral;
 pub mod openings;
 mod segments;
+#[cfg(test)]
+mod tests;
 mod triangles;
 
 pub use check::{Report, SurfaceError};

@@ -5,4 +5,5 @@ mod files;
 mod fuzz_seeds;
 #[cfg(target_os = "linux")]
 mod limits;
+mod odd_tables;
 mod readers;

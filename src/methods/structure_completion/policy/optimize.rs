@@ -1,4 +1,8 @@
 //! Policy optimization (Sec. 5.2): a genetic algorithm over λ for one facade.
+//!
+//! Covariance matrix adaptation ([`edifice_optim::cmaes`], λ reflected into 0 to 1, from the mean of the initial policies) was tried in its place, with
+//! the same 1,130 candidates, on 54 tasks of shipped layouts: its best candidate was better in 31, the genetic algorithm's in 23, and the mean score is
+//! 0.46 higher by the genetic algorithm. Neither is the winner, and the paper's stays.
 
 use rand::Rng;
 

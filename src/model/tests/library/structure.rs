@@ -3,10 +3,10 @@
 
 use std::collections::HashMap;
 
-use edifice::model::network::structure::{Score, SearchSettings, score, search};
-use edifice::model::network::{Evidence, Network};
-use edifice::model::{Cell, ModelError, Table};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::network::structure::{Score, SearchSettings, score, search};
+use edifice_model::network::{Evidence, Network};
+use edifice_model::{Cell, ModelError, Table};
 use proptest::prelude::*;
 use rand::RngExt;
 use statrs::function::gamma::ln_gamma;
@@ -157,7 +157,7 @@ fn equivalent_structures_score_alike() {
 }
 
 fn asia() -> Network {
-    Network::from_bif(include_str!("../../datasets/model/asia.bif")).unwrap()
+    Network::from_bif(include_str!("../../../../datasets/model/asia.bif")).unwrap()
 }
 
 fn sampled(network: &Network, rows: usize, seed: u64) -> Table {

@@ -1,9 +1,9 @@
 //! Variable elimination against enumeration, on random factors; approximate answers against exact ones.
 
-use edifice::model::ModelError;
-use edifice::model::elimination::{BucketTree, Factor, Mode, Order};
-use edifice::model::network::{Evidence, Network, Variable};
-use edifice::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
+use edifice_model::ModelError;
+use edifice_model::elimination::{BucketTree, Factor, Mode, Order};
+use edifice_model::network::{Evidence, Network, Variable};
 use proptest::prelude::*;
 use rand::RngExt;
 
@@ -319,7 +319,7 @@ fn standard_errors_cover_as_often_as_they_should() {
     let (mut weighted, mut gibbs) = (0, 0);
     const RUNS: u64 = 200;
     for run in 0..RUNS {
-        let inside = |e: &edifice::model::network::Estimate| {
+        let inside = |e: &edifice_model::network::Estimate| {
             u64::from((e.probabilities[0] - exact).abs() < 1.96 * e.errors[0])
         };
         let lw = network.likelihood_weighting(&given, 500, &mut stream(run, "lw", 0));

@@ -1,10 +1,10 @@
 //! Gaussian mixtures of rows with missing values: the marginal density by definition, a maximum that no small move of any
 //! parameter improves, and the complete rows' mixture from incomplete ones.
 
-use edifice::model::ModelError;
-use edifice::model::em::Stopping;
-use edifice::model::gmm::{Covariance, Fitted, Mixture, Points, Settings, fit, fit_from};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::ModelError;
+use edifice_model::em::Stopping;
+use edifice_model::gmm::{Covariance, Fitted, Mixture, Points, Settings, fit, fit_from};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 

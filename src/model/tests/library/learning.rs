@@ -3,13 +3,13 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use edifice::model::ModelError;
-use edifice::model::Table;
-use edifice::model::em::Outcome;
-use edifice::model::hierarchy::{
+use edifice_base::rng::stream;
+use edifice_model::ModelError;
+use edifice_model::Table;
+use edifice_model::em::Outcome;
+use edifice_model::hierarchy::{
     Group, SearchStep, Settings, Sweep, Variant, fit_observed, learn, learn_observed, refine,
 };
-use edifice::rng::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

@@ -1,9 +1,9 @@
 //! Two engines, one distribution: hierarchical models and the networks that they are.
 
-use edifice::model::hierarchy::{Group, Hierarchy, Settings, Variant, learn};
-use edifice::model::network::Evidence;
-use edifice::model::{Cell, Table};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::hierarchy::{Group, Hierarchy, Settings, Variant, learn};
+use edifice_model::network::Evidence;
+use edifice_model::{Cell, Table};
 use rand::RngExt;
 
 const VARIANTS: [Variant; 4] = [
@@ -40,7 +40,7 @@ fn houses(rows: usize, seed: u64) -> (Table, Vec<Group>) {
         for (column, value) in columns.iter_mut().zip([width, depth, area]) {
             column.push((rng.random::<f64>() > 0.1).then_some(value));
         }
-        let seen = |rng: &mut edifice::rng::Stream| rng.random::<f64>() > 0.1;
+        let seen = |rng: &mut edifice_base::rng::Stream| rng.random::<f64>() > 0.1;
         garage.push(seen(&mut rng).then_some(kind > 0.5 || rng.random::<f64>() < 0.2));
         let names = ["gable", "hip", "flat"];
         let at = match rng.random::<f64>() < 0.8 {

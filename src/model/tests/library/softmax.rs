@@ -1,8 +1,8 @@
 //! Softmax weights learned inside networks: stationary points, known weights, hidden parents and children, units.
 
-use edifice::model::Table;
-use edifice::model::network::{FitSettings, Network, Variable};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::Table;
+use edifice_model::network::{FitSettings, Network, Variable};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -121,7 +121,7 @@ fn a_hidden_switch_and_missing_kinds_are_learned_without_loss() {
     let mut data = rows(600, 1.0, &WEIGHTS, 4);
     let kinds: Vec<Option<usize>> = (0..600)
         .map(|i| match data.column("kind").unwrap().cell(i) {
-            edifice::model::Cell::Code(c) if i % 5 > 0 => Some(c),
+            edifice_model::Cell::Code(c) if i % 5 > 0 => Some(c),
             _ => None,
         })
         .collect();

@@ -1,8 +1,8 @@
 //! Closed-form evidence against numerical integration, and the Cheeseman-Stutz score by hand.
 
-use edifice::model::Table;
-use edifice::model::conjugate::{LinearPrior, dirichlet_evidence, dirichlet_mode};
-use edifice::model::hierarchy::{Group, Settings, Variant, learn};
+use edifice_model::Table;
+use edifice_model::conjugate::{LinearPrior, dirichlet_evidence, dirichlet_mode};
+use edifice_model::hierarchy::{Group, Settings, Variant, learn};
 
 const PRIOR: LinearPrior = LinearPrior {
     intercept: 0.5,
@@ -119,9 +119,8 @@ fn mode_is_a_maximum_of_the_posterior() {
         .collect();
     let m = scatter(&rows);
     let mode = PRIOR.mode(&m, 2, 1).unwrap();
-    let at = |l: &edifice::model::conjugate::Linear| {
-        l.expected_log_likelihood(&m) + PRIOR.log_density(l)
-    };
+    let at =
+        |l: &edifice_model::conjugate::Linear| l.expected_log_likelihood(&m) + PRIOR.log_density(l);
     let best = at(&mode);
     let (b, s) = (mode.coefficients().to_vec(), mode.covariance().to_vec());
     for (i, delta) in [
@@ -138,7 +137,7 @@ fn mode_is_a_maximum_of_the_posterior() {
         } else {
             s[0] += delta;
         }
-        let moved = edifice::model::conjugate::Linear::new(2, 1, b, s).unwrap();
+        let moved = edifice_model::conjugate::Linear::new(2, 1, b, s).unwrap();
         assert!(at(&moved) < best);
     }
 }

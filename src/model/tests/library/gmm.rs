@@ -1,11 +1,9 @@
 //! Gaussian mixtures against slow, obvious code and against what made the data.
 
-use edifice::model::ModelError;
-use edifice::model::em::{Outcome, Stopping};
-use edifice::model::gmm::{
-    Covariance, Criterion, Mixture, Points, Settings, fit, fit_from, select,
-};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::ModelError;
+use edifice_model::em::{Outcome, Stopping};
+use edifice_model::gmm::{Covariance, Criterion, Mixture, Points, Settings, fit, fit_from, select};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

@@ -1,8 +1,8 @@
 //! The hierarchical model: does it find what made the data, and answer with it?
 
-use edifice::model::hierarchy::{Constant, Group, Hierarchy, Learned, Settings, Variant, learn};
-use edifice::model::{Cell, ModelError, Table};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::hierarchy::{Constant, Group, Hierarchy, Learned, Settings, Variant, learn};
+use edifice_model::{Cell, ModelError, Table};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

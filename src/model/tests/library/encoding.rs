@@ -1,14 +1,14 @@
 //! Atoms, transforms and edges from categories: densities integrate to one, and nothing is lost on the way.
 
-use edifice::model::hierarchy::{Group, Settings, learn};
-use edifice::model::network::Evidence;
-use edifice::model::tables::Dataset;
-use edifice::model::tables::compare::{Contender, held_out};
-use edifice::model::tables::encoding::Encoding;
-use edifice::model::tables::learn::extended;
-use edifice::model::tables::transform::{Bounds, Tails, Transform};
-use edifice::model::{Cell, Table};
-use edifice::rng::{Stream, stream};
+use edifice_base::rng::{Stream, stream};
+use edifice_model::hierarchy::{Group, Settings, learn};
+use edifice_model::network::Evidence;
+use edifice_model::tables::Dataset;
+use edifice_model::tables::compare::{Contender, held_out};
+use edifice_model::tables::encoding::Encoding;
+use edifice_model::tables::learn::extended;
+use edifice_model::tables::transform::{Bounds, Tails, Transform};
+use edifice_model::{Cell, Table};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -178,7 +178,7 @@ fn categories_shift_groups_and_both_engines_agree() {
 
     // Written and read, and as a network.
     let text = model.to_json().unwrap();
-    let again = edifice::model::hierarchy::Hierarchy::from_json(&text).unwrap();
+    let again = edifice_model::hierarchy::Hierarchy::from_json(&text).unwrap();
     assert_eq!(again.to_json().unwrap(), text);
     assert!(!published.model.to_json().unwrap().contains("shifts"));
     let network = model.to_network().unwrap();

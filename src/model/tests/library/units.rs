@@ -1,11 +1,11 @@
 //! Learnt models do not depend on the units of the data: mixtures, networks, hierarchies.
 
-use edifice::model::Table;
-use edifice::model::em::Outcome;
-use edifice::model::gmm::{self, Covariance, Points};
-use edifice::model::hierarchy::{self, Group};
-use edifice::model::network::{FitSettings, Network, Variable};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::Table;
+use edifice_model::em::Outcome;
+use edifice_model::gmm::{self, Covariance, Points};
+use edifice_model::hierarchy::{self, Group};
+use edifice_model::network::{FitSettings, Network, Variable};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

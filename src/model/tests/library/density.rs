@@ -1,10 +1,10 @@
 //! Log densities: total mass, unit changes, recovery, bad input.
 
-use edifice::model::density::{
+use edifice_base::rng::stream;
+use edifice_model::density::{
     Conditional, KernelDensity, LogDensity, ScalarMixture, SmoothHistogram,
 };
-use edifice::model::gmm;
-use edifice::rng::stream;
+use edifice_model::gmm;
 use rand::RngExt;
 use rand_distr::{Distribution, Normal};
 

@@ -1,8 +1,8 @@
 //! Bayesian networks: every answer against enumeration of the joint, on random networks.
 
-use edifice::model::network::{Evidence, FitSettings, Network, Variable};
-use edifice::model::{Cell, ModelError};
-use edifice::rng::stream;
+use edifice_base::rng::stream;
+use edifice_model::network::{Evidence, FitSettings, Network, Variable};
+use edifice_model::{Cell, ModelError};
 use proptest::prelude::*;
 use rand::RngExt;
 
@@ -202,7 +202,7 @@ fn sigmoids_answer_where_their_parent_is_known() {
 
 #[test]
 fn asia_has_its_published_posteriors() {
-    let text = std::fs::read_to_string("datasets/model/asia.bif").unwrap();
+    let text = std::fs::read_to_string("../../datasets/model/asia.bif").unwrap();
     let asia = Network::from_bif(&text).unwrap();
     let yes = |given: &Evidence, name: &str| asia.marginal(given, name).unwrap()[0];
     // Priors as in Lauritzen and Spiegelhalter 1988, Table 1 and every textbook since.
@@ -241,7 +241,7 @@ fn learns_what_made_the_data_with_holes_in_it() {
     let mut rng = stream(5, "data", 0);
     let data = truth.sample(&Evidence::new(), 3000, &mut rng).unwrap();
     let holes = ["z", "w", "x", "y"];
-    let mut seen = edifice::model::Table::new();
+    let mut seen = edifice_model::Table::new();
     for (j, name) in holes.iter().enumerate() {
         let column = data.column(name).unwrap();
         let keep = |i: usize| !(i + 3 * j).is_multiple_of(7);
@@ -302,7 +302,7 @@ fn bad_networks_are_named() {
         Network::from_json("{\"format\""),
         Err(ModelError::Corrupt { .. })
     ));
-    let text = std::fs::read_to_string("datasets/model/asia.bif").unwrap();
+    let text = std::fs::read_to_string("../../datasets/model/asia.bif").unwrap();
     for cut in (0..text.len()).step_by(23) {
         assert!(Network::from_bif(&text[..cut]).is_err());
     }

@@ -1,10 +1,10 @@
 //! Contrastive divergence against the exact gradient on a small Ising model.
 
-use edifice::model::factor_graph::{
+use edifice_base::rng::{Stream, stream};
+use edifice_base::unwatched;
+use edifice_model::factor_graph::{
     Chain, Factor, Gibbs, Metropolis, Propose, Settings, fit, gradient, sample,
 };
-use edifice::rng::{Stream, stream};
-use edifice::unwatched;
 use rand::RngExt;
 
 const SIDE: usize = 3;

@@ -1,4 +1,0 @@
-//! Inference against truths that share no code with it.
-
-mod factor_graphs;
-mod program;
