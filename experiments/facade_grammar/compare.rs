@@ -38,7 +38,7 @@ pub(crate) fn run(ctx: &mut Context, plan: Design) -> Result<Comparison> {
         .collect();
     let limit = ctx.budget().choose(1, usize::MAX, usize::MAX);
     instances.extend(data::real(ctx, limit)?);
-    let seeds = ctx.budget().choose(1, 2, 10);
+    let seeds = ctx.budget().choose(1, 1, 10);
     ctx.setting("seeds", seeds);
     ctx.setting("seeds_facade_i", ctx.budget().choose(1, 10, 10));
     ctx.setting("seeds_real", ctx.budget().choose(1, 1, 10));
@@ -111,7 +111,7 @@ fn seeds_of(budget: Budget, instance: &Instance, solver: Solver) -> u64 {
     }
     match (instance.dataset, instance.facade.name.as_str()) {
         ("shipped", data::FIGURE_9) => budget.choose(1, 10, 10),
-        ("shipped", _) => budget.choose(1, 2, 10),
+        ("shipped", _) => budget.choose(1, 1, 10),
         _ => budget.choose(1, 1, 10),
     }
 }
