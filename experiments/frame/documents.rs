@@ -166,7 +166,7 @@ pub fn documents(wanted: &str, report: &Path) -> Result<Vec<ReportDocument>> {
     named.iter().map(read).collect()
 }
 
-/// What is said of a name that names no document.
+/// The message for a name that names no document.
 fn no_such(wanted: &str, all: &[Shown]) -> String {
     let artefact = wanted.rsplit_once('/').map_or(wanted, |(before, _)| before);
     let inside: Vec<&str> = all

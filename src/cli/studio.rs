@@ -65,9 +65,9 @@ pub(crate) fn run(args: Args) -> Result<()> {
         read => read?,
     };
     if copies.len() > 1 {
+        let count = copies.len();
         print::message(&format!(
-            "opening {} documents; the grammar of a facade is inferred first, which takes some seconds each: NAME/DOCUMENT opens one",
-            copies.len()
+            "opening {count} documents; NAME/DOCUMENT opens one alone"
         ));
     }
     let state = state_folder();
