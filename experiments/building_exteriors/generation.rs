@@ -60,10 +60,10 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let settings = settings(ctx);
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
     let (many, slow) = (
-        ctx.budget().choose(6, 24, 500),
-        ctx.budget().choose(2, 8, 60),
+        ctx.budget().choose(6, 16, 500),
+        ctx.budget().choose(2, 6, 60),
     );
-    let wilder = ctx.budget().choose(6, 60, 500);
+    let wilder = ctx.budget().choose(6, 40, 500);
     ctx.setting("wild_houses", wilder);
     ctx.setting("houses", many);
     ctx.setting("houses_of_paper", slow);

@@ -5,7 +5,7 @@ use super::data::{self, FIGURE_9, Instance};
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, least, mean, solve};
 use super::{BEST, PAPER, iterations};
-use crate::{Budget, Context};
+use crate::Context;
 use edifice_base::Result;
 use edifice_facade_grammar::{Exploit, Method, Protect, Readings};
 use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
@@ -132,9 +132,7 @@ fn instances(ctx: &mut Context) -> Result<Vec<Instance>> {
         .into_iter()
         .map(|facade| Instance { dataset, facade })
         .collect();
-    if ctx.budget() == Budget::Smoke {
-        instances.truncate(2);
-    }
+    instances.truncate(ctx.budget().choose(2, 12, usize::MAX));
     let limit = ctx.budget().choose(1, LOOKED_AT, usize::MAX);
     instances.extend(data::real(ctx, limit)?);
     Ok(instances)

@@ -29,7 +29,7 @@ struct Unit<'a> {
 
 /// Runs the benchmark.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
-    let seeds = ctx.budget().choose(1, 2, 5);
+    let seeds = ctx.budget().choose(1, 1, 5);
     ctx.setting("mask_seeds", seeds);
     let folds = ctx.budget().choose(2, 5, 5);
     ctx.setting("folds", folds);
@@ -53,7 +53,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         }
     }
     // The methods that search take seconds a facade.
-    let searched = ctx.budget().choose(1, 12, used.len());
+    let searched = ctx.budget().choose(1, 8, used.len());
     ctx.setting("facades_of_slow_methods", searched);
     let every = used.len().div_ceil(searched.max(1)).max(1);
     let mut units = Vec::new();
