@@ -44,7 +44,7 @@ pub(crate) struct Args {
     /// Never write a file
     #[arg(long)]
     read_only: bool,
-    /// Open the documents of a picture of the report, for example figure_16 or facade_grammar/figure_16/office_1
+    /// Open the documents of a picture of the report, for example `figure_16` or `facade_grammar/figure_16/office_1`
     #[arg(long, value_name = "NAME")]
     report: Option<String>,
     /// Folder of that report, written by `edifice reproduce` [default: reports]

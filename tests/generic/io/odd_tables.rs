@@ -4,7 +4,7 @@ use std::path::Path;
 
 use edifice::io::building_csv::parse;
 
-/// What is expected of a table: its header and rows with a word of the note, or a word of the refusal.
+/// The expectation of a table: its header and rows with a word of the note, or a word of the refusal.
 enum Expected {
     Read(&'static str, &'static str),
     Refused(&'static str),
