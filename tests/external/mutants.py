@@ -5,7 +5,7 @@
 
 GROUP is `proofs` (grammar bounds, cost and derivation of grammars, elimination, expectation maximization, exact solids) or
 `rest` (every other file of the library's crates). The sample is the first NUMBER mutants of the group after a shuffle with the
-seed, so that a larger number holds a smaller one. Each crate's mutants are judged by the crate's unit tests
+seed, so that a larger number holds a smaller one. Each crate's mutants are judged by the crate's own tests
 (`.cargo/mutants.toml`); with `--survivors` those that they missed are judged by the programs at the root that test the crate
 (`AT_THE_ROOT`) as well. What is left is written to DIR/missed.txt. Mutants run in
 TREE, a clean copy of the repository that is changed in place; outcomes that DIR holds already are kept, so that a run that was
@@ -82,7 +82,8 @@ def run(tree, out, package, names, survivors=False):
         command += ["--file", file]
     if survivors:
         programs = AT_THE_ROOT.get(package, ["generic"])
-        command += ["--test-package", "edifice", "--"] + [word for p in programs for word in ("--test", p)]
+        # Not the arguments of the crate's own tests.
+        command += ["--config", "/dev/null", "--test-package", "edifice", "--"] + [word for p in programs for word in ("--test", p)]
     subprocess.run(command, cwd=tree, check=False)
 
 
