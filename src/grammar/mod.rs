@@ -20,6 +20,8 @@ mod resize;
 mod rule;
 mod sample;
 mod table;
+#[cfg(test)]
+mod tests;
 mod tiling;
 mod weights;
 

@@ -1,0 +1,128 @@
+//! Costs of rules, derivation and evaluation of a grammar of a few rules, by hand.
+
+use super::cost::Costs;
+use super::derive::derivation;
+use super::evaluate::{EvaluateError, evaluate};
+use super::rule::{Grammar, Operation, Rule, Start, Successor};
+use edifice_shape::{Axis, Facade};
+
+fn rule(symbol: &str, operation: Operation) -> Rule {
+    Rule {
+        symbol: symbol.into(),
+        weight: None,
+        operation,
+    }
+}
+
+fn split(axis: Axis, parts: &[(&str, f64)]) -> Operation {
+    let successors = parts.iter().map(|(s, size)| Successor::new(*s, *size));
+    Operation::Split {
+        axis,
+        successors: successors.collect(),
+    }
+}
+
+/// A wall of 6 by 4 with two equal windows of 1 by 2 in its upper floor.
+fn grammar() -> Grammar {
+    Grammar {
+        unit: "m".into(),
+        starts: vec![Start {
+            name: "house".into(),
+            symbol: "House".into(),
+            width: 6.0,
+            height: 4.0,
+        }],
+        rules: vec![
+            rule("House", split(Axis::Y, &[("wall", 2.0), ("Floor", 2.0)])),
+            rule(
+                "Floor",
+                Operation::Repeat {
+                    axis: Axis::X,
+                    successors: vec![Successor::new("Tile", 3.0)],
+                },
+            ),
+            rule(
+                "Tile",
+                split(Axis::X, &[("wall", 1.0), ("window", 1.0), ("wall", 1.0)]),
+            ),
+        ],
+    }
+}
+
+#[test]
+fn kinds_of_splits_and_of_repeats_cost_alike() {
+    let costs = Costs::of(0.3, 0.7);
+    assert_eq!([costs.split, costs.sym_split, costs.grid_split], [0.3; 3]);
+    assert_eq!([costs.repeat, costs.repeat_aba], [0.7; 2]);
+    assert_eq!(costs.successor, Costs::default().successor);
+    assert!(costs.check().is_ok());
+    for (wrong, name) in [
+        (Costs::of(-1.0, 0.5), "split"),
+        (Costs::of(0.1, 2e3), "repeat"),
+    ] {
+        assert_eq!(wrong.check().unwrap_err().name, name);
+    }
+    // Eq. 2: the operation and one for each successor; Eq. 1: the sum over the rules.
+    let default = Costs::default();
+    assert!((default.grammar(&grammar()) - (0.1 + 2.0 + 0.5 + 1.0 + 0.1 + 3.0)).abs() < 1e-12);
+}
+
+#[test]
+fn a_grammar_is_derived_rule_by_rule() {
+    let derived = derivation(&grammar(), 0).unwrap();
+    let of = |label: &str| {
+        derived
+            .facade
+            .regions
+            .iter()
+            .filter(|r| r.label == label)
+            .count()
+    };
+    assert_eq!(
+        (of("wall"), of("window"), derived.facade.regions.len()),
+        (5, 2, 7)
+    );
+    let windows = derived
+        .facade
+        .regions
+        .iter()
+        .filter(|r| r.label == "window");
+    let places: Vec<[f64; 4]> = windows
+        .map(|r| [r.rect.x, r.rect.y, r.rect.width, r.rect.height])
+        .collect();
+    assert_eq!(places, [[1.0, 2.0, 1.0, 2.0], [4.0, 2.0, 1.0, 2.0]]);
+    let depths: Vec<usize> = derived.non_terminals.iter().map(|n| n.depth).collect();
+    assert_eq!(depths, [0, 1, 2, 2]);
+    assert!(derived.shrunk.is_empty());
+    assert!(derivation(&grammar(), 1).is_err());
+    let mut two = grammar();
+    two.rules
+        .push(rule("Tile", split(Axis::X, &[("wall", 3.0)])));
+    assert!(derivation(&two, 0).is_err());
+}
+
+#[test]
+fn a_grammar_is_evaluated_against_what_it_derives() {
+    let facade = derivation(&grammar(), 0).unwrap().facade;
+    let costs = Costs::default();
+    let found = evaluate(&grammar(), std::slice::from_ref(&facade), &costs).unwrap();
+    assert!((found.cost - 6.7).abs() < 1e-12, "{}", found.cost);
+    assert!(matches!(
+        evaluate(&grammar(), &[], &costs),
+        Err(EvaluateError::Count { .. })
+    ));
+    let mut other: Facade = facade;
+    other.regions[0].label = "door".into();
+    let different = evaluate(&grammar(), &[other], &costs);
+    assert!(matches!(different, Err(EvaluateError::Different { .. })));
+    // A symbol for regions of one height and two widths stands for different contents; relative sizes would make it so.
+    let mut wide = grammar();
+    wide.rules[1] = rule("Floor", split(Axis::X, &[("Tile", 2.0), ("Tile", 4.0)]));
+    wide.rules[2] = rule("Tile", split(Axis::Y, &[("wall", 1.0), ("window", 1.0)]));
+    let facade = derivation(&wide, 0).unwrap().facade;
+    let contents = evaluate(&wide, &[facade], &costs);
+    assert!(
+        matches!(contents, Err(EvaluateError::Contents { .. })),
+        "{contents:?}"
+    );
+}
