@@ -12,6 +12,7 @@ mod figure_14;
 mod generation;
 mod generation_figures;
 mod generation_speed;
+mod held_out;
 mod learning;
 mod mixture_figures;
 mod reasons;
@@ -34,8 +35,8 @@ pub const EXPERIMENT: Experiment = Experiment {
 fn documents(artefact: &str) -> Vec<Pictured> {
     let lines = match artefact {
         "figure_8" | "figure_9" => vec![facade_figures::HOUSE],
-        "figure_16" => design_figures::first_held_out(),
-        "figure_19" => design_figures::first_without_garage(),
+        "figure_16" => held_out::first_held_out(),
+        "figure_19" => held_out::first_without_garage(),
         _ => Vec::new(),
     };
     let line = |line| Pictured::Line(data::HOUSES.to_owned(), line);

@@ -1,7 +1,6 @@
 //! Completion and design: Fig. 16 to 19 of Fan and Wonka 2016, on made houses that the model has not seen.
 
-use std::path::Path;
-
+use super::held_out::{HELD_OUT, has_no_garage};
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
 use crate::Context;
@@ -13,13 +12,10 @@ use edifice_building_exteriors::house::walls::walls_of_pieces;
 use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
 use edifice_building_exteriors::mass::iou;
 use edifice_building_exteriors::model_file::ModelFile;
-use edifice_io::building_json;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::{BoxStyle, Building, Side};
 
-/// Houses of the shipped database that are held out of model and donors.
-const HELD_OUT: usize = 20;
 /// Completions of a house (Sec. 7).
 const COMPLETIONS: usize = 5;
 
@@ -48,34 +44,6 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
         database: Database::new(buildings).map_err(Error::method)?,
         held_out,
     })
-}
-
-/// The held-out houses with their lines among the shipped ones.
-fn held_out_lines() -> Vec<(usize, Building)> {
-    let bytes = edifice_datasets::shipped_bytes(data::HOUSES).unwrap_or_default();
-    let houses = building_json::parse_lines(bytes, Path::new(data::HOUSES)).unwrap_or_default();
-    let known = houses.len().saturating_sub(HELD_OUT);
-    houses.into_iter().enumerate().skip(known).collect()
-}
-
-/// The line of the house whose completion Fig. 16 shows.
-pub(crate) fn first_held_out() -> Vec<usize> {
-    held_out_lines()
-        .first()
-        .map(|(line, _)| *line)
-        .into_iter()
-        .collect()
-}
-
-/// The line of the house that Fig. 19 begins from.
-pub(crate) fn first_without_garage() -> Vec<usize> {
-    let houses = held_out_lines();
-    let found = houses.iter().find(|(_, house)| has_no_garage(house));
-    found.map(|(line, _)| *line).into_iter().collect()
-}
-
-fn has_no_garage(house: &Building) -> bool {
-    house.boxes.iter().all(|b| b.style != BoxStyle::Garage)
 }
 
 /// The part of a house that a photograph from the front shows: the boxes whose walls face the street, and the facade

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::packed::unpacked;
 use super::read_bytes;
-use super::table_text::{mixed, points, refuse, separator};
+use super::table_text::{points, refuse, separator};
 use edifice_base::{Error, Result};
 
 /// Most cells of a table: a compressed one may have half as many as bytes, each a text of its own.
@@ -67,7 +67,6 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
         return Err(Error::content(path, "the table has no rows"));
     }
     notes.extend(points(&header, &mut rows, mark, path)?);
-    notes.extend(mixed(&header, &rows));
     Ok(TextTable {
         header,
         rows,

@@ -215,7 +215,8 @@ fn commas(text: &str) -> Option<Commas> {
     })
 }
 
-/// Rewrites the numbers of columns that are written with commas; returns a sentence for each such column.
+/// Rewrites the numbers of columns that are written with commas; returns a sentence for each such column, and for each of which
+/// most known cells are numbers, but not all.
 ///
 /// # Errors
 /// [`Error::Content`] for a column that could be read in two ways.
@@ -228,10 +229,12 @@ pub(crate) fn points(
     let mut notes = Vec::new();
     for (c, name) in header.iter().enumerate() {
         let cells = rows.iter().filter_map(|r| r.get(c)).map(|t| t.trim());
-        let known = cells.filter(|t| !MISSING.contains(t));
-        let Some(kinds) = known.map(commas).collect::<Option<Vec<Commas>>>() else {
+        let known: Vec<&str> = cells.filter(|t| !MISSING.contains(t)).collect();
+        let kinds: Vec<Commas> = known.iter().filter_map(|t| commas(t)).collect();
+        if kinds.len() < known.len() {
+            notes.extend(mixed(name, &known, kinds.len()));
             continue;
-        };
+        }
         let has = |kind| kinds.contains(&kind);
         let decimal = match (
             has(Commas::Decimal),
@@ -273,25 +276,15 @@ pub(crate) fn points(
     Ok(notes)
 }
 
-/// A sentence for each column most of whose known cells are numbers, but not all: it will be read as categories or text.
-pub(crate) fn mixed(header: &[String], rows: &[Vec<String>]) -> Vec<String> {
-    let mut notes = Vec::new();
-    for (c, name) in header.iter().enumerate() {
-        let cells = rows.iter().filter_map(|r| r.get(c)).map(|t| t.trim());
-        let known: Vec<&str> = cells.filter(|t| !MISSING.contains(t)).collect();
-        let others = known.iter().filter(|t| commas(t).is_none());
-        let count = others.clone().count();
-        if let Some(first) = others.clone().next()
-            && 2 * count < known.len()
-        {
-            notes.push(format!(
-                "column `{name}`: {} of {} known cells are numbers, but not {first:?}: the column is no number unless a schema calls that missing",
-                known.len() - count,
-                known.len()
-            ));
-        }
-    }
-    notes
+/// A sentence for a column of which so many known cells are numbers, if they are most of them: it will be read as categories or text.
+fn mixed(name: &str, known: &[&str], numbers: usize) -> Option<String> {
+    let first = known.iter().find(|t| commas(t).is_none())?;
+    (2 * numbers > known.len()).then(|| {
+        format!(
+            "column `{name}`: {numbers} of {} known cells are numbers, but not {first:?}: the column is no number unless a schema calls that missing",
+            known.len()
+        )
+    })
 }
 
 #[cfg(test)]

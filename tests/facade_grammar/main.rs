@@ -11,4 +11,5 @@ mod claims;
 mod exact;
 mod inference;
 mod invariance;
+mod operations;
 mod regularization;

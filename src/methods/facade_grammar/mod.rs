@@ -15,7 +15,7 @@
 //! - [`Method::AdpPaper`]: approximate dynamic programming, as the text can be read;
 //! - [`Method::Lagrangian`]: a Lagrangian bound, below, which finds the optimum of most facades and proves it; where it
 //!   leaves a gap, walks by shortest paths over all sets of lines, then annealing over the set of non-terminal
-//!   types;
+//!   types, and all of this once more with splits alone, so that more operations never cost more;
 //! - the baselines of Sec. 6.1.
 //!
 //! | folder or file | what |

@@ -2,8 +2,8 @@
 
 use super::support::{naive, random_grammar};
 use edifice::grammar::{
-    Costs, EvaluateError, Grammar, GrammarError, Operation, Rule, Size, Start, Successor, Warning,
-    check, derivation, derive, evaluate, same_tiling,
+    Costs, Grammar, GrammarError, Operation, Rule, Size, Start, Successor, Warning, check,
+    derivation, derive, evaluate, same_tiling,
 };
 use edifice::shape::{Axis, Facade, Rect};
 use proptest::prelude::*;
@@ -250,35 +250,6 @@ fn unused_rules_are_warned_of() {
     let warnings = check(&grammar(10.0, 4.0, rules)).unwrap();
     let symbol = "Floor".to_owned();
     assert_eq!(warnings, [Warning::Unreachable { rule: 1, symbol }]);
-}
-
-#[test]
-fn evaluation_rejects_what_does_not_explain_the_input() {
-    // `A` is used at two heights: the widths add up, the contents differ.
-    let rules = vec![
-        rule("F", split(Axis::Y, &[("A", 1.0), ("A", 3.0)])),
-        rule("A", split(Axis::X, &[("wall", 4.0), ("door", 6.0)])),
-    ];
-    let g = grammar(10.0, 4.0, rules);
-    let facade = derive(&g, 0).unwrap();
-    let costs = Costs::default();
-    let outcome = evaluate(&g, std::slice::from_ref(&facade), &costs);
-    assert!(matches!(outcome, Err(EvaluateError::Contents { .. })));
-    let outcome = evaluate(&g, &[], &costs);
-    assert!(matches!(
-        outcome,
-        Err(EvaluateError::Count {
-            starts: 1,
-            facades: 0
-        })
-    ));
-    let mut other: Facade = facade;
-    other.regions[0].label = "door".into();
-    let outcome = evaluate(&g, &[other], &costs);
-    assert!(matches!(
-        outcome,
-        Err(EvaluateError::Different { index: 0, .. })
-    ));
 }
 
 #[test]
