@@ -337,7 +337,8 @@ pub(crate) fn figure_19(ctx: &mut Context) -> Result<()> {
     ctx.attach("figure_19.png", &png, "from above: the initial house, a garage added, the garage moved to the back, a box made narrower; front, back, boxes (edited in red)")?;
     let mut table = Table::new("An editing sequence")
         .column("stage", Align::Left)
-        .numbers(["boxes", "width (m)", "depth (m)", "seconds"]);
+        .numbers(["boxes", "width (m)", "depth (m)"])
+        .times(["seconds"]);
     for (name, building, _, seconds) in &stages {
         table.row([
             name.clone(),

@@ -103,9 +103,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             ctx.observe(time(name, metric, value, seed));
         }
     }
-    ctx.table(&table);
+    ctx.table_of_times(&table);
     ctx.observe(time("glTF of whole houses", "seconds", seconds, seed));
-    ctx.compare(
+    ctx.compare_times(
         format!("{whole} houses from attributes to binary glTF in memory"),
         "not printed",
         format!("{seconds:.1} s, {:.0} MB", bytes as f64 / 1e6),

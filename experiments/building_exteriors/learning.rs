@@ -36,7 +36,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         });
     }
     if let Some((houses, seconds)) = line.last() {
-        ctx.compare(
+        ctx.compare_times(
             format!("learning from {houses} houses"),
             "about 40 minutes for 200",
             format!("{seconds:.1} s"),
@@ -49,7 +49,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     )
     .legend(Corner::Above)
     .series(Series::marked("whole search, wall clock", line));
-    ctx.figure(
+    ctx.figure_of_times(
         "learning",
         &Figure::single("seconds of the whole structure search", chart),
     )

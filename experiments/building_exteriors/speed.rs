@@ -31,12 +31,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         gain: 0.0,
         max_rounds: ROUNDS,
     };
-    let mut table = Table::new("One run of EM, 7 styles, 20 rounds").numbers([
-        "houses",
-        "seconds",
-        "microseconds per house",
-        "peak MB",
-    ]);
+    let mut table = Table::new("One run of EM, 7 styles, 20 rounds")
+        .numbers(["houses"])
+        .times(["seconds", "microseconds per house", "peak MB"]);
     let mut line = Vec::new();
     for &houses in &sizes {
         let mut rng = stream(ctx.seed(), "building_exteriors/speed", houses as u64);
@@ -81,7 +78,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             observe("peak_memory", mb, "MB");
         }
     }
-    ctx.table(&table);
+    ctx.table_of_times(&table);
     ctx.note(
         "Peak memory is that of the whole process while it drew and fitted these houses (VmHWM of Linux, set back \
          before each size), data included: a table and one standardised copy.",
@@ -89,7 +86,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let chart = Chart::new("", Scale::new("houses").log(), Scale::new("seconds").log())
         .legend(Corner::Above)
         .series(Series::marked("20 rounds of EM, wall clock", line));
-    ctx.figure(
+    ctx.figure_of_times(
         "speed",
         &Figure::single("seconds of one run of EM by houses", chart),
     )

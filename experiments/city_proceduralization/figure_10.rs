@@ -80,7 +80,7 @@ fn derived(city: &City, seed: u64) -> Result<City> {
 /// Looks views of each city up in its grammar of level 4.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
-    let views = ctx.budget().choose(10, 30, 200);
+    let views = ctx.budget().choose(10, 20, 200);
     ctx.setting("views", views);
     let cities = data::cities(ctx)?;
     let units: Vec<usize> = (0..cities.len()).collect();

@@ -10,7 +10,7 @@ use edifice_report::{Chart, Corner, Figure, Scale, Series};
 /// Runs all levels of each curve.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let seed = ctx.seed();
-    let levels: u32 = ctx.budget().choose(3, 5, 10);
+    let levels: u32 = ctx.budget().choose(3, 4, 10);
     ctx.setting("levels", levels);
     let cities = data::cities(ctx)?;
     let curves = [

@@ -30,13 +30,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let settings = data::settings(Mode::Best, 4, seed);
     let mut table = Table::new("Time and memory of level 4, `best`")
         .column("city", Align::Left)
-        .numbers([
-            "buildings",
-            "components",
-            "templates",
-            "seconds",
-            "peak memory, MB",
-        ]);
+        .numbers(["buildings", "components", "templates"])
+        .times(["seconds", "peak memory, MB"]);
     let mut lines = vec![("made cities".to_owned(), Vec::new())];
     let sizes: &[usize] =
         ctx.budget()
@@ -94,7 +89,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     for (name, line) in lines {
         chart = chart.series(Series::marked(name, line));
     }
-    ctx.figure("scaling", &Figure::single("seconds by buildings", chart))
+    ctx.figure_of_times("scaling", &Figure::single("seconds by buildings", chart))
 }
 
 /// The size of a city, and the time and memory that it took.

@@ -100,7 +100,7 @@ fn build(
     ctx.compare("buildings", theirs, town.buildings.to_string());
     ctx.compare("input facades", printed[0], inputs.to_string());
     ctx.compare("polygons", printed[1], millions);
-    ctx.compare("seconds, inference to file", "–", format!("{seconds:.1}"));
+    ctx.compare_times("seconds, inference to file", "–", format!("{seconds:.1}"));
     let mut figure = Figure::new("variations at the input's size", 6).cell(230.0, 250.0);
     for index in 0..12 {
         let style = &styles[index % styles.len()];

@@ -56,7 +56,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         |(f, method, seed)| format!("{}/{}/{seed}", facades[*f].name, name(*method)),
         |&(f, method, seed)| trace(&facades[f], method, many, every, seed),
     )?;
-    let mut figure = Figure::new("cost and time against iterations", 2).cell(560.0, 360.0);
+    let mut figure = Figure::new("cost against iterations", 3).cell(560.0, 360.0);
+    let mut time = Figure::new("time against iterations", 3).cell(560.0, 360.0);
     for (f, facade) in facades.iter().enumerate() {
         let mut cost = Chart::new(
             format!("{} ({} terminals)", facade.name, facade.regions.len()),
@@ -65,11 +66,11 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         )
         .legend(Corner::Above);
         let mut pace = Chart::new(
-            "Time",
+            format!("{}, time", facade.name),
             Scale::new("iterations"),
             Scale::new("ms per iteration").log(),
         )
-        .legend(Corner::None);
+        .legend(Corner::Above);
         for method in methods {
             let mine: Vec<&Vec<Point>> = units
                 .iter()
@@ -81,9 +82,11 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             cost = cost.series(Series::line(name(method), line).band(band));
             pace = pace.series(Series::line(name(method), times));
         }
-        figure = figure.panel(cost).panel(pace);
+        figure = figure.panel(cost);
+        time = time.panel(pace);
     }
     ctx.figure("figure_14", &figure)?;
+    ctx.figure_of_times("figure_14", &time)?;
     for ((f, method, seed), trace) in units.iter().zip(&traces) {
         observe(ctx, &facades[*f].name, name(*method), *seed, trace);
     }
@@ -116,7 +119,7 @@ fn ends(ctx: &mut Context, units: &[(usize, Method, u64)], traces: &[Vec<Point>]
     }
     let start = |t: &Vec<Point>| t.first().map(|p| 1e3 * p.pace);
     let end = |t: &Vec<Point>| t.last().map(|p| 1e3 * p.pace);
-    ctx.compare(
+    ctx.compare_times(
         "adp-paper: ms per iteration at the start and at the end",
         "falls",
         format!("{:.3}, {:.3}", of(PAPER, &start), of(PAPER, &end)),

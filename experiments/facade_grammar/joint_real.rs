@@ -77,8 +77,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             "mean saving (%)",
             "largest saving (%)",
             "of it sharing of equal regions (%)",
-            "time, joint / separate",
-        ]);
+        ])
+        .times(["time, joint / separate"]);
     let everything = units.iter().map(|(dataset, _)| *dataset);
     let found: Vec<(&str, &Answer)> = everything.zip(&answers).collect();
     let rows = datasets.iter().map(|(dataset, _)| *dataset).chain(["all"]);

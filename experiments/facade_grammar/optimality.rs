@@ -181,7 +181,8 @@ fn tabulate<'a>(
         .column("facade", Align::Left)
         .numbers(["terminals", "types", "cost", "known", "bound", "gap %"])
         .column("optimal?", Align::Left)
-        .numbers(["branches", "seconds"]);
+        .numbers(["branches"])
+        .times(["seconds"]);
     let (mut count, mut proven) = (0, 0);
     for (instance, _, answer) in rows {
         count += 1;

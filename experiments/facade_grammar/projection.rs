@@ -52,7 +52,7 @@ pub(crate) fn table(ctx: &mut Context) -> Result<()> {
     }
     let tolerances = match ctx.budget() {
         Budget::Smoke => vec![2.0],
-        Budget::Default => vec![1.0, 5.0],
+        Budget::Default => vec![2.0],
         Budget::Paper => vec![0.5, 1.0, 2.0, 3.0, 5.0, 10.0],
     };
     let mut units = Vec::new();

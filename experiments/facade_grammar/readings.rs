@@ -48,7 +48,7 @@ type Unit = (usize, Solver, usize, u64);
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let readings = readings();
     let (few, many) = iterations(ctx.budget());
-    let seeds = ctx.budget().choose(2, 12, 100);
+    let seeds = ctx.budget().choose(2, 8, 100);
     ctx.setting("iterations", vec![few, many]);
     ctx.setting("seeds_facade_i", seeds);
     let described = readings.iter().map(|(name, r)| format!("{name}: {r:?}"));
@@ -132,7 +132,7 @@ fn instances(ctx: &mut Context) -> Result<Vec<Instance>> {
         .into_iter()
         .map(|facade| Instance { dataset, facade })
         .collect();
-    instances.truncate(ctx.budget().choose(2, 12, usize::MAX));
+    instances.truncate(ctx.budget().choose(2, 8, usize::MAX));
     let limit = ctx.budget().choose(1, LOOKED_AT, usize::MAX);
     instances.extend(data::real(ctx, limit)?);
     Ok(instances)

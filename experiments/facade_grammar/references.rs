@@ -49,7 +49,7 @@ pub(crate) fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
         own: PRINTED,
         references: vec![(PRINTED, printed)],
     });
-    let each = ctx.budget().choose(1, 4, 6);
+    let each = ctx.budget().choose(1, 3, 6);
     ctx.setting("layouts_of_each_kind", each);
     for made in referenced(data::LAYOUT_SEED, each as usize).map_err(Error::method)? {
         let kinds = Kind::ALL.map(Kind::name);

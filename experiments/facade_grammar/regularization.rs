@@ -62,8 +62,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             "cut lines",
             "after",
             "largest move (px)",
-            "ms",
-        ]);
+        ])
+        .times(["ms"]);
     for tolerance in tolerances {
         let mine: Vec<&Effect> = units
             .iter()

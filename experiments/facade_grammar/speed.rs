@@ -117,7 +117,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         .panel(walk)
         .panel(setup)
         .panel(run);
-    ctx.figure("speed", &figure)?;
+    ctx.figure_of_times("speed", &figure)?;
     ctx.note(
         "Not in the paper, which prints 35.5 s for 10,000 iterations on its ten facades on average (582 terminals). Facades are made by \
          the generator with as many floors and columns as the size asks for. The setup is what two runs of different length have in common. `adp` has no time per iteration: it stops when its grammar is proven optimal. \

@@ -30,7 +30,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         let title = |what: &str| format!("{dataset}: {what}, least/mean over the seeds");
         ctx.table(&found.table(title("cost"), dataset, |a| a.cost, 1, true));
         ctx.table(&found.table(title("rules"), dataset, |a| a.rules as f64, 0, false));
-        ctx.table(&found.table(title("seconds"), dataset, |a| a.seconds, 2, false));
+        ctx.table_of_times(&found.table(title("seconds"), dataset, |a| a.seconds, 2, false));
         ctx.table(&effective(&found, dataset));
     }
     ctx.table(&published(&printed));
@@ -49,7 +49,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         "Facades: that of Fig. 9 is facade (i) of the paper; its other facades are not public, so averages over facades are \
          of other facades than the paper's and only ratios compare. `adp_paper` follows the text; `adp_best` is this \
          project's: a Lagrangian bound, then walks by shortest paths and annealing; it stops when its grammar is proven optimal, so that its seconds hardly \
-         depend on the iterations that it may use. Seconds are processor time of one thread on the machine that `run.json` names; the paper's are of a 3.07 GHz Xeon X5675.",
+         depend on the iterations that it may use. Seconds are processor time of one thread on the machine that `provenance.json` names; the paper's are of a 3.07 GHz Xeon X5675.",
     );
     Ok(())
 }

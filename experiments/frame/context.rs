@@ -15,6 +15,7 @@ use super::options::{Budget, Options};
 use super::own::Own;
 use super::progress::{self, Progress};
 use super::provenance::{self, Comparison};
+use super::times::Times;
 use edifice_base::{Error, Result};
 use edifice_datasets as datasets;
 use edifice_report as report;
@@ -25,6 +26,9 @@ pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Folder of journals and unpacked data sets, below a paper's folder; removed by a run that succeeds.
 pub(super) const WORK: &str = ".work";
+
+/// How the metrics of times and memory are called.
+const TIMES: [&str; 2] = ["seconds", "peak_memory"];
 
 /// Folder of the unpacked data sets, below that one.
 pub(super) const DATASETS: &str = "datasets";
@@ -46,6 +50,7 @@ pub struct Context<'a> {
     pub(super) document: Document,
     pub(super) comparisons: Vec<Comparison>,
     pub(super) files: Vec<String>,
+    pub(super) times: Times,
     pub(super) skipped: Option<String>,
     batches: usize,
 }
@@ -69,6 +74,7 @@ impl<'a> Context<'a> {
             document: Document::new(artefact, title),
             comparisons: Vec::new(),
             files: Vec::new(),
+            times: Times::new(artefact, title),
             skipped: None,
             batches: 0,
         }
@@ -218,15 +224,41 @@ impl<'a> Context<'a> {
         self.folder.join(WORK)
     }
 
-    /// Adds an observation to `<artefact>.csv`; the experiment's name is filled in.
+    /// Adds an observation to `<artefact>.csv`, or to `<artefact>.times.csv` if it is of time or memory; the experiment's name is
+    /// filled in.
     pub fn observe(&mut self, mut row: Row) {
         row.experiment = self.slug.to_string();
-        self.rows.push(row);
+        match TIMES.iter().any(|metric| row.metric.starts_with(metric)) {
+            true => self.times.rows.push(row),
+            false => self.rows.push(row),
+        }
     }
 
-    /// Adds a table to `<artefact>.md`.
+    /// Adds a table to `<artefact>.md`. One that has columns of times ([`Table::times`]) stands whole in `<artefact>.times.md`, and
+    /// without them here.
     pub fn table(&mut self, table: &Table) {
-        self.document.block(table.markdown());
+        self.document.block(table.without_times().markdown());
+        if table.has_times() {
+            self.times.document.block(table.markdown());
+        }
+    }
+
+    /// Adds a table of times alone to `<artefact>.times.md`.
+    pub fn table_of_times(&mut self, table: &Table) {
+        self.times.document.block(table.markdown());
+    }
+
+    /// Shows a picture of times in `<artefact>.times.md`, as [`Context::figure`] does in `<artefact>.md`; its files are called
+    /// `<name>.times.png` and so on.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when a file cannot be written.
+    pub fn figure_of_times(&mut self, name: &str, figure: &Figure) -> Result<()> {
+        let name = format!("{name}.times");
+        let files = report::write_report_figure(&self.folder, &name, figure)?;
+        self.times.files.extend(files);
+        self.times.document.image(&name, figure.caption());
+        Ok(())
     }
 
     /// Writes `<name>.png` and, unless it is long ([`report::MOST_SVG_BYTES`]), `<name>.svg`, and shows
@@ -255,7 +287,7 @@ impl<'a> Context<'a> {
             edifice_base::file::write_atomic(&path, bytes)?;
         }
         self.files.push(name.to_string());
-        // Scenes are not kept beside the page: it names them, and the first page of the report leads to those that are there.
+        // Scenes are not kept in the repository: pages name them.
         self.document.block(match name.ends_with(".glb") {
             true => format!("`{name}`: {what}"),
             false => format!("[{name}]({name}): {what}"),
@@ -271,6 +303,20 @@ impl<'a> Context<'a> {
         ours: impl Into<String>,
     ) {
         self.comparisons.push(Comparison {
+            quantity: quantity.into(),
+            printed: printed.into(),
+            ours: ours.into(),
+        });
+    }
+
+    /// Sets a time or a size of memory beside what the paper printed, in `<artefact>.times.md`.
+    pub fn compare_times(
+        &mut self,
+        quantity: impl Into<String>,
+        printed: impl Into<String>,
+        ours: impl Into<String>,
+    ) {
+        self.times.comparisons.push(Comparison {
             quantity: quantity.into(),
             printed: printed.into(),
             ours: ours.into(),

@@ -20,6 +20,11 @@ impl Document {
         }
     }
 
+    /// True if nothing was added.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
     /// Adds a block of Markdown.
     pub(crate) fn block(&mut self, text: String) {
         self.blocks.push(text);

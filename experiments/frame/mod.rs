@@ -3,6 +3,7 @@
 mod context;
 mod document;
 mod documents;
+mod estimate;
 mod journal;
 pub(super) mod lock;
 pub(super) mod memory;
@@ -11,6 +12,7 @@ mod own;
 mod progress;
 pub(super) mod provenance;
 mod run;
+mod times;
 mod verify;
 
 pub use context::Context;

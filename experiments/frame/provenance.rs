@@ -27,7 +27,7 @@ pub(crate) struct Run {
     pub order: Vec<String>,
 }
 
-/// The way in which an artefact was made. Commit, time and machine stand in `provenance.json`; a `run.json` of before, which has them
+/// The way in which an artefact was made. Commit, sources, time and machine stand in `provenance.json`; a `run.json` of before, which has them
 /// itself, is read too.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Made {
@@ -52,7 +52,7 @@ pub(crate) struct Made {
     #[serde(default, skip_serializing)]
     pub dirty: Option<bool>,
     /// Digest of the sources that it depends on ([`super::verify::sources_of`]); empty where none was recorded.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing)]
     pub sources: String,
     /// Seconds from start to end, units taken from the journal not counted.
     #[serde(default, skip_serializing)]
@@ -83,6 +83,8 @@ struct Build {
     commit: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     dirty: Option<bool>,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    sources: String,
     wall_seconds: f64,
     machine: Machine,
 }
@@ -138,6 +140,9 @@ impl Run {
             for (name, build) in provenance.artefacts {
                 if let Some(made) = run.artefacts.get_mut(&name) {
                     (made.commit, made.dirty) = (build.commit, build.dirty);
+                    if !build.sources.is_empty() {
+                        made.sources = build.sources;
+                    }
                     (made.wall_seconds, made.machine) = (build.wall_seconds, build.machine);
                 }
             }
@@ -150,6 +155,7 @@ impl Run {
         let build = |made: &Made| Build {
             commit: made.commit.clone(),
             dirty: made.dirty,
+            sources: made.sources.clone(),
             wall_seconds: made.wall_seconds,
             machine: made.machine.clone(),
         };

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use super::context::{Context, DATASETS, STOP, WORK};
 use super::document::readable;
 use super::documents;
+use super::estimate::{readable_seconds, say_how_long, seconds_before};
 use super::lock::Lock;
 use super::options::{Args, Options};
 use super::progress::{line, result};
@@ -113,11 +114,17 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
         std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create", e))?;
         locks.push(Lock::take(&folder)?);
     }
+    say_how_long(&chosen, options);
     for (experiment, artefacts) in &chosen {
         let folder = options.out.join(experiment.slug);
+        let before = Run::read(&folder);
         for artefact in artefacts {
             let name = format!("{}/{}", experiment.slug, artefact.name);
-            line(&format!("{name}: {}", artefact.title));
+            let took = seconds_before(&before, artefact, options);
+            let took = took.map_or_else(String::new, |s| {
+                format!(" ({} last time)", readable_seconds(s))
+            });
+            line(&format!("{name}: {}{took}", artefact.title));
             match pool.install(|| make(experiment, artefact, &folder, options)) {
                 Ok(None) => report.made.push(name),
                 Ok(Some(reason)) => report.skipped.push((name, reason)),
@@ -185,6 +192,13 @@ fn make(
         report::write_rows(&folder.join(&csv), &ctx.rows)?;
         ctx.files.insert(0, csv);
     }
+    let times = ctx.times.write(folder)?;
+    if let Some(page) = times.first() {
+        ctx.document.block(format!(
+            "Times and memory, which differ from run to run: [{page}]({page})."
+        ));
+    }
+    ctx.files.extend(times);
     let page = format!("{}.md", artefact.name);
     let text = ctx
         .document
@@ -254,13 +268,19 @@ fn made_in(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(folders)
 }
 
+/// Scenes and tables of single elements: too large to keep in the repository. No page links them, so that it is the same there and
+/// where they were made.
+fn is_large(file: &str) -> bool {
+    file.ends_with(".glb") || ["benchmark.csv", "completion.csv"].contains(&file)
+}
+
 /// One paper's part of the index.
 fn page(folder: &Path, run: &Run) -> Page {
     let sections = run.order.iter().filter_map(|name| {
         let made = run.artefacts.get(name)?;
         let markdown = std::fs::read_to_string(folder.join(format!("{name}.md"))).ok()?;
-        let there = |file: &String| folder.join(file).is_file();
-        let (files, absent) = made.files.iter().cloned().partition(there);
+        let linked = |file: &String| !is_large(file) && folder.join(file).is_file();
+        let (files, absent) = made.files.iter().cloned().partition(linked);
         Some(Section {
             name: name.clone(),
             heading: format!("{}: {}", readable(name), made.title),
@@ -271,7 +291,7 @@ fn page(folder: &Path, run: &Run) -> Page {
             studio: documents::command(&run.experiment, name, folder),
             beside: made.comparisons.iter().map(beside).collect(),
             skipped: made.skipped.clone(),
-            // The same wherever it is made again; commit, time and machine are in `provenance.json`.
+            // The same wherever it is made again; commit, sources, time and machine are in `provenance.json`.
             made: format!(
                 "{}, version {}{}",
                 match made.budget.as_str() {

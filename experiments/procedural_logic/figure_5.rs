@@ -19,31 +19,32 @@ const PARAMETERS: Parameters = Parameters::COMPRESSION;
 
 /// Rules and time of each stage, and the time of resampled sets up to a city.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
-    let mut figure = Figure::new("Rules and computing time against the number of facades", 3);
+    let mut figure = Figure::new("Rules against the number of facades", 3);
     let mut table = data_table(
         "The whole inference, resampled to larger sets",
         &[],
-        &[
-            "facades",
-            "seconds, 1 thread",
-            "seconds, all threads",
-            "ms per facade, 1 thread",
-            "rules",
-            "peak memory, MB",
-        ],
-    );
+        &["facades", "rules"],
+    )
+    .times([
+        "seconds, 1 thread",
+        "seconds, all threads",
+        "ms per facade, 1 thread",
+        "peak memory, MB",
+    ]);
+    let mut times = Figure::new("Computing time against the number of facades", 3);
     for source in sources(ctx)? {
         for (dataset, grids) in source.sets() {
             let mut alphabet = Alphabet::default();
             let coefficients = learn_affinity(grids, &mut alphabet, &PARAMETERS).normalized();
             figure = figure.panel(rules(ctx, dataset, grids, &alphabet, &coefficients)?);
             if dataset == source.dataset {
-                figure = figure.panel(seconds(ctx, dataset, grids, &alphabet, &coefficients)?);
+                times = times.panel(seconds(ctx, dataset, grids, &alphabet, &coefficients)?);
                 resampled(ctx, &source, &alphabet, &coefficients, &mut table)?;
             }
         }
     }
     ctx.figure("figure_5", &figure)?;
+    ctx.figure_of_times("figure_5", &times)?;
     ctx.table(&table);
     ctx.note(
         "Facades are added in the order of their names, the shipped houses first as they are, then at other \
@@ -157,7 +158,7 @@ fn seconds(
         }
         if dataset == "ecp2011" && stage == 2 {
             let (count, least) = curve[curve.len() - 1];
-            ctx.compare(
+            ctx.compare_times(
                 "computing time per facade, one core",
                 "32 ms",
                 format!("{:.3} ms", 1000.0 * least / count),
@@ -231,10 +232,10 @@ fn resampled(
         table.row([
             source.dataset.to_owned(),
             size.to_string(),
+            rules.to_string(),
             format!("{:.3}", taken[0]),
             format!("{:.3}", taken[1]),
             format!("{:.4}", 1000.0 * taken[0] / size as f64),
-            rules.to_string(),
             memory.map_or_else(String::new, |m| format!("{m:.0}")),
         ]);
         for (method, value) in [

@@ -53,7 +53,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         }
     }
     // The methods that search take seconds a facade.
-    let searched = ctx.budget().choose(1, 8, used.len());
+    let searched = ctx.budget().choose(1, 3, used.len());
     ctx.setting("facades_of_slow_methods", searched);
     let every = used.len().div_ceil(searched.max(1)).max(1);
     let mut units = Vec::new();

@@ -88,7 +88,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         _ => policy::Budget::PAPER,
     };
     let candidates = budget.candidates();
-    let searched = ctx.budget().choose(2, 10, 100);
+    let searched = ctx.budget().choose(2, 5, 100);
     let paper = policy::paper_model(&model);
     let paper = paper.ok_or_else(|| Error::option("--data", "no layout with elements"))?;
     for task in Task::ALL {
@@ -131,7 +131,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let mut table = Table::new("Seconds, one after another")
         .column("method", Align::Left)
         .column("what was done", Align::Left)
-        .numbers(["facades", "median", "mean"]);
+        .numbers(["facades"])
+        .times(["median", "mean"]);
     for line in &lines {
         for (suffix, value) in [("", line.median()), ("/mean", line.mean())] {
             let instance = format!("{}{suffix}", line.instance);
@@ -158,14 +159,14 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     };
     let (weights, mean) = (mean_of("weights"), mean_of("candidates"));
     let theirs = |instance: &str| printed.text("timing", instance, "seconds");
-    ctx.compare(
+    ctx.compare_times(
         format!(
             "completion of a facade by the policy, {candidates} candidates (printed: 10,000), mean"
         ),
         theirs("complete"),
         format!("{mean:.3} s"),
     );
-    ctx.compare(
+    ctx.compare_times(
         format!("weights of the factor graph, {learnt} facades (printed: 100)"),
         theirs("weights"),
         format!("{weights:.2} s"),

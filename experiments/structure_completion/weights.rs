@@ -54,7 +54,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let layouts: Vec<&Layout> = items.iter().take(100).map(|i| &i.layout).collect();
     let sizes = ctx.budget().choose([15, 25], SIZES, SIZES);
     let repeats = ctx.budget().choose(1, 1, 5);
-    let rounds = ctx.budget().choose(5, 200, 200);
+    let rounds = ctx.budget().choose(5, 50, 200);
     ctx.setting("sweeps", SWEEPS);
     ctx.setting("rounds", rounds);
     let seed = ctx.seed();

@@ -173,7 +173,7 @@ fn artefact(slug: &str, s: &Section) -> Markup {
                     @if i > 0 { ", " }
                     a href=(format!("{slug}/{file}")) { (file) }
                 }
-                @for file in &s.absent { ", " (file) " (not kept)" }
+                @for file in &s.absent { ", " (file) " (not kept in the repository)" }
             }
         }
     }
@@ -223,7 +223,7 @@ mod tests {
         assert!(text.contains("-5.0 %"), "{text}");
         // What is not there is named, and no link leads to it.
         assert!(
-            text.contains("scene.glb (not kept)")
+            text.contains("scene.glb (not kept in the repository)")
                 && !text.contains("href=\"facade_grammar/scene.glb\"")
         );
         assert!(

@@ -9,11 +9,19 @@ pub enum Align {
     Right,
 }
 
+/// A column: its heading, its alignment, and if it holds times or memory.
+#[derive(Debug, Clone)]
+struct Column {
+    name: String,
+    align: Align,
+    times: bool,
+}
+
 /// A table with a title.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     title: String,
-    columns: Vec<(String, Align)>,
+    columns: Vec<Column>,
     rows: Vec<Vec<String>>,
 }
 
@@ -28,15 +36,48 @@ impl Table {
 
     /// Adds a column.
     pub fn column(mut self, name: impl Into<String>, align: Align) -> Self {
-        self.columns.push((name.into(), align));
+        self.columns.push(Column {
+            name: name.into(),
+            align,
+            times: false,
+        });
         self
     }
 
     /// Adds columns of numbers.
-    pub fn numbers<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        let columns = names.into_iter().map(|n| (n.into(), Align::Right));
+    pub fn numbers<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> Self {
+        let names = names.into_iter();
+        names.fold(self, |table, name| table.column(name, Align::Right))
+    }
+
+    /// Adds columns of times or memory, which differ from run to run: [`Table::without_times`] leaves them out.
+    pub fn times<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        let columns = names.into_iter().map(|name| Column {
+            name: name.into(),
+            align: Align::Right,
+            times: true,
+        });
         self.columns.extend(columns);
         self
+    }
+
+    /// True if a column holds times or memory.
+    pub fn has_times(&self) -> bool {
+        self.columns.iter().any(|c| c.times)
+    }
+
+    /// The table without the columns of times and memory: the same in every run.
+    pub fn without_times(&self) -> Self {
+        let columns = &self.columns;
+        let kept = |row: &Vec<String>| {
+            let cells = row.iter().zip(columns).filter(|(_, c)| !c.times);
+            cells.map(|(cell, _)| cell.clone()).collect()
+        };
+        Self {
+            title: self.title.clone(),
+            columns: columns.iter().filter(|c| !c.times).cloned().collect(),
+            rows: self.rows.iter().map(kept).collect(),
+        }
     }
 
     /// Adds a row; missing cells stay empty, cells beyond the columns are dropped.
@@ -60,7 +101,7 @@ impl Table {
             let text = row.get(i).map_or("", String::as_str);
             text.replace('|', "\\|").replace('\n', " ")
         };
-        let names: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();
+        let names: Vec<String> = self.columns.iter().map(|c| c.name.clone()).collect();
         let widths: Vec<usize> = (0..names.len())
             .map(|i| {
                 let all = std::iter::once(&names).chain(&self.rows);
@@ -73,7 +114,7 @@ impl Table {
         let line = |row: &[String]| {
             let cells = widths.iter().enumerate().map(|(i, &width)| {
                 let text = cell(row, i);
-                match self.columns[i].1 {
+                match self.columns[i].align {
                     Align::Right => format!("{text:>width$}"),
                     _ => format!("{text:<width$}"),
                 }
@@ -83,7 +124,7 @@ impl Table {
         let rule = widths
             .iter()
             .zip(&self.columns)
-            .map(|(&width, column)| match column.1 {
+            .map(|(&width, column)| match column.align {
                 Align::Right => format!("{}:", "-".repeat(width - 1)),
                 _ => "-".repeat(width),
             });
@@ -103,7 +144,7 @@ impl Table {
         let letters: String = self
             .columns
             .iter()
-            .map(|(_, align)| if *align == Align::Right { 'r' } else { 'l' })
+            .map(|c| if c.align == Align::Right { 'r' } else { 'l' })
             .collect();
         let line = |cells: &mut dyn Iterator<Item = &str>| {
             let cells: Vec<String> = cells.map(latex).collect();
@@ -114,7 +155,7 @@ impl Table {
             latex(&self.title)
         );
         text += &format!("\\begin{{tabular}}{{{letters}}}\n\\toprule\n");
-        text += &line(&mut self.columns.iter().map(|(name, _)| name.as_str()));
+        text += &line(&mut self.columns.iter().map(|c| c.name.as_str()));
         text += "\\midrule\n";
         for row in &self.rows {
             let cell = |i: usize| row.get(i).map_or("", String::as_str);

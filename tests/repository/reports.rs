@@ -20,11 +20,19 @@ fn artefacts(path: &Path) -> serde_json::Map<String, Value> {
     }
 }
 
-/// All kept artefacts: `paper/name`, and what `run.json` and `provenance.json` say of them.
+/// All kept artefacts, those of real data too: `paper/name`, and what `run.json` and `provenance.json` say of them.
 fn kept() -> Vec<(String, Value)> {
+    let mut all = kept_in("reports");
+    assert!(all.len() > 60, "{}", all.len());
+    all.extend(kept_in("reports/real"));
+    all
+}
+
+/// The kept artefacts of one report.
+fn kept_in(report: &str) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for experiment in ALL {
-        let folder = root().join("reports").join(experiment.slug);
+        let folder = root().join(report).join(experiment.slug);
         let artefacts = artefacts(&folder.join("run.json"));
         let builds = self::artefacts(&folder.join("provenance.json"));
         assert!(artefacts.keys().eq(builds.keys()), "{}", experiment.slug);
@@ -39,7 +47,6 @@ fn kept() -> Vec<(String, Value)> {
         };
         all.extend(artefacts.iter().map(named));
     }
-    assert!(all.len() > 60, "{}", all.len());
     all
 }
 
@@ -122,8 +129,12 @@ fn no_link_leads_nowhere() {
                 path => page.parent().expect("a folder").join(path),
             };
             let own = || std::fs::read_to_string(&file).unwrap_or_default();
+            // A link to what is not kept is dead in a clone even if the file is here.
+            let kept = ![".glb", "/benchmark.csv", "/completion.csv"]
+                .iter()
+                .any(|e| path.ends_with(e));
             let there = match (
-                file.exists(),
+                file.exists() && kept,
                 place,
                 file.extension().and_then(|e| e.to_str()),
             ) {
@@ -186,6 +197,26 @@ fn no_lowest_cost_so_far_rises() {
                 );
             }
         }
+    }
+}
+
+/// The report is what the README's command makes, and what needs real data stands apart.
+#[test]
+fn what_is_kept_is_what_the_command_makes() {
+    let real = |made: &Value| {
+        let data = made["data"].as_object().expect("an object");
+        data.keys().any(|name| name.starts_with("DATA/"))
+    };
+    for (artefact, made) in kept_in("reports") {
+        let (slug, name) = artefact.split_once('/').expect("paper/name");
+        let command = format!("edifice reproduce {slug} --only {name}");
+        assert_eq!(made["command"], command, "{artefact}");
+        assert!(!real(&made), "{artefact} is of real data");
+    }
+    let kept = kept_in("reports/real");
+    assert!(kept.len() > 15, "{}", kept.len());
+    for (artefact, made) in kept {
+        assert!(real(&made), "{artefact} needs no real data");
     }
 }
 

@@ -47,7 +47,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let regular = |i: &data::Item| regularity(&paper.score, &i.layout, &i.layout.elements);
     let mut order: Vec<(f64, usize)> = items.iter().map(regular).zip(0..).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let count = ctx.budget().choose(2, 10, 30).min(items.len() / 4).max(1);
+    let count = ctx.budget().choose(2, 6, 30).min(items.len() / 4).max(1);
     let most = order[order.len() - count..].iter();
     let chosen: Vec<usize> = order[..count].iter().chain(most).map(|o| o.1).collect();
     // None of them is learnt from.

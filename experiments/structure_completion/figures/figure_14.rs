@@ -30,7 +30,7 @@ struct Found {
 /// Completes known halves by annealing, by the paper's policies and by the default method.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
-    let (shown, rest) = split(&items, ctx.budget().choose(1, 10, 60));
+    let (shown, rest) = split(&items, ctx.budget().choose(1, 6, 60));
     let model = folds::model(&rest, ctx.seed(), |_| true)?;
     let Some(paper) = paper_model(&model) else {
         ctx.skip("no facade to learn from");

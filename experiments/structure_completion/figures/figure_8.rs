@@ -29,7 +29,7 @@ struct Found {
 /// Completes known halves by as many candidates of either kind; the best by score counts.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
-    let (shown, rest) = split(&items, ctx.budget().choose(2, 6, 60));
+    let (shown, rest) = split(&items, ctx.budget().choose(2, 4, 60));
     let model = paper(&rest, ctx.seed())?;
     let budget = ctx
         .budget()

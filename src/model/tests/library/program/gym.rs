@@ -212,7 +212,7 @@ impl Program for Volatility {
 
 // After 2,000 draws R-hat of the shock is 1.024: it takes minutes.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "half a minute"]
 fn stochastic_volatility() {
     let posterior = nuts(
         &Volatility {
