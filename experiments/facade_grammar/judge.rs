@@ -21,9 +21,10 @@ pub(crate) struct Scores {
     found: Vec<Vec<Vec<Likeness>>>,
 }
 
-/// Runs every case on every facade; the observations go to the CSV, the kind of reference as data set.
-pub(crate) fn run(ctx: &mut Context, cases: &[Case]) -> Result<Scores> {
-    let judged = references::judged(ctx)?;
+/// Runs every case on facade (i), on the layouts made for each kind of reference, and on each `every`-th shipped facade; the
+/// observations go to the CSV, the kind of reference as data set.
+pub(crate) fn run(ctx: &mut Context, cases: &[Case], every: usize) -> Result<Scores> {
+    let judged = references::judged(ctx, every)?;
     let names: Vec<String> = cases.iter().map(|(name, _)| name.clone()).collect();
     ctx.setting("cases", names.clone());
     let units: Vec<(usize, usize)> = (0..cases.len())

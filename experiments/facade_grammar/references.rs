@@ -30,13 +30,14 @@ pub(crate) fn kinds() -> Vec<&'static str> {
     [SHIPPED, PRINTED].into_iter().chain(made).collect()
 }
 
-/// All facades: the shipped ones, facade (i), and layouts made for each kind, which have references of all these kinds.
+/// The facades: each `every`-th shipped one, facade (i), and layouts made for each kind, which have references of all these kinds.
 ///
 /// # Errors
 /// Those of the readers, or of a made grammar that does not derive.
-pub(crate) fn judged(ctx: &mut Context) -> Result<Vec<Judged>> {
+pub(crate) fn judged(ctx: &mut Context, every: usize) -> Result<Vec<Judged>> {
     let mut all: Vec<Judged> = data::known(ctx)?
         .into_iter()
+        .step_by(every)
         .map(|(facade, grammar)| Judged {
             facade,
             own: SHIPPED,

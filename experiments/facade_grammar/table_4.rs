@@ -25,7 +25,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ];
     let question = |solver: Solver| Question::new(solver, ctx.seed());
     let cases: Vec<Case> = solvers.map(|s| (s.name(), question(s))).into();
-    let scores = judge::run(ctx, &cases)?;
+    let scores = judge::run(ctx, &cases, 1)?;
     beside(ctx, &scores, &solvers)?;
     on_the_picture(ctx, &scores.judged)?;
     follows(ctx, &scores, &solvers);

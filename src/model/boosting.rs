@@ -9,6 +9,7 @@
 //! Features are cut at quantiles, at most [`BINS`] values each; O(features * (rows * levels + BINS * 2^levels)) a tree.
 
 use edifice_base::{Progress, Watch, Watched};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Most values of a feature that are told apart in learning.
@@ -149,7 +150,7 @@ impl Boosting {
                 .collect();
             let (tree, leaf_of) = grow(&binned, &cuts, &steps, settings);
             for (sum, &leaf) in sums.iter_mut().zip(&leaf_of) {
-                *sum += tree.leaves[leaf];
+                *sum += tree.leaves[usize::from(leaf)];
             }
             trees.push(tree);
         }
@@ -233,31 +234,37 @@ fn quantiles(rows: &[Vec<f64>], feature: usize) -> Vec<f64> {
     cuts
 }
 
-/// One tree on gradients and curvatures, and the leaf of each row.
+/// One tree on gradients and curvatures, and the leaf of each row. Features are looked at on all threads; the question is chosen in
+/// their order.
 fn grow(
     binned: &[Vec<u8>],
     cuts: &[Vec<f64>],
     steps: &[(f64, f64)],
     settings: Settings,
-) -> (Tree, Vec<usize>) {
-    let mut leaf_of = vec![0usize; steps.len()];
+) -> (Tree, Vec<u16>) {
+    let mut leaf_of = vec![0u16; steps.len()];
     let (mut features, mut thresholds) = (Vec::new(), Vec::new());
     for level in 0..settings.levels {
         let leaves = 1 << level;
+        let sums = || vec![(0.0, 0.0); leaves * BINS];
+        let columns = binned.par_iter().zip(cuts);
+        let gains: Vec<Vec<f64>> = columns
+            .map_init(sums, |sums, (bins, cuts)| {
+                // A feature of one value has no cut.
+                if cuts.is_empty() {
+                    return Vec::new();
+                }
+                sums.fill((0.0, 0.0));
+                for ((&leaf, &bin), step) in leaf_of.iter().zip(bins).zip(steps) {
+                    let sum = &mut sums[usize::from(leaf) * BINS + usize::from(bin)];
+                    sum.0 += step.0;
+                    sum.1 += step.1;
+                }
+                gains(sums, cuts.len(), settings.ridge)
+            })
+            .collect();
         let mut best = (0.0, None);
-        let mut sums = vec![(0.0, 0.0); leaves * BINS];
-        for (feature, bins) in binned.iter().enumerate() {
-            // A feature of one value has no cut.
-            if cuts[feature].is_empty() {
-                continue;
-            }
-            sums.fill((0.0, 0.0));
-            for ((&leaf, &bin), step) in leaf_of.iter().zip(bins).zip(steps) {
-                let sum = &mut sums[leaf * BINS + usize::from(bin)];
-                sum.0 += step.0;
-                sum.1 += step.1;
-            }
-            let gains = gains(&sums, cuts[feature].len(), settings.ridge);
+        for (feature, gains) in gains.into_iter().enumerate() {
             for (cut, gain) in gains.into_iter().enumerate() {
                 if gain > best.0 + 1e-12 {
                     best = (gain, Some((feature, cut)));
@@ -266,15 +273,16 @@ fn grow(
         }
         let Some((feature, cut)) = best.1 else { break };
         for (leaf, &bin) in leaf_of.iter_mut().zip(&binned[feature]) {
-            *leaf |= usize::from(usize::from(bin) > cut) << level;
+            *leaf |= u16::from(usize::from(bin) > cut) << level;
         }
         features.push(feature);
         thresholds.push(cuts[feature][cut]);
     }
     let mut sums = vec![(0.0, 0.0); 1 << features.len()];
     for (&leaf, step) in leaf_of.iter().zip(steps) {
-        sums[leaf].0 += step.0;
-        sums[leaf].1 += step.1;
+        let sum = &mut sums[usize::from(leaf)];
+        sum.0 += step.0;
+        sum.1 += step.1;
     }
     let leaves = sums
         .iter()

@@ -31,15 +31,15 @@ export function bar(session: Session<unknown>, readOnly: boolean, leave: () => v
     session.seed = Math.max(0, Math.floor(Number(seed.value) || 0));
     seed.value = String(session.seed);
   });
-  const anew = button("Draw anew", () => {
-    session.seed += 1;
-    seed.value = String(session.seed);
-  }, { title: "The next seed, for the next answers", class: "quiet" });
+  const anew = button("Draw anew", () => session.anew(), { class: "quiet" });
   const show = () => {
     name.textContent = session.doc.name + (session.doc.unsaved ? " •" : "");
     name.title = session.doc.unsaved ? "not saved" : "";
     kind.textContent = kindName(session.doc.kind);
     undo.disabled = session.busy || !session.doc.undo;
+    if (document.activeElement !== seed) seed.value = String(session.seed);
+    anew.disabled = !session.canDrawAnew;
+    anew.title = session.canDrawAnew ? "The last thing once more, with the next seed" : "The last thing done was not drawn";
     redo.disabled = session.busy || !session.doc.redo;
     const { log } = session.doc;
     const at = log.filter((l) => l.done).length;

@@ -61,7 +61,7 @@ function thumbnail(view: View, elements: Element_[]): SVGSVGElement {
 
 /** The editor. */
 export function completion(session: Session<View>): Editor<View> {
-  const drawing = new Drawing("Facade. Tab to an element, arrow keys move it, Delete removes it.");
+  const drawing = new Drawing("Facade. Tab to an element, arrow keys move it, Delete removes it.", () => session.redraw());
   const tools = h("div", { class: "tools", role: "toolbar", "aria-label": "Tools" });
   const stage = h("div", { class: "stage" }, tools, drawing.svg as unknown as HTMLElement);
   const panel = h("div", {});

@@ -39,7 +39,7 @@ const holds = (r: Rect, [x, y]: [number, number]) => x >= r.x && x <= r.x + r.wi
 
 /** The editor. */
 export function grammar(session: Session<View>): Editor<View> {
-  const drawing = new Drawing("Facade derived from the grammar. Click a region; click again for the region around it.");
+  const drawing = new Drawing("Facade derived from the grammar. Click a region; click again for the region around it.", () => session.redraw());
   const stage = h("div", { class: "stage" }, drawing.svg as unknown as HTMLElement);
   const panel = h("div", {});
   let selection: Selection | null = null;

@@ -64,7 +64,7 @@ function thumbnail(boxes: Box[]): SVGSVGElement {
 
 /** The editor. */
 export function house(session: Session<View>): Editor<View> {
-  const plan = new Drawing("Plan of the house. Tab to a box, arrow keys move it.");
+  const plan = new Drawing("Plan of the house. Tab to a box, arrow keys move it.", () => session.redraw());
   const view = new Scene3("View of the house; arrow keys turn it");
   const wishes = new Wishes(session as unknown as Session<Wishing>);
   const walking = button("Walk around", () => {

@@ -17,16 +17,15 @@ const EDITORS = { house, completion, grammar, city } as unknown as Record<
 const POLL = 2000;
 
 const app = document.getElementById("app")!;
-const notice = h("div", { class: "notice", role: "status", "aria-live": "polite", hidden: true });
+const notice = h("div", { class: "notice", role: "status", "aria-live": "polite" });
 let close = () => {};
 let hide = 0;
 
 function say(text: string, kind: "note" | "error") {
   clearTimeout(hide);
   notice.textContent = text;
-  notice.hidden = text === "";
-  notice.className = `notice ${kind}`;
-  if (kind === "note") hide = setTimeout(() => (notice.hidden = true), 6000);
+  notice.className = text === "" ? "notice" : `notice ${kind}`;
+  if (kind === "note") hide = setTimeout(() => say("", "note"), 6000);
 }
 
 function fail(error: unknown) {
@@ -193,7 +192,7 @@ async function edit(id: string) {
 async function route() {
   close();
   close = () => {};
-  notice.hidden = true;
+  say("", "note");
   try {
     const id = wanted();
     await (id === null ? start() : edit(id));

@@ -15,6 +15,11 @@ export interface Editor<View> {
   close(): void;
 }
 
+/** True for a command that draws from a seed. */
+function draws(command: unknown): boolean {
+  return typeof command === "object" && command !== null && "seed" in command;
+}
+
 /** A document, its commands, and who is told of changes. */
 export class Session<View = never> {
   doc: api.Doc<View>;
@@ -29,6 +34,8 @@ export class Session<View = never> {
   private say: (text: string, kind: "note" | "error") => void;
   private wish: { commands: unknown[]; show: (view: View) => void } | null = null;
   private asking = false;
+  /** The commands that drew last, and the revision that they made. */
+  private drawn: { commands: unknown[]; revision: number } | null = null;
   private pending: (() => unknown[])[] = [];
 
   constructor(doc: api.Doc<View>, say: (text: string, kind: "note" | "error") => void) {
@@ -127,6 +134,7 @@ export class Session<View = never> {
         const next = this.pending.shift()!();
         if (next.length > 0) {
           this.take(await api.edit(this.doc as api.Doc, next, working));
+          if (next.some(draws)) this.drawn = { commands: next, revision: this.doc.revision };
           this.say(this.doc.warnings.join("; "), "note");
         }
       }
@@ -138,6 +146,21 @@ export class Session<View = never> {
       this.job = null;
       this.watch();
     }
+  }
+
+  /** True if the last thing done drew from the seed. */
+  get canDrawAnew(): boolean {
+    return !this.busy && this.drawn?.revision === this.doc.revision;
+  }
+
+  /** Does the last thing once more with the next seed, in place of what it drew. */
+  async anew() {
+    const last = this.drawn;
+    if (!last || !this.canDrawAnew) return;
+    this.seed += 1;
+    const { seed } = this;
+    await this.undo();
+    await this.run(() => last.commands.map((c) => (draws(c) ? { ...(c as object), seed } : c)));
   }
 
   async undo() {

@@ -163,3 +163,67 @@ export async function keyboard(server, context) {
   for (const name of ["Redo", "Save", "Seed", "Colours", "Next building", "Synthesize", "Script"]) assert.ok(names.some((n) => n.includes(name)), `${name} in ${names.join(", ")}`);
   return all.flat();
 }
+
+/** A part of a plan seen from near: what is dragged follows the pointer, handles keep their size, messages cover nothing. */
+export async function zoom(server, context) {
+  const { page, faults } = await open(context, server.address);
+  await page.getByRole("button", { name: /A house without/ }).first().click();
+  await shown(page);
+  const plan = page.locator("svg.drawing");
+  const seen = async () => (await plan.getAttribute("viewBox")).split(" ").map(Number);
+  const whole = await seen();
+  const box = page.locator("g.box.selected rect.shape");
+  const handle = async () => (await page.locator("rect.handle").first().boundingBox()).width;
+  const before = await handle();
+  let at = await box.boundingBox();
+  await page.mouse.move(at.x + at.width / 2, at.y + at.height / 2);
+  for (let k = 0; k < 4; k++) await page.mouse.wheel(0, -60);
+  await page.waitForFunction((w) => Number(document.querySelector("svg.drawing").getAttribute("viewBox").split(" ")[2]) < w, 0.7 * whole[2]);
+  assert.ok(Math.abs((await handle()) - before) < 1.5, `handles of ${await handle()} and ${before} pixels`);
+  // The place under the pointer stayed there.
+  const near = await box.boundingBox();
+  assert.ok(Math.abs(near.x + near.width / 2 - (at.x + at.width / 2)) < 3, "the wheel zooms at the pointer");
+  // A drag by 40 pixels is a drag by 40 pixels of the enlarged plan.
+  at = near;
+  const metres = (40 / at.width) * (await shown(page)).view.boxes[0].width;
+  const x = (await shown(page)).view.boxes[0].x;
+  let doc = await changed(page, async () => {
+    await page.mouse.move(at.x + at.width / 2, at.y + at.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(at.x + at.width / 2 + 40, at.y + at.height / 2, { steps: 5 });
+    await page.mouse.up();
+  });
+  assert.ok(Math.abs(doc.view.boxes[0].x - x - metres) < 0.15, `${doc.view.boxes[0].x - x} m for ${metres}`);
+  // The middle button moves what is seen, 0 shows all of it.
+  const part = await seen();
+  await page.mouse.down({ button: "middle" });
+  await page.mouse.move(at.x + at.width / 2, at.y + at.height / 2, { steps: 4 });
+  await page.mouse.up({ button: "middle" });
+  assert.notDeepEqual(await seen(), part);
+  await page.locator("g.box").first().focus();
+  await page.keyboard.press("0");
+  assert.ok(Math.abs((await seen())[2] - whole[2]) < 0.2 * whole[2]);
+  // A message stands below the plan, not on it, and nothing moves when it comes.
+  const frame = await plan.boundingBox();
+  await page.evaluate(() => window.studio.note("A message"));
+  const notice = await page.locator(".notice").boundingBox();
+  assert.deepEqual(await plan.boundingBox(), frame);
+  assert.ok(notice.y >= frame.y + frame.height, `${notice.y} covers what ends at ${frame.y + frame.height}`);
+
+  // Drawn anew is drawn anew: other answers in place of those, by one command.
+  await page.goto("about:blank");
+  const again = await open(context, server.address);
+  const second = again.page;
+  await second.getByRole("button", { name: /Four elements/ }).first().click();
+  await shown(second);
+  const anew = second.getByRole("button", { name: "Draw anew" });
+  assert.ok(await anew.isDisabled(), "nothing was drawn yet");
+  doc = await changed(second, () => second.getByRole("button", { name: "Complete", exact: true }).click());
+  const length = doc.log.length;
+  await anew.click();
+  await second.waitForFunction(() => window.studio.seed === 2 && !window.studio.busy);
+  doc = await shown(second);
+  assert.equal(doc.log.length, length);
+  assert.match(doc.log.at(-1).said, /2/, doc.log.at(-1).said);
+  return [...faults, ...again.faults];
+}

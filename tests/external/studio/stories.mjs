@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { keyboard, narrow, unnamed } from "./access.mjs";
+import { keyboard, narrow, unnamed, zoom } from "./access.mjs";
 import { designs } from "./designs.mjs";
 import { browser, changed, open, picture, press, shown, studio, violations } from "./studio.mjs";
 
@@ -249,7 +249,7 @@ const stories = {
   },
 };
 
-Object.assign(stories, designs(begin, saved), { keyboard });
+Object.assign(stories, designs(begin, saved), { keyboard, zoom });
 
 const chrome = await browser();
 const only = process.argv[2];
