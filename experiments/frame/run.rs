@@ -268,10 +268,12 @@ fn made_in(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(folders)
 }
 
-/// Scenes and tables of single elements: too large to keep in the repository. No page links them, so that it is the same there and
-/// where they were made.
-fn is_large(file: &str) -> bool {
-    file.ends_with(".glb") || ["benchmark.csv", "completion.csv"].contains(&file)
+/// False for what is too large to keep in the repository: scenes, tables of single elements, and tables of real data. No page links
+/// them, so that it is the same there and where they were made.
+fn is_kept(made: &Made, file: &str) -> bool {
+    let real = made.data.keys().any(|name| name.starts_with("DATA/"));
+    let large = ["benchmark.csv", "completion.csv"].contains(&file);
+    !(file.ends_with(".glb") || large || real && file.ends_with(".csv"))
 }
 
 /// One paper's part of the index.
@@ -279,7 +281,7 @@ fn page(folder: &Path, run: &Run) -> Page {
     let sections = run.order.iter().filter_map(|name| {
         let made = run.artefacts.get(name)?;
         let markdown = std::fs::read_to_string(folder.join(format!("{name}.md"))).ok()?;
-        let linked = |file: &String| !is_large(file) && folder.join(file).is_file();
+        let linked = |file: &String| is_kept(made, file) && folder.join(file).is_file();
         let (files, absent) = made.files.iter().cloned().partition(linked);
         Some(Section {
             name: name.clone(),

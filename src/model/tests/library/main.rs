@@ -7,6 +7,7 @@ mod factor_graph;
 mod factor_graphs;
 mod gmm;
 mod gmm_missing;
+mod gmm_round;
 mod hierarchy;
 mod learning;
 mod network;
