@@ -17,7 +17,7 @@ const EDITORS = { house, completion, grammar, city } as unknown as Record<
 const POLL = 2000;
 
 const app = document.getElementById("app")!;
-const notice = h("div", { class: "notice", role: "status", "aria-live": "polite" });
+const notice = h("div", { class: "notice", role: "status", "aria-label": "Messages", "aria-live": "polite" });
 let close = () => {};
 let hide = 0;
 

@@ -185,15 +185,17 @@ export async function zoom(server, context) {
   assert.ok(Math.abs(near.x + near.width / 2 - (at.x + at.width / 2)) < 3, "the wheel zooms at the pointer");
   // A drag by 40 pixels is a drag by 40 pixels of the enlarged plan.
   at = near;
-  const metres = (40 / at.width) * (await shown(page)).view.boxes[0].width;
-  const x = (await shown(page)).view.boxes[0].x;
+  const { boxes } = (await shown(page)).view;
+  const metres = (40 / at.width) * boxes[0].width;
   let doc = await changed(page, async () => {
     await page.mouse.move(at.x + at.width / 2, at.y + at.height / 2);
     await page.mouse.down();
     await page.mouse.move(at.x + at.width / 2 + 40, at.y + at.height / 2, { steps: 5 });
     await page.mouse.up();
   });
-  assert.ok(Math.abs(doc.view.boxes[0].x - x - metres) < 0.15, `${doc.view.boxes[0].x - x} m for ${metres}`);
+  // Another box may stand over the middle of the first.
+  const moved = Math.max(...doc.view.boxes.map((b, k) => b.x - boxes[k].x));
+  assert.ok(Math.abs(moved - metres) < 0.15, `${moved} m for ${metres}`);
   // The middle button moves what is seen, 0 shows all of it.
   const part = await seen();
   await page.mouse.down({ button: "middle" });
@@ -211,7 +213,6 @@ export async function zoom(server, context) {
   assert.ok(notice.y >= frame.y + frame.height, `${notice.y} covers what ends at ${frame.y + frame.height}`);
 
   // Drawn anew is drawn anew: other answers in place of those, by one command.
-  await page.goto("about:blank");
   const again = await open(context, server.address);
   const second = again.page;
   await second.getByRole("button", { name: /Four elements/ }).first().click();

@@ -122,12 +122,9 @@ fn start(d: usize, kind: Covariance, seed: u64) -> Mixture {
             _ => 0.4 / (1.0 + (a.abs_diff(b) + k) as f64),
         })
     };
-    let covariances: Vec<f64> = (0..3)
-        .flat_map(|k| {
-            let k = if kind == Covariance::Tied { 0 } else { k };
-            one(k).as_slice().to_vec()
-        })
-        .collect();
+    let matrices = if kind == Covariance::Tied { 1 } else { 3 };
+    let covariances = (0..matrices).flat_map(|k| one(k).as_slice().to_vec());
+    let covariances: Vec<f64> = covariances.collect();
     Mixture::new(d, kind, vec![0.5, 0.3, 0.2], means, covariances).expect("a mixture")
 }
 
