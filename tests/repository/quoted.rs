@@ -121,8 +121,10 @@ fn told(reports: &Path, artefacts: &[(&str, &str)]) -> Vec<f64> {
         let run: Value = serde_json::from_str(&run).expect("run.json is JSON");
         let made = &run["artefacts"][name];
         let page = std::fs::read_to_string(folder.join(format!("{name}.md"))).unwrap_or_default();
+        let times = folder.join(format!("{name}.times.md"));
         for text in [
             page,
+            std::fs::read_to_string(times).unwrap_or_default(),
             made["comparisons"].to_string(),
             made["settings"].to_string(),
         ] {
