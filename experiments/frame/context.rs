@@ -27,7 +27,7 @@ pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 /// Folder of journals and unpacked data sets, below a paper's folder; removed by a run that succeeds.
 pub(super) const WORK: &str = ".work";
 
-/// How the metrics of times and memory are called.
+/// Beginnings of the metrics of times and memory.
 const TIMES: [&str; 2] = ["seconds", "peak_memory"];
 
 /// Folder of the unpacked data sets, below that one.

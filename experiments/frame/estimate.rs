@@ -1,4 +1,4 @@
-//! How long a run will take: as long as the same artefacts took when the same folder was filled last.
+//! The time that a run will take: as long as the same artefacts took when the same folder was filled last.
 
 use super::options::Options;
 use super::progress::line;

@@ -194,8 +194,13 @@ fn make(
     }
     let times = ctx.times.write(folder)?;
     if let Some(page) = times.first() {
+        // A table of them alone is a file that not every report keeps.
+        let named = match page.ends_with(".md") {
+            true => format!("[{page}]({page})"),
+            false => format!("`{page}`"),
+        };
         ctx.document.block(format!(
-            "Times and memory, which differ from run to run: [{page}]({page})."
+            "Times and memory, which differ from run to run: {named}."
         ));
     }
     ctx.files.extend(times);
