@@ -4,6 +4,7 @@ mod context;
 mod document;
 mod documents;
 mod estimate;
+mod index;
 mod journal;
 pub(super) mod lock;
 pub(super) mod memory;
@@ -17,13 +18,13 @@ mod verify;
 
 pub use context::Context;
 pub use documents::{Pictured, ReportDocument, Shown, documents, shown};
+pub(super) use index::{SWEEPS, write_index};
 pub use options::{Args, Budget, Options};
 pub use own::Own;
 pub(crate) use progress::Progress;
 pub use progress::silence;
 pub(crate) use run::main;
 pub use run::{Report, run, run_to_end};
-pub(super) use run::{SWEEPS, write_index};
 
 /// One table or figure of a paper.
 pub struct Artefact {

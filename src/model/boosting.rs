@@ -150,7 +150,7 @@ impl Boosting {
                 .collect();
             let (tree, leaf_of) = grow(&binned, &cuts, &steps, settings);
             for (sum, &leaf) in sums.iter_mut().zip(&leaf_of) {
-                *sum += tree.leaves[usize::from(leaf)];
+                *sum += tree.leaves[leaf];
             }
             trees.push(tree);
         }
@@ -241,8 +241,8 @@ fn grow(
     cuts: &[Vec<f64>],
     steps: &[(f64, f64)],
     settings: Settings,
-) -> (Tree, Vec<u16>) {
-    let mut leaf_of = vec![0u16; steps.len()];
+) -> (Tree, Vec<usize>) {
+    let mut leaf_of = vec![0usize; steps.len()];
     let (mut features, mut thresholds) = (Vec::new(), Vec::new());
     for level in 0..settings.levels {
         let leaves = 1 << level;
@@ -256,7 +256,7 @@ fn grow(
                 }
                 sums.fill((0.0, 0.0));
                 for ((&leaf, &bin), step) in leaf_of.iter().zip(bins).zip(steps) {
-                    let sum = &mut sums[usize::from(leaf) * BINS + usize::from(bin)];
+                    let sum = &mut sums[leaf * BINS + usize::from(bin)];
                     sum.0 += step.0;
                     sum.1 += step.1;
                 }
@@ -273,16 +273,15 @@ fn grow(
         }
         let Some((feature, cut)) = best.1 else { break };
         for (leaf, &bin) in leaf_of.iter_mut().zip(&binned[feature]) {
-            *leaf |= u16::from(usize::from(bin) > cut) << level;
+            *leaf |= usize::from(usize::from(bin) > cut) << level;
         }
         features.push(feature);
         thresholds.push(cuts[feature][cut]);
     }
     let mut sums = vec![(0.0, 0.0); 1 << features.len()];
     for (&leaf, step) in leaf_of.iter().zip(steps) {
-        let sum = &mut sums[usize::from(leaf)];
-        sum.0 += step.0;
-        sum.1 += step.1;
+        sums[leaf].0 += step.0;
+        sums[leaf].1 += step.1;
     }
     let leaves = sums
         .iter()
