@@ -97,7 +97,7 @@ fn verdict(page: &Page) -> Markup {
             @if counts.all() > 0 {
                 div.share aria-hidden="true" { span.near style=(part(counts.near)) {} span.far style=(part(counts.far)) {} span.none style=(part(counts.none)) {} }
                 p { "Of " (counts.all()) " printed quantities, " (counts.near) " of ours are within 5 %, " (counts.far) " differ by more; " (counts.none) " are not a number against a number." }
-            } @else { p { "The paper prints pictures; no number stands beside ours." } }
+            } @else { p { "No printed number stands beside ours here: the paper prints pictures, or its numbers need the real data or are times." } }
             p { (made) " of " (page.sections.len()) " artefacts made here."
                 @for s in left { " " a href=(link(s)) { (s.name.replace('_', " ")) } ": " (s.skipped.as_deref().unwrap_or_default()) "." }
             }
