@@ -76,6 +76,31 @@ pub(super) fn levels(
     Ok(found)
 }
 
+/// True if joined groups of a table would be dear: more than `few` groups of real columns, more than `small` values in these, and most rows
+/// lack one of them.
+///
+/// # Errors
+/// As [`levels`].
+pub(super) fn dear(
+    data: &Table,
+    groups: &[Group],
+    small: usize,
+    few: usize,
+) -> Result<bool, ModelError> {
+    let (mut reals, mut columns) = (0, Vec::new());
+    for group in groups {
+        let own: Result<Vec<_>, _> = group.columns.iter().map(|name| data.column(name)).collect();
+        let own = own?;
+        if own.first().is_some_and(|c| c.categories().is_none()) {
+            reals += 1;
+            columns.extend(own);
+        }
+    }
+    let lacks = |row: &usize| columns.iter().any(|c| c.cell(*row) == Cell::Missing);
+    let large = reals > few && data.rows() * columns.len() > small;
+    Ok(large && 2 * (0..data.rows()).filter(lacks).count() > data.rows())
+}
+
 /// The two groups, the first below the second, of the highest mean; of several the first.
 fn nearest(sums: &[Vec<f64>], widths: &[f64]) -> (usize, usize) {
     let mut best = (f64::NEG_INFINITY, 0, 1);
@@ -209,6 +234,17 @@ mod tests {
             let wanted = ["h0", "h1", "h2", "h3"].map(|h| BTreeSet::from([h]));
             assert_eq!(four, BTreeSet::from(wanted));
         }
+    }
+
+    #[test]
+    fn joined_groups_are_dear_where_most_rows_of_many_columns_lack_a_value() {
+        let mut rng = stream(1, "dear", 0);
+        // Ten columns of 300 rows; with missing cells, of a tenth, two rows in three lack one.
+        let (whole, groups) = table(&[3, 2, 4, 1], false, &mut rng);
+        let (gaps, _) = table(&[3, 2, 4, 1], true, &mut rng);
+        let of = |data, small, few| dear(data, &groups, small, few).unwrap();
+        assert!(of(&gaps, 2999, 9));
+        assert!(!of(&whole, 2999, 9) && !of(&gaps, 3000, 9) && !of(&gaps, 2999, 10));
     }
 
     #[test]

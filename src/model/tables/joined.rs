@@ -9,8 +9,11 @@
 //! # Deviations and readings
 //! - Of large tables (more than 10,000 real values searched on) coarse groupings come first, 1, 2, 4, 8, .. groups, until one scores less than the
 //!   one before: the coarser, the quicker. Of at most eight real groups both ends alone are learned: two groups of the four of the Ames
-//!   houses took twice the time of all else and scored 0.05 nats a row less than the four. From `MANY` groups on the doubling has to gain 1 nat a row, or the search ends there. Else
-//!   the groups as given come last.
+//!   houses took twice the time of all else and scored 0.05 nats a row less than the four. From `MANY` groups on the doubling has to gain 1 nat
+//!   a row, or the search ends there. Else the groups as given come last.
+//! - Of a large table of more than eight real groups most of whose rows lack a value, the groups as given are learned alone: each such row of
+//!   a joined group asks for a factor of its own. Of the 28 real columns of the Ames houses without a schema one group was at -55.4 nats a row
+//!   after 400 s, the groups as given at -45.6 after 250 s.
 //! - Of small tables both ends are learned, then those next to the better end, until two in a row do not score more than the best.
 //! - A search is given up where it stays far behind the best so far: of the groups as given 2 nats a row before any
 //!   cardinality is raised, 1 nat a row when all |S| swept are done; of groupings between a quarter of that.
@@ -19,7 +22,7 @@
 
 use std::ops::ControlFlow;
 
-use super::grouping::levels;
+use super::grouping::{dear, levels};
 use crate::hierarchy::{
     Group, Learned, Observer, Rival, SMALL, Settings, Sweep, learn_against, learn_observed,
 };
@@ -227,7 +230,11 @@ pub fn learn_joined(
     seed: u64,
     observer: &Observer,
 ) -> Result<Joined, ModelError> {
-    let Some((learned, together)) = learn_one_group(data, groups, settings, seed, observer)? else {
+    let coarse = match dear(data, groups, SMALL, FEW)? {
+        true => None,
+        false => learn_one_group(data, groups, settings, seed, observer)?,
+    };
+    let Some((learned, together)) = coarse else {
         return Ok(Joined {
             learned: learn_observed(data, groups, settings, seed, observer)?,
             groups: groups.to_vec(),
@@ -235,17 +242,16 @@ pub fn learn_joined(
         });
     };
     let reals = groups.len() + 1 - together.len();
-    let best = Level {
-        searched: searched(&learned),
-        learned,
-        groups: together,
-    };
     let mut trial = Trial {
         data,
         settings,
         seed,
         observer,
-        best,
+        best: Level {
+            searched: searched(&learned),
+            learned,
+            groups: together,
+        },
         tried: Vec::new(),
     };
     let score = trial.of_a_row(&trial.best);
@@ -314,10 +320,8 @@ fn from_the_better_end(
         if !trial.goes_on() || without_gain == MISSES {
             break;
         }
-        match trial.learn(&level, count, true)? > 0.0 {
-            true => without_gain = 0,
-            false => without_gain += 1,
-        }
+        let gained = trial.learn(&level, count, true)? > 0.0;
+        without_gain = if gained { 0 } else { without_gain + 1 };
     }
     Ok(())
 }
@@ -373,8 +377,7 @@ mod tests {
                 assert!(group.columns.iter().all(|name| &name[..2] == first));
                 assert_eq!(group.columns.len(), 3);
             }
-            let tried = |t: &&Tried| t.groups == 4;
-            let four = found.tried.iter().find(tried).unwrap().score;
+            let four = found.tried.iter().find(|t| t.groups == 4).unwrap().score;
             let others = found.tried.iter().filter(|t| t.groups != 4);
             assert!(others.map(|t| t.score).all(|score| score < four));
         }
