@@ -2,16 +2,17 @@
 //!
 //! A *seam* is a line across the facade. A band `[a, b)` may be repeated or taken away when the facade is the same along its two
 //! seams: in every strip both cross the background, or one region that reaches from one seam to the other, or two
-//! regions of one label and one place and size across, at the same distance from their edges. Then
+//! regions of one label and one place and size across, at the same distance from their edges and with background between them: panes of
+//! one window are no windows. Then
 //! beside every new seam stands what stands beside an old one already, all floors get the same columns, and what is
 //! in line stays in line. Each band has one count for all floors:
 //! ```text
 //! W' = W + sum_b m_b (b - a),      k = target / W',      x -> k x
 //! ```
 //! Counts are chosen one after another: each lowers `|ln k| + ALIGNMENT * loss`, where `loss` is the greatest fall, over the
-//! labels, of the share of elements that have their like in line on the next floor. Among several the best has the
-//! least of that, of what it was used before and of its way from the middle. The scale `k` of what remains is one for all,
-//! so that equal parts stay equal. A band that has all regions of a label (the door) is left alone.
+//! labels, of the share of elements that have their like in line on the next floor, as a part of that share; none loses more than a
+//! tenth, or at least no panes (glass, or windows where there is none), unless stretching had to do the rest. Among several the best has the least of that, of what it was used before and of its way from the middle. The scale `k` of
+//! what remains is one for all, so that equal parts stay equal. A band that has all regions of a label (the door) is left alone.
 //!
 //! Where no such bands bring the scale within [`SCALE`], seams may also cross wide regions of one label and one place across,
 //! a shop window, that become longer or shorter by that; their labels are told ([`Banded::cut`]).
@@ -23,7 +24,7 @@
 
 use std::collections::BTreeMap;
 
-use super::in_line::{Piece, loss, shares};
+use super::in_line::{Piece, Shares, loss, loss_of_panes, shares};
 use edifice_shape::{Axis, Facade, Rect, Region, is_background};
 
 /// Shortest and longest band, as shares of the side.
@@ -36,7 +37,11 @@ const SCALE: f64 = 0.12;
 const WIDE: f64 = 0.07;
 
 /// Weight of lost alignment against the logarithm of the scale.
-const ALIGNMENT: f64 = 3.0;
+const ALIGNMENT: f64 = 1.0;
+
+/// Greatest part of the alignment that may be lost, unless `|ln k|` is more than this then.
+const MOST_LOST: f64 = 0.1;
+const STRETCHED: f64 = 0.25;
 
 /// Weights of an earlier use of a band, and of its distance from the middle as a share of the side.
 const USED: f64 = 0.08;
@@ -82,14 +87,7 @@ pub fn resized(
         if (target - view.side).abs() <= view.noise {
             continue;
         }
-        let strict = view.plan(&view.bands(false), target);
-        let mut best = strict;
-        if (target / best.side).ln().abs() > SCALE {
-            let loose = view.plan(&view.bands(true), target);
-            if (target / loose.side).ln().abs() < (target / best.side).ln().abs() {
-                best = loose;
-            }
-        }
+        let best = view.planned(target);
         let (pieces, cut) = view.applied(&best.counts);
         let scale = target / best.side;
         out.bands[k] = best.counts.iter().map(|(_, count)| count).sum();
@@ -201,8 +199,11 @@ impl<'a> AxisView<'a> {
 
     /// True if the facade is the same along both seams.
     fn alike(&self, (from, to): (usize, usize), (a, b): Band, loose: bool) -> bool {
-        let pairs = self.cells[from].iter().zip(&self.cells[to]);
-        pairs.filter(|(p, q)| p != q).all(|(&p, &q)| {
+        (0..self.cells[from].len()).all(|row| {
+            let [p, q] = [from, to].map(|column| self.cells[column][row]);
+            if p == q {
+                return true;
+            }
             let (p, q) = (&self.pieces[p], &self.pieces[q]);
             if p.label != q.label {
                 return false;
@@ -210,9 +211,15 @@ impl<'a> AxisView<'a> {
             let level = self.same(p.across.0, q.across.0) && self.same(p.across.1, q.across.1);
             let length = |piece: &Piece| piece.along.1 - piece.along.0;
             let placed = self.same(a - p.along.0, b - q.along.0) && self.same(length(p), length(q));
+            // Panes of one window are no window each.
+            let apart = || (from + 1..to).any(|k| is_background(self.label(k, row)));
             let wide = length(p).min(length(q)) >= WIDE * self.side;
-            is_background(p.label) || (level && (placed || (loose && wide)))
+            is_background(p.label) || (level && ((placed && apart()) || (loose && wide)))
         })
+    }
+
+    fn label(&self, column: usize, row: usize) -> &str {
+        self.pieces[self.cells[column][row]].label
     }
 
     /// True if a band has elements, and of no label all.
@@ -232,8 +239,30 @@ impl<'a> AxisView<'a> {
         inside > 0 && counts.values().all(|count| count.1 < count.0)
     }
 
-    /// Chooses the counts of bands.
-    fn plan(&self, bands: &[Band], target: f64) -> BandCounts {
+    /// Counts of bands that keep all elements in line, else the panes, else none, where the stricter leaves too much to stretching.
+    fn planned(&self, target: f64) -> BandCounts {
+        let left = |plan: &BandCounts| (target / plan.side).ln().abs();
+        let (strict, loose) = (self.bands(false), self.bands(true));
+        let within = |kept: fn(&Shares, &Shares) -> f64| {
+            let plan = self.plan(&strict, target, kept);
+            if left(&plan) <= SCALE {
+                return plan;
+            }
+            let other = self.plan(&loose, target, kept);
+            if left(&other) < left(&plan) {
+                other
+            } else {
+                plan
+            }
+        };
+        let bounds: [fn(&Shares, &Shares) -> f64; 2] = [loss, loss_of_panes];
+        let kept = bounds.into_iter().map(within);
+        let found = kept.into_iter().find(|plan| left(plan) <= STRETCHED);
+        found.unwrap_or_else(|| within(|_, _| 0.0))
+    }
+
+    /// Chooses the counts of bands so that at each step `kept` lose at most [`MOST_LOST`] of their alignment.
+    fn plan(&self, bands: &[Band], target: f64, kept: fn(&Shares, &Shares) -> f64) -> BandCounts {
         let more = target > self.side;
         let before = shares(&self.pieces, self.noise);
         let mut plan = BandCounts {
@@ -269,7 +298,11 @@ impl<'a> AxisView<'a> {
                 }
                 let mut counts = plan.counts.clone();
                 counts[k].1 += if more { 1 } else { -1 };
-                let lost = ALIGNMENT * loss(&before, &shares(&self.applied(&counts).0, self.noise));
+                let after = shares(&self.applied(&counts).0, self.noise);
+                if kept(&before, &after) > MOST_LOST {
+                    continue;
+                }
+                let lost = ALIGNMENT * loss(&before, &after);
                 if new_scale + lost < worth && best.is_none_or(|best| rank + lost < best.0) {
                     best = Some((rank + lost, new_scale + lost, k));
                 }

@@ -75,3 +75,50 @@ fn the_unit_does_not_matter() {
     assert_eq!(there.bands, back.bands);
     assert_eq!(there.facade.regions.len(), back.facade.regions.len());
 }
+
+#[test]
+fn windows_are_repeated_with_all_their_panes() {
+    // One floor of windows of two panes in frames, a lintel over each.
+    let of = |count: u32| {
+        let width = f64::from(count) * 4.0 + 1.4;
+        let mut regions = Vec::new();
+        let mut put = |label: &str, x: f64, y: f64, w: f64, h: f64| {
+            let label = label.into();
+            regions.push(Region {
+                label,
+                rect: Rect::new(x, y, w, h),
+            });
+        };
+        put("wall", 0.0, 0.0, width, 1.0);
+        put("wall", 0.0, 3.5, width, 1.0);
+        put("wall", 0.0, 1.0, 1.4, 2.5);
+        for k in 0..count {
+            let x = 1.4 + 4.0 * f64::from(k);
+            for (label, start, width) in [
+                ("frame", 0.0, 0.2),
+                ("glass", 0.2, 1.0),
+                ("frame", 1.2, 0.2),
+                ("glass", 1.4, 1.0),
+                ("frame", 2.4, 0.2),
+            ] {
+                put(label, x + start, 1.0, width, 2.0);
+            }
+            put("lintel", x, 3.0, 2.6, 0.5);
+            put("wall", x + 2.6, 1.0, 1.4, 2.5);
+        }
+        Facade::new("panes", "m", width, 4.5, regions).unwrap()
+    };
+    let own = of(4);
+    for count in [2, 3, 5, 8] {
+        let want = of(count);
+        let found = resized(&own, want.width, want.height).unwrap();
+        let sorted = |f: &Facade| {
+            let places = f.regions.iter().filter(|r| r.label == "glass");
+            let mut starts: Vec<i64> = places.map(|r| (r.rect.x * 1e3).round() as i64).collect();
+            starts.sort_unstable();
+            starts
+        };
+        assert_eq!(sorted(&found.facade), sorted(&want));
+        assert!((found.scale[0] - 1.0).abs() < 1e-9);
+    }
+}

@@ -112,24 +112,26 @@ fn on_garage(building: &Building, room: &Room) -> bool {
     })
 }
 
-/// Puts a door where a house has none, and one behind each porch that none leads to: on the first wall with room, in
-/// front before the sides and the back. Windows in its place are left out. Whether each asked for found a place.
-pub(super) fn completed(building: &Building, walls: &Walls, pieces: &mut [FacadePiece]) -> bool {
-    let mut all = true;
-    for side in [Side::Front, Side::Back] {
-        let Some(plan) = porch(building, side).map(MassBox::plan) else {
-            continue;
-        };
-        let span = [plan.x, plan.right()];
-        if !has_door(pieces, Some((side, span))) {
-            all &= put(building, walls, pieces, &[side], Some(span));
-        }
-    }
+/// Puts a door where a house has none: on the first wall with room, in front before the sides and the back. Windows in its place are left out.
+pub(super) fn entered(building: &Building, walls: &Walls, pieces: &mut [FacadePiece]) {
     if !has_door(pieces, None) {
         let sides = [Side::Front, Side::Left, Side::Right, Side::Back];
-        all &= put(building, walls, pieces, &sides, None);
+        put(building, walls, pieces, &sides, None);
     }
-    all
+}
+
+/// Puts a door behind the porch of a side if none leads to it, in place of windows; true if there is one more.
+pub(super) fn porch_door(
+    building: &Building,
+    walls: &Walls,
+    pieces: &mut [FacadePiece],
+    side: Side,
+) -> bool {
+    let Some(plan) = porch(building, side).map(MassBox::plan) else {
+        return false;
+    };
+    let span = [plan.x, plan.right()];
+    !has_door(pieces, Some((side, span))) && put(building, walls, pieces, &[side], Some(span))
 }
 
 fn has_door(pieces: &[FacadePiece], within: Option<(Side, [f64; 2])>) -> bool {

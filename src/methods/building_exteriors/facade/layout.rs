@@ -1,8 +1,9 @@
 //! The four sides of a house, each by the search of method `best`.
 
 use super::cut::{Candidate, Choice, NARROWEST, choices};
-use super::doors::{completed, door_strip};
+use super::doors::{door_strip, entered, porch_door};
 use super::glaze::{DOOR, Furnishing, glaze, holds_asymmetric, millimetres, usual_count};
+use super::rescale::shrink;
 use super::room::{FixedPiece, Strip, Walls};
 use super::styles;
 use crate::attributes::facade_attributes;
@@ -71,7 +72,9 @@ pub fn furnish(
             deviations: [0, 1, 2].map(|k| deviations[4 * k + s]),
             styles: shared(&styles, s),
             column: s,
+            side,
             cuts: target.cuts,
+            fixed: &target.fixed,
             beyond,
             evaluations: 0,
         };
@@ -86,7 +89,13 @@ pub fn furnish(
     }
     missing_styles(&mut out.pieces, &styles, &target.fixed);
     if !has_door(&target.fixed) {
-        completed(building, &walls, &mut out.pieces);
+        let before = out.pieces.clone();
+        entered(building, &walls, &mut out.pieces);
+        for (s, side) in Side::ALL.into_iter().enumerate() {
+            if doors(&out.pieces, side) > doors(&before, side) {
+                shrink(&mut out.pieces, side, target.wanted[s], &target.fixed);
+            }
+        }
     }
     out
 }
@@ -94,6 +103,12 @@ pub fn furnish(
 fn windows(pieces: &[FacadePiece]) -> usize {
     let elements = pieces.iter().flat_map(|p| &p.elements);
     elements.filter(|e| e.style != ElementStyle::Door).count()
+}
+
+fn doors(pieces: &[FacadePiece], side: Side) -> usize {
+    let own = pieces.iter().filter(|p| p.side == side);
+    let elements = own.flat_map(|p| &p.elements);
+    elements.filter(|e| e.style == ElementStyle::Door).count()
 }
 
 fn is_entered(pieces: &[FacadePiece]) -> bool {
@@ -157,7 +172,10 @@ struct SideSearch<'a> {
     deviations: [f64; 3],
     styles: Vec<ElementStyle>,
     column: usize,
+    side: Side,
     cuts: bool,
+    /// Observed pieces that stay as they are.
+    fixed: &'a [FixedPiece],
     /// Windows beyond the usual number on the sides before this one, then with it.
     beyond: f64,
     evaluations: u64,
@@ -195,7 +213,8 @@ impl SideSearch<'_> {
                 let (strips, plans) = self.plans(choice, door);
                 for plans in self.alignments(&strips, plans) {
                     let ratio = self.wanted[0];
-                    let pieces = glaze(self.walls, &strips, &plans, ratio, spacing);
+                    let mut pieces = glaze(self.walls, &strips, &plans, ratio, spacing);
+                    self.lead_to_porch(&mut pieces);
                     let (mut z, sum) = self.distance(&pieces);
                     let missing = door.is_some() && !is_entered(&pieces);
                     z += if missing { NO_DOOR } else { 0.0 };
@@ -214,6 +233,14 @@ impl SideSearch<'_> {
         let (pieces, [_, _, z]) = best.unwrap_or_default();
         self.beyond += windows(&pieces) as f64 - own;
         (pieces, z % NO_DOOR)
+    }
+
+    /// Hangs the door of a porch that none leads to, unless what is observed has a door.
+    fn lead_to_porch(&self, pieces: &mut [FacadePiece]) {
+        let hangs = !has_door(self.fixed);
+        if hangs && porch_door(self.building, self.walls, pieces, self.side) {
+            shrink(pieces, self.side, self.wanted[0], self.fixed);
+        }
     }
 
     /// Asymmetric width of the fixed pieces.

@@ -14,7 +14,8 @@
 //!
 //! Layouts for several spacings and orders of subsets are measured with the one code of attributes, and the nearest
 //! to the wanted attributes is kept. Styles go to strips so that each wanted one occurs; a door stands in the
-//! strip of the front that the front porch covers.
+//! strip of the front that the front porch covers. Where no strip has a door for a porch, one is hung behind it before a layout is measured,
+//! and the windows of that side are made smaller by what it takes.
 //!
 //! **`paper`** ([`breed()`]): Eq. 4 by a genetic algorithm (100 genomes; a gene is the layout of a wall piece), each layout
 //! sized by Eq. 5; elements are sub-styles of the database on the house with the most similar styles ([`elements()`]).
@@ -34,6 +35,7 @@ mod elements;
 mod glaze;
 pub mod knapsack;
 mod layout;
+mod rescale;
 mod room;
 mod styles;
 

@@ -212,7 +212,13 @@ pub fn generate(
     if !searched || best.is_good() {
         return best.build();
     }
-    // The walls have no room for the wanted facades, or one would not believe the house: other plans may do better.
+    // The walls have no room for the wanted facades, or one would not believe the house: other plans may do better. What is given comes before
+    // what is believed.
+    let misses = |draft: &Draft| {
+        let reached = draft.report.reached.iter().zip(&row);
+        let mut z = reached.zip(&database.deviations).zip(given).take(NUMBERS);
+        z.any(|(((reached, row), s), given)| *given && ((reached - row) / s).abs() > NEAR)
+    };
     let few = SearchLimits {
         rounds: ROUNDS,
         ..options.search.clone()
@@ -221,7 +227,7 @@ pub fn generate(
     for mass in variations(&target, OTHERS, APART, &unlike, database, &few, rng) {
         let other = draft(wish.clone(), mass, database, options, rng)?;
         let spent = best.report.evaluations + other.report.evaluations;
-        if other.cost() < best.cost() {
+        if (misses(&other), other.cost()) < (misses(&best), best.cost()) {
             best = other;
         }
         best.report.evaluations = spent;

@@ -23,6 +23,7 @@ const LIMITS: Limits = Limits {
 };
 
 /// A fitted scheme, its lines on whole millimetres.
+#[derive(Clone)]
 pub(super) struct Fitted {
     pub building: Building,
     /// Its general boxes.
