@@ -23,7 +23,6 @@ const LIMITS: Limits = Limits {
 };
 
 /// A fitted scheme, its lines on whole millimetres.
-#[derive(Clone)]
 pub(super) struct Fitted {
     pub building: Building,
     /// Its general boxes.

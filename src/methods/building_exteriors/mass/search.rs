@@ -103,24 +103,17 @@ pub fn search(
             break;
         }
     }
-    // Arrangements alone: donors may all lie around one that leads nowhere.
-    let mut drawn = Found::new(options.enough);
     for round in 0..options.rounds {
         if found.is_enough(frozen) || (found.cost <= options.enough && round >= PLAINER) {
             break;
         }
-        // Every other round changes the best so far, of all or of the arrangements, once there have been a few to choose from.
-        let near = match round % 4 {
-            _ if round < OPENING => None,
-            1 => drawn.nearest.clone(),
-            3 => found.nearest.clone(),
-            _ => None,
-        };
+        // Every other round changes the best arrangement so far, once there have been a few to choose from.
+        let near = (round >= OPENING && round % 2 == 1)
+            .then(|| found.nearest.clone())
+            .flatten();
         found.evaluations += GLANCES as u64;
         if let Some(scheme) = random_scheme(target, near.as_deref(), frozen, deviations, rng) {
-            let fitted = fit(&scheme, target, deviations, options.enough);
-            drawn.add(fitted.clone(), None);
-            found.add(fitted, None);
+            found.add(fit(&scheme, target, deviations, options.enough), None);
         }
     }
     let evaluations = found.evaluations;
