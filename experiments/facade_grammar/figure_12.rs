@@ -106,8 +106,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     all_layouts(ctx)?;
     ctx.note(
         "The paper shows one resized facade and prints no numbers. *Floor by floor*: sizes become relative but for thin parts, and repeats fill the space \
-         (Sec. 5); *aligned*: then a quadratic program gives terminals that are equal in the input one size and merges edges into lines. *By bands* (the \
-         default of `grammar derive`): columns that stand together repeat together in all floors, and the rest is scaled. A pane (glass, or a window \
+         (Sec. 5); *aligned*: then a quadratic program gives terminals that are equal in the input one size and merges edges into lines. *By bands* \
+         (`grammar derive --bands`): columns that stand together repeat together in all floors, and the rest is scaled. A pane (glass, or a window \
          where there is none) is *in line* when one of the next floor has its left and right sides. *Scale*: what bands leave to stretching; stretching alone \
          would keep every alignment and show no columns.",
     );

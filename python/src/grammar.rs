@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use edifice_editing::split_grammar::{Wish, derived};
+use edifice_editing::split_grammar::{Resizing, Wish, derived};
 use edifice_grammar::{Costs, evaluate, listing};
 use edifice_io::{draw, grammar_cga, grammar_json, read_grammar, write_grammar};
 use pyo3::prelude::*;
@@ -100,7 +100,10 @@ impl Grammar {
             start,
             size: Some(size),
             seed,
-            align,
+            resizing: match align {
+                true => Resizing::Aligned,
+                false => Resizing::Rules,
+            },
         };
         let grammar = self.inner.clone();
         let made = detached(py, move || derived(&grammar, &wish))?;

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::examples::{Example, Source};
 use super::script::{Shell, Word};
-use super::split_grammar::{Derived, GrammarEdit, Wish, derived, edit, glb};
+use super::split_grammar::{Derived, GrammarEdit, Resizing, Wish, derived, edit, glb};
 use super::work::Work;
 use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
 use edifice_base::{Error, Result};
@@ -122,11 +122,15 @@ enum Command {
 
 impl Editing {
     fn derived(&self, align: bool) -> Result<Derived> {
+        let resizing = match align {
+            true => Resizing::Aligned,
+            false => Resizing::Rules,
+        };
         let wish = Wish {
             start: self.start,
             size: self.size,
             seed: self.seed,
-            align,
+            resizing,
         };
         let made = derived(&self.grammar, &wish).map_err(Error::method)?;
         let count = made.facade.regions.len();

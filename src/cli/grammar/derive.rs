@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_editing::split_grammar::{Wish, derived, glb};
+use edifice_editing::split_grammar::{Resizing, Wish, derived, glb};
 use edifice_grammar::{Derivation, Grammar, check};
 use edifice_io::{read_grammar, write_atomic, write_facade};
 use edifice_shape::Facade;
@@ -15,13 +15,16 @@ use crate::print::{self, Json};
 #[command(after_help = "Examples:
   edifice grammar derive facade.cga -o facade.facade.json
   edifice grammar derive fig9.grammar.json --width 800 --height 600 -o wide.svg
+  edifice grammar derive fig9.grammar.json --width 800 --bands -o columns.svg
   edifice grammar derive joint.grammar.json --facade terrace_a --seed 7 -o terrace_a.png
 
 At its own size a grammar gives the facade that it was inferred from. At another size, rules without
 a relative size (~) are made size-independent: their sizes become relative, but for thin structures
 such as window frames, and repeats fill the space. Absolute sizes give way last and in proportion,
 with a warning. Then edges are aligned, and terminals that are equal at the grammar's own size
-become equal again; --no-align leaves them where the rules put them.
+become equal again; --no-align leaves them where the rules put them. --bands does not ask the rules:
+columns that stand together repeat together in all floors of the facade at its own size, floors at
+their own rhythm, and what is left is stretched.
 In a stochastic grammar the seed picks among the rules of each symbol.")]
 pub(crate) struct Args {
     /// Grammar to read: .grammar.json or .cga, also as .gz
@@ -41,6 +44,9 @@ pub(crate) struct Args {
     /// At another size, leave edges where the rules put them
     #[arg(long)]
     no_align: bool,
+    /// At another size, repeat or leave out whole columns and floors of the facade at its own size, and stretch the rest
+    #[arg(long, conflicts_with = "no_align")]
+    bands: bool,
     /// File to write: .facade.json, .svg, .png or .glb (in relief, metres)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -87,7 +93,11 @@ fn derive(args: &Args) -> Result<Facade> {
         start: index,
         size: Some((width, height)),
         seed: args.seed,
-        align: !args.no_align,
+        resizing: match (args.bands, args.no_align) {
+            (true, _) => Resizing::Bands,
+            (false, true) => Resizing::Rules,
+            (false, false) => Resizing::Aligned,
+        },
     };
     let made = derived(&grammar, &wish).map_err(|e| Error::content(path, e))?;
     warn_of_shrunk(args, &grammar, &made.derivation);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::super::split_grammar::{Wish, derived};
+use super::super::split_grammar::{Resizing, Wish, derived};
 use super::super::work::Work;
 use edifice_base::{Error, Progress, Result};
 use edifice_facade_grammar::{Outcome, Settings, infer};
@@ -20,7 +20,7 @@ pub fn merge(grammar: &Grammar, further: &[Facade], work: &Work) -> Result<Outco
             start,
             size: None,
             seed: 0,
-            align: false,
+            resizing: Resizing::Rules,
         };
         let mut facade = derived(grammar, &wish).map_err(Error::method)?.facade;
         facade.name.clone_from(&grammar.starts[start].name);

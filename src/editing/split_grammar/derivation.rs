@@ -2,8 +2,19 @@
 
 use edifice_base::rng;
 use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
-use edifice_layout::resize::{AlignError, align};
-use edifice_shape::Facade;
+use edifice_layout::resize::{AlignError, align, resized};
+use edifice_shape::{Facade, LayoutError};
+
+/// The way to another size than the grammar's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resizing {
+    /// Edges stay where the rules put them.
+    Rules,
+    /// Edges are aligned, equal terminals are made equal again.
+    Aligned,
+    /// Whole columns and floors of the facade at its own size repeat or go, and the rest is stretched.
+    Bands,
+}
 
 /// The wanted derivation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,8 +25,8 @@ pub struct Wish {
     pub size: Option<(f64, f64)>,
     /// Seed of stochastic grammars.
     pub seed: u64,
-    /// True if edges are aligned at another size than its own.
-    pub align: bool,
+    /// The way to another size than its own.
+    pub resizing: Resizing,
 }
 
 /// A derived facade.
@@ -23,7 +34,7 @@ pub struct Wish {
 pub struct Derived {
     /// The facade.
     pub facade: Facade,
-    /// The derivation, before edges were aligned.
+    /// The derivation, before edges were aligned; that of the own size where bands repeat.
     pub derivation: Derivation,
     /// Terminals that are equal at the own size and could not stay so.
     pub unequal: Vec<String>,
@@ -38,9 +49,12 @@ pub enum DeriveError {
     /// Edges cannot be aligned.
     #[error(transparent)]
     Align(#[from] AlignError),
+    /// The facade at its own size is no tiling.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
 }
 
-/// Derives a start: as it is written at its own size; at another, size-independent and with aligned edges.
+/// Derives a start: as it is written at its own size; at another, size-independent or by bands.
 ///
 /// # Errors
 /// [`DeriveError`].
@@ -64,9 +78,18 @@ pub fn derived(grammar: &Grammar, wish: &Wish) -> Result<Derived, DeriveError> {
             unequal: Vec::new(),
         });
     }
+    if wish.resizing == Resizing::Bands {
+        let derivation = at(grammar, own)?;
+        let found = resized(&derivation.facade, size.0, size.1)?;
+        return Ok(Derived {
+            facade: found.facade,
+            derivation,
+            unequal: found.cut,
+        });
+    }
     let grammar = size_independent(grammar);
     let derivation = at(&grammar, size)?;
-    if !wish.align {
+    if wish.resizing == Resizing::Rules {
         return Ok(Derived {
             facade: derivation.facade.clone(),
             derivation,

@@ -11,7 +11,7 @@ mod relief;
 mod rule_axis;
 mod text;
 
-pub use derivation::{DeriveError, Derived, Wish, derived};
+pub use derivation::{DeriveError, Derived, Resizing, Wish, derived};
 pub use edits::{GrammarEdit, edit};
 pub use error::GrammarEditError;
 pub use place::Place;

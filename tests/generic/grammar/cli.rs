@@ -200,6 +200,10 @@ fn other_sizes_are_aligned_unless_switched_off() {
     let aligned = derive(&size);
     let plain = derive(&[&size[..], &["--no-align"]].concat());
     assert_ne!(aligned, plain);
+    let banded = derive(&[&size[..], &["--bands"]].concat());
+    banded.check_tiling().unwrap();
+    assert!((banded.width - 0.8 * own.width).abs() < 1e-9);
+    assert!(banded != aligned && banded != plain);
     // Each element of one size at the own size has one size.
     let sizes = |facade: &edifice::shape::Facade| {
         let noise = 1e-5 * facade.height;
