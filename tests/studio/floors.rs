@@ -8,7 +8,7 @@ use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::rng::stream;
 use edifice::shape::Axis;
 use edifice::unwatched;
-use edifice_editing::split_grammar::{Derived, GrammarEdit, Wish, derived, edit};
+use edifice_editing::split_grammar::{Derived, GrammarEdit, Resizing, Wish, derived, edit};
 use rand::{Rng, RngExt};
 
 fn files(ending: &str) -> Vec<PathBuf> {
@@ -62,7 +62,7 @@ fn shown(grammar: &Grammar) -> Derived {
         start: 0,
         size: None,
         seed: 0,
-        align: false,
+        resizing: Resizing::Rules,
     };
     derived(grammar, &wish).expect("derives")
 }
