@@ -74,7 +74,7 @@ pub(super) fn door_strip(building: &Building, walls: &Walls, side: Side) -> Opti
     })
 }
 
-fn place(side: Side) -> usize {
+pub(super) fn place(side: Side) -> usize {
     Side::ALL.iter().position(|s| *s == side).unwrap_or(0)
 }
 
@@ -113,10 +113,16 @@ fn on_garage(building: &Building, room: &Room) -> bool {
 }
 
 /// Puts a door where a house has none: on the first wall with room, in front before the sides and the back. Windows in its place are left out.
-pub(super) fn entered(building: &Building, walls: &Walls, pieces: &mut [FacadePiece]) {
-    if !has_door(pieces, None) {
-        let sides = [Side::Front, Side::Left, Side::Right, Side::Back];
-        put(building, walls, pieces, &sides, None);
+/// The side that it is on, if it is new.
+pub(super) fn entered(
+    building: &Building,
+    walls: &Walls,
+    pieces: &mut [FacadePiece],
+) -> Option<Side> {
+    let sides = [Side::Front, Side::Left, Side::Right, Side::Back];
+    match has_door(pieces, None) {
+        true => None,
+        false => put(building, walls, pieces, &sides, None),
     }
 }
 
@@ -131,7 +137,8 @@ pub(super) fn porch_door(
         return false;
     };
     let span = [plan.x, plan.right()];
-    !has_door(pieces, Some((side, span))) && put(building, walls, pieces, &[side], Some(span))
+    !has_door(pieces, Some((side, span)))
+        && put(building, walls, pieces, &[side], Some(span)).is_some()
 }
 
 fn has_door(pieces: &[FacadePiece], within: Option<(Side, [f64; 2])>) -> bool {
@@ -151,7 +158,7 @@ fn put(
     pieces: &mut [FacadePiece],
     sides: &[Side],
     within: Option<[f64; 2]>,
-) -> bool {
+) -> Option<Side> {
     let half = DOOR[0] / 2.0;
     for garages in [false, true] {
         for side in sides {
@@ -177,13 +184,13 @@ fn put(
                     places.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
                     let place = places.into_iter().find(|at| is_free(walls, room, *at));
                     if place.is_some_and(|at| hang(pieces, strip, *side, at)) {
-                        return true;
+                        return Some(*side);
                     }
                 }
             }
         }
     }
-    false
+    None
 }
 
 /// Hangs a door on the piece of the ground floor at a place: of several behind each other, the one of the strip; `false`

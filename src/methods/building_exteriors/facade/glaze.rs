@@ -13,7 +13,7 @@ const COUNT: [f64; 2] = [1.27, 0.603];
 const TALLEST: f64 = 2.2;
 /// Narrowest piece with a window, and narrowest window (m).
 const NARROWEST: f64 = 0.85;
-const SLIMMEST: f64 = 0.35;
+pub(super) const SLIMMEST: f64 = 0.35;
 
 /// Number of windows that a side with this area of windows (square metres) usually has.
 pub(super) fn usual_count(area: f64) -> f64 {

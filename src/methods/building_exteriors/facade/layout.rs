@@ -1,7 +1,7 @@
 //! The four sides of a house, each by the search of method `best`.
 
 use super::cut::{Candidate, Choice, NARROWEST, choices};
-use super::doors::{door_strip, entered, porch_door};
+use super::doors::{door_strip, entered, place, porch_door};
 use super::glaze::{DOOR, Furnishing, glaze, holds_asymmetric, millimetres, usual_count};
 use super::rescale::shrink;
 use super::room::{FixedPiece, Strip, Walls};
@@ -88,14 +88,11 @@ pub fn furnish(
         out.pieces.extend(pieces);
     }
     missing_styles(&mut out.pieces, &styles, &target.fixed);
-    if !has_door(&target.fixed) {
-        let before = out.pieces.clone();
-        entered(building, &walls, &mut out.pieces);
-        for (s, side) in Side::ALL.into_iter().enumerate() {
-            if doors(&out.pieces, side) > doors(&before, side) {
-                shrink(&mut out.pieces, side, target.wanted[s], &target.fixed);
-            }
-        }
+    if !has_door(&target.fixed)
+        && let Some(side) = entered(building, &walls, &mut out.pieces)
+    {
+        let ratio = target.wanted[place(side)];
+        shrink(&mut out.pieces, side, ratio, &target.fixed);
     }
     out
 }
@@ -103,12 +100,6 @@ pub fn furnish(
 fn windows(pieces: &[FacadePiece]) -> usize {
     let elements = pieces.iter().flat_map(|p| &p.elements);
     elements.filter(|e| e.style != ElementStyle::Door).count()
-}
-
-fn doors(pieces: &[FacadePiece], side: Side) -> usize {
-    let own = pieces.iter().filter(|p| p.side == side);
-    let elements = own.flat_map(|p| &p.elements);
-    elements.filter(|e| e.style == ElementStyle::Door).count()
 }
 
 fn is_entered(pieces: &[FacadePiece]) -> bool {

@@ -1,12 +1,11 @@
 //! Smaller windows on a side on which a door was hung when its windows stood already.
 
-use super::glaze::millimetres;
+use super::glaze::{SLIMMEST, millimetres};
 use super::room::FixedPiece;
 use edifice_shape::{ElementStyle, FacadeElement, FacadePiece, Side};
 
-/// Least scale, and the extent (m) below which none is made smaller: what is smaller is no window any more.
+/// Least scale: what is smaller is no window any more.
 const LEAST: f64 = 0.5;
-const SLIMMEST: f64 = 0.35;
 
 /// Scales the windows of a side around their middles, all alike, so that windows and doors cover no more than `ratio` of it; none below half
 /// its size or 0.35 m. Pieces that are fixed stay as they are.
