@@ -17,6 +17,7 @@ pub mod comparison;
 mod components;
 mod cuts;
 mod decompose;
+mod detailed;
 mod elements;
 mod facade;
 mod hidden;
@@ -47,6 +48,7 @@ pub use cleaning::{ToleranceError, absorb_specks, clean, on_lattice, straighten}
 pub use components::{Component, components};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};
+pub use detailed::{DetailedBuilding, Part, PartKind, WallRect};
 pub use elements::{BACKGROUND_LABELS, elements_of_facade, elements_of_grid, is_background};
 pub use facade::{Facade, LayoutError, Region};
 pub use hidden::Hidden;

@@ -10,6 +10,7 @@ mod errors;
 mod fuzz;
 mod generation;
 mod io;
+mod parts;
 mod possible;
 mod shipped;
 mod survey;

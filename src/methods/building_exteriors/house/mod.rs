@@ -4,6 +4,7 @@ mod database;
 mod generate;
 pub mod inspect;
 pub mod model;
+pub mod parts;
 mod roof_styles;
 pub mod roofs;
 pub mod scene;
