@@ -13,8 +13,10 @@ mod generation;
 mod generation_figures;
 mod generation_speed;
 mod held_out;
+mod hidden_openings;
 mod learning;
 mod mixture_figures;
+mod openings;
 mod reasons;
 mod speed;
 pub mod study;
@@ -143,6 +145,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "learning",
         title: "seconds of the whole structure search",
         run: learning::run,
+    },
+    Artefact {
+        name: "openings",
+        title: "windows and doors given back to the closed walls of city models",
+        run: openings::run,
     },
     Artefact {
         name: "speed",

@@ -8,6 +8,7 @@ mod data;
 mod design;
 mod draw;
 mod evaluate;
+mod facades;
 mod import;
 mod learn;
 mod output;

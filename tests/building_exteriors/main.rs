@@ -6,6 +6,7 @@ mod coding;
 mod commands;
 mod contradictions;
 mod design;
+mod dress;
 mod errors;
 mod fuzz;
 mod generation;

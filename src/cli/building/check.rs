@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::inspect::{faults, implausible};
 use edifice_building_exteriors::house::{Joining, Model, model};
-use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
+use edifice_io::{building_json, detailed_cityjson, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_shape::Building;
 
 use super::output::{row, street, write_png};
@@ -16,7 +16,8 @@ use crate::print::{self, Json};
 /// Options of `check`.
 #[derive(clap::Args)]
 pub(crate) struct CheckArgs {
-    /// Houses (`*.building.json`, `*.buildings.jsonl`) or surfaces (`*.obj`).
+    /// Houses (`*.building.json`, `*.buildings.jsonl`), surfaces (`*.obj`), or buildings of level of detail 3
+    /// (`*.city.json`, as `build --format cityjson` and `complete --facades` write them).
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Roofs of each box, or one joined roof.
@@ -69,6 +70,15 @@ pub(super) fn check(args: &CheckArgs) -> Result<()> {
             all += 1;
             bad += usize::from(!faults.is_empty());
             tell(&path.display().to_string(), &faults, args.json)?;
+            continue;
+        }
+        if path.to_string_lossy().ends_with(".city.json") {
+            for shell in detailed_cityjson::shells(path)? {
+                let faults = detailed_cityjson::faults(&shell);
+                all += 1;
+                bad += usize::from(!faults.is_empty());
+                tell(&shell.name, &faults, args.json)?;
+            }
             continue;
         }
         let mut names = std::collections::HashSet::new();

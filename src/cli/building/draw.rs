@@ -6,6 +6,7 @@ use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::{completions, observed};
+use edifice_building_exteriors::dress::Settings;
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_editing::building_exteriors::draws::{Draws, drawn_table, given_table, style_table};
 use edifice_editing::building_exteriors::is_file_name;
@@ -13,6 +14,7 @@ use edifice_io::building_json;
 use edifice_model::Table;
 
 use super::data::{self, Input};
+use super::facades;
 use super::produce::Making;
 use crate::model::data::{csv_lines, print_table};
 use crate::print::{self, Json};
@@ -83,6 +85,14 @@ pub(crate) struct CompleteArgs {
     /// houses nearest to the model's answer come first.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Give the buildings of a city model windows and doors, with a probability on each: INPUT is a city, in every format
+    /// that `edifice city` reads, and --output a CityJSON file of level of detail 3 (`*.city.json`). Walls and roofs keep
+    /// their corners.
+    #[arg(long, requires = "output", conflicts_with_all = ["keep", "given", "schema", "groups", "format", "most_probable", "count"])]
+    facades: bool,
+    /// With --facades, draws for each building: one is shown, all are counted for the probabilities.
+    #[arg(long, default_value_t = Settings::default().draws, requires = "facades")]
+    draws: usize,
     /// With --output, further evidence as in `sample`; repeatable.
     #[arg(long, requires = "output")]
     given: Vec<String>,
@@ -116,6 +126,13 @@ pub(super) fn sample(args: &SampleArgs) -> Result<()> {
 /// Runs `complete`.
 pub(super) fn complete(args: &CompleteArgs) -> Result<()> {
     let file = data::model(&args.model)?;
+    if let (true, Some(output)) = (args.facades, &args.output) {
+        let settings = Settings {
+            draws: args.draws,
+            seed: args.draw.seed,
+        };
+        return facades::run(&file, &args.input.input, output, &settings, args.json);
+    }
     if let Some(folder) = &args.output {
         return complete_houses(args, &file, folder);
     }

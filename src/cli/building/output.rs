@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use edifice_base::{Error, Result};
+use edifice_building_exteriors::house::parts::parts;
 use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::street::{self, Fronted};
 use edifice_building_exteriors::house::{Database, Model};
 use edifice_editing::building_exteriors::{scene_of, shipped_database};
+use edifice_io::detailed_cityjson::{self, Place};
 use edifice_io::scene_png::picture_png;
 use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_scene::Scene;
@@ -28,6 +30,8 @@ pub(super) enum Format {
     Obj,
     /// `NAME.glb`, y up
     Glb,
+    /// `NAME.city.json`: CityJSON 2.0 of level of detail 3
+    Cityjson,
     /// `NAME.svg`: elevations and plan
     Svg,
     /// `NAME.png`: a perspective view
@@ -106,6 +110,11 @@ pub(super) fn write(
                 write_atomic(&file("obj"), text.as_bytes())?;
             }
             Format::Glb => gltf::write(&scene_of(building, model), &file("glb"))?,
+            Format::Cityjson => {
+                let all = [parts(building, model)];
+                let text = detailed_cityjson::to_string(&all, &Place::default());
+                write_atomic(&file("city.json"), text.as_bytes())?;
+            }
             Format::Svg => {
                 let text = scene_svg::elevations(&scene_of(building, model));
                 write_atomic(&file("svg"), text.as_bytes())?;

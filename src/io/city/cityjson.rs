@@ -291,7 +291,7 @@ const OPEN_GIS: &str = "https://www.opengis.net/def/crs/";
 
 /// A reference system as CityJSON 2.0 names it: `EPSG:7415` is `https://www.opengis.net/def/crs/EPSG/0/7415`. The standard
 /// allows no other names: such are left out.
-fn standard_name(system: &str) -> Option<String> {
+pub(crate) fn standard_name(system: &str) -> Option<String> {
     if let Some(rest) = system.strip_prefix("http://www.opengis.net/def/crs/") {
         return Some(format!("{OPEN_GIS}{rest}"));
     }

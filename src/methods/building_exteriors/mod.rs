@@ -9,6 +9,7 @@ pub mod attributes;
 pub mod coding;
 pub mod data;
 pub mod design;
+pub mod dress;
 pub mod facade;
 pub mod house;
 pub mod mass;

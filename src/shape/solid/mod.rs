@@ -20,6 +20,7 @@
 
 pub mod arrangement;
 mod check;
+pub mod crossings;
 pub mod exact;
 mod faces;
 pub mod integral;

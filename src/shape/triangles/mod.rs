@@ -12,6 +12,7 @@
 //! - [`VolumeRaster`]: columns of solid material on a square grid; volumetric intersection over union.
 //! - [`SurfaceDistance`]: exact distances from points to triangles.
 
+mod bounded;
 mod box_texture;
 mod city;
 mod clip;
@@ -27,6 +28,7 @@ mod repair;
 mod side_view;
 mod triangulate;
 
+pub use bounded::bounded_triangles;
 pub use box_texture::{BoxTexture, box_coordinates, box_view};
 pub use city::{City, CityBuilding, Part};
 pub use clip::clip_to_slabs;

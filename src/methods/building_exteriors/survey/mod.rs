@@ -54,6 +54,7 @@ use edifice_shape::{BoxStyle, Building, BuildingError, Hidden, MassBox, RoofStyl
 pub use detached::attached;
 pub use fit::Fit;
 pub use known::Known;
+pub(crate) use surfaces::is_wall;
 
 /// Limits of what counts as a house, in metres and square metres.
 #[derive(Debug, Clone, Copy, PartialEq)]

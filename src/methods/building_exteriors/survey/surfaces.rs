@@ -4,7 +4,7 @@ use edifice_shape::triangles::{Corners, TriangleMesh, normal, plan_area as signe
 use edifice_shape::vec3::norm;
 
 /// True if the triangle is upright.
-pub(super) fn is_wall(n: [f64; 3], length: f64) -> bool {
+pub(crate) fn is_wall(n: [f64; 3], length: f64) -> bool {
     n[2].abs() <= LEVEL * length
 }
 

@@ -1,5 +1,6 @@
 //! Surfaces of unions against counts of cubes, integrals on another way, and points drawn at random.
 
+mod crossings;
 mod exact;
 mod openings;
 

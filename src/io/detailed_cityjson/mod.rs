@@ -1,0 +1,146 @@
+//! Buildings of level of detail 3 as CityJSON 2.0: a solid with named surfaces, openings in their walls.
+//!
+//! Each building is one `Building` with one geometry of `lod` 3: a `Solid` where the surface is closed, else a
+//! `MultiSurface`. Boundaries are triangles, so that each is plane. The surface of each triangle has a class of
+//! CityJSON 2.0 (Sec. 3.3, `semantics`); windows and doors name their wall as `parent`, walls their openings as
+//! `children`. What is attached to a building has no class of its own there: eaves and posts are a `RoofSurface`,
+//! chimneys and the bases of porches a `WallSurface`, all with their names.
+//!
+//! Corners are whole numbers of millimetres where all corners are, to a tenth of a micrometre; else of micrometres.
+
+mod check;
+mod read;
+
+use rustc_hash::FxHashMap;
+use serde_json::{Map, Value, json};
+
+use super::city::cityjson::standard_name;
+use edifice_shape::{DetailedBuilding, Part, PartKind};
+
+pub use check::faults;
+pub use read::{Described, Shell, ShellError, parse, shells};
+
+/// Where buildings are: what is added to each coordinate, and the reference system.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Place {
+    /// Added to each corner (m).
+    pub origin: [f64; 3],
+    /// The reference system, for example `EPSG:7415`; names that are none of the Open Geospatial Consortium's are left
+    /// out.
+    pub reference_system: Option<String>,
+}
+
+/// Units of coordinates in metres, and the largest error in units at which the coarser one is taken.
+const MILLIMETRE: f64 = 1e-3;
+const MICROMETRE: f64 = 1e-6;
+const EXACT: f64 = 1e-4;
+
+/// The text of a CityJSON 2.0 file of all buildings.
+pub fn to_string(buildings: &[DetailedBuilding], place: &Place) -> String {
+    let whole = |v: &f64| (v / MILLIMETRE - (v / MILLIMETRE).round()).abs() < EXACT;
+    let positions = buildings.iter().flat_map(|b| &b.positions);
+    let scale = match positions.flatten().all(whole) {
+        true => MILLIMETRE,
+        false => MICROMETRE,
+    };
+    let mut vertices = Vertices {
+        scale,
+        known: FxHashMap::default(),
+        all: Vec::new(),
+    };
+    let mut objects = Map::new();
+    for building in buildings {
+        let mut object =
+            json!({ "type": "Building", "geometry": [geometry(building, &mut vertices)] });
+        if !building.attributes.is_empty() {
+            object["attributes"] = Value::Object(building.attributes.clone());
+        }
+        objects.insert(building.name.clone(), object);
+    }
+    let mut document = json!({ "type": "CityJSON", "version": "2.0",
+        "transform": { "scale": [scale, scale, scale], "translate": place.origin },
+        "CityObjects": objects, "vertices": vertices.all });
+    if let Some(system) = place.reference_system.as_deref().and_then(standard_name) {
+        document["metadata"] = json!({ "referenceSystem": system });
+    }
+    document.to_string()
+}
+
+/// The corners of all buildings, each once.
+struct Vertices {
+    scale: f64,
+    known: FxHashMap<[i64; 3], usize>,
+    all: Vec<[i64; 3]>,
+}
+
+impl Vertices {
+    fn index(&mut self, p: [f64; 3]) -> usize {
+        let key = p.map(|v| (v / self.scale).round() as i64);
+        *self.known.entry(key).or_insert_with(|| {
+            self.all.push(key);
+            self.all.len() - 1
+        })
+    }
+}
+
+fn geometry(building: &DetailedBuilding, vertices: &mut Vertices) -> Value {
+    let mut boundaries = Vec::new();
+    let mut values = Vec::new();
+    for (part, t, _) in building.triangles() {
+        let ring = building.corners(t).map(|p| vertices.index(p));
+        // A triangle whose corners are one point in the unit of the file is none.
+        if ring[0] != ring[1] && ring[1] != ring[2] && ring[2] != ring[0] {
+            boundaries.push([ring]);
+            values.push(part);
+        }
+    }
+    let surfaces: Vec<Value> = (building.parts.iter().enumerate())
+        .map(|(k, part)| surface(building, k, part))
+        .collect();
+    match is_closed(&boundaries) {
+        true => json!({ "type": "Solid", "lod": "3", "boundaries": [boundaries],
+            "semantics": { "surfaces": surfaces, "values": [values] } }),
+        false => json!({ "type": "MultiSurface", "lod": "3", "boundaries": boundaries,
+            "semantics": { "surfaces": surfaces, "values": values } }),
+    }
+}
+
+/// The description of a part.
+fn surface(building: &DetailedBuilding, k: usize, part: &Part) -> Value {
+    let class = match part.kind {
+        PartKind::BuildingInstallation if part.name == "trim" => PartKind::RoofSurface,
+        PartKind::BuildingInstallation => PartKind::WallSurface,
+        kind => kind,
+    };
+    let mut surface = Map::new();
+    surface.insert("type".into(), json!(class.name()));
+    surface.insert("name".into(), json!(part.name));
+    if let Some(wall) = part.wall {
+        surface.insert("parent".into(), json!(wall));
+    }
+    let own = building.parts.iter().enumerate();
+    let children: Vec<usize> = own
+        .filter(|(_, p)| p.wall == Some(k))
+        .map(|(i, _)| i)
+        .collect();
+    if !children.is_empty() {
+        surface.insert("children".into(), json!(children));
+    }
+    for (name, value) in &part.attributes {
+        surface.insert(name.clone(), value.clone());
+    }
+    Value::Object(surface)
+}
+
+/// True if each edge is passed once in either direction.
+fn is_closed(boundaries: &[[[usize; 3]; 1]]) -> bool {
+    let mut edges: FxHashMap<[usize; 2], i32> = FxHashMap::default();
+    for [t] in boundaries {
+        for i in 0..3 {
+            let (v, w) = (t[i], t[(i + 1) % 3]);
+            *edges.entry([v, w]).or_default() += 1;
+        }
+    }
+    let once = |(e, n): (&[usize; 2], &i32)| *n == 1 && edges.get(&[e[1], e[0]]) == Some(&1);
+    !boundaries.is_empty() && edges.iter().all(once)
+}
