@@ -52,6 +52,7 @@ A CSV of other columns needs a schema: --schema datasets/building_exteriors/h2k.
     #[command(after_help = "Examples:
   edifice building complete datasets/building_exteriors/real.houses.json village.buildings.jsonl -n 2 --most-probable
   edifice building complete datasets/building_exteriors/real.houses.json village.buildings.jsonl -n 1 -o completed --format json,glb
+  edifice building complete datasets/building_exteriors/real.houses.json datasets/building_exteriors/village.city.json --facades -o village3.city.json
 A side without facade pieces, and an empty cell of a CSV, is missing. --keep observes only some attributes.")]
     Complete(draw::CompleteArgs),
     /// Compare houses with the true ones: attributes, soundness, closed surfaces.

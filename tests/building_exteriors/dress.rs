@@ -176,7 +176,7 @@ fn houses_are_sound_solids_and_every_kind_of_fault_is_found() {
         .iter()
         .position(|s| s.class == "Window")
         .unwrap();
-    assert!(faults(&|s| drop(s.triangles.pop())).contains("302"));
+    assert!(faults(&|s| s.triangles.truncate(s.triangles.len() - 1)).contains("302"));
     assert!(faults(&|s| s.triangles[0].0.swap(0, 1)).contains("302"));
     assert!(faults(&|s| s.triangles.iter_mut().for_each(|(t, _)| t.swap(0, 1))).contains("307"));
     assert!(faults(&|s| s.triangles[5].0[1] = s.triangles[5].0[0]).contains("without area"));
