@@ -195,4 +195,20 @@ fn houses_are_sound_solids_and_every_kind_of_fault_is_found() {
     let crossed = [moved(0, far), moved(0, -far), moved(1, far), moved(1, -far)];
     assert!(crossed.iter().any(|f| f.contains("306")), "{crossed:?}");
     assert!(faults(&|s| s.triangles.clear()).contains("no surfaces"));
+    let twice = |s: &mut Shell| {
+        let count = s.positions.len() as u32;
+        let high: Vec<[i64; 3]> = s
+            .positions
+            .iter()
+            .map(|p| [p[0], p[1], p[2] + far * 9])
+            .collect();
+        s.positions.extend(high);
+        let more: Vec<_> = s
+            .triangles
+            .iter()
+            .map(|(t, k)| (t.map(|v| v + count), *k))
+            .collect();
+        s.triangles.extend(more);
+    };
+    assert!(faults(&twice).contains("305"));
 }

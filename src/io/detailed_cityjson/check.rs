@@ -37,6 +37,12 @@ pub fn faults(shell: &Shell) -> Vec<String> {
     }
     if shell.is_solid {
         found.extend(open(&triangles, shell));
+        let parts = components(&triangles);
+        if parts > 1 {
+            found.push(format!(
+                "{parts} separate parts (305 MULTIPLE_CONNECTED_COMPONENTS)"
+            ));
+        }
         let six = |t: &[u32; 3]| {
             let (n, p) = (twice_area(t), point(t[0]));
             (0..3)
@@ -74,6 +80,25 @@ pub fn faults(shell: &Shell) -> Vec<String> {
     }
     found.extend(openings(shell));
     found
+}
+
+/// The number of parts that hang together at corners.
+pub(super) fn components(triangles: &[[u32; 3]]) -> usize {
+    fn root(parent: &mut HashMap<u32, u32>, mut v: u32) -> u32 {
+        while let Some(&up) = parent.get(&v).filter(|up| **up != v) {
+            v = up;
+        }
+        parent.insert(v, v);
+        v
+    }
+    let mut parent = HashMap::new();
+    for t in triangles {
+        for w in &t[1..] {
+            let (a, b) = (root(&mut parent, t[0]), root(&mut parent, *w));
+            parent.insert(a.max(b), a.min(b));
+        }
+    }
+    parent.iter().filter(|(v, up)| v == up).count()
 }
 
 /// Edges that are not passed once in either direction.

@@ -1,7 +1,7 @@
 //! Buildings of level of detail 3 as CityJSON 2.0: a solid with named surfaces, openings in their walls.
 //!
-//! Each building is one `Building` with one geometry of `lod` 3: a `Solid` where the surface is closed, else a
-//! `MultiSurface`. Boundaries are triangles, so that each is plane. The surface of each triangle has a class of
+//! Each building is one `Building` with one geometry of `lod` 3: a `Solid` where the surface is closed and in one piece,
+//! else a `MultiSurface`. Boundaries are triangles, so that each is plane. The surface of each triangle has a class of
 //! CityJSON 2.0 (Sec. 3.3, `semantics`); windows and doors name their wall as `parent`, walls their openings as
 //! `children`. What is attached to a building has no class of its own there: eaves and posts are a `RoofSurface`,
 //! chimneys and the bases of porches a `WallSurface`, all with their names.
@@ -69,16 +69,16 @@ pub fn to_string(buildings: &[DetailedBuilding], place: &Place) -> String {
 /// The corners of all buildings, each once.
 struct Vertices {
     scale: f64,
-    known: FxHashMap<[i64; 3], usize>,
+    known: FxHashMap<[i64; 3], u32>,
     all: Vec<[i64; 3]>,
 }
 
 impl Vertices {
-    fn index(&mut self, p: [f64; 3]) -> usize {
+    fn index(&mut self, p: [f64; 3]) -> u32 {
         let key = p.map(|v| (v / self.scale).round() as i64);
         *self.known.entry(key).or_insert_with(|| {
             self.all.push(key);
-            self.all.len() - 1
+            self.all.len() as u32 - 1
         })
     }
 }
@@ -97,7 +97,7 @@ fn geometry(building: &DetailedBuilding, vertices: &mut Vertices) -> Value {
     let surfaces: Vec<Value> = (building.parts.iter().enumerate())
         .map(|(k, part)| surface(building, k, part))
         .collect();
-    match is_closed(&boundaries) {
+    match is_solid(&boundaries) {
         true => json!({ "type": "Solid", "lod": "3", "boundaries": [boundaries],
             "semantics": { "surfaces": surfaces, "values": [values] } }),
         false => json!({ "type": "MultiSurface", "lod": "3", "boundaries": boundaries,
@@ -132,15 +132,15 @@ fn surface(building: &DetailedBuilding, k: usize, part: &Part) -> Value {
     Value::Object(surface)
 }
 
-/// True if each edge is passed once in either direction.
-fn is_closed(boundaries: &[[[usize; 3]; 1]]) -> bool {
-    let mut edges: FxHashMap<[usize; 2], i32> = FxHashMap::default();
-    for [t] in boundaries {
+/// True if each edge is passed once in either direction and all hangs together.
+fn is_solid(boundaries: &[[[u32; 3]; 1]]) -> bool {
+    let triangles: Vec<[u32; 3]> = boundaries.iter().map(|[t]| *t).collect();
+    let mut edges: FxHashMap<[u32; 2], i32> = FxHashMap::default();
+    for t in &triangles {
         for i in 0..3 {
-            let (v, w) = (t[i], t[(i + 1) % 3]);
-            *edges.entry([v, w]).or_default() += 1;
+            *edges.entry([t[i], t[(i + 1) % 3]]).or_default() += 1;
         }
     }
-    let once = |(e, n): (&[usize; 2], &i32)| *n == 1 && edges.get(&[e[1], e[0]]) == Some(&1);
-    !boundaries.is_empty() && edges.iter().all(once)
+    let once = |(e, n): (&[u32; 2], &i32)| *n == 1 && edges.get(&[e[1], e[0]]) == Some(&1);
+    edges.iter().all(once) && check::components(&triangles) == 1
 }
