@@ -9,6 +9,7 @@ mod design;
 mod errors;
 mod fuzz;
 mod generation;
+mod ifc;
 mod io;
 mod parts;
 mod possible;
