@@ -18,12 +18,13 @@
 //! | the wall of a window or a door | `IfcOpeningElement`, `IfcRelVoidsElement`, `IfcRelFillsElement` |
 //! | attributes | `IfcPropertySet` `Edifice` |
 //!
-//! Walls are surfaces that have their holes already. Therefore the space of an opening, its rectangle a little before and
-//! behind the wall, is no `Body` but a representation `Reference`, which the standard has for openings that the body of
-//! the wall leaves out. A viewer that cuts it nevertheless cuts where nothing is: the rectangle lies in the hole.
+//! Walls are surfaces that have their holes already. Therefore an `IfcOpeningElement` has a place, the lower left corner of
+//! the rectangle, and no shape: there is nothing to cut. With a box as its shape, also one that is a representation
+//! `Reference`, which the standard has for openings that the body of a wall leaves out, `IfcOpenShell` 0.9 cuts the open
+//! surface; where edges of the box lie on edges of the hole, it adds the sides of the box to the wall.
 //!
 //! The sets `Pset_WallCommon`, `Pset_WindowCommon` and so on say that all is external. A `GlobalId` is a digest of the
-//! name of the building, the class and the name of the part, so that a house that is written again has the same ones; the
+//! name of the building and the name of the part, so that a house that is written again has the same ones; the
 //! time in the head is that of Unix time 0, and there is no `IfcOwnerHistory`.
 
 mod products;
@@ -51,11 +52,9 @@ pub fn to_text(building: &DetailedBuilding, colour: impl Fn(Finish) -> [u8; 3]) 
     let axes = outermost(&mut step);
     let context = format!("IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-05,{axes},$)");
     let context = step.add(context);
-    let [body, reference] = ["Body", "Reference"].map(|name| {
-        step.add(format_args!(
-            "IFCGEOMETRICREPRESENTATIONSUBCONTEXT('{name}','Model',*,*,*,*,{context},$,.MODEL_VIEW.,$)"
-        ))
-    });
+    let body = step.add(format_args!(
+        "IFCGEOMETRICREPRESENTATIONSUBCONTEXT('Body','Model',*,*,*,*,{context},$,.MODEL_VIEW.,$)"
+    ));
     let units = units(&mut step);
     let name = quoted(&building.name);
     let id = |class: &str| global_id(&[&building.name, class]);
@@ -91,7 +90,7 @@ pub fn to_text(building: &DetailedBuilding, colour: impl Fn(Finish) -> [u8; 3]) 
         step,
         sets,
         building,
-        contexts: [body, reference],
+        context: body,
         styles,
         storeys,
         frames: Vec::new(),

@@ -11,9 +11,7 @@ use super::shapes::{self, Frame};
 use super::step::{Id, Step, global_id, list, quoted, real};
 use super::{Storey, aggregate};
 
-/// How far the space of an opening reaches before its wall, and behind it (m).
-const REACH: f64 = 0.2;
-/// A part that begins so little below a storey is on it (m).
+/// A part that begins at most so far below a storey is on it (m).
 const BELOW: f64 = 0.01;
 
 /// The products while they are written.
@@ -21,8 +19,8 @@ pub(super) struct Products<'a> {
     pub(super) step: Step,
     pub(super) sets: Sets<'a>,
     pub(super) building: &'a DetailedBuilding,
-    /// Of bodies, and of what bodies leave out.
-    pub(super) contexts: [Id; 2],
+    /// The context of bodies.
+    pub(super) context: Id,
     pub(super) styles: BTreeMap<Finish, Id>,
     pub(super) storeys: Vec<Storey>,
     /// Instance and place of each part so far.
@@ -117,14 +115,12 @@ impl Products<'_> {
         let mut outer = self.storeys[k].frame;
         let mut hole = None;
         let wall = part.wall.and_then(|k| self.frames.get(k)).copied();
-        if let (Some((wall, around)), Some(rect)) = (wall, part.rect) {
+        if let Some((wall, around)) = wall {
             outer = Frame::new(&mut self.step, Some(&around), low, along);
-            let size = [rect.width, rect.height];
-            let space = shapes::opening(&mut self.step, size, REACH, self.contexts[1]);
             let name = quoted(&format!("opening_{}", part.name));
             let own = self.id("opening", &part.name);
             let opening = self.step.add(format_args!(
-                "IFCOPENINGELEMENT({own},$,{name},$,$,{},{space},$,.OPENING.)",
+                "IFCOPENINGELEMENT({own},$,{name},$,$,{},$,$,.OPENING.)",
                 outer.id
             ));
             let voids = self.id("voids", &part.name);
@@ -164,7 +160,7 @@ impl Products<'_> {
             self.building,
             part,
             frame,
-            self.contexts[0],
+            self.context,
             &self.styles,
         );
         let shape = shape.map_or("$".into(), |shape| shape.to_string());

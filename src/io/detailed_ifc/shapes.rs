@@ -145,37 +145,8 @@ pub(super) fn triangles(
         items.push(item);
     }
     let items = list(items);
-    Some(shape(
-        step,
-        format_args!("{context},'Body','Tessellation',{items}"),
-    ))
-}
-
-/// The space of an opening as an `IfcProductDefinitionShape`: over a rectangle from the origin of a frame, as far before its
-/// plane as behind it (m).
-pub(super) fn opening(step: &mut Step, [width, height]: [f64; 2], reach: f64, context: Id) -> Id {
-    let middle = point(step, [0.0, 0.0]);
-    let middle = step.share(format_args!("IFCAXIS2PLACEMENT2D({middle},$)"));
-    let [w, h, depth] = [width, height, 2.0 * reach].map(real);
-    let profile = step.share(format_args!(
-        "IFCRECTANGLEPROFILEDEF(.AREA.,$,{middle},{w},{h})"
+    let body = step.add(format_args!(
+        "IFCSHAPEREPRESENTATION({context},'Body','Tessellation',{items})"
     ));
-    // Extruded along the second axis of the frame.
-    let at = point(step, [width / 2.0, -reach, height / 2.0]);
-    let inwards = step.share("IFCDIRECTION((0.,1.,0.))");
-    let along = step.share("IFCDIRECTION((1.,0.,0.))");
-    let axes = step.share(format_args!("IFCAXIS2PLACEMENT3D({at},{inwards},{along})"));
-    let up = step.share("IFCDIRECTION((0.,0.,1.))");
-    let solid = step.add(format_args!(
-        "IFCEXTRUDEDAREASOLID({profile},{axes},{up},{depth})"
-    ));
-    shape(
-        step,
-        format_args!("{context},'Reference','SweptSolid',({solid})"),
-    )
-}
-
-fn shape(step: &mut Step, representation: std::fmt::Arguments) -> Id {
-    let body = step.add(format_args!("IFCSHAPEREPRESENTATION({representation})"));
-    step.add(format_args!("IFCPRODUCTDEFINITIONSHAPE($,$,({body}))"))
+    Some(step.add(format_args!("IFCPRODUCTDEFINITIONSHAPE($,$,({body}))")))
 }
