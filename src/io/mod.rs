@@ -13,6 +13,7 @@ pub mod city;
 pub mod cmp_xml;
 pub mod coco;
 pub mod detailed_cityjson;
+pub mod detailed_ifc;
 pub mod draw;
 mod facade_file;
 pub mod facade_json;

@@ -10,6 +10,7 @@ mod dress;
 mod errors;
 mod fuzz;
 mod generation;
+mod ifc;
 mod io;
 mod parts;
 mod possible;

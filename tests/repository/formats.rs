@@ -72,6 +72,7 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
         }
         "cga" => drop(io::grammar_cga::parse(bytes, path)?),
         "building" => drop(io::building_json::parse(bytes, path)?),
+        "ifc" => ifc(text)?,
         "footprint" => drop(io::footprint::parse(bytes, path)?),
         "schema" => {
             use edifice_model::tables::schema::{FORMAT, RELATED_VERSION, Schema, VERSION};
@@ -110,6 +111,26 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
             assert_eq!(keys, listed("sweep plan"));
         }
         other => panic!("no reader is known for examples of kind {other:?}"),
+    }
+    Ok(())
+}
+
+/// Checks that the lines of an example of IFC are written for the building of the page.
+fn ifc(example: &str) -> Result<(), Box<dyn std::error::Error>> {
+    use edifice::methods::building_exteriors::house;
+    let (_, building) = examples()
+        .into_iter()
+        .find(|(kind, _)| *kind == "building")
+        .expect("an example of a building");
+    let building = io::building_json::parse(building.as_bytes(), Path::new("FORMATS.md"))?;
+    let model = house::model(&building, house::Joining::Boxes)?;
+    let parts = house::parts::parts(&building, &model);
+    let text = io::detailed_ifc::to_text(&parts, |finish| house::scene::colour(finish, 0));
+    for line in example.lines() {
+        assert!(
+            text.lines().any(|l| l == line),
+            "{line} is not written:\n{text}"
+        );
     }
     Ok(())
 }

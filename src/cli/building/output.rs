@@ -4,13 +4,13 @@ use std::path::Path;
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::parts::parts;
-use edifice_building_exteriors::house::scene::{Placed, scene};
+use edifice_building_exteriors::house::scene::{Placed, colour, scene};
 use edifice_building_exteriors::house::street::{self, Fronted};
 use edifice_building_exteriors::house::{Database, Model};
 use edifice_editing::building_exteriors::{scene_of, shipped_database};
 use edifice_io::detailed_cityjson::{self, Place};
 use edifice_io::scene_png::picture_png;
-use edifice_io::{building_json, gltf, scene_svg, surface_obj, write_atomic};
+use edifice_io::{building_json, detailed_ifc, gltf, scene_svg, surface_obj, write_atomic};
 use edifice_scene::Scene;
 use edifice_scene::trace::{framing, trace};
 use edifice_shape::Building;
@@ -36,6 +36,8 @@ pub(super) enum Format {
     Svg,
     /// `NAME.png`: a perspective view
     Png,
+    /// `NAME.ifc`: IFC4 with walls, roofs, windows and doors as products
+    Ifc,
 }
 
 /// Reads the database of donors: a file, or the shipped houses.
@@ -120,6 +122,12 @@ pub(super) fn write(
                 write_atomic(&file("svg"), text.as_bytes())?;
             }
             Format::Png => write_png(&scene_of(building, model), &file("png"))?,
+            Format::Ifc => {
+                let template = colours(building);
+                let colour = |finish| colour(finish, template);
+                let text = detailed_ifc::to_text(&parts(building, model), colour);
+                write_atomic(&file("ifc"), text.as_bytes())?;
+            }
         }
     }
     Ok(())

@@ -97,7 +97,16 @@ pub fn parts(building: &Building, model: &Model) -> DetailedBuilding {
             numbered(opening.stem.clone()),
             triangles.clone(),
         );
-        own.rect = Some(opening.rect());
+        let mut rect = opening.rect();
+        if opening.kind == PartKind::Door {
+            // The sill was moved up to a floor, a porch or a step: the hole begins at the lowest corner.
+            let corners = triangles.iter().flat_map(|(t, _)| all.corners(*t));
+            let foot = corners.map(|p| p[2]).fold(f64::INFINITY, f64::min);
+            let raised = (foot - rect.corner[2]).clamp(0.0, rect.height / 2.0);
+            rect.corner[2] += raised;
+            rect.height -= raised;
+        }
+        own.rect = Some(rect);
         own.wall = wall_of(&all, opening);
         own.attributes = opening.attributes.clone();
         all.parts.push(own);
@@ -105,7 +114,7 @@ pub fn parts(building: &Building, model: &Model) -> DetailedBuilding {
     all
 }
 
-/// What a triangle is grouped by; in the order of the parts.
+/// The group of a triangle; in the order of the parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Other(PartKind, &'static str),
@@ -307,7 +316,7 @@ fn connected(triangles: &[([u32; 3], Finish)], corners: usize) -> Vec<Vec<([u32;
     found
 }
 
-/// What exporters say of the building as a whole.
+/// The attributes of the building as a whole.
 fn attributes(building: &Building) -> Map<String, Value> {
     let mut all = Map::new();
     all.insert("storeysAboveGround".into(), json!(building.floors()));

@@ -49,7 +49,8 @@ const TEMPLATES: [[[u8; 3]; 4]; 8] = [
 /// Number of colour templates.
 pub const COLOURS: usize = TEMPLATES.len();
 
-fn colour(finish: Finish, template: usize) -> [u8; 3] {
+/// The colour of a finish (sRGB) by the colour template of that index, counted on from 0 after the last.
+pub fn colour(finish: Finish, template: usize) -> [u8; 3] {
     let [wall, roof, trim, door] = TEMPLATES[template % TEMPLATES.len()];
     match finish {
         Finish::Wall => wall,
