@@ -15,6 +15,7 @@ mod generation_speed;
 mod held_out;
 mod learning;
 mod mixture_figures;
+mod photographs;
 mod reasons;
 mod speed;
 pub mod study;
@@ -86,8 +87,8 @@ const ARTEFACTS: &[Artefact] = &[
     },
     Artefact {
         name: "figure_17",
-        title: "three completed houses",
-        run: design_figures::figure_17,
+        title: "three houses of marked facades and footprints",
+        run: photographs::figure_17,
     },
     Artefact {
         name: "figure_18",

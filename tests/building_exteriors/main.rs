@@ -7,6 +7,7 @@ mod commands;
 mod contradictions;
 mod design;
 mod errors;
+mod from_facades;
 mod fuzz;
 mod generation;
 mod io;

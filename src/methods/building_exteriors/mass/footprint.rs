@@ -149,15 +149,7 @@ pub fn stand(
     for (style, r, height) in placed {
         boxes.push(mass_box(style, &r, height));
     }
-    let building = Building {
-        name: String::new(),
-        unit: String::new(),
-        floor_height: target.floor_height,
-        boxes,
-        facades: Vec::new(),
-        special: Vec::new(),
-        unobserved: Vec::new(),
-    };
+    let building = bare(target.floor_height, boxes);
     if !is_sound(&building) {
         return Err(PlanError::Floors);
     }
@@ -168,6 +160,40 @@ pub fn stand(
         evaluations: 1,
         donor: None,
     })
+}
+
+/// The mass model whose storeys, equally high (m), all cover the plan.
+///
+/// # Errors
+/// [`PlanError::Floors`] for a plan that is not sound.
+pub fn whole(plan: &[Rect], storeys: usize, height: f64) -> Result<MassModel, PlanError> {
+    let boxes = largest_rectangles(plan);
+    let boxes = boxes
+        .iter()
+        .map(|r| mass_box(BoxStyle::Main, r, storeys as f64 * height));
+    let building = bare(height, boxes.collect());
+    if !is_sound(&building) {
+        return Err(PlanError::Floors);
+    }
+    Ok(MassModel {
+        max_z: 0.0,
+        building,
+        evaluations: 1,
+        donor: None,
+    })
+}
+
+/// Boxes without facades.
+fn bare(floor_height: f64, boxes: Vec<MassBox>) -> Building {
+    Building {
+        name: String::new(),
+        unit: String::new(),
+        floor_height,
+        boxes,
+        facades: Vec::new(),
+        special: Vec::new(),
+        unobserved: Vec::new(),
+    }
 }
 
 fn mass_box(style: BoxStyle, r: &Rect, height: f64) -> MassBox {
