@@ -28,10 +28,10 @@ struct Case {
     plan: Plan,
 }
 
-/// A ground plan: a shipped file, or the rectangles of an L in metres.
+/// A ground plan: a shipped file, or rectangles in metres.
 enum Plan {
     Shipped(&'static str),
-    L([Rect; 2]),
+    Rectangles(&'static [Rect]),
 }
 
 const fn rect(x: f64, y: f64, width: f64, height: f64) -> Rect {
@@ -57,13 +57,13 @@ const CASES: [Case; 3] = [
         name: "cottage_1",
         facades: &[(Side::Front, "facade_grammar/layouts/cottage_1.facade.json")],
         height: None,
-        plan: Plan::L([rect(0.0, 0.0, 10.5, 7.5), rect(0.0, 7.5, 5.5, 3.0)]),
+        plan: Plan::Rectangles(&[rect(0.0, 0.0, 10.5, 7.5), rect(0.0, 7.5, 5.5, 3.0)]),
     },
     Case {
         name: "cottage_2",
         facades: &[(Side::Front, "facade_grammar/layouts/cottage_2.facade.json")],
         height: None,
-        plan: Plan::L([rect(0.0, 0.0, 8.45, 9.0), rect(3.0, 9.0, 5.45, 2.0)]),
+        plan: Plan::Rectangles(&[rect(0.0, 0.0, 8.45, 9.0)]),
     },
 ];
 
@@ -94,7 +94,7 @@ fn input(ctx: &mut Context, case: &Case) -> Result<Input> {
     }
     let plan = match &case.plan {
         Plan::Shipped(file) => footprint::read(&ctx.shipped(file)?)?,
-        Plan::L(rects) => rects.to_vec(),
+        Plan::Rectangles(rects) => rects.to_vec(),
     };
     let first = first.ok_or_else(|| Error::method("a case without a facade"))?;
     Ok(Input {

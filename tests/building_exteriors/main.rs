@@ -8,6 +8,7 @@ mod contradictions;
 mod design;
 mod errors;
 mod from_facades;
+mod from_facades_command;
 mod fuzz;
 mod generation;
 mod io;

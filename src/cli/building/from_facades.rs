@@ -187,7 +187,7 @@ fn tell(made: &FacadeHouse, facades: &[MarkedFacade]) {
             "{name}: {side}: {} of {} elements stand where they are marked, to {:.1} cm",
             off.clone().count(),
             own().count(),
-            100.0 * off.fold(0.0, |most: f64, v| v.max(*v))
+            100.0 * off.fold(0.0, |most: f64, v| most.max(*v))
         ));
         for mark in own() {
             if let Err(reason) = &mark.placed {

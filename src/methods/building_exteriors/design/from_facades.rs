@@ -104,7 +104,7 @@ pub fn from_facades(
     let (marks, eaves) = marks(facades, plan)?;
     let storeys = Storeys::new(&marks, eaves)?;
     let mass = whole(plan, storeys.lines.len(), storeys.height)?;
-    let mut places = Places::new(&marks, &mass.building, &storeys);
+    let places = Places::new(&marks, &mass.building, &storeys);
     let given = given(&places, &mass)?;
     let evidence = table(std::slice::from_ref(&given)).map_err(FacadesError::from)?;
     let mut rng = stream(seed, "building/from_facades", 0);
@@ -131,7 +131,7 @@ pub fn from_facades(
     drafts.sort_by_key(|d| (d.0, d.1));
     let mut houses = Vec::new();
     for (n, (_, answer, first)) in drafts.into_iter().take(count).enumerate() {
-        let mut house = first.build()?;
+        let (mut places, mut house) = (places.clone(), first.build()?);
         // What the surface has no room for is left out, and told.
         while lost(&mut places, &house, &marks) {
             let again = build.draft(name, &places, &answers[answer], answer)?;

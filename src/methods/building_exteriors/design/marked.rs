@@ -188,7 +188,7 @@ pub(super) fn marks(
                 true => start + width - shift - r.right(),
                 false => start + shift + r.x,
             };
-            let [u, y, w, h] = [u, r.y, r.width, r.height].map(|v| (v * 1e3).round() / 1e3);
+            let [u, y, w, h] = [u, r.y, r.width, r.height].map(millimetres);
             let mark = Mark {
                 side,
                 regions: vec![index],
@@ -221,11 +221,15 @@ fn are_leaves(a: &Mark, b: &Mark) -> bool {
         && (-SAME..=GAP).contains(&gap)
 }
 
+fn millimetres(v: f64) -> f64 {
+    (v * 1e3).round() / 1e3
+}
+
 fn join(door: &mut Mark, leaf: &Mark) {
     door.regions.extend(&leaf.regions);
     let (p, q) = (door.rect, leaf.rect);
     let (low, high) = (p.x.min(q.x), p.right().max(q.right()));
-    door.rect = Rect::new(low, p.y, high - low, p.height);
+    door.rect = Rect::new(low, p.y, millimetres(high - low), p.height);
 }
 
 #[cfg(test)]

@@ -76,6 +76,7 @@ pub enum LeftOut {
 }
 
 /// A place for each mark: the wall that it stands on, or why it has none.
+#[derive(Clone)]
 pub(super) struct Places<'a> {
     marks: &'a [Mark],
     storeys: &'a Storeys,
@@ -133,6 +134,10 @@ impl<'a> Places<'a> {
                         }
                     }
                     pieces.push(piece(&walls[first], &walls[last], storeys, storey));
+                    if first < last {
+                        let behind = hidden(&all, &walls[first..=last]);
+                        pieces.extend(behind.map(|w| piece(w, w, storeys, storey)));
+                    }
                     first = last + 1;
                 }
             }
@@ -165,8 +170,8 @@ impl<'a> Places<'a> {
                 let piece = &mut pieces[*index].piece;
                 piece.elements.push(FacadeElement {
                     style: mark.style.unwrap_or(style),
-                    x: mark.rect.x - piece.start,
-                    y: mark.rect.y - piece.base,
+                    x: micrometres(mark.rect.x - piece.start),
+                    y: micrometres(mark.rect.y - piece.base),
                     width: mark.rect.width,
                     height: mark.rect.height,
                 });
@@ -194,6 +199,11 @@ impl<'a> Places<'a> {
     pub(super) fn storeys(&self) -> &Storeys {
         self.storeys
     }
+}
+
+/// A difference of numbers without the noise of its last digits.
+fn micrometres(v: f64) -> f64 {
+    (v * 1e6).round() / 1e6
 }
 
 /// The storey of a mark, if it has the size and place of a window or a door.
@@ -254,6 +264,17 @@ fn foremost(all: &[WallPiece], side: Side) -> Vec<WallPiece> {
     let mut walls: Vec<WallPiece> = own().filter(seen).copied().collect();
     walls.sort_by(|a, b| a.start.total_cmp(&b.start));
     walls
+}
+
+/// The walls of the ground floor behind these. Pieces are told apart by where they start, so that behind a joined one none may have windows.
+fn hidden<'a>(all: &'a [WallPiece], walls: &'a [WallPiece]) -> impl Iterator<Item = &'a WallPiece> {
+    let side = walls.first().map(|w| w.side);
+    let behind = |w: &&WallPiece| {
+        let own = walls.iter().find(|o| o.start == w.start);
+        own.is_some_and(|o| o.at != w.at)
+    };
+    let ground = all.iter().filter(|w| w.floor == 0);
+    ground.filter(move |w| Some(w.side) == side).filter(behind)
 }
 
 /// The first and the last of neighbouring walls in one plane that a rectangle stands on.

@@ -46,6 +46,9 @@ pub enum PlanError {
     Floors,
 }
 
+/// Narrower boxes are stubs (m).
+const STUB: f64 = 1.2;
+
 /// Columns that the plan decides: bounding box, coverage, boundary.
 pub const DECIDED: [usize; 4] = [0, 1, 3, 4];
 
@@ -167,8 +170,8 @@ pub fn stand(
 /// # Errors
 /// [`PlanError::Floors`] for a plan that is not sound.
 pub fn whole(plan: &[Rect], storeys: usize, height: f64) -> Result<MassModel, PlanError> {
-    let boxes = largest_rectangles(plan);
-    let boxes = boxes
+    let rectangles = without_stubs(largest_rectangles(plan));
+    let boxes = rectangles
         .iter()
         .map(|r| mass_box(BoxStyle::Main, r, storeys as f64 * height));
     let building = bare(height, boxes.collect());
@@ -181,6 +184,22 @@ pub fn whole(plan: &[Rect], storeys: usize, height: f64) -> Result<MassModel, Pl
         evaluations: 1,
         donor: None,
     })
+}
+
+/// The rectangles without those that are narrow and covered by the others.
+fn without_stubs(mut rectangles: Vec<Rect>) -> Vec<Rect> {
+    let all = PlanUnion::new(&rectangles).area();
+    let mut k = 0;
+    while k < rectangles.len() {
+        let mut others = rectangles.clone();
+        let own = others.remove(k);
+        let covered = PlanUnion::new(&others).area() > all - 1e-6;
+        match own.width.min(own.height) < STUB && covered {
+            true => rectangles = others,
+            false => k += 1,
+        }
+    }
+    rectangles
 }
 
 /// Boxes without facades.
