@@ -47,7 +47,7 @@ fn elements(house: &Building, side: Side) -> Vec<(ElementStyle, Rect)> {
     placed.collect()
 }
 
-/// What one sees of a side of a house: no window behind a wall that stands before it.
+/// The windows and doors that one sees on a side of a house: none behind a wall that stands before it.
 fn seen(house: &Building, side: Side) -> Vec<(ElementStyle, Rect)> {
     let walls = walls_of_pieces(house);
     let pieces = || house.facades.iter().zip(&walls);
@@ -210,7 +210,7 @@ fn twenty_houses_are_made_again_from_one_side_and_from_two() {
         plausible += usize::from(again.findings.is_empty());
     }
     eprintln!("{placed} of {marked} marks placed, {plausible} houses plausible");
-    assert!(marked > 100);
+    assert!(marked > 200 && plausible >= 18);
     assert_eq!(placed, marked);
 }
 

@@ -62,9 +62,12 @@ fn the_command_writes_a_house_and_says_what_was_placed() {
     assert_eq!(left_out.count(), 3);
     assert_eq!(line["storeys"], 2);
     let house = building_json::read(&folder.path().join("front.building.json")).unwrap();
-    let door = elements(&house[0], Side::Front);
-    let own = |r: &Rect| (r.x - 6.8).abs() < 1e-6 && (r.height - 2.2).abs() < 1e-6;
-    assert!(door.iter().any(|(s, r)| *s == ElementStyle::Door && own(r)));
+    let pieces = house[0].facades.iter().filter(|p| p.side == Side::Front);
+    let mut elements = pieces.flat_map(|p| p.elements.iter().map(move |e| (p.start + e.x, e)));
+    assert!(elements.any(|(x, e)| {
+        let own = (x - 6.8).abs() < 1e-6 && (e.height - 2.2).abs() < 1e-6;
+        e.style == ElementStyle::Door && own
+    }));
 
     let complaint = |args: &[&str]| {
         let failed = edifice(args).failure();
