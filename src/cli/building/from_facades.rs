@@ -38,10 +38,10 @@ pub(crate) struct Args {
     /// smaller y, which is south.
     #[arg(long, value_name = "FILE")]
     footprint: PathBuf,
-    /// Width in metres of the first facade given (front, back, left, right), for layouts in pixels.
+    /// Width in metres of the first facade given (front, back, left, right), for a layout in pixels.
     #[arg(long, value_name = "METRES")]
     width: Option<f64>,
-    /// Height of the eaves in metres, for layouts in pixels; other facades in pixels have the scale of this height, too.
+    /// Height of the eaves in metres, for a first facade in pixels; further ones in pixels reach to the same eaves.
     #[arg(long, value_name = "METRES")]
     height: Option<f64>,
     /// The model that completes the house (`*.houses.json`); the one that ships by default.
@@ -80,13 +80,15 @@ impl Args {
         let mut facades: Vec<MarkedFacade> = Vec::new();
         for (side, path) in self.given() {
             let layout = self.layout(path)?;
-            let [width, height] = match facades.first() {
-                None => [self.width, self.height],
+            let scaled = |width, height| in_metres(side, &layout, width, height);
+            let scaled = match facades.first() {
+                None => scaled(self.width, self.height),
                 // All facades reach to the same eaves.
-                Some(first) if layout.unit == "px" => [None, Some(first.layout.height)],
-                Some(_) => [None, self.height],
+                Some(first) => {
+                    scaled(None, None).or_else(|_| scaled(None, Some(first.layout.height)))
+                }
             };
-            let layout = in_metres(side, &layout, width, height).map_err(|e| match e {
+            let layout = scaled.map_err(|e| match e {
                 FacadesError::Scale { .. } => Error::option("--width, --height", e.to_string()),
                 FacadesError::Unit { .. } => {
                     Error::content(path, format!("{e} (--height METRES or --width METRES)"))
