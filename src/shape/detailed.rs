@@ -10,21 +10,21 @@ use crate::vec3::{cross, sub};
 /// The class of a part; the names are those of CityJSON 2.0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PartKind {
-    /// What stands on the ground.
+    /// The surface that stands on the ground.
     GroundSurface,
     /// An outer wall.
     WallSurface,
     /// A roof.
     RoofSurface,
-    /// What one sees from below, such as the ceiling of a passage.
+    /// A ceiling outside, seen from below, such as that of a passage.
     OuterCeilingSurface,
-    /// What one stands on outside, such as the floor of a porch.
+    /// A floor outside, such as that of a porch.
     OuterFloorSurface,
     /// A window with its frame and its reveals.
     Window,
     /// A door with its frame and its reveals.
     Door,
-    /// What is attached to a building, such as eaves, posts and chimneys.
+    /// A part attached to a building, such as eaves, posts and chimneys.
     BuildingInstallation,
 }
 
@@ -75,7 +75,7 @@ pub struct Part {
     pub rect: Option<WallRect>,
     /// Corners of each triangle, counterclockwise seen from outside, and its finish.
     pub triangles: Vec<([u32; 3], Finish)>,
-    /// What is known of it, such as `style`, `floor` and `probability`.
+    /// Facts known of it, such as `style`, `floor` and `probability`.
     pub attributes: Map<String, Value>,
 }
 
@@ -88,7 +88,7 @@ pub struct DetailedBuilding {
     pub positions: Vec<[f64; 3]>,
     /// Its parts; walls come before what lies in them.
     pub parts: Vec<Part>,
-    /// What is known of the building.
+    /// Facts known of the building.
     pub attributes: Map<String, Value>,
 }
 

@@ -105,7 +105,7 @@ pub fn parts(building: &Building, model: &Model) -> DetailedBuilding {
     all
 }
 
-/// What a triangle is grouped by; in the order of the parts.
+/// The key that a triangle is grouped by; in the order of the parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Other(PartKind, &'static str),
@@ -307,7 +307,7 @@ fn connected(triangles: &[([u32; 3], Finish)], corners: usize) -> Vec<Vec<([u32;
     found
 }
 
-/// What exporters say of the building as a whole.
+/// The attributes that exporters say of the building as a whole.
 fn attributes(building: &Building) -> Map<String, Value> {
     let mut all = Map::new();
     all.insert("storeysAboveGround".into(), json!(building.floors()));
