@@ -17,6 +17,7 @@ mod hidden_openings;
 mod learning;
 mod mixture_figures;
 mod openings;
+mod photographs;
 mod reasons;
 mod speed;
 pub mod study;
@@ -88,8 +89,8 @@ const ARTEFACTS: &[Artefact] = &[
     },
     Artefact {
         name: "figure_17",
-        title: "three completed houses",
-        run: design_figures::figure_17,
+        title: "three houses of marked facades and footprints",
+        run: photographs::figure_17,
     },
     Artefact {
         name: "figure_18",

@@ -1,4 +1,4 @@
-//! Completion and design: Fig. 16 to 19 of Fan and Wonka 2016, on made houses that the model has not seen.
+//! Completion and design: Fig. 16, 18 and 19 of Fan and Wonka 2016, on made houses that the model has not seen.
 
 use super::held_out::{HELD_OUT, has_no_garage};
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
@@ -128,36 +128,6 @@ pub(crate) fn figure_16(ctx: &mut Context) -> Result<()> {
          pieces that face the street; the model is told the sizes of a garage or porch among them, the front's window-to-wall ratio, \
          symmetry and alignment, and the styles seen. The size of the whole house is not observed.",
     );
-    Ok(())
-}
-
-/// Fig. 17: three completed houses.
-pub(crate) fn figure_17(ctx: &mut Context) -> Result<()> {
-    let learned = learned(ctx)?;
-    let mut all = Vec::new();
-    for index in [3, 7, 11] {
-        let (partial, mut houses) = completed(ctx, &learned, index)?;
-        all.push((partial, houses.swap_remove(0)));
-    }
-    let panels: Vec<Vec<Panel>> = all
-        .iter()
-        .enumerate()
-        .map(|(k, (partial, house))| {
-            let views = [FRONT, RIGHT, BACK].map(|from| Panel::House(&house.model, k + 2, from));
-            let observed = Panel::Plan {
-                boxes: &house.building.boxes,
-                observed: &partial.boxes,
-                edited: &[],
-            };
-            views.into_iter().chain([observed]).collect()
-        })
-        .collect();
-    let png = sheet(&panels, cell(ctx))?;
-    ctx.attach(
-        "figure_17.png",
-        &png,
-        "three completed houses: front, right, back, boxes (observed in yellow)",
-    )?;
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use edifice_building_exteriors::mass::target::{PARTS, part};
 use edifice_io::scene_png::picture_png;
 use edifice_scene::render::Picture;
 use edifice_scene::trace::{framing, trace};
-use edifice_shape::{BoxStyle, Building, MassBox, Rect};
+use edifice_shape::{BoxStyle, Building, Facade, MassBox, Rect};
 
 /// Directions of the views of a house.
 pub(crate) const FRONT: [f32; 3] = [0.45, -0.42, -0.9];
@@ -39,6 +39,11 @@ pub(crate) enum Panel<'a> {
     /// Garage and porches in their bounding box as attributes say, before any repair; in red those that overlap or
     /// reach outside.
     Parts(&'a [f64; 49]),
+    /// A facade with its windows and doors outlined in yellow, on its photograph if there is one.
+    Marked {
+        layout: &'a Facade,
+        picture: Option<&'a Picture>,
+    },
     /// Nothing: no house could be built.
     Empty,
 }
@@ -82,9 +87,46 @@ fn drawn(panel: &Panel, [w, h]: [usize; 2]) -> Picture {
             observed,
             edited,
         } => boxes_from_above(boxes, observed, edited, [w, h]),
+        Panel::Marked { layout, picture } => marked(layout, *picture, [w, h]),
         Panel::Parts(row) => parts_from_above(row, [w, h]),
         Panel::Empty => Canvas::new(w, h).picture,
     }
+}
+
+/// True for the label of a window or a door.
+pub(crate) fn is_opening(label: &str) -> bool {
+    matches!(label, "window" | "door")
+}
+
+/// The colour of a region of a facade that is drawn without a photograph.
+fn material(label: &str) -> Colour {
+    match label {
+        "wall" => [222, 212, 192],
+        "window" => [62, 72, 90],
+        "door" => [96, 62, 38],
+        "roof" => [122, 82, 70],
+        "shutter" => [92, 116, 96],
+        _ => [196, 186, 168],
+    }
+}
+
+fn marked(layout: &Facade, picture: Option<&Picture>, size: [usize; 2]) -> Picture {
+    let mut canvas = Canvas::new(size[0], size[1]);
+    let place = Placement::new([0.0; 2], [layout.width, layout.height], size);
+    let whole = place.of(&layout.domain());
+    match picture {
+        Some(picture) => canvas.stretch(picture, whole),
+        None => {
+            for region in &layout.regions {
+                canvas.fill(place.of(&region.rect), material(&region.label));
+            }
+        }
+    }
+    canvas.outline(whole, INK, 1);
+    for region in layout.regions.iter().filter(|r| is_opening(&r.label)) {
+        canvas.outline(place.of(&region.rect), YELLOW, 2);
+    }
+    canvas.picture
 }
 
 fn boxes_from_above(
@@ -220,6 +262,24 @@ impl Canvas {
         self.fill([x0, x1, y1 - thick, y1], colour);
         self.fill([x0, x0 + thick, y0, y1], colour);
         self.fill([x1 - thick, x1, y0, y1], colour);
+    }
+
+    /// Draws a picture into a rectangle, each pixel that of the nearest.
+    fn stretch(&mut self, picture: &Picture, [x0, x1, y0, y1]: [i64; 4]) {
+        let from = |v: i64, low: i64, high: i64, extent: usize| {
+            let share = (v - low) as f64 / (high - low).max(1) as f64;
+            ((share * extent as f64) as usize).min(extent.saturating_sub(1))
+        };
+        for y in y0..y1 {
+            let row = from(y, y0, y1, picture.height);
+            for x in x0..x1 {
+                let at = 3 * (row * picture.width + from(x, x0, x1, picture.width));
+                let Some(colour) = picture.rgb.get(at..at + 3) else {
+                    continue;
+                };
+                self.fill([x, x + 1, y, y + 1], [colour[0], colour[1], colour[2]]);
+            }
+        }
     }
 
     fn paste(&mut self, panel: &Picture, [left, top]: [usize; 2]) {

@@ -9,6 +9,7 @@ mod design;
 mod draw;
 mod evaluate;
 mod facades;
+mod from_facades;
 mod import;
 mod learn;
 mod output;
@@ -76,6 +77,17 @@ A side without facade pieces, and an empty cell of a CSV, is missing. --keep obs
   edifice building generate -n 12 -o town --street
 Without a model houses are drawn from the one that ships, learnt from real houses; `made` is that of the made houses.")]
     Generate(build::GenerateArgs),
+    /// Make a house of its footprint and of facades with marked windows and doors, as drawn over photographs.
+    #[command(
+        name = "from-facades",
+        after_help = "Examples:
+  edifice building from-facades --front datasets/examples/front.facade.json --footprint datasets/examples/lot.geojson --height 6 -o photographed
+  edifice building from-facades --front datasets/examples/front.facade.json --right datasets/examples/right.facade.json --footprint datasets/examples/lot.geojson --height 6 -n 2 --format json,png -o photographed --json
+What is marked stays to the centimetre, or the report says why not; roof, other sides and styles are the model's. Facades are read in every
+format of `facade convert`, and drawn over photographs by `facade straighten`, `facade edit` or the studio. Regions of other labels than window,
+door and the styles of windows (sash, sliding, casement, bay, fixed) are left out."
+    )]
+    FromFacades(from_facades::Args),
     /// Make other houses with the attributes of a house, their plans at least 5 % apart.
     #[command(after_help = "Examples:
   edifice building variations houses/house_0001.building.json -n 4 -o variations --format json,png")]
@@ -117,6 +129,7 @@ pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Build(args) => build::build(&args),
         Command::Generate(args) => build::generate(&args),
+        Command::FromFacades(args) => from_facades::run(&args),
         Command::Variations(args) => design::variations(&args),
         Command::Edit(args) => design::edit(&args),
         Command::Wish(args) => design::wish(&args),

@@ -8,6 +8,8 @@ mod contradictions;
 mod design;
 mod dress;
 mod errors;
+mod from_facades;
+mod from_facades_command;
 mod fuzz;
 mod generation;
 mod ifc;

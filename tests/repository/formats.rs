@@ -375,6 +375,21 @@ fn lines_for_programs_have_the_keys_of_the_page() {
             "building generate",
             &["building", "generate", houses, "-n", "1", "-o", &out],
         ),
+        (
+            "building from-facades",
+            &[
+                "building",
+                "from-facades",
+                "--front",
+                "datasets/examples/front.facade.json",
+                "--footprint",
+                "datasets/examples/lot.geojson",
+                "--height",
+                "6",
+                "-o",
+                &out,
+            ],
+        ),
         ("building check", &["building", "check", &house]),
         ("city show", &["city", "show", town]),
         (

@@ -202,7 +202,7 @@ fn is_done(path: &Path, order: &Order) -> bool {
 }
 
 /// A report as one line of JSON.
-fn report(report: &HouseReport, seconds: Option<f64>) -> Result<String> {
+pub(super) fn report(report: &HouseReport, seconds: Option<f64>) -> Result<String> {
     let mut value = serde_json::to_value(report).map_err(Error::method)?;
     value["seconds"] = serde_json::json!(seconds);
     value["columns"] = serde_json::json!(&COLUMNS[..]);

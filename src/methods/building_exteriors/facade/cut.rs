@@ -6,6 +6,8 @@ pub(super) struct Candidate {
     pub width: f64,
     /// Heights of its pieces that can hold windows off their middle, summed: area is width times this.
     pub height: f64,
+    /// True if it must not be cut: a piece that stays as it is stands on it.
+    pub whole: bool,
 }
 
 /// Asymmetric strips and, for one of them, how wide the asymmetric part is.
@@ -58,6 +60,9 @@ pub(super) fn choices(
         }
         for k in (0..free.len()).filter(|&k| !chosen(k)) {
             let strip = &strips[free[k]];
+            if strip.whole {
+                continue;
+            }
             let most = strip.width - REST;
             if most < NARROWEST {
                 continue;

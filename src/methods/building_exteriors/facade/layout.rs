@@ -251,6 +251,7 @@ impl SideSearch<'_> {
         Candidate {
             width: strip.width(),
             height: strip.rooms.iter().filter(holds).count() as f64,
+            whole: strip.rooms.iter().any(|r| r.fixed.is_some()),
         }
     }
 

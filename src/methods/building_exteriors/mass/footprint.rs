@@ -46,6 +46,9 @@ pub enum PlanError {
     Floors,
 }
 
+/// Narrower boxes are stubs (m).
+const STUB: f64 = 1.2;
+
 /// Columns that the plan decides: bounding box, coverage, boundary.
 pub const DECIDED: [usize; 4] = [0, 1, 3, 4];
 
@@ -149,15 +152,7 @@ pub fn stand(
     for (style, r, height) in placed {
         boxes.push(mass_box(style, &r, height));
     }
-    let building = Building {
-        name: String::new(),
-        unit: String::new(),
-        floor_height: target.floor_height,
-        boxes,
-        facades: Vec::new(),
-        special: Vec::new(),
-        unobserved: Vec::new(),
-    };
+    let building = bare(target.floor_height, boxes);
     if !is_sound(&building) {
         return Err(PlanError::Floors);
     }
@@ -168,6 +163,56 @@ pub fn stand(
         evaluations: 1,
         donor: None,
     })
+}
+
+/// The mass model whose storeys, equally high (m), all cover the plan.
+///
+/// # Errors
+/// [`PlanError::Floors`] for a plan that is not sound.
+pub fn whole(plan: &[Rect], storeys: usize, height: f64) -> Result<MassModel, PlanError> {
+    let rectangles = without_stubs(largest_rectangles(plan));
+    let boxes = rectangles
+        .iter()
+        .map(|r| mass_box(BoxStyle::Main, r, storeys as f64 * height));
+    let building = bare(height, boxes.collect());
+    if !is_sound(&building) {
+        return Err(PlanError::Floors);
+    }
+    Ok(MassModel {
+        max_z: 0.0,
+        building,
+        evaluations: 1,
+        donor: None,
+    })
+}
+
+/// The rectangles without those that are narrow and covered by the others.
+fn without_stubs(mut rectangles: Vec<Rect>) -> Vec<Rect> {
+    let all = PlanUnion::new(&rectangles).area();
+    let mut k = 0;
+    while k < rectangles.len() {
+        let mut others = rectangles.clone();
+        let own = others.remove(k);
+        let covered = PlanUnion::new(&others).area() > all - 1e-6;
+        match own.width.min(own.height) < STUB && covered {
+            true => rectangles = others,
+            false => k += 1,
+        }
+    }
+    rectangles
+}
+
+/// Boxes without facades.
+fn bare(floor_height: f64, boxes: Vec<MassBox>) -> Building {
+    Building {
+        name: String::new(),
+        unit: String::new(),
+        floor_height,
+        boxes,
+        facades: Vec::new(),
+        special: Vec::new(),
+        unobserved: Vec::new(),
+    }
 }
 
 fn mass_box(style: BoxStyle, r: &Rect, height: f64) -> MassBox {
