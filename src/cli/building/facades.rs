@@ -36,6 +36,11 @@ pub(super) fn run(
         attributes: &b.attributes,
     });
     let buildings: Vec<Candidate> = buildings.collect();
+    print::message(&format!(
+        "{} buildings read; {} draws for each",
+        buildings.len(),
+        settings.draws
+    ));
     let dressed = dress(&buildings, model, settings).map_err(Error::method)?;
     let place = Place {
         origin: own.origin,

@@ -73,6 +73,30 @@ impl Roofs {
         self.over(p, |b| b as usize == building)
     }
 
+    /// True if another building lies over a square that the ground before a wall passes.
+    fn is_beside(&self, building: usize, face: &WallFace) -> bool {
+        let [[start, end], _] = face.bounds;
+        let steps = ((end - start) / SQUARE * 4.0).ceil().clamp(1.0, 1e6) as usize;
+        let mut squares = (0..=steps).flat_map(|k| {
+            let u = start + (end - start) * k as f64 / steps as f64;
+            let [x, y, _] = face.place([u, 0.0], -BEFORE);
+            let square = |v: f64, by: i64| (v / SQUARE).floor() as i64 + by;
+            (-1..=1).flat_map(move |i| (-1..=1).map(move |j| (square(x, i), square(y, j))))
+        });
+        let other = |k: &u32| self.triangles[*k as usize].0 as usize != building;
+        squares.any(|s| {
+            let own = self.squares.get(&s);
+            own.is_some_and(|own| own.iter().any(other))
+        })
+    }
+
+    /// Notes on each wall whether another building is near it.
+    pub(super) fn note(&self, building: usize, walls: &mut [WallFace]) {
+        for face in walls {
+            face.is_beside = self.is_beside(building, face);
+        }
+    }
+
     /// True if no other building stands before a rectangle on a wall.
     pub(super) fn is_free(
         &self,
@@ -80,6 +104,9 @@ impl Roofs {
         face: &WallFace,
         [[u0, u1], [z0, _]]: Span,
     ) -> bool {
+        if !face.is_beside {
+            return true;
+        }
         let ends = [u0, (u0 + u1) / 2.0, u1].map(|u| face.place([u, z0], -BEFORE));
         !ends
             .into_iter()

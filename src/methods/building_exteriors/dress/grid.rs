@@ -39,7 +39,8 @@ impl Default for Grid {
 pub fn plain_grid(city: &[Candidate], grid: &Grid) -> Vec<DetailedBuilding> {
     let roofs = Roofs::new(city.iter().map(|b| b.mesh));
     let one = |(number, own): (usize, &Candidate)| {
-        let faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
+        let mut faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
+        roofs.note(number, &mut faces.walls);
         let has_room =
             |face: &walls::WallFace, rect| face.has_room(rect) && roofs.is_free(number, face, rect);
         let site = Site::new(&faces, Known::new(own.attributes).storeys, &has_room);

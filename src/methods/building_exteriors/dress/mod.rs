@@ -95,13 +95,14 @@ pub fn dress(
             Some(mass) => draw::rows(model, Some(mass), settings.draws, &mut rng)?,
             None => draw::some_of(&pool, settings.draws, &mut rng),
         };
-        let faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
+        let mut faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
+        roofs.note(number, &mut faces.walls);
         let storeys = Known::new(own.attributes).storeys;
         let room =
             |face: &walls::WallFace, rect| face.has_room(rect) && roofs.is_free(number, face, rect);
         let building = draw::Site::new(&faces, storeys, &room);
         let drawn = (rows.iter().map(|row| building.draw(row, &mut rng))).collect::<Vec<_>>();
-        let chosen = choice::choose(&drawn);
+        let chosen = choice::choose(drawn);
         Ok(cut::dressed(own, &faces, &chosen))
     };
     let numbered = city.par_iter().zip(&houses).enumerate();

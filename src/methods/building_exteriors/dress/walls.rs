@@ -65,6 +65,8 @@ pub(super) struct WallFace {
     pub(super) bounds: Span,
     /// Square metres.
     pub(super) area: f64,
+    /// False if no other building is anywhere near.
+    pub(super) is_beside: bool,
 }
 
 /// A building's surface and its walls.
@@ -206,6 +208,7 @@ impl WallFace {
             outward,
             distance: 0.0,
             area: level / 2.0,
+            is_beside: true,
             triangles,
             outline,
             edges: Vec::new(),
