@@ -9,6 +9,7 @@ mod design;
 mod errors;
 mod fuzz;
 mod generation;
+mod gltf;
 mod io;
 mod parts;
 mod possible;
