@@ -1,4 +1,4 @@
-//! What covers sloped roofs: pantiles and shingles. Courses run along the eaves, each over the upper end of the one below.
+//! Pantiles and shingles of sloped roofs. Courses run along the eaves, each over the upper end of the one below.
 
 use std::f64::consts::TAU;
 
@@ -44,7 +44,7 @@ pub(super) fn shingles(place: [f64; 2]) -> Sample {
     let ([column, row], [across, up]) = piece(place, TABS, 0.5);
     let course = SIZE / TABS[1] as f64;
     let width = SIZE / TABS[0] as f64;
-    let tone = 0.66 + 0.34 * cell(column, row, 31);
+    let tone = 0.66 + 0.34 * cell(column, row, 34);
     let granules = 0.8 + 0.2 * smooth(place, [128, 128], 32);
     let slot = ramp(0.002, 0.006, across.min(1.0 - across) * width);
     let shadow = 1.0 - 0.55 * ramp(course - 0.022, course - 0.004, up);
