@@ -13,7 +13,7 @@ use json::{Index, Root};
 use super::glb_container::{TooLong, glb_container};
 use super::gltf::GltfError;
 
-/// What a stream holds: its target, and for vectors the bytes from one to the next, since several accessors share the view.
+/// The kind of a stream: its target, and for vectors the bytes from one to the next, since several accessors share the view.
 pub(crate) type Kind = (Target, Option<usize>);
 /// Positions or normals.
 pub(crate) const VERTICES: Kind = (Target::ArrayBuffer, Some(12));

@@ -1,6 +1,8 @@
 //! Materials of a palette, and the images of their textures, each written when it is first used.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use gltf_json as json;
 use json::Index;
@@ -22,13 +24,13 @@ const TRANSMISSION: &str = "KHR_materials_transmission";
 pub(super) struct Materials<'p> {
     palette: &'p Palette,
     known: BTreeMap<(Finish, bool), Index<json::Material>>,
-    tiles: BTreeMap<(Texture, Option<[u8; 3]>), Images>,
+    tiles: BTreeMap<Key, Images>,
     extensions: Vec<&'static str>,
 }
 
 /// The textures of a material's pattern.
 struct Images {
-    tile: Tile,
+    drawn: Arc<Drawn>,
     base: Index<json::Texture>,
     normal: Option<Index<json::Texture>>,
 }
@@ -74,7 +76,7 @@ impl<'p> Materials<'p> {
         let mut own = plain(name, look);
         if let Some(texture) = look.texture {
             let images = self.images(document, texture, look.colour)?;
-            let [r, g, b] = images.tile.factor(look.colour).map(|v| v as f32);
+            let [r, g, b] = images.drawn.tile.factor(look.colour).map(|v| v as f32);
             let pbr = &mut own.pbr_metallic_roughness;
             pbr.base_color_factor = PbrBaseColorFactor([r, g, b, 1.0]);
             pbr.base_color_texture = Some(json::texture::Info {
@@ -110,22 +112,63 @@ impl<'p> Materials<'p> {
         texture: Texture,
         colour: [u8; 3],
     ) -> Result<&Images, GltfError> {
-        let key = (texture, texture.has_joints().then_some(colour));
-        if !self.tiles.contains_key(&key) {
-            let tile = tile(texture, colour);
-            let mut add = |name: String, pixels: &Pixels| -> Result<_, GltfError> {
-                let png = texture_png(pixels).map_err(|e| GltfError::Image(e.to_string()))?;
-                let source = document.image(name, png);
-                Ok(picture(document, source))
-            };
-            let base = add(texture.name().into(), &tile.base)?;
-            let normal = tile.normal.as_ref();
-            let normal = normal.map(|n| add(format!("{}_normal", texture.name()), n));
-            let normal = normal.transpose()?;
-            self.tiles.insert(key, Images { tile, base, normal });
-        }
-        Ok(&self.tiles[&key])
+        let vacant = match self.tiles.entry(key(texture, colour)) {
+            Entry::Occupied(known) => return Ok(known.into_mut()),
+            Entry::Vacant(vacant) => vacant,
+        };
+        let drawn = drawn(texture, colour)?;
+        let mut add = |name: String, png: &[u8]| {
+            let source = document.image(name, png.to_vec());
+            picture(document, source)
+        };
+        let base = add(texture.name().into(), &drawn.base);
+        let normal = drawn.normal.as_ref();
+        let normal = normal.map(|png| add(format!("{}_normal", texture.name()), png));
+        Ok(vacant.insert(Images {
+            drawn,
+            base,
+            normal,
+        }))
     }
+}
+
+/// A texture, with the colour that its picture depends on.
+type Key = (Texture, Option<[u8; 3]>);
+
+fn key(texture: Texture, colour: [u8; 3]) -> Key {
+    (texture, texture.has_joints().then_some(colour))
+}
+
+/// A tile and its pictures as PNG.
+struct Drawn {
+    tile: Tile,
+    base: Vec<u8>,
+    normal: Option<Vec<u8>>,
+}
+
+/// Textures drawn earlier in this run, since many houses have the same few. No more than [`KEPT`] are kept.
+static KNOWN: Mutex<BTreeMap<Key, Arc<Drawn>>> = Mutex::new(BTreeMap::new());
+const KEPT: usize = 32;
+
+fn drawn(texture: Texture, colour: [u8; 3]) -> Result<Arc<Drawn>, GltfError> {
+    let key = key(texture, colour);
+    // A thread that panicked left the map whole: entries are inserted complete.
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(drawn) = known().get(&key) {
+        return Ok(Arc::clone(drawn));
+    }
+    let tile = tile(texture, colour);
+    let png = |pixels: &Pixels| texture_png(pixels).map_err(|e| GltfError::Image(e.to_string()));
+    let drawn = Arc::new(Drawn {
+        base: png(&tile.base)?,
+        normal: tile.normal.as_ref().map(png).transpose()?,
+        tile,
+    });
+    let mut all = known();
+    if all.len() < KEPT {
+        all.insert(key, Arc::clone(&drawn));
+    }
+    Ok(drawn)
 }
 
 /// A material without a pattern.

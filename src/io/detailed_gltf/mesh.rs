@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use edifice_scene::palette::Palette;
 use edifice_scene::textures::Texture;
 use edifice_shape::solid::Finish;
-use edifice_shape::vec3::{cross, dot, norm, sub};
+use edifice_shape::vec3::{add, cross, dot, norm, sub};
 use edifice_shape::{DetailedBuilding, Part, PartKind};
 
 /// Upward component of a unit normal from which on a face is level.
@@ -62,9 +62,7 @@ fn faces(building: &DetailedBuilding, part: &Part) -> Vec<Face> {
             normal: [0.0; 3],
             triangles: Vec::new(),
         });
-        for i in 0..3 {
-            face.normal[i] += area[i];
-        }
+        face.normal = add(face.normal, area);
         face.triangles.push((*t, *finish));
     }
     let mut faces: Vec<Face> = groups.into_values().collect();
