@@ -15,7 +15,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 pub use text::{add, moved, ordered, resized, words};
-pub use view::scene_of;
+pub use view::{colours, scene_of};
 pub use wish::{WishError, Wishes, given, ranges, wished};
 
 use super::examples::{Example, Source};
@@ -24,12 +24,14 @@ use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::design::{Edit, EditError, edited, suggested, variants};
+use edifice_building_exteriors::house::parts::parts;
+use edifice_building_exteriors::house::scene::palette;
 use edifice_building_exteriors::house::{
     Database, GenerateError, Generated, HouseReport, Joining, Model, Options, model,
 };
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_datasets::shipped_bytes;
-use edifice_io::{building_json, gltf, scene_svg, surface_obj};
+use edifice_io::{building_json, detailed_gltf, scene_svg, surface_obj};
 use edifice_shape::Building;
 
 /// The name of the shipped houses in the program; that of the model learned from them follows.
@@ -305,13 +307,16 @@ impl State for House {
     }
 
     fn export(&self, format: &str) -> Result<Vec<u8>> {
-        let scene = view::scene_of(&self.building, &self.model);
+        let parts = || parts(&self.building, &self.model);
         match format {
-            "glb" => gltf::to_bytes(&scene).map_err(Error::method),
-            "obj" => {
-                Ok(surface_obj::to_text(&self.model.surface, &self.building.name).into_bytes())
+            "glb" => detailed_gltf::to_bytes(&parts(), &palette(colours(&self.building)))
+                .map_err(Error::method),
+            // One file alone, without materials beside it.
+            "obj" => Ok(surface_obj::parts_text(&parts(), None).into_bytes()),
+            "svg" => {
+                let scene = scene_of(&self.building, &self.model);
+                Ok(scene_svg::elevations(&scene).into_bytes())
             }
-            "svg" => Ok(scene_svg::elevations(&scene).into_bytes()),
             other => Err(CommandError::Format(other.to_owned()).into()),
         }
     }

@@ -7,17 +7,16 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use gltf_json as json;
-use json::accessor::{ComponentType, GenericComponentType, Type};
+use json::Index;
+use json::mesh::Semantic;
 use json::validation::Checked::Valid;
-use json::validation::USize64;
-use json::{Index, Root};
 
-use super::glb_container::{TooLong, glb_container};
+use super::gltf_document::{Document, INDICES, VERTICES, linear, primitive};
 use super::write_atomic;
 use edifice_base::{Error, Result};
 use edifice_scene::{Group, Instance, Material, Mesh, Scene};
 
-/// Why a scene cannot be written.
+/// Why a scene or a building cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GltfError {
@@ -32,7 +31,7 @@ pub enum GltfError {
     /// An index leads nowhere.
     #[error("{what} {index} does not exist, there are {count}")]
     Dangling {
-        /// `mesh`, `material` or `corner`.
+        /// `mesh`, `material`, `corner` or `wall`.
         what: &'static str,
         /// The index.
         index: usize,
@@ -53,6 +52,9 @@ pub enum GltfError {
         /// Its size.
         bytes: u64,
     },
+    /// An image of a texture could not be encoded.
+    #[error("an image cannot be encoded: {0}")]
+    Image(String),
     /// The document could not be written as JSON.
     #[error("the document cannot be written: {0}")]
     Json(String),
@@ -74,17 +76,21 @@ pub fn write(scene: &Scene, path: &Path) -> Result<()> {
 /// [`GltfError`].
 pub fn to_bytes(scene: &Scene) -> std::result::Result<Vec<u8>, GltfError> {
     check(scene)?;
-    let mut document = Document::default();
+    let mut document = Document::new(&[VERTICES, INDICES]);
     for surface in &scene.materials {
         document.root.materials.push(material(surface));
     }
-    for mesh in &scene.meshes {
-        document.positions(mesh);
+    let positions = |mesh: &Mesh| document.vectors(0, &mesh.positions, true);
+    let positions: Vec<Index<json::Accessor>> = scene.meshes.iter().map(positions).collect();
+    for (mesh, positions) in scene.meshes.iter().zip(positions) {
+        let attributes = BTreeMap::from([(Valid(Semantic::Positions), positions)]);
+        let primitives = mesh.parts.iter().map(|(material, indices)| {
+            let indices = document.indices(1, indices, mesh.positions.len());
+            primitive(attributes.clone(), indices, Index::new(*material as u32))
+        });
+        let primitives = primitives.collect();
+        document.mesh(&mesh.name, primitives);
     }
-    for mesh in &scene.meshes {
-        document.indices(mesh);
-    }
-    document.finish_buffers();
     let mut nodes = Vec::new();
     for group in &scene.groups {
         let first = document.root.nodes.len() as u32;
@@ -97,15 +103,7 @@ pub fn to_bytes(scene: &Scene) -> std::result::Result<Vec<u8>, GltfError> {
             .push(group_node(group, (first..last).map(Index::new).collect()));
         nodes.push(Index::new(last));
     }
-    document.root.scenes.push(json::Scene {
-        name: None,
-        nodes,
-        extensions: None,
-        extras: Default::default(),
-    });
-    document.root.scene = Some(Index::new(0));
-    document.root.asset.generator = Some(format!("edifice {}", env!("CARGO_PKG_VERSION")));
-    document.glb()
+    document.glb(nodes)
 }
 
 fn check(scene: &Scene) -> std::result::Result<(), GltfError> {
@@ -140,163 +138,8 @@ fn check(scene: &Scene) -> std::result::Result<(), GltfError> {
     instances.try_for_each(|i| within("mesh", i.mesh, scene.meshes.len()))
 }
 
-/// The document and its binary part while they are written.
-#[derive(Default)]
-struct Document {
-    root: Root,
-    positions: Vec<u8>,
-    indices: Vec<u8>,
-    /// Accessor of each mesh's positions.
-    accessors: Vec<Index<json::Accessor>>,
-}
-
-/// Buffer views: positions, three numbers of four bytes, then indices. Several accessors share the first, which
-/// therefore must say its stride.
-const VIEWS: [(json::buffer::Target, Option<json::buffer::Stride>); 2] = [
-    (
-        json::buffer::Target::ArrayBuffer,
-        Some(json::buffer::Stride(12)),
-    ),
-    (json::buffer::Target::ElementArrayBuffer, None),
-];
-
-impl Document {
-    fn positions(&mut self, mesh: &Mesh) {
-        let offset = self.positions.len();
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for p in &mesh.positions {
-            for i in 0..3 {
-                low[i] = low[i].min(p[i]);
-                high[i] = high[i].max(p[i]);
-                self.positions.extend(p[i].to_le_bytes());
-            }
-        }
-        let mut accessor = accessor(
-            0,
-            offset,
-            mesh.positions.len(),
-            ComponentType::F32,
-            Type::Vec3,
-        );
-        accessor.min = Some(serde_json::json!(low));
-        accessor.max = Some(serde_json::json!(high));
-        let index = self.root.push(accessor);
-        self.accessors.push(index);
-    }
-
-    fn indices(&mut self, mesh: &Mesh) {
-        let position = self.accessors[self.root.meshes.len()];
-        // The largest 16-bit number is not allowed as an index.
-        let short = mesh.positions.len() < usize::from(u16::MAX);
-        let primitives = mesh.parts.iter().map(|(material, indices)| {
-            let offset = self.indices.len();
-            for &index in indices {
-                match short {
-                    true => self.indices.extend((index as u16).to_le_bytes()),
-                    false => self.indices.extend(index.to_le_bytes()),
-                }
-            }
-            self.indices
-                .resize(self.indices.len().next_multiple_of(4), 0);
-            let component = if short {
-                ComponentType::U16
-            } else {
-                ComponentType::U32
-            };
-            let accessor = accessor(1, offset, indices.len(), component, Type::Scalar);
-            json::mesh::Primitive {
-                attributes: BTreeMap::from([(Valid(json::mesh::Semantic::Positions), position)]),
-                indices: Some(self.root.push(accessor)),
-                material: Some(Index::new(*material as u32)),
-                mode: Valid(json::mesh::Mode::Triangles),
-                targets: None,
-                extensions: None,
-                extras: Default::default(),
-            }
-        });
-        let primitives = primitives.collect();
-        self.root.meshes.push(json::Mesh {
-            name: Some(mesh.name.clone()),
-            primitives,
-            weights: None,
-            extensions: None,
-            extras: Default::default(),
-        });
-    }
-
-    fn finish_buffers(&mut self) {
-        let lengths = [self.positions.len(), self.indices.len()];
-        if lengths[0] == 0 {
-            return;
-        }
-        let buffer = self.root.push(json::Buffer {
-            byte_length: USize64::from(lengths[0] + lengths[1]),
-            name: None,
-            uri: None,
-            extensions: None,
-            extras: Default::default(),
-        });
-        let mut offset = 0;
-        for (length, (target, byte_stride)) in lengths.into_iter().zip(VIEWS) {
-            self.root.push(json::buffer::View {
-                buffer,
-                byte_length: USize64::from(length),
-                byte_offset: Some(USize64::from(offset)),
-                byte_stride,
-                name: None,
-                target: Some(Valid(target)),
-                extensions: None,
-                extras: Default::default(),
-            });
-            offset += length;
-        }
-    }
-
-    fn glb(self) -> std::result::Result<Vec<u8>, GltfError> {
-        let text = self
-            .root
-            .to_vec()
-            .map_err(|e| GltfError::Json(e.to_string()))?;
-        let mut binary = self.positions;
-        binary.extend(self.indices);
-        glb_container(text, binary).map_err(|TooLong(bytes)| GltfError::TooLarge { bytes })
-    }
-}
-
-fn accessor(
-    view: u32,
-    offset: usize,
-    count: usize,
-    component: ComponentType,
-    kind: Type,
-) -> json::Accessor {
-    json::Accessor {
-        buffer_view: Some(Index::new(view)),
-        byte_offset: Some(USize64::from(offset)),
-        count: USize64::from(count),
-        component_type: Valid(GenericComponentType(component)),
-        type_: Valid(kind),
-        min: None,
-        max: None,
-        name: None,
-        normalized: false,
-        sparse: None,
-        extensions: None,
-        extras: Default::default(),
-    }
-}
-
 fn material(surface: &Material) -> json::Material {
-    // glTF takes linear colours.
-    let linear = |c: u8| {
-        let c = f32::from(c) / 255.0;
-        if c <= 0.04045 {
-            c / 12.92
-        } else {
-            ((c + 0.055) / 1.055).powf(2.4)
-        }
-    };
-    let [r, g, b] = surface.color.map(linear);
+    let [r, g, b] = linear(surface.color);
     json::Material {
         name: Some(surface.name.clone()),
         pbr_metallic_roughness: json::material::PbrMetallicRoughness {

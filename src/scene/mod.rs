@@ -1,7 +1,9 @@
 //! A scene of instanced triangle meshes, in metres, y up, right-handed (the frame of glTF).
 
+pub mod palette;
 pub mod relief;
 pub mod render;
+pub mod textures;
 pub mod trace;
 mod vectors;
 

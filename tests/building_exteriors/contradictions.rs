@@ -251,7 +251,7 @@ fn one_and_two_threads_write_the_same_bytes() {
         contents(&folder.path().join(to))
     };
     let (one, two) = (build("one", "1"), build("two", "2"));
-    assert_eq!(one.len(), 5 * 6 + 2);
+    assert_eq!(one.len(), 5 * 7 + 2);
     for (a, b) in one.iter().zip(&two) {
         assert!(a == b, "{}", a.0);
     }

@@ -12,6 +12,7 @@ mod from_facades;
 mod from_facades_command;
 mod fuzz;
 mod generation;
+mod gltf;
 mod ifc;
 mod io;
 mod parts;

@@ -4,13 +4,15 @@ use std::path::Path;
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::parts::parts;
-use edifice_building_exteriors::house::scene::{Placed, colour, scene};
+use edifice_building_exteriors::house::scene::{Placed, colour, palette, scene};
 use edifice_building_exteriors::house::street::{self, Fronted};
 use edifice_building_exteriors::house::{Database, Model};
-use edifice_editing::building_exteriors::{scene_of, shipped_database};
+use edifice_editing::building_exteriors::{colours, scene_of, shipped_database};
 use edifice_io::detailed_cityjson::{self, Place};
 use edifice_io::scene_png::picture_png;
-use edifice_io::{building_json, detailed_ifc, gltf, scene_svg, surface_obj, write_atomic};
+use edifice_io::{
+    building_json, detailed_gltf, detailed_ifc, scene_svg, surface_obj, write_atomic,
+};
 use edifice_scene::Scene;
 use edifice_scene::trace::{framing, trace};
 use edifice_shape::Building;
@@ -26,9 +28,9 @@ const BETWEEN: f64 = 5.0;
 pub(super) enum Format {
     /// `NAME.building.json`
     Json,
-    /// `NAME.obj`, z up, in metres
+    /// `NAME.obj` with the colours `NAME.mtl`: its parts, z up, in metres
     Obj,
-    /// `NAME.glb`, y up
+    /// `NAME.glb`: its parts with textures, y up, in metres
     Glb,
     /// `NAME.city.json`: CityJSON 2.0 of level of detail 3
     Cityjson,
@@ -46,11 +48,6 @@ pub(super) fn database(path: Option<&Path>) -> Result<Database> {
         return shipped_database().cloned();
     };
     Database::new(building_json::read(path)?).map_err(|e| Error::content(path, e))
-}
-
-/// The number of the colours of a house.
-fn colours(building: &Building) -> usize {
-    building.name.bytes().map(usize::from).sum()
 }
 
 /// Houses side by side without anything around them.
@@ -108,10 +105,17 @@ pub(super) fn write(
         match format {
             Format::Json => building_json::write(building, &file("building.json"))?,
             Format::Obj => {
-                let text = surface_obj::to_text(&model.surface, &building.name);
+                let materials = format!("{}.mtl", building.name);
+                let parts = parts(building, model);
+                let text = surface_obj::mtl(&parts, &palette(colours(building)));
+                write_atomic(&file("mtl"), text.as_bytes())?;
+                let text = surface_obj::parts_text(&parts, Some(&materials));
                 write_atomic(&file("obj"), text.as_bytes())?;
             }
-            Format::Glb => gltf::write(&scene_of(building, model), &file("glb"))?,
+            Format::Glb => {
+                let palette = palette(colours(building));
+                detailed_gltf::write(&parts(building, model), &palette, &file("glb"))?;
+            }
             Format::Cityjson => {
                 let all = [parts(building, model)];
                 let text = detailed_cityjson::to_string(&all, &Place::default());

@@ -12,13 +12,18 @@ use edifice_building_exteriors::house::{Generated, Model};
 use edifice_scene::Scene;
 use edifice_shape::{Building, MassBox};
 
-/// The scene of one house, its colours chosen by its name.
+/// The number of the colours of a house, chosen by its name.
+pub fn colours(building: &Building) -> usize {
+    building.name.bytes().map(usize::from).sum()
+}
+
+/// The scene of one house.
 pub fn scene_of(building: &Building, model: &Model) -> Scene {
     scene(&[Placed {
         name: &building.name,
         surface: &model.surface,
         at: [0.0; 2],
-        colours: building.name.bytes().map(usize::from).sum(),
+        colours: colours(building),
     }])
 }
 

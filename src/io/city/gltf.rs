@@ -1,6 +1,7 @@
 //! Cities as glTF 2.0: `.glb`, and `.gltf` with buffers inside it or beside it.
 //!
-//! A node of the scene with a mesh is a building, called by its name. Instances of `EXT_mesh_gpu_instancing` are drawn out.
+//! A node of the scene with a mesh is a building, called by its name; what lies below a node whose `extras` say
+//! `"kind": "Building"`, as those of [`crate::detailed_gltf`] do, is one building. Instances of `EXT_mesh_gpu_instancing` are drawn out.
 //! A file that Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
 //! of one building become one, which knows the instances it is put together from ([`Part`](edifice_shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
 //! lines are left out. Textures of base colours are read as the paint of the surfaces. Every index and length is checked against the bytes there are.
@@ -257,9 +258,25 @@ impl Reader<'_> {
                 None => self.place(mesh, &own, name, &node.extras)?,
             }
         }
-        node.children
-            .iter()
-            .try_for_each(|&child| self.node(child, &own, depth + 1))
+        let first = self.city.buildings.len();
+        let mut children = node.children.iter();
+        children.try_for_each(|&child| self.node(child, &own, depth + 1))?;
+        let is_whole = node.extras.get("kind").and_then(Value::as_str) == Some("Building");
+        let parts = match is_whole && self.city.buildings.len() > first {
+            true => self.city.buildings.split_off(first),
+            false => return Ok(()),
+        };
+        let mut whole = CityBuilding {
+            id: node.name.clone(),
+            attributes: node.extras.as_object().cloned().unwrap_or_default(),
+            ..CityBuilding::default()
+        };
+        for mut part in parts {
+            whole.mesh.append(&part.mesh);
+            whole.paint.append(&mut part.paint);
+        }
+        self.city.buildings.push(whole);
+        Ok(())
     }
 
     /// Adds a mesh to the building of that identifier; one that the scene does not list gets a building of its own.

@@ -1,6 +1,8 @@
 //! Houses as scenes: colours by pre-designed templates (Sec. 6), one mesh a house.
 
 use super::model::FINISHES;
+use edifice_scene::palette::{Look, Palette};
+use edifice_scene::textures::Texture;
 use edifice_scene::{Group, Instance, Material, Mesh, Scene};
 use edifice_shape::solid::{Finish, Surface};
 
@@ -46,6 +48,18 @@ const TEMPLATES: [[[u8; 3]; 4]; 8] = [
     ],
 ];
 
+/// Textures of wall and sloped roof that go with the colours of the templates.
+const TEXTURES: [[Texture; 2]; COLOURS] = [
+    [Texture::Plaster, Texture::Shingles],
+    [Texture::Cladding, Texture::Shingles],
+    [Texture::Brick, Texture::Tiles],
+    [Texture::Plaster, Texture::Shingles],
+    [Texture::Cladding, Texture::Shingles],
+    [Texture::Brick, Texture::Tiles],
+    [Texture::Plaster, Texture::Tiles],
+    [Texture::Cladding, Texture::Shingles],
+];
+
 /// Number of colour templates.
 pub const COLOURS: usize = TEMPLATES.len();
 
@@ -61,6 +75,38 @@ pub fn colour(finish: Finish, template: usize) -> [u8; 3] {
         Finish::Deck => [150, 132, 112],
         Finish::Pane => [58, 74, 88],
         Finish::GarageDoor => trim.map(|c| (f32::from(c) * 0.92) as u8),
+    }
+}
+
+/// The looks of a template: its colours, the textures that go with them, glass that lets light through.
+pub fn palette(template: usize) -> Palette {
+    let [wall, roof] = TEXTURES[template % COLOURS];
+    let own = |finish| colour(finish, template);
+    let textured = |finish, texture| Look::textured(own(finish), texture);
+    let painted = |finish| Look {
+        roughness: 0.55,
+        ..textured(finish, Texture::Paint)
+    };
+    Palette {
+        // Bricks of one house are of one kind.
+        chimney: match wall {
+            Texture::Brick => textured(Finish::Wall, Texture::Brick),
+            _ => textured(Finish::Chimney, Texture::Brick),
+        },
+        wall: textured(Finish::Wall, wall),
+        roof: textured(Finish::Roof, roof),
+        flat_roof: textured(Finish::Roof, Texture::Plaster),
+        trim: painted(Finish::Trim),
+        deck: textured(Finish::Deck, Texture::Boards),
+        frame: painted(Finish::Frame),
+        pane: Look {
+            colour: own(Finish::Pane),
+            texture: None,
+            roughness: 0.06,
+            transmission: 0.4,
+        },
+        door: painted(Finish::Door),
+        garage_door: painted(Finish::GarageDoor),
     }
 }
 
