@@ -230,10 +230,10 @@ fn a_house_looks_like_its_colours_from_afar() {
             let tile = tile(texture, look.colour);
             let factor = tile.factor(look.colour);
             let count = (tile.base.bytes.len() / tile.base.channels) as f64;
-            for c in 0..3 {
+            for (c, factor) in factor.iter().enumerate().take(3) {
                 let own = tile.base.bytes.iter().skip(c % tile.base.channels);
                 let own = own.step_by(tile.base.channels).map(|&v| linear(v));
-                let mean = own.sum::<f64>() / count * factor[c];
+                let mean = own.sum::<f64>() / count * factor;
                 let wanted = linear(look.colour[c]);
                 // Joints have a colour of their own.
                 let room = if texture.has_joints() { 0.12 } else { 0.02 };
