@@ -83,7 +83,10 @@ fn triangles_without_a_common_corner_meet_if_and_only_if_their_distance_is_zero(
         seen += 1;
         let found = contact(a, b);
         let d = distance(a, b);
-        assert!(d < 1e-5 || d > 1e-3, "no clear distance: {a:?} {b:?} {d}");
+        assert!(
+            !(1e-5..=1e-3).contains(&d),
+            "no clear distance: {a:?} {b:?} {d}"
+        );
         assert_eq!(found.is_some(), d < 1e-5, "{a:?} {b:?} {d}");
         meet += usize::from(found.is_some());
         // Not a matter of order, of direction, of place, or of scale.
