@@ -1,4 +1,4 @@
-//! Where a surface of triangles meets itself, in exact arithmetic.
+//! Self-intersections of a surface of triangles, in exact arithmetic.
 //!
 //! Coordinates are whole numbers, so that every decision is the sign of a determinant without rounding. For triangles
 //! `A` and `B`, with `o(p, q, r, s)` the orientation of four points:
@@ -20,7 +20,7 @@ pub struct Crossing {
     pub contact: Contact,
 }
 
-/// How two triangles meet.
+/// The contact of two triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contact {
     /// One passes through the other, or both cover a part of one plane.

@@ -1,4 +1,4 @@
-//! Which places on walls are free: no other building stands before them.
+//! Free places on walls: no other building stands before them.
 
 use std::collections::HashMap;
 
