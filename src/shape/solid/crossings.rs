@@ -119,7 +119,7 @@ fn orientation(p: Point, q: Point, r: Point, s: Point) -> i128 {
     (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]).signum()
 }
 
-/// How edges of `a` that pass from one side of `b` to the other meet it; `sides` are the sides of the corners.
+/// The contact of edges of `a` that pass from one side of `b` to the other with it; `sides` are the sides of the corners.
 fn pierced(a: [Point; 3], b: [Point; 3], sides: [i128; 3]) -> Option<Contact> {
     let mut found = None;
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
