@@ -18,6 +18,7 @@ mod learning;
 mod mixture_figures;
 mod openings;
 mod photographs;
+mod real_sets;
 mod reasons;
 mod speed;
 pub mod study;
@@ -118,9 +119,19 @@ const ARTEFACTS: &[Artefact] = &[
         run: figure_10::run,
     },
     Artefact {
+        name: "figure_10_real",
+        title: "the styles found in real houses",
+        run: real_sets::styles,
+    },
+    Artefact {
         name: "figure_11_left",
         title: "lateral edges, beside those of the generator",
         run: figure_11::left,
+    },
+    Artefact {
+        name: "figure_11_real",
+        title: "lateral edges found in real houses",
+        run: real_sets::edges,
     },
     Artefact {
         name: "figure_11_right",

@@ -25,6 +25,10 @@
 //!   point, and the ground floor is in one piece without courtyards ([`edifice_shape::Soundness`]).
 //! - The height of a floor is no attribute: it is the height over the number of floors with a share above 0.02.
 //! - A garage and a porch are one box each.
+//! - Without garage and porches the attributes do not tell left from right or front from back: a plan with a corner cut off
+//!   and its mirror images have the same. Of 529 houses of Delft, each left out of the donors, the lower quartile of the
+//!   intersection over union of built and real plan is 0.73, up to mirroring 0.81; that of the real plans with one of their
+//!   four mirror images, drawn at random, garage or not, is 0.79 (`tests/real_data/houses.rs` measures 59 of them).
 
 pub mod anneal;
 mod bound;
