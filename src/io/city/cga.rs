@@ -14,7 +14,7 @@
 //!
 //! @StartRule
 //! B1 -->
-//!     t(scope.sx / 2, 0, scope.sz / 2)
+//!     alignScopeToGeometry(yUp, 0, 0) t(scope.sx / 2, 0, scope.sz / 2)
 //!     [ s(span(B1_width) * B1_width_factor, span(B1_h1) * B1_height_factor, span(B1_depth) * B1_depth_factor) T1 ]
 //!     [ t(0, cm(B1_h1) * B1_height_factor, 0) r(0, 90, 0) s(...) T2 ]
 //!
@@ -26,9 +26,11 @@
 //! The pages of its reference are listed in [`crate::grammar_cga::solids`], the independent reader, which evaluates the text
 //! as [`read`] does. Beyond them:
 //! - An attribute is set for a shape by an object attribute of the same name ([attributes]); the property `rule` names the start rule.
-//! - A footprint begins with the corner of smallest x and y in the building's own frame, counterclockwise, so that x of the first scope
-//!   lies along the width. Rules begin with a step to the middle of the scope: other attributes leave a building's middle where it is.
-//! - An asset's bounding box becomes the scope (`op_i.html`), whatever its own size; assets are y up, a unit box is 100 units wide.
+//! - A footprint begins with the corner of smallest x and y in the building's own frame, counterclockwise. Rules begin by laying x along
+//!   the first edge (`op_alignScopeToGeometry.html`) and by a step to the middle of the scope: other attributes leave a building's middle
+//!   where it is.
+//! - An asset's bounding box becomes the scope (`op_i.html`), whatever its own size; assets are y up, a unit box is 100 units wide. They are
+//!   sought in the folder `assets` of the project, and in the project itself ([asset search]).
 //! - CityEngine reads feature classes and shapefiles, not GeoJSON; [JSON To Features] makes one of the other.
 //!
 //! # What is left out
@@ -37,6 +39,7 @@
 //! of a template `T` with the rule `T_building`.
 //!
 //! [attributes]: https://doc.arcgis.com/en/cityengine/latest/help/help-rules-attributes.htm
+//! [asset search]: https://doc.arcgis.com/en/cityengine/latest/cga/cga-asset-texture-search.htm
 //! [JSON To Features]: https://pro.arcgis.com/en/pro-app/latest/tool-reference/conversion/json-to-features.htm
 
 mod assets;

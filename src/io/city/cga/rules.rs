@@ -19,8 +19,8 @@ reach(w, d, c, s) = sqrt(w * c * (w * c) + d * s * (d * s))
 ";
 /// Names that [`FUNCTIONS`] takes.
 const TAKEN: [&str; 8] = ["cm", "span", "reach", "v", "w", "d", "c", "s"];
-/// The first step of a start rule: to the middle of the footprint.
-const TO_THE_MIDDLE: &str = "t(scope.sx / 2, 0, scope.sz / 2)";
+/// The first steps of a start rule: x along the first edge of the footprint, and to the middle of it.
+const TO_THE_MIDDLE: &str = "alignScopeToGeometry(yUp, 0, 0) t(scope.sx / 2, 0, scope.sz / 2)";
 
 /// A kind of start shapes in the text.
 pub(super) struct Known {

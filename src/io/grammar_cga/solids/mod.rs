@@ -9,6 +9,7 @@
 //! | `attr.html`, `const.html` | a number for each name, evaluated in the order of the text; the start shape may state another for an `attr` |
 //! | [functions], [conditions] | `name(a, b) = ...`, also of two cases, `case x < y : ... else : ...`; `floor`, `sqrt` and `rint` are known |
 //! | [standard rule] | operations and symbols, one after another; a symbol is a shape with the scope that there is then |
+//! | `op_alignScopeToGeometry.html` | `alignScopeToGeometry(yUp, 0, 0)`: the scope of a start shape, which lies so already |
 //! | `op_t.html` | moves the scope along its own axes |
 //! | `op_r.html` | turns the scope about its origin, in degrees; only about y |
 //! | `op_s.html` | sets the sizes of the scope |

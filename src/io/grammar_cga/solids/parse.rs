@@ -188,6 +188,14 @@ impl<'a> Reader<'a> {
             out.push(match name {
                 "i" => Operation::Insert(Some(self.text()?), span),
                 "primitiveCube" => Operation::Insert(None, span),
+                "alignScopeToGeometry" => {
+                    self.expect(Token::Name("yUp"))?;
+                    for _ in 0..2 {
+                        self.expect(Token::Comma)?;
+                        self.expect(Token::Number("0"))?;
+                    }
+                    Operation::Nothing
+                }
                 "t" => Operation::Translate(self.three()?, span),
                 "r" => Operation::Rotate(self.three()?, span),
                 "s" => Operation::Size(self.three()?, span),

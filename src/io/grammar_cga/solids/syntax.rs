@@ -27,6 +27,7 @@ pub(super) enum Operation<'a> {
     Size([Expression<'a>; 3], SimpleSpan),
     /// `primitiveCube()` without an asset, `i("...")` with one.
     Insert(Option<&'a str>, SimpleSpan),
+    /// `NIL`, and `alignScopeToGeometry(yUp, 0, 0)`, which leaves the scope of a start shape as it is.
     Nothing,
     /// `[ ... ]`
     Aside(Vec<Operation<'a>>),
