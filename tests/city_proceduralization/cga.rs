@@ -194,10 +194,16 @@ fn bad_rules_and_shapes_are_refused_with_their_place() {
         ("A(v) --> NIL", "1:1: rules with parameters"),
         ("A --> [ NIL", "found the end of the text"),
         ("B --> NIL", "A has no rule"),
+        (&format!("A --> {}", "[".repeat(1000)), "nested too deeply"),
     ] {
         let found = fault(text);
         assert!(found.contains(expected), "{text}: {found}");
     }
+    // A long sum is no deep one.
+    let text = format!("A --> s(1{}, 1, 1) primitiveCube()", " + 1".repeat(100_000));
+    let rules = SolidRules::parse(&text).unwrap();
+    let solids = rules.evaluate("A", &Default::default(), scope).unwrap();
+    assert_eq!(solids[0].scope.size, [100_001.0, 1.0, 1.0]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.cga");
     std::fs::write(&path, "A --> NIL").unwrap();

@@ -11,8 +11,11 @@ const FLAT: f64 = 1e-9;
 /// Units of an asset that a unit box is wide: edges of a thousandth of it are far from what CityEngine cleans up.
 const WIDTH: f64 = 100.0;
 
+/// Smallest and largest coordinates.
+pub(super) type Bounds = ([f64; 3], [f64; 3]);
+
 /// The box that a template's mesh fills, or `None` for a mesh without triangles.
-pub(super) fn bounds(template: &Template) -> Result<Option<([f64; 3], [f64; 3])>, CgaCityError> {
+pub(super) fn bounds(template: &Template) -> Result<Option<Bounds>, CgaCityError> {
     let mesh = &template.mesh;
     let Some((low, high)) = mesh.bounds().filter(|_| !mesh.triangles.is_empty()) else {
         return Ok(None);

@@ -143,15 +143,18 @@ impl<'p> Evaluator<'p> {
                 _ => return fault(format!("{name} has no value above this line")),
             },
             Kind::Negative(value) => -self.value(value, frame)?,
-            Kind::Binary(sides, sign) => {
-                let left = self.value(&sides[0], frame)?;
-                let right = self.value(&sides[1], frame)?;
-                match sign {
-                    '+' => left + right,
-                    '-' => left - right,
-                    '*' => left * right,
-                    _ => left / right,
+            Kind::Chain(first, rest) => {
+                let mut left = self.value(first, frame)?;
+                for (sign, right) in rest {
+                    let right = self.value(right, frame)?;
+                    left = match sign {
+                        '+' => left + right,
+                        '-' => left - right,
+                        '*' => left * right,
+                        _ => left / right,
+                    };
                 }
+                left
             }
             Kind::Case(parts) => {
                 let less = self.value(&parts[0], frame)? < self.value(&parts[1], frame)?;

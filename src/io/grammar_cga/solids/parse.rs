@@ -235,38 +235,40 @@ impl<'a> Reader<'a> {
     }
 
     fn expression(&mut self) -> Result<Expression<'a>, Fault> {
-        let mut left = self.product()?;
-        loop {
-            let sign = match self.peek() {
-                Some(Token::Plus) => '+',
-                Some(Token::Minus) => '-',
-                _ => return Ok(left),
-            };
-            left = self.joined(left, sign, Self::product)?;
-        }
+        let sign = |token: Token<'_>| match token {
+            Token::Plus => Some('+'),
+            Token::Minus => Some('-'),
+            _ => None,
+        };
+        self.chain(sign, Self::product)
     }
 
     fn product(&mut self) -> Result<Expression<'a>, Fault> {
-        let mut left = self.factor()?;
-        loop {
-            let sign = match self.peek() {
-                Some(Token::Star) => '*',
-                Some(Token::Slash) => '/',
-                _ => return Ok(left),
-            };
-            left = self.joined(left, sign, Self::factor)?;
-        }
+        let sign = |token: Token<'_>| match token {
+            Token::Star => Some('*'),
+            Token::Slash => Some('/'),
+            _ => None,
+        };
+        self.chain(sign, Self::factor)
     }
 
-    fn joined(
+    /// One or more of what `part` reads, joined by signs.
+    fn chain(
         &mut self,
-        left: Expression<'a>,
-        sign: char,
-        right: fn(&mut Self) -> Result<Expression<'a>, Fault>,
+        sign: fn(Token<'_>) -> Option<char>,
+        part: fn(&mut Self) -> Result<Expression<'a>, Fault>,
     ) -> Result<Expression<'a>, Fault> {
         let span = self.span();
-        self.at += 1;
-        let kind = Kind::Binary(Box::new([left, right(self)?]), sign);
+        let first = part(self)?;
+        let mut rest = Vec::new();
+        while let Some(sign) = self.peek().and_then(sign) {
+            self.at += 1;
+            rest.push((sign, part(self)?));
+        }
+        if rest.is_empty() {
+            return Ok(first);
+        }
+        let kind = Kind::Chain(Box::new(first), rest);
         Ok(Expression { kind, span })
     }
 

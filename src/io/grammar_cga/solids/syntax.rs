@@ -48,7 +48,8 @@ pub(super) enum Kind<'a> {
     Name(&'a str),
     Call(&'a str, Vec<Expression<'a>>),
     Negative(Box<Expression<'a>>),
-    Binary(Box<[Expression<'a>; 2]>, char),
+    /// A number, and others that are added to it, or multiplied with it, in turn.
+    Chain(Box<Expression<'a>>, Vec<(char, Expression<'a>)>),
     /// `case a < b : c else : d`
     Case(Box<[Expression<'a>; 4]>),
 }
