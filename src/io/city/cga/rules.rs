@@ -117,7 +117,9 @@ impl<'g> Rules<'g> {
                 let _ = writeln!(out, "@Group(\"{}\") attr {name} = {value}", known.rule);
             }
         }
-        let _ = write!(out, "\n{FUNCTIONS}");
+        if self.kinds.keys().any(|k| matches!(k, Kind::Rule(_))) {
+            let _ = write!(out, "\n{FUNCTIONS}");
+        }
         for (kind, known) in &self.kinds {
             let _ = write!(
                 out,
@@ -152,13 +154,9 @@ impl<'g> Rules<'g> {
                 let _ = writeln!(out, "{leaf} --> NIL");
                 continue;
             };
-            let _ = write!(
-                out,
-                "{leaf} --> t({} * scope.sx, {} * scope.sy, {} * scope.sz) ",
-                low[0],
-                low[2],
-                0.0 - high[1]
-            );
+            let up = times(low[2], "scope.sy").unwrap_or_else(|| "0".to_owned());
+            let (x, z) = (low[0], 0.0 - high[1]);
+            let _ = write!(out, "{leaf} --> t({x} * scope.sx, {up}, {z} * scope.sz) ");
             let [x, y, z] = [0, 1, 2].map(|k| high[k] - low[k]);
             if [x, y, z] != [1.0; 3] {
                 let _ = write!(out, "s({x} * scope.sx, {z} * scope.sy, {y} * scope.sz) ");

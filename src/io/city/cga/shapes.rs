@@ -11,7 +11,7 @@ use edifice_grammar::instance::{
     INSTANCE_LIMIT, InstanceGrammar, InstanceGrammarError, InstanceRule, Placement,
 };
 
-/// Of what a start shape is.
+/// The symbol that a start shape begins with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     /// A rule with parameters, by index.
@@ -127,7 +127,7 @@ impl Walk<'_> {
         }
     }
 
-    /// What a rule without parameters puts down; identifiers are those of this instance.
+    /// Everything that a rule without parameters puts down; identifiers are those of this instance.
     fn inside(
         &mut self,
         rule: &InstanceRule,
