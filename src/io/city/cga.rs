@@ -43,37 +43,21 @@
 //! [JSON To Features]: https://pro.arcgis.com/en/pro-app/latest/tool-reference/conversion/json-to-features.htm
 
 mod assets;
+mod error;
+mod features;
 mod read;
 mod rules;
 mod shapes;
 
 use std::path::Path;
 
+pub use error::CgaCityError;
 pub use read::read;
 
 use crate::{file_stem, write_atomic};
 use edifice_base::{Error, Result};
-use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError};
+use edifice_grammar::instance::InstanceGrammar;
 use rules::Rules;
-
-/// Why a city grammar cannot be told in CGA.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CgaCityError {
-    /// The grammar does not derive.
-    #[error(transparent)]
-    Grammar(#[from] InstanceGrammarError),
-    /// A mesh has no extent along an axis.
-    #[error(
-        "template {template:?} is flat along {axis}: CGA fits an asset into its scope, and cannot keep it flat"
-    )]
-    Flat {
-        /// Symbol of the template.
-        template: String,
-        /// The axis, `x`, `y` or `z`, z up.
-        axis: char,
-    },
-}
 
 /// A city grammar in CGA.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +87,7 @@ pub fn export(
     let text = rules.text(folder, &mut assets)?;
     Ok(CgaCity {
         rules: text,
-        shapes: shapes::text(grammar, &starts, &rules),
+        shapes: features::text(grammar, &starts, &rules),
         assets,
         buildings: starts.len(),
     })

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::CgaCityError;
+use super::error::CgaCityError;
 use edifice_grammar::instance::Template;
 use edifice_shape::triangles::TriangleMesh;
 

@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::CgaCityError;
 use super::assets;
+use super::error::CgaCityError;
 use super::shapes::{Kind, Start, commonest};
 use crate::grammar_cga::{identifier, reserved_words};
 use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement};
