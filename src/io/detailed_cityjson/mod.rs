@@ -20,7 +20,7 @@ use edifice_shape::{DetailedBuilding, Part, PartKind};
 pub use check::faults;
 pub use read::{Described, Shell, ShellError, parse, shells};
 
-/// Where buildings are: what is added to each coordinate, and the reference system.
+/// The place of buildings: what is added to each coordinate, and the reference system.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Place {
     /// Added to each corner (m).

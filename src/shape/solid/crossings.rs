@@ -1,4 +1,4 @@
-//! Where a surface of triangles meets itself, in exact arithmetic.
+//! Places at which a surface of triangles meets itself, in exact arithmetic.
 //!
 //! Coordinates are whole numbers, so that every decision is the sign of a determinant without rounding. For triangles
 //! `A` and `B`, with `o(p, q, r, s)` the orientation of four points:
@@ -20,7 +20,7 @@ pub struct Crossing {
     pub contact: Contact,
 }
 
-/// How two triangles meet.
+/// The way in which two triangles meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contact {
     /// One passes through the other, or both cover a part of one plane.
@@ -119,7 +119,7 @@ fn orientation(p: Point, q: Point, r: Point, s: Point) -> i128 {
     (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]).signum()
 }
 
-/// How edges of `a` that pass from one side of `b` to the other meet it; `sides` are the sides of the corners.
+/// The way in which edges of `a` that pass from one side of `b` to the other meet it; `sides` are the sides of the corners.
 fn pierced(a: [Point; 3], b: [Point; 3], sides: [i128; 3]) -> Option<Contact> {
     let mut found = None;
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {

@@ -36,7 +36,7 @@ const USUAL: f64 = 0.12;
 const MOST: f64 = 0.6;
 
 /// Width and height (m) of windows in walls above the ground, by area, at equal steps of their number: 79,848 windows
-/// of audited Canadian houses (Natural Resources Canada, EnerGuide), without the smallest sixth.
+/// of audited Canadian houses (Natural Resources Canada, `EnerGuide`), without the smallest sixth.
 #[rustfmt::skip]
 const WINDOWS: [[f64; 2]; 40] = [
     [0.84, 0.84], [0.61, 1.22], [1.27, 0.61], [0.89, 0.91], [0.91, 0.91], [0.71, 1.22], [0.56, 1.63], [0.76, 1.22],

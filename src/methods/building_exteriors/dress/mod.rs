@@ -47,7 +47,7 @@ use exposure::Roofs;
 
 pub use grid::{Grid, plain_grid};
 
-/// How buildings are dressed.
+/// Settings of the dressing of buildings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Draws for each building, at least 1.
