@@ -33,6 +33,8 @@ Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metr
   edifice city derive town.city-grammar.json -o town.glb
   edifice city derive town.city-grammar.json -o again.obj
   edifice city derive town.city-grammar.json --rules-only -o rules.glb
+  edifice city derive town.city-grammar.json -o town.cga
+  edifice city convert town.cga -o evaluated.obj
 OBJ and CityJSON are z up, in metres; glTF is y up.")]
     Derive(derive::Args),
     /// Change sizes of templates and weights of rules.
@@ -47,7 +49,8 @@ Residuals are carried along, or left out with --residuals drop.")]
     #[command(after_help = "Examples:
   edifice city convert datasets/building_exteriors/village.city.json -o village.obj
   edifice city convert town.obj -o town.city.json
-Reads .npz, .obj, .gml (CityGML 2 and 3), .city.json, .city.jsonl, .glb, .gltf and grammars; writes .obj and .city.json.")]
+Reads .npz, .obj, .gml (CityGML 2 and 3), .city.json, .city.jsonl, .glb, .gltf, .cga (as `city derive` writes it) and
+grammars; writes .obj and .city.json.")]
     Convert(convert::Args),
     /// Compare two cities, or a city and a grammar.
     #[command(after_help = "Examples:

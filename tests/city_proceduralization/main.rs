@@ -1,6 +1,9 @@
 //! Cities: grammars, files and commands.
 
 mod box_textures;
+mod cga;
+#[path = "../common/cga_judge.rs"]
+mod cga_judge;
 mod citygml;
 mod commands;
 mod compact;

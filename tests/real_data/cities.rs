@@ -96,6 +96,24 @@ fn midtown_derived_becomes_the_same_grammar() {
 }
 
 #[test]
+fn parts_of_midtown_and_delft_have_the_same_volumes_in_cga() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in [MIDTOWN, "city/delft_bag3d.npz"] {
+        let Some(data) = crate::common::real_data(name) else {
+            return;
+        };
+        let mut city = read(&data.join(name)).unwrap();
+        city.buildings.truncate(400);
+        let grammar = proceduralize(&city, &Settings::default(), &unwatched)
+            .unwrap()
+            .grammar;
+        println!("{name}: {} residuals", grammar.residuals());
+        let (count, _, _) = crate::cga_judge::judge(&grammar, folder.path());
+        assert!(count > 380, "{count}");
+    }
+}
+
+#[test]
 fn windows_of_chiba_are_found_on_its_photographs() {
     const CHIBA: &str = "city/chiba_textured.tar.xz";
     let Some(folder) = crate::common::real_data(CHIBA) else {

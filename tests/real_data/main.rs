@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[path = "../common/cga_judge.rs"]
+mod cga_judge;
 mod cities;
 mod completion;
 mod facades;

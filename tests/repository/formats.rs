@@ -71,6 +71,17 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
             assert_eq!(again.members(), library.members());
         }
         "cga" => drop(io::grammar_cga::parse(bytes, path)?),
+        "solids" => {
+            let scope = io::grammar_cga::solids::Scope {
+                at: [0.0; 3],
+                turn: 0.0,
+                size: [12.0, 0.0, 9.0],
+            };
+            let rules = io::grammar_cga::solids::SolidRules::parse(text)?;
+            let solids = rules.evaluate("B1", &BTreeMap::new(), scope)?;
+            assert_eq!(solids[0].scope.size, [12.0, 6.0, 9.0]);
+            assert_eq!(solids[1].asset.as_deref(), Some("CITY.assets/T2.obj"));
+        }
         "building" => drop(io::building_json::parse(bytes, path)?),
         "ifc" => ifc(text)?,
         "footprint" => drop(io::footprint::parse(bytes, path)?),

@@ -4,17 +4,18 @@ use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice_io::city::{self, cityjson, glb, grammar_file, obj};
+use edifice_io::city::{self, cga, cityjson, glb, grammar_file, obj};
 
 use super::data;
-use crate::print::Json;
+use crate::print::{self, Json};
 
 /// Options.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The grammar.
     grammar: PathBuf,
-    /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json` or `.bin`.
+    /// The city to write: `.glb`, `.obj` (both with the templates' textures) or `.city.json`; or the grammar in another format, `.city-grammar.json`, `.bin`, or `.cga` (rules of
+    /// CityEngine, with start shapes, `NAME.shapes.geojson`, and assets, `NAME.assets`, beside them; residuals are left out).
     #[arg(short, long)]
     output: PathBuf,
     /// Only what the rules say: residuals, which tell where the parts of single instances stand, are left out.
@@ -30,7 +31,8 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(super) fn run(args: &Args) -> Result<()> {
     let is_grammar = data::is_grammar(&args.output);
-    if !is_grammar {
+    let is_cga = args.output.extension().is_some_and(|e| e == "cga");
+    if !is_grammar && !is_cga {
         check_output(&args.output)?;
     }
     let mut grammar = data::grammar(&args.grammar)?;
@@ -43,7 +45,15 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let derivation = grammar
         .derive()
         .map_err(|e| Error::content(&args.grammar, e))?;
-    if !is_grammar {
+    if is_cga {
+        let residuals = grammar.residuals();
+        if residuals > 0 {
+            print::message(&format!(
+                "CGA has the rules alone: residuals of {residuals} instances are left out"
+            ));
+        }
+        cga::write(&grammar, &args.output)?;
+    } else if !is_grammar {
         write(&grammar, &derivation, &args.output, !args.no_instancing)?;
     }
     args.json.end(&serde_json::json!({

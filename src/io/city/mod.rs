@@ -10,11 +10,13 @@
 //! | `.tar`, `.tar.xz` | the `.obj` files in it, with their materials and textures, as one city | no |
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
 //! | `.city-grammar.bin` | [`compact`]: the same in few bytes | yes |
+//! | `.cga` | [`cga`]: rules of CityEngine, with the start shapes and assets beside them | of a grammar |
 //! | `tileset.json` | no | [`tiles`]: 3D Tiles 1.1 |
 //! | `.geojson` | [`geojson`]: a shape on the ground | no |
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
 mod archive;
+pub mod cga;
 pub mod citygml;
 pub mod cityjson;
 pub mod compact;
@@ -60,7 +62,7 @@ pub enum CityError {
     NoBuildings,
     /// An extension that is no city format.
     #[error(
-        "unknown city format; expected .npz, .obj, .glb, .gltf, .gml, .city.json, .city.jsonl or .tar.xz"
+        "unknown city format; expected .npz, .obj, .glb, .gltf, .gml, .city.json, .city.jsonl, .tar.xz or .cga"
     )]
     UnknownFormat,
     /// Coordinates look like degrees.
@@ -91,6 +93,7 @@ pub enum CityError {
 pub fn read(path: &Path) -> Result<City> {
     let city = match packed::extension(path).as_str() {
         "npz" => npz::read(path)?,
+        "cga" => cga::read(path)?,
         "obj" => obj::read(path)?,
         "glb" | "gltf" => gltf::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,

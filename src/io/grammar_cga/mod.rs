@@ -68,6 +68,8 @@
 //! Text of others may also name sizes with `attr`, compute them with `+ - * / ( )`, and have comments
 //! `//`, `/* */` and `#`. Conditions (`case`), parameters and operations that change shapes are errors.
 //!
+//! Text of rules that make solids, as of cities, is read by [`solids`].
+//!
 //! Errors name line, column and the offending text, with the line printed below.
 
 mod error;
@@ -76,6 +78,7 @@ mod names;
 mod note;
 mod parse;
 mod reserved;
+pub mod solids;
 mod syntax;
 mod token;
 mod write;
@@ -83,6 +86,8 @@ mod write;
 use std::path::Path;
 
 pub use error::CgaError;
+pub(crate) use names::identifier;
+pub(crate) use reserved::words as reserved_words;
 
 use super::{read_bytes, write_atomic};
 use edifice_base::{Error, Result};

@@ -38,16 +38,21 @@ pub(super) fn identifiers<'g>(
     }
     let mut renamed = Vec::new();
     for symbol in others {
-        let letters = symbol
-            .chars()
-            .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
-        let base: String = letters.collect();
-        let head = base.starts_with(|c: char| c.is_ascii_alphabetic());
-        let identifier = free(if head { base } else { format!("S{base}") }, taken);
+        let identifier = identifier(symbol, taken);
         renamed.push((identifier.clone(), symbol));
         identifiers.insert(symbol, identifier);
     }
     (identifiers, renamed)
+}
+
+/// A free identifier that is like a symbol; it is taken from then on.
+pub(crate) fn identifier(symbol: &str, taken: &mut FxHashSet<String>) -> String {
+    let letters = symbol
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+    let base: String = letters.collect();
+    let head = base.starts_with(|c: char| c.is_ascii_alphabetic());
+    free(if head { base } else { format!("S{base}") }, taken)
 }
 
 /// `base`, or the first of `base_2`, `base_3`, ... that is not taken.

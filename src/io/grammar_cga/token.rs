@@ -7,7 +7,7 @@ use logos::Logos;
 
 use super::error::Fault;
 
-/// Deepest nesting of braces and parentheses; more is no grammar, and would exhaust the stack.
+/// Deepest nesting of braces, brackets and parentheses; more is no grammar, and would exhaust the stack.
 const NESTING: usize = 64;
 
 /// A token of CGA text. Comments are skipped, except ours, which begin with `//@`.
@@ -34,6 +34,12 @@ pub(super) enum Token<'a> {
     OpenParen,
     #[token(")")]
     CloseParen,
+    #[token("[")]
+    OpenBracket,
+    #[token("]")]
+    CloseBracket,
+    #[token("<")]
+    Less,
     #[token(":")]
     Colon,
     #[token("|")]
@@ -69,6 +75,9 @@ impl fmt::Display for Token<'_> {
             Token::CloseBrace => "}",
             Token::OpenParen => "(",
             Token::CloseParen => ")",
+            Token::OpenBracket => "[",
+            Token::CloseBracket => "]",
+            Token::Less => "<",
             Token::Colon => ":",
             Token::Bar => "|",
             Token::Star => "*",
@@ -94,8 +103,10 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token<'_>, SimpleSpan)>, Fault> 
         let span: SimpleSpan = span.into();
         let token = token.map_err(|()| Fault::new(span, "this character has no meaning here"))?;
         match token {
-            Token::OpenBrace | Token::OpenParen => depth += 1,
-            Token::CloseBrace | Token::CloseParen => depth = depth.saturating_sub(1),
+            Token::OpenBrace | Token::OpenParen | Token::OpenBracket => depth += 1,
+            Token::CloseBrace | Token::CloseParen | Token::CloseBracket => {
+                depth = depth.saturating_sub(1)
+            }
             _ => {}
         }
         if depth > NESTING {

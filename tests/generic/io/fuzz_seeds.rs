@@ -37,6 +37,7 @@ fn read(reader: &str, bytes: &[u8]) -> bool {
         "coco" => coco::parse(bytes, path, None).is_ok(),
         "completion_model" => text.is_some_and(|t| CompletionModel::from_json(t).is_ok()),
         "footprint" => footprint::parse(bytes, path).is_ok(),
+        "solids_cga" => text.is_some_and(|t| grammar_cga::solids::SolidRules::parse(t).is_ok()),
         "surface_obj" => {
             surface_obj::parse(bytes, path).is_ok_and(|s| s.check().is_ok_and(|r| r.shells == 1))
         }
@@ -88,5 +89,5 @@ fn seeds_are_errors_or_values_and_the_named_ones_are_values() {
         assert!(values > 0, "no seed of {name} is taken");
         targets += 1;
     }
-    assert_eq!(targets, 30);
+    assert_eq!(targets, 31);
 }
