@@ -9,7 +9,12 @@ use edifice_shape::triangles::{TriangleMesh, polygon_triangles};
 use edifice_shape::{PartKind, WallRect};
 use serde::Deserialize;
 
-use super::openings::Hidden;
+/// A building without its openings, and these.
+pub(super) struct Hidden {
+    pub name: String,
+    pub mesh: TriangleMesh,
+    pub truth: Vec<(PartKind, WallRect)>,
+}
 
 #[derive(Deserialize)]
 struct Survey {

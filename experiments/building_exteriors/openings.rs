@@ -19,7 +19,7 @@ use edifice_shape::{Building, DetailedBuilding, PartKind, WallRect};
 use serde_json::{Map, Value};
 
 use super::data;
-use super::hidden_openings::ingolstadt;
+use super::hidden_openings::{Hidden, ingolstadt};
 use crate::Context;
 
 /// The model that ships, learnt from real houses.
@@ -31,13 +31,6 @@ const DIRECTION: f64 = 0.97;
 const BESIDE: f64 = 5.0;
 /// Distance of two made houses (m).
 const APART: f64 = 60.0;
-
-/// A building without its openings, and these.
-pub(super) struct Hidden {
-    pub name: String,
-    pub mesh: TriangleMesh,
-    pub truth: Vec<(PartKind, WallRect)>,
-}
 
 /// Counts of one method on one set.
 #[derive(Default)]

@@ -31,18 +31,16 @@ mod products;
 mod properties;
 mod shapes;
 mod step;
+mod storeys;
 
 use edifice_shape::DetailedBuilding;
 use edifice_shape::solid::Finish;
-use serde_json::Value;
 
 use products::Products;
 use properties::Sets;
 use shapes::Frame;
-use step::{Id, Step, exact, global_id, list, quoted};
-
-/// Most storeys that are written; a building that says it had more gets so many.
-const MOST_STOREYS: u64 = 200;
+use step::{Id, Step, global_id, list, quoted};
+use storeys::{aggregate, storeys};
 
 /// The text of a file. Its bytes depend on the building and the colours (red, green, blue) alone.
 ///
@@ -103,57 +101,6 @@ pub fn to_text(building: &DetailedBuilding, colour: impl Fn(Finish) -> [u8; 3]) 
         env!("CARGO_PKG_VERSION"),
         products.into_text(),
     )
-}
-
-/// A storey, and the products on it.
-struct Storey {
-    id: Id,
-    /// Height of its floor above that of the first (m).
-    elevation: f64,
-    frame: Frame,
-    elements: Vec<Id>,
-    /// Planes of roofs that begin in it.
-    roofs: Vec<Id>,
-}
-
-/// The storeys of a building, at least one.
-fn storeys(step: &mut Step, building: &DetailedBuilding, frame: &Frame) -> Vec<Storey> {
-    let attribute = |name: &str| building.attributes.get(name);
-    let height = attribute("floorHeight").and_then(Value::as_f64);
-    let count = attribute("storeysAboveGround").and_then(Value::as_u64);
-    let (height, count) = match (height, count) {
-        (Some(height), Some(count)) if height > 0.0 => (height, count.clamp(1, MOST_STOREYS)),
-        _ => (0.0, 1),
-    };
-    let storey = |k: u64| {
-        let elevation = k as f64 * height;
-        let frame = Frame::new(step, Some(frame), [0.0, 0.0, elevation], [1.0, 0.0]);
-        let number = (k + 1).to_string();
-        let id = global_id(&[&building.name, "storey", &number]);
-        let id = step.add(format_args!(
-            "IFCBUILDINGSTOREY({id},$,'Storey {number}',$,$,{},$,$,.ELEMENT.,{})",
-            frame.id,
-            exact(elevation)
-        ));
-        Storey {
-            id,
-            elevation,
-            frame,
-            elements: Vec::new(),
-            roofs: Vec::new(),
-        }
-    };
-    (0..count).map(storey).collect()
-}
-
-/// Relates parts to their whole; no parts, no relation.
-fn aggregate(step: &mut Step, id: &str, whole: Id, parts: &[Id]) {
-    if !parts.is_empty() {
-        step.add(format_args!(
-            "IFCRELAGGREGATES({id},$,$,$,{whole},{})",
-            list(parts)
-        ));
-    }
 }
 
 fn outermost(step: &mut Step) -> Id {

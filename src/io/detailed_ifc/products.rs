@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::properties::Sets;
 use super::shapes::{self, Frame};
 use super::step::{Id, Step, global_id, list, quoted, real};
-use super::{Storey, aggregate};
+use super::storeys::{Storey, aggregate};
 
 /// A part that begins at most so far below a storey is on it (m).
 const BELOW: f64 = 0.01;

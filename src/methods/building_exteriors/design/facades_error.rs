@@ -3,7 +3,7 @@
 use edifice_model::ModelError;
 use edifice_shape::Side;
 
-use super::placing::LeftOut;
+use super::left_out::LeftOut;
 use crate::attributes::AttributeError;
 use crate::house::GenerateError;
 use crate::mass::footprint::PlanError;

@@ -13,9 +13,10 @@ use edifice_base::rng::stream;
 use edifice_shape::{Building, ElementStyle, FacadePiece, Rect, Side};
 
 use super::facades_error::FacadesError;
+use super::left_out::LeftOut;
 use super::marked::{Mark, MarkedFacade, marks};
 use super::observed::wanted_rows;
-use super::placing::{LeftOut, Places};
+use super::placing::Places;
 use super::storeys::Storeys;
 use crate::attributes::{AttributeRow, attributes, facade_attributes};
 use crate::data::table;
