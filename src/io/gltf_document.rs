@@ -11,7 +11,7 @@ use json::validation::USize64;
 use json::{Index, Root};
 
 use super::glb_container::{TooLong, glb_container};
-use super::gltf::GltfError;
+use super::gltf_error::GltfError;
 
 /// The kind of a stream: its target, and for vectors the bytes from one to the next, since several accessors share the view.
 pub(crate) type Kind = (Target, Option<usize>);

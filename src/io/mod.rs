@@ -22,6 +22,7 @@ pub mod footprint;
 mod glb_container;
 pub mod gltf;
 mod gltf_document;
+mod gltf_error;
 pub mod grammar_cga;
 mod grammar_file;
 pub mod grammar_json;

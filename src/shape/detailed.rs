@@ -5,7 +5,8 @@
 use serde_json::{Map, Value};
 
 use crate::solid::Finish;
-use crate::vec3::{cross, sub};
+use crate::triangles::normal;
+use crate::vec3::norm;
 
 /// The class of a part; the names are those of CityJSON 2.0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -79,6 +80,20 @@ pub struct Part {
     pub attributes: Map<String, Value>,
 }
 
+impl Part {
+    /// A part that lies in no wall and of which nothing else is known.
+    pub fn new(kind: PartKind, name: String, triangles: Vec<([u32; 3], Finish)>) -> Self {
+        Self {
+            kind,
+            name,
+            wall: None,
+            rect: None,
+            triangles,
+            attributes: Map::new(),
+        }
+    }
+}
+
 /// A building in parts. Each triangle of its surface belongs to one part.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DetailedBuilding {
@@ -106,11 +121,7 @@ impl DetailedBuilding {
 
     /// Area of a part in square metres.
     pub fn area(&self, part: &Part) -> f64 {
-        let twice = |t: [u32; 3]| {
-            let [a, b, c] = self.corners(t);
-            let n = cross(sub(b, a), sub(c, a));
-            (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt()
-        };
+        let twice = |t: [u32; 3]| norm(normal(&self.corners(t)));
         part.triangles.iter().map(|(t, _)| twice(*t)).sum::<f64>() / 2.0
     }
 }

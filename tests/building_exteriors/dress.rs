@@ -195,6 +195,9 @@ fn houses_are_sound_solids_and_every_kind_of_fault_is_found() {
     let crossed = [moved(0, far), moved(0, -far), moved(1, far), moved(1, -far)];
     assert!(crossed.iter().any(|f| f.contains("306")), "{crossed:?}");
     assert!(faults(&|s| s.triangles.clear()).contains("no surfaces"));
+    for far in [i64::MIN, i64::MAX, 1 << 41] {
+        assert!(faults(&|s| s.positions[0][2] = far).contains("too large"));
+    }
     let twice = |s: &mut Shell| {
         let count = s.positions.len() as u32;
         let high: Vec<[i64; 3]> = s

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use edifice::io::{building_csv, building_json, city, json, read_bytes};
 use edifice::methods::building_exteriors::attributes::mass_attributes;
+use edifice::methods::building_exteriors::dress::WINDOWS;
 use edifice::methods::building_exteriors::house::Database;
 use edifice::methods::building_exteriors::mass::{
     MASS, MassTarget, SearchLimits, iou, max_z, search,
@@ -192,3 +193,44 @@ fn plans_of_delft_are_built_again_from_their_attributes() {
 
 /// Lower quartiles reached at least: in the same frame, and up to mirroring.
 const LEAST: [[f64; 2]; 2] = [[0.74, 0.78], [0.73, 0.78]];
+
+/// The sizes that dressing draws from are quantiles of the audited windows, by this count and no other.
+#[test]
+fn window_sizes_of_dressing_are_those_of_audited_houses() {
+    let name = "houses/h2k/windows.csv.gz";
+    let Some(folder) = crate::common::real_data(name) else {
+        return;
+    };
+    let table = building_csv::read(&folder.join(name)).unwrap();
+    let column = |name: &str| table.header.iter().position(|h| h == name).unwrap();
+    let of = ["width_mm", "height_mm", "n", "parent", "level"].map(column);
+    // Area, width and height in metres, and how many there are of it.
+    let mut windows: Vec<[f64; 4]> = Vec::new();
+    for row in &table.rows {
+        let [width, height, count] = [0, 1, 2].map(|k| row[of[k]].parse::<f64>());
+        let (Ok(w), Ok(h), Ok(n)) = (width, height, count) else {
+            continue;
+        };
+        let (w, h, level) = (w / 1000.0, h / 1000.0, &row[of[4]]);
+        let is_below = level.contains("Basement") || level.contains("ound");
+        let usual = (0.3..=3.2).contains(&w) && (0.3..=2.3).contains(&h);
+        if row[of[3]] == "Wall" && !is_below && usual {
+            windows.push([w * h, w, h, n]);
+        }
+    }
+    windows.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    let all: f64 = windows.iter().map(|w| w[3]).sum();
+    assert_eq!(all, 79_848.0);
+    // The middles of 48 parts of equal number, the smallest eight left out.
+    let (mut passed, mut k) = (0.0, 0);
+    let mut quantiles = Vec::new();
+    for part in 0..48 {
+        let middle = (f64::from(part) + 0.5) / 48.0 * all;
+        while passed + windows[k][3] < middle {
+            passed += windows[k][3];
+            k += 1;
+        }
+        quantiles.push([1, 2].map(|i| (windows[k][i] * 100.0).round() / 100.0));
+    }
+    assert_eq!(quantiles[8..], WINDOWS);
+}

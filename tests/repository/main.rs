@@ -6,6 +6,7 @@ mod formats;
 #[cfg(unix)]
 mod help_examples;
 mod installed;
+mod lines;
 mod programs;
 mod prose;
 mod quoted;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::formats::{keys, line, listed, table, word};
+use super::lines::{keys, line, listed, table, word};
 
 /// The commands that have no commands below them, as `--help` tells: their words.
 fn commands() -> Vec<Vec<String>> {

@@ -15,6 +15,7 @@ use rustc_hash::FxHashMap;
 use serde_json::{Map, Value, json};
 
 use super::city::cityjson::standard_name;
+use edifice_shape::solid::{Finish, Surface};
 use edifice_shape::{DetailedBuilding, Part, PartKind};
 
 pub use check::faults;
@@ -97,7 +98,12 @@ fn geometry(building: &DetailedBuilding, vertices: &mut Vertices) -> Value {
     let surfaces: Vec<Value> = (building.parts.iter().enumerate())
         .map(|(k, part)| surface(building, k, part))
         .collect();
-    match is_solid(&boundaries) {
+    let corners = boundaries
+        .iter()
+        .map(|[ring]| ring.map(|v| vertices.all[v as usize]));
+    let own = surface_of(corners);
+    // Closed, and in one piece.
+    match own.check().is_ok_and(|report| report.shells == 1) {
         true => json!({ "type": "Solid", "lod": "3", "boundaries": [boundaries],
             "semantics": { "surfaces": surfaces, "values": [values] } }),
         false => json!({ "type": "MultiSurface", "lod": "3", "boundaries": boundaries,
@@ -132,15 +138,16 @@ fn surface(building: &DetailedBuilding, k: usize, part: &Part) -> Value {
     Value::Object(surface)
 }
 
-/// True if each edge is passed once in either direction and all hangs together.
-fn is_solid(boundaries: &[[[u32; 3]; 1]]) -> bool {
-    let triangles: Vec<[u32; 3]> = boundaries.iter().map(|[t]| *t).collect();
-    let mut edges: FxHashMap<[u32; 2], i32> = FxHashMap::default();
-    for t in &triangles {
-        for i in 0..3 {
-            *edges.entry([t[i], t[(i + 1) % 3]]).or_default() += 1;
-        }
+/// The surface of triangles whose corners are whole numbers.
+fn surface_of(triangles: impl Iterator<Item = [[i64; 3]; 3]>) -> Surface {
+    let mut surface = Surface::default();
+    for corners in triangles {
+        let first = surface.positions.len() as u32;
+        surface
+            .positions
+            .extend(corners.map(|p| p.map(|v| v as f64)));
+        let own = [first, first + 1, first + 2];
+        surface.triangles.push((own, Finish::Wall));
     }
-    let once = |(e, n): (&[u32; 2], &i32)| *n == 1 && edges.get(&[e[1], e[0]]) == Some(&1);
-    edges.iter().all(once) && check::components(&triangles) == 1
+    surface
 }

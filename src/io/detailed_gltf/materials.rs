@@ -10,8 +10,8 @@ use json::material::{NormalTexture, PbrBaseColorFactor, PbrMetallicRoughness, St
 use json::validation::Checked::Valid;
 use serde_json::{Map, Value, json};
 
-use crate::gltf::GltfError;
 use crate::gltf_document::{Document, linear};
+use crate::gltf_error::GltfError;
 use crate::scene_png::texture_png;
 use edifice_scene::palette::{Look, Palette};
 use edifice_scene::textures::{Pixels, Texture, Tile, tile};

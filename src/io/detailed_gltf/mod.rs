@@ -22,8 +22,8 @@ use json::validation::Checked::Valid;
 use json::{Extras, Index};
 use serde_json::{Map, Value, json};
 
-use super::gltf::GltfError;
 use super::gltf_document::{COORDINATES, Document, INDICES, TANGENTS, VERTICES, primitive};
+use super::gltf_error::GltfError;
 use super::write_atomic;
 use edifice_base::{Error, Result};
 use edifice_scene::palette::Palette;

@@ -44,7 +44,11 @@ pub const LARGEST: i64 = 1 << 40;
 /// # Errors
 /// The first coordinate that is farther from zero than [`LARGEST`].
 pub fn crossings(positions: &[Point], triangles: &[[u32; 3]]) -> Result<Vec<Crossing>, i64> {
-    if let Some(far) = positions.iter().flatten().find(|v| v.abs() > LARGEST) {
+    if let Some(far) = positions
+        .iter()
+        .flatten()
+        .find(|v| v.unsigned_abs() > LARGEST.unsigned_abs())
+    {
         return Err(*far);
     }
     let corners = |k: usize| triangles[k].map(|v| positions[v as usize]);
@@ -81,7 +85,12 @@ pub fn crossings(positions: &[Point], triangles: &[[u32; 3]]) -> Result<Vec<Cros
     Ok(found)
 }
 
-/// The contact of two triangles outside of common corners and edges.
+/// True if the corners of a triangle are not on one line; coordinates at most [`LARGEST`] from zero.
+pub fn has_area([a, b, c]: [Point; 3]) -> bool {
+    cross(difference(b, a), difference(c, a)) != [0; 3]
+}
+
+/// The contact of two triangles outside of common corners and edges; coordinates at most [`LARGEST`] from zero.
 pub fn contact(a: [Point; 3], b: [Point; 3]) -> Option<Contact> {
     let over = |t: [Point; 3], other: [Point; 3]| other.map(|p| orientation(t[0], t[1], t[2], p));
     let (of_a, of_b) = (over(b, a), over(a, b));

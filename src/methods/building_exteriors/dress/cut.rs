@@ -4,7 +4,7 @@ use edifice_shape::solid::Finish;
 use edifice_shape::triangles::{bounded_triangles, normal};
 use edifice_shape::vec3::norm;
 use edifice_shape::{DetailedBuilding, Part, PartKind, WallRect};
-use serde_json::{Map, json};
+use serde_json::json;
 
 use super::choice::{Element, ElementKind, Probable};
 use super::walls::{Faces, Span, WallFace};
@@ -44,7 +44,7 @@ pub(super) fn dressed(own: &Candidate, faces: &Faces, chosen: &[Probable]) -> De
         };
         let triangles: Vec<_> = own.map(|k| (faces.mesh.triangles[k], finish)).collect();
         if !triangles.is_empty() {
-            all.parts.push(part(kind, name.into(), triangles));
+            all.parts.push(Part::new(kind, name.into(), triangles));
         }
     }
     for (number, face) in faces.walls.iter().enumerate() {
@@ -66,17 +66,6 @@ fn kind_of(faces: &Faces, triangle: usize) -> PartKind {
     }
 }
 
-fn part(kind: PartKind, name: String, triangles: Vec<([u32; 3], Finish)>) -> Part {
-    Part {
-        kind,
-        name,
-        wall: None,
-        rect: None,
-        triangles,
-        attributes: Map::new(),
-    }
-}
-
 /// A wall with its elements; a wall that cannot be cut stays as it is, without them.
 fn add_wall(
     all: &mut DetailedBuilding,
@@ -92,7 +81,8 @@ fn add_wall(
         own.map(|t| (t, Finish::Wall)).collect()
     };
     if elements.is_empty() {
-        all.parts.push(part(PartKind::WallSurface, name, whole()));
+        all.parts
+            .push(Part::new(PartKind::WallSurface, name, whole()));
         return;
     }
     let kept = all.positions.len();
@@ -108,11 +98,13 @@ fn add_wall(
     let place = |v: u32| face.flat(all.positions[v as usize]);
     let Some(triangles) = bounded_triangles(&edges, place) else {
         all.positions.truncate(kept);
-        all.parts.push(part(PartKind::WallSurface, name, whole()));
+        all.parts
+            .push(Part::new(PartKind::WallSurface, name, whole()));
         return;
     };
     let triangles = triangles.into_iter().map(|t| (t, Finish::Wall)).collect();
-    all.parts.push(part(PartKind::WallSurface, name, triangles));
+    all.parts
+        .push(Part::new(PartKind::WallSurface, name, triangles));
     for (k, ((element, probability), mouth)) in elements.iter().zip(mouths).enumerate() {
         let mut own = opening(all, face, element, mouth);
         own.name = format!(
@@ -188,6 +180,6 @@ fn opening(
             width: u[1] - u[0],
             height: z[1] - z[0],
         }),
-        ..part(kind, name.into(), triangles)
+        ..Part::new(kind, name.into(), triangles)
     }
 }

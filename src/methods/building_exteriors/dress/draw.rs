@@ -38,7 +38,7 @@ const MOST: f64 = 0.6;
 /// Width and height (m) of windows in walls above the ground, by area, at equal steps of their number: 79,848 windows
 /// of audited Canadian houses (the energy audits of Natural Resources Canada), without the smallest sixth.
 #[rustfmt::skip]
-const WINDOWS: [[f64; 2]; 40] = [
+pub const WINDOWS: [[f64; 2]; 40] = [
     [0.84, 0.84], [0.61, 1.22], [1.27, 0.61], [0.89, 0.91], [0.91, 0.91], [0.71, 1.22], [0.56, 1.63], [0.76, 1.22],
     [0.72, 1.35], [0.99, 1.02], [1.02, 1.02], [0.94, 1.14], [0.61, 1.83], [1.17, 0.97], [0.76, 1.52], [0.86, 1.40],
     [0.81, 1.52], [1.14, 1.12], [0.86, 1.52], [1.12, 1.22], [1.52, 0.91], [1.68, 0.86], [1.22, 1.22], [1.13, 1.35],
@@ -98,21 +98,16 @@ pub(super) struct Site<'a> {
     /// Height of the eaves over the ground (m).
     eaves: f64,
     storeys: Option<usize>,
-    has_room: &'a dyn Fn(&WallFace, Span) -> bool,
     /// Outward direction of the largest free wall, in radians.
     main: f64,
 }
 
 impl<'a> Site<'a> {
-    /// `has_room` says whether a rectangle lies inside a wall and is free.
-    pub(super) fn new(
-        faces: &'a Faces,
-        storeys: Option<usize>,
-        has_room: &'a dyn Fn(&WallFace, Span) -> bool,
-    ) -> Self {
+    /// The walls of a building whose storeys may be known.
+    pub(super) fn new(faces: &'a Faces, storeys: Option<usize>) -> Self {
         let room = |(wall, face): (usize, &WallFace)| Room {
             wall,
-            runs: runs(face, faces.ground, has_room),
+            runs: runs(face, faces.ground),
         };
         let rooms: Vec<Room> = faces.walls.iter().enumerate().map(room).collect();
         // The mean height of a wall of at least a fifth of the largest.
@@ -135,7 +130,6 @@ impl<'a> Site<'a> {
             eaves: tall.fold(0.0, f64::max),
             rooms,
             storeys,
-            has_room,
             main: main[1].atan2(main[0]),
         }
     }
@@ -166,7 +160,7 @@ impl<'a> Site<'a> {
 
     /// True if an element with some room around it lies inside a wall and is free.
     pub(super) fn has_room(&self, wall: usize, rect: Span) -> bool {
-        (self.has_room)(&self.faces.walls[wall], grown(rect, MARGIN))
+        self.faces.walls[wall].has_room(grown(rect, MARGIN))
     }
 
     /// Windows and doors for a row of attributes.
@@ -272,7 +266,7 @@ impl<'a> Site<'a> {
             [rect[0][0] - MARGIN, rect[0][1] + MARGIN],
             [foot - THRESHOLD / 2.0, foot + height + MARGIN],
         ];
-        (self.has_room)(face, room_for).then_some(Element {
+        face.has_room(room_for).then_some(Element {
             kind: ElementKind::Door,
             wall: room.wall,
             storey: 0,
@@ -286,7 +280,7 @@ fn grown(rect: Span, by: f64) -> Span {
 }
 
 /// The stretches of a wall in whose every column some storey has room.
-fn runs(face: &WallFace, ground: f64, has_room: &dyn Fn(&WallFace, Span) -> bool) -> Vec<[f64; 2]> {
+fn runs(face: &WallFace, ground: f64) -> Vec<[f64; 2]> {
     let [along, up] = face.bounds;
     let mut found: Vec<[f64; 2]> = Vec::new();
     if (along[1] - along[0]) * (up[1] - up[0]) > 1e5 {
@@ -298,7 +292,7 @@ fn runs(face: &WallFace, ground: f64, has_room: &dyn Fn(&WallFace, Span) -> bool
         let mut foot = ground;
         let mut free = false;
         while foot < up[1] && !free {
-            free = has_room(face, [[u - COLUMN, u + COLUMN], BAND.map(|z| foot + z)]);
+            free = face.has_room([[u - COLUMN, u + COLUMN], BAND.map(|z| foot + z)]);
             foot += MIDDLE;
         }
         match (free, is_open, found.last_mut()) {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use edifice_shape::triangles::{Corners, TriangleMesh, normal};
 
-use super::walls::{Span, WallFace};
+use super::walls::WallFace;
 
 /// Side of the squares in which roofs are looked up (m).
 const SQUARE: f64 = 4.0;
@@ -56,61 +56,33 @@ impl Roofs {
         self.triangles.push((building, t));
     }
 
-    /// True if the roof of a building that `is_meant` lies over the point.
-    fn over(&self, p: [f64; 3], is_meant: impl Fn(u32) -> bool) -> bool {
+    /// The heights of the roofs that lie over a point in plan, with their buildings.
+    fn at(&self, p: [f64; 3]) -> impl Iterator<Item = (u32, f64)> {
         let square = |v: f64| (v / SQUARE).floor() as i64;
         let near = self.squares.get(&(square(p[0]), square(p[1])));
-        let near = near
-            .into_iter()
-            .flatten()
-            .map(|&k| &self.triangles[k as usize]);
-        near.filter(|(b, _)| is_meant(*b))
-            .any(|(_, t)| height(t, p).is_some_and(|z| z > p[2]))
+        let near = near.into_iter().flatten();
+        near.filter_map(move |&k| {
+            let (building, t) = &self.triangles[k as usize];
+            Some((*building, height(t, p)?))
+        })
     }
 
     /// True if a building's own roof lies over the point.
     pub(super) fn covers(&self, building: usize, p: [f64; 3]) -> bool {
-        self.over(p, |b| b as usize == building)
+        self.at(p).any(|(b, z)| b as usize == building && z > p[2])
     }
 
-    /// True if another building lies over a square that the ground before a wall passes.
-    fn is_beside(&self, building: usize, face: &WallFace) -> bool {
-        let [[start, end], _] = face.bounds;
-        let steps = ((end - start) / SQUARE * 4.0).ceil().clamp(1.0, 1e6) as usize;
-        let mut squares = (0..=steps).flat_map(|k| {
-            let u = start + (end - start) * k as f64 / steps as f64;
-            let [x, y, _] = face.place([u, 0.0], -BEFORE);
-            let square = |v: f64, by: i64| (v / SQUARE).floor() as i64 + by;
-            (-1..=1).flat_map(move |i| (-1..=1).map(move |j| (square(x, i), square(y, j))))
-        });
-        let other = |k: &u32| self.triangles[*k as usize].0 as usize != building;
-        squares.any(|s| {
-            let own = self.squares.get(&s);
-            own.is_some_and(|own| own.iter().any(other))
-        })
-    }
-
-    /// Notes on each wall whether another building is near it.
+    /// Notes on each wall how high other buildings stand before it.
     pub(super) fn note(&self, building: usize, walls: &mut [WallFace]) {
         for face in walls {
-            face.is_beside = self.is_beside(building, face);
+            let columns = face.columns();
+            let highest = |u: f64| {
+                let p = face.place([u, 0.0], -BEFORE);
+                let others = self.at(p).filter(|(b, _)| *b as usize != building);
+                others.map(|(_, z)| z).fold(f64::NEG_INFINITY, f64::max)
+            };
+            face.before = columns.map(highest).collect();
         }
-    }
-
-    /// True if no other building stands before a rectangle on a wall.
-    pub(super) fn is_free(
-        &self,
-        building: usize,
-        face: &WallFace,
-        [[u0, u1], [z0, _]]: Span,
-    ) -> bool {
-        if !face.is_beside {
-            return true;
-        }
-        let ends = [u0, (u0 + u1) / 2.0, u1].map(|u| face.place([u, z0], -BEFORE));
-        !ends
-            .into_iter()
-            .any(|p| self.over(p, |b| b as usize != building))
     }
 }
 

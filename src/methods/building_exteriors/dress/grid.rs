@@ -41,9 +41,7 @@ pub fn plain_grid(city: &[Candidate], grid: &Grid) -> Vec<DetailedBuilding> {
     let one = |(number, own): (usize, &Candidate)| {
         let mut faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
         roofs.note(number, &mut faces.walls);
-        let has_room =
-            |face: &walls::WallFace, rect| face.has_room(rect) && roofs.is_free(number, face, rect);
-        let site = Site::new(&faces, Known::new(own.attributes).storeys, &has_room);
+        let site = Site::new(&faces, Known::new(own.attributes).storeys);
         let (storeys, storey) = site.storeys(grid.storey);
         let mut found = Vec::new();
         let [width, height] = grid.window;

@@ -45,6 +45,7 @@ use crate::model_file::ModelFile;
 use crate::survey::{Candidate, Known, Limits, Refused, Surveyed, survey_all};
 use exposure::Roofs;
 
+pub use draw::WINDOWS;
 pub use grid::{Grid, plain_grid};
 
 /// The number of draws, and the seed.
@@ -98,9 +99,7 @@ pub fn dress(
         let mut faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
         roofs.note(number, &mut faces.walls);
         let storeys = Known::new(own.attributes).storeys;
-        let room =
-            |face: &walls::WallFace, rect| face.has_room(rect) && roofs.is_free(number, face, rect);
-        let building = draw::Site::new(&faces, storeys, &room);
+        let building = draw::Site::new(&faces, storeys);
         let drawn = (rows.iter().map(|row| building.draw(row, &mut rng))).collect::<Vec<_>>();
         let chosen = choice::choose(drawn);
         Ok(cut::dressed(own, &faces, &chosen))

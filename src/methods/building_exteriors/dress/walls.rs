@@ -13,6 +13,10 @@ const FLAT: f64 = 0.03;
 /// Distance from a wall at which is looked for the building's own roof (m).
 const BEHIND: f64 = 0.08;
 
+/// Distance of the columns at which is looked for what stands before a wall (m), and most of them.
+const COLUMN: f64 = 0.25;
+const MOST_COLUMNS: f64 = 1e5;
+
 /// A rectangle on a wall: along it, seen from outside to the right, then upwards, in metres.
 pub(super) type Span = [[f64; 2]; 2];
 
@@ -65,8 +69,8 @@ pub(super) struct WallFace {
     pub(super) bounds: Span,
     /// Square metres.
     pub(super) area: f64,
-    /// False if no other building is anywhere near.
-    pub(super) is_beside: bool,
+    /// Height of what stands before the wall at each of its columns (m); empty where nothing was looked for.
+    pub(super) before: Vec<f64>,
 }
 
 /// A building's surface and its walls.
@@ -208,7 +212,7 @@ impl WallFace {
             outward,
             distance: 0.0,
             area: level / 2.0,
-            is_beside: true,
+            before: Vec::new(),
             triangles,
             outline,
             edges: Vec::new(),
@@ -251,8 +255,27 @@ impl WallFace {
         ]
     }
 
-    /// True if the rectangle lies inside the face.
+    /// Places along the wall at which is looked for what stands before it (m).
+    pub(super) fn columns(&self) -> impl Iterator<Item = f64> + use<> {
+        let [start, end] = self.bounds[0];
+        let count = ((end - start) / COLUMN).ceil().clamp(0.0, MOST_COLUMNS) as usize;
+        (0..=count).map(move |k| start + k as f64 * COLUMN)
+    }
+
+    /// True if nothing stands before a rectangle on the wall.
+    fn is_free(&self, [[u0, u1], [z0, _]]: Span) -> bool {
+        let column = |u: f64| ((u - self.bounds[0][0]) / COLUMN).max(0.0);
+        let first = column(u0).floor() as usize;
+        let last = column(u1).ceil() as usize;
+        let mut here = self.before.iter().take(last + 1).skip(first);
+        here.all(|z| *z <= z0)
+    }
+
+    /// True if the rectangle lies inside the face, and nothing stands before it.
     pub(super) fn has_room(&self, rect: Span) -> bool {
+        if !self.is_free(rect) {
+            return false;
+        }
         let [u, z] = rect.map(|[low, high]| (low + high) / 2.0);
         let mut odd = false;
         for &[a, b] in &self.edges {

@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use edifice_shape::solid::{Finish, Wall};
-use edifice_shape::vec3::{cross, dot, norm, sub};
+use edifice_shape::triangles::{Corners, normal};
+use edifice_shape::vec3::{dot, norm};
 use edifice_shape::{Building, DetailedBuilding, ElementStyle, Part, PartKind, Side, WallRect};
 use serde_json::{Map, Value, json};
 
@@ -32,7 +33,7 @@ pub fn parts(building: &Building, model: &Model) -> DetailedBuilding {
     let mut groups: BTreeMap<Key, Vec<([u32; 3], Finish)>> = BTreeMap::new();
     for (t, finish) in &surface.triangles {
         let corners = t.map(|v| surface.positions[v as usize]);
-        let normal = normal(corners);
+        let normal = unit_normal(&corners);
         let key = match finish {
             Finish::Frame | Finish::Pane | Finish::Door | Finish::GarageDoor => {
                 let middle = [0, 1, 2].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
@@ -78,12 +79,12 @@ pub fn parts(building: &Building, model: &Model) -> DetailedBuilding {
                         true => (PartKind::RoofSurface, "roof".into()),
                         false => (PartKind::WallSurface, format!("wall_{}", side(*normal))),
                     };
-                    all.parts.push(part(kind, numbered(stem), own));
+                    all.parts.push(Part::new(kind, numbered(stem), own));
                 }
             }
             Key::Other(kind, name) => {
                 let name = (*name).to_owned();
-                all.parts.push(part(*kind, name, triangles.clone()));
+                all.parts.push(Part::new(*kind, name, triangles.clone()));
             }
             Key::Opening(_) => {}
         }
@@ -92,7 +93,7 @@ pub fn parts(building: &Building, model: &Model) -> DetailedBuilding {
         let Some(triangles) = groups.get(&Key::Opening(k)) else {
             continue;
         };
-        let mut own = part(
+        let mut own = Part::new(
             opening.kind,
             numbered(opening.stem.clone()),
             triangles.clone(),
@@ -225,7 +226,7 @@ fn garage(model: &Model) -> Option<InPlace> {
     let mut direction = [0.0; 3];
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for corners in own() {
-        let n = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+        let n = normal(&corners);
         for i in 0..3 {
             direction[i] += n[i];
             low[i] = corners.iter().map(|p| p[i]).fold(low[i], f64::min);
@@ -260,19 +261,9 @@ fn nearest(openings: &[InPlace], p: [f64; 3]) -> Option<usize> {
     (0..openings.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
-fn part(kind: PartKind, name: String, triangles: Vec<([u32; 3], Finish)>) -> Part {
-    Part {
-        kind,
-        name,
-        wall: None,
-        rect: None,
-        triangles,
-        attributes: Map::new(),
-    }
-}
-
-fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let n = cross(sub(b, a), sub(c, a));
+/// The unit normal of a triangle; zero without area.
+fn unit_normal(corners: &Corners) -> [f64; 3] {
+    let n = normal(corners);
     let length = norm(n).max(f64::MIN_POSITIVE);
     n.map(|v| v / length)
 }
@@ -331,7 +322,7 @@ fn wall_of(all: &DetailedBuilding, opening: &InPlace) -> Option<usize> {
     let looks = |part: &Part| {
         part.triangles.first().is_some_and(|(t, _)| {
             let corners = all.corners(*t);
-            let n = normal(corners)[axis];
+            let n = unit_normal(&corners)[axis];
             n.abs() > 0.9 && (n > 0.0) == positive && (corners[0][axis] - at).abs() < 0.2
         })
     };
