@@ -3,11 +3,11 @@
 //! The surface of a building is kept, corner by corner; openings are cut into its walls. They are drawn from a model of
 //! houses (Fan and Wonka 2016, Sec. 4): its window to wall ratios, symmetry and alignment of the four sides.
 //!
-//! 1. **Walls.** Upright triangles that hang together in one plane ([`walls`]).
+//! 1. **Walls.** Upright triangles that hang together in one plane (`walls`).
 //! 2. **Room.** A place on a wall has room when it lies inside the wall and no other building stands before it
-//!    ([`exposure`]).
+//!    (`exposure`).
 //! 3. **Draws.** Each draw takes one set of attributes, one window, one door, one height of the storeys and one front
-//!    for a building, and fills the storeys of every wall with equal bays ([`draw`]):
+//!    for a building, and fills the storeys of every wall with equal bays (`draw`):
 //!
 //!    ```text
 //!    bays = wwr * length * storey / (width * height),  rounded at random
@@ -15,8 +15,8 @@
 //!
 //! 4. **Choice.** The draw that agrees best with all others, by the mean F1 of elements that match at an intersection
 //!    over union of at least .5 (minimum Bayes risk); the probability of an element is the share of draws that have
-//!    one there ([`choice`]).
-//! 5. **Openings.** The elements of that draw are set into the walls ([`cut`]).
+//!    one there (`choice`).
+//! 5. **Openings.** The elements of that draw are set into the walls (`cut`).
 //!
 //! # Deviations and readings
 //! - The paper completes a house from parts of it that a person gives; a city model gives the whole mass of a building
