@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use edifice::io::detailed_cityjson::{self, Place, Shell};
+use edifice::io::detailed_cityjson::{self, Document, Place, Shell};
 use edifice::io::{building_json, city};
-use edifice::methods::building_exteriors::dress::{Settings, dress, openings};
+use edifice::methods::building_exteriors::dress::{Dresser, Settings, dress, openings};
 use edifice::methods::building_exteriors::house::parts::parts;
 use edifice::methods::building_exteriors::house::{Joining, model};
 use edifice::methods::building_exteriors::model_file::ModelFile;
@@ -44,6 +44,12 @@ fn block(at: [f64; 3], size: [f64; 3]) -> TriangleMesh {
 }
 
 fn dressed(city: &[TriangleMesh], seed: u64) -> Vec<DetailedBuilding> {
+    let settings = Settings { draws: 30, seed };
+    with_candidates(city, |city| dress(city, &real_model(), &settings).unwrap())
+}
+
+/// The answer of a function of the buildings, without attributes.
+fn with_candidates<T>(city: &[TriangleMesh], ask: impl Fn(&[Candidate]) -> T) -> T {
     let names: Vec<String> = (0..city.len()).map(|k| format!("b{k}")).collect();
     let none = Map::<String, Value>::new();
     let city: Vec<Candidate> = city
@@ -55,8 +61,7 @@ fn dressed(city: &[TriangleMesh], seed: u64) -> Vec<DetailedBuilding> {
             attributes: &none,
         })
         .collect();
-    let settings = Settings { draws: 30, seed };
-    dress(&city, &real_model(), &settings).unwrap()
+    ask(&city)
 }
 
 fn shells(buildings: &[DetailedBuilding]) -> Vec<Shell> {
@@ -149,6 +154,34 @@ fn any_number_of_threads_gives_the_same_bytes() {
         pool.install(|| detailed_cityjson::to_string(&dressed(&meshes, 7), &Place::default()))
     };
     assert_eq!(text(1), text(3));
+}
+
+#[test]
+fn a_city_in_pieces_is_the_whole_one() {
+    let village = city::read(&shipped("village.city.json")).unwrap();
+    let meshes: Vec<TriangleMesh> = village.buildings.into_iter().map(|b| b.mesh).collect();
+    let (draws, seed) = (30, 7);
+    let whole = dressed(&meshes, seed);
+    let mut document = Document::default();
+    with_candidates(&meshes, |city| {
+        let model = real_model();
+        let dresser = Dresser::new(city, &model, &Settings { draws, seed }).unwrap();
+        let pieces = (0..city.len())
+            .step_by(5)
+            .map(|k| dresser.dressed(k..k + 5));
+        pieces.flat_map(Result::unwrap).collect::<Vec<_>>()
+    })
+    .iter()
+    .zip(&whole)
+    .for_each(|(piece, own)| {
+        assert_eq!(piece, own);
+        document.add(piece);
+    });
+    let place = Place::default();
+    assert_eq!(
+        document.finish(&place),
+        detailed_cityjson::to_string(&whole, &place)
+    );
 }
 
 #[test]

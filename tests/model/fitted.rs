@@ -160,7 +160,7 @@ fn the_command_is_the_librarys_em() {
         (4, [false, true, true], 0.2),
         (5, [true, false, true], 0.1),
     ] {
-        let rows = drawn(400, shown, holes, seed);
+        let rows = drawn(160, shown, holes, seed);
         let (csv, table) = written(&rows, shown);
         let own = open
             .fit(&table, &settings, &mut stream(1, "model/fit", 0))

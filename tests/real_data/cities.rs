@@ -17,6 +17,13 @@ fn midtown() -> Option<City> {
     Some(read(&folder.join(MIDTOWN)).unwrap())
 }
 
+/// A part of midtown.
+fn part_of_midtown() -> Option<City> {
+    let mut city = midtown()?;
+    city.buildings.truncate(1500);
+    Some(city)
+}
+
 /// The repaired city's volume against that of the grammar of another's level 4.
 fn iou(city: &City, other: &City) -> f64 {
     let grammar = proceduralize(other, &Settings::default(), &unwatched)
@@ -30,8 +37,10 @@ fn iou(city: &City, other: &City) -> f64 {
 }
 
 #[test]
-fn inverted_opened_and_doubled_copies_of_midtown_cost_little() {
-    let Some(city) = midtown() else { return };
+fn inverted_opened_and_doubled_copies_of_a_part_of_midtown_cost_little() {
+    let Some(city) = part_of_midtown() else {
+        return;
+    };
     let clean = iou(&city, &city);
     let dirty = |change: &dyn Fn(&mut TriangleMesh)| {
         let mut copy = city.clone();
@@ -57,8 +66,10 @@ fn inverted_opened_and_doubled_copies_of_midtown_cost_little() {
 }
 
 #[test]
-fn midtown_is_stored_in_few_bytes_whatever_the_order_of_its_buildings() {
-    let Some(city) = midtown() else { return };
+fn a_part_of_midtown_is_stored_in_the_same_bytes_whatever_the_order_of_its_buildings() {
+    let Some(city) = part_of_midtown() else {
+        return;
+    };
     let asked = Settings {
         budget: Budget::Level(5),
         precision: Some(Precision::Decimetre),

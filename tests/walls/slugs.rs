@@ -1,5 +1,6 @@
 //! Deleting a method breaks nothing else: only its own files name it, and a few registries, one line each.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -103,13 +104,17 @@ fn only_its_own_files_name_a_method() {
 
 /// Slow: checks the library, the experiments and the studio once for each method. `.ci/run` runs it. The command line is left
 /// out: a method's commands are part of it.
+///
+/// One copy serves all methods, changed in place as a person would: only crates that name a method are checked again.
 #[test]
 #[ignore = "compiles the library once for each method"]
 fn the_library_compiles_without_each_method() {
+    let temporary = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let copy = temporary.join("without_a_method");
+    // A folder of its own: cargo would take the copy's crates for those of this build, as they stand in the same places.
+    let target = temporary.join("without");
     for slug in slugs() {
-        let copy = copy_without(&slug);
-        // A folder of its own: cargo would take the copy's crates for those of this build, as they stand in the same places.
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("without");
+        update(&copy, &tree_without(&slug));
         let output = Command::new(env!("CARGO"))
             .current_dir(&copy)
             .args([
@@ -127,13 +132,13 @@ fn the_library_compiles_without_each_method() {
                 "edifice-studio",
                 "--target-dir",
             ])
-            .arg(target)
+            .arg(&target)
             .output()
             .expect("cargo runs");
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "without {slug}:\n{errors}");
-        std::fs::remove_dir_all(copy).expect("removed");
     }
+    std::fs::remove_dir_all(copy).expect("removed");
 }
 
 /// True if a target of the manifest is one of the method's.
@@ -146,21 +151,51 @@ fn names_own(slug: &str, target: &str) -> bool {
     has_word(target, slug) || names.any(|name| has_word(target, &name))
 }
 
-/// A copy of the tree without the files of a method and the lines that name it in registries.
-fn copy_without(slug: &str) -> PathBuf {
-    let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("without_{slug}"));
-    if copy.exists() {
-        std::fs::remove_dir_all(&copy).expect("removed");
-    }
+/// The files of the tree, by their places, without those of a method and the lines that name it in registries.
+fn tree_without(slug: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut tree = BTreeMap::new();
     for folder in ["src", "experiments", "datasets", "benches", "examples"] {
-        copy_folder(slug, Path::new(folder), &copy);
+        add_folder(slug, Path::new(folder), &mut tree);
     }
     for file in ["Cargo.lock", "README.md"] {
-        std::fs::copy(root().join(file), copy.join(file)).expect("copied");
+        let bytes = std::fs::read(root().join(file)).expect("readable");
+        tree.insert(PathBuf::from(file), bytes);
     }
     let manifest = std::fs::read_to_string(root().join("Cargo.toml")).expect("readable");
-    std::fs::write(copy.join("Cargo.toml"), manifest_without(slug, &manifest)).expect("written");
-    copy
+    let manifest = manifest_without(slug, &manifest).into_bytes();
+    tree.insert(PathBuf::from("Cargo.toml"), manifest);
+    tree
+}
+
+/// Makes a folder hold the files of the tree and no others; what is there with the same bytes is not written.
+fn update(copy: &Path, tree: &BTreeMap<PathBuf, Vec<u8>>) {
+    for place in files_below(copy, Path::new("")) {
+        if !tree.contains_key(&place) {
+            std::fs::remove_file(copy.join(place)).expect("removed");
+        }
+    }
+    for (place, bytes) in tree {
+        let file = copy.join(place);
+        if std::fs::read(&file).is_ok_and(|known| known == *bytes) {
+            continue;
+        }
+        std::fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+        std::fs::write(file, bytes).expect("written");
+    }
+}
+
+/// The files below a folder, relative to it; none if it is not there.
+fn files_below(copy: &Path, folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(copy.join(folder)).into_iter().flatten() {
+        let entry = entry.expect("an entry");
+        let place = folder.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => found.extend(files_below(copy, &place)),
+            false => found.push(place),
+        }
+    }
+    found
 }
 
 /// A manifest without the targets of the method, which are paragraphs, and the lines that name it.
@@ -177,8 +212,7 @@ fn manifest_without(slug: &str, manifest: &str) -> String {
     kept.join("\n\n")
 }
 
-fn copy_folder(slug: &str, folder: &Path, copy: &Path) {
-    std::fs::create_dir_all(copy.join(folder)).expect("made");
+fn add_folder(slug: &str, folder: &Path, tree: &mut BTreeMap<PathBuf, Vec<u8>>) {
     for entry in std::fs::read_dir(root().join(folder)).expect("listed") {
         let entry = entry.expect("an entry");
         let place = folder.join(entry.file_name());
@@ -187,19 +221,21 @@ fn copy_folder(slug: &str, folder: &Path, copy: &Path) {
             continue;
         }
         if entry.path().is_dir() {
-            copy_folder(slug, &place, copy);
-        } else if name.ends_with("Cargo.toml") {
-            let text = std::fs::read_to_string(entry.path()).expect("readable");
-            std::fs::write(copy.join(&place), manifest_without(slug, &text)).expect("written");
+            add_folder(slug, &place, tree);
+            continue;
+        }
+        let text = || std::fs::read_to_string(entry.path()).expect("readable");
+        let bytes = if name.ends_with("Cargo.toml") {
+            manifest_without(slug, &text()).into_bytes()
         } else if is_registry(&name) {
-            let text = std::fs::read_to_string(entry.path()).expect("readable");
+            let text = text();
             let kept = text
                 .lines()
                 .filter(|line| !names(line, slug) || line.starts_with("//!"));
-            let kept: Vec<&str> = kept.collect();
-            std::fs::write(copy.join(&place), kept.join("\n")).expect("written");
+            kept.collect::<Vec<_>>().join("\n").into_bytes()
         } else {
-            std::fs::copy(entry.path(), copy.join(&place)).expect("copied");
-        }
+            std::fs::read(entry.path()).expect("readable")
+        };
+        tree.insert(place, bytes);
     }
 }

@@ -1,17 +1,22 @@
 //! `edifice building complete --facades`: windows and doors for the buildings of a city model.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use edifice_base::{Error, Result};
-use edifice_building_exteriors::dress::{Settings, dress, openings};
+use edifice_building_exteriors::dress::{Dresser, Settings, openings};
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_building_exteriors::survey::Candidate;
-use edifice_io::detailed_cityjson::{self, Place};
+use edifice_io::detailed_cityjson::{Document, Place};
 use edifice_io::{city, write_atomic};
-use edifice_shape::PartKind;
+use edifice_shape::{DetailedBuilding, PartKind};
 use serde_json::json;
 
 use crate::print;
+
+/// Buildings that are dressed at once, and the time after which the number of finished ones is told.
+const AT_ONCE: usize = 128;
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Dresses a city model and writes it as CityJSON.
 pub(super) fn run(
@@ -41,32 +46,66 @@ pub(super) fn run(
         buildings.len(),
         settings.draws
     ));
-    let dressed = dress(&buildings, model, settings).map_err(Error::method)?;
+    let dresser = Dresser::new(&buildings, model, settings).map_err(Error::method)?;
+    let mut document = Document::default();
+    let mut sum = Sum::default();
+    let mut told = Instant::now();
+    for start in (0..buildings.len()).step_by(AT_ONCE) {
+        if told.elapsed() > PATIENCE {
+            told = Instant::now();
+            let windows = sum.windows;
+            print::message(&format!(
+                "{start} of {} buildings, {windows} windows",
+                buildings.len()
+            ));
+        }
+        let dressed = dresser.dressed(start..start + AT_ONCE);
+        for building in dressed.map_err(Error::method)? {
+            sum.add(&building);
+            document.add(&building);
+        }
+    }
     let place = Place {
         origin: own.origin,
         reference_system: own.reference_system,
     };
-    let text = detailed_cityjson::to_string(&dressed, &place);
-    write_atomic(output, text.as_bytes())?;
-    let count = |kind| {
-        let all = dressed.iter().flat_map(openings);
-        all.filter(|p| p.kind == kind).count()
-    };
-    let (windows, doors) = (count(PartKind::Window), count(PartKind::Door));
-    let all = dressed.iter().flat_map(openings);
-    let expected: f64 = all
-        .filter_map(|p| p.attributes.get("probability")?.as_f64())
-        .sum();
+    write_atomic(output, document.finish(&place).as_bytes())?;
+    let Sum { windows, doors, .. } = sum;
     if as_json {
-        let line = json!({ "buildings": dressed.len(), "windows": windows, "doors": doors,
-            "mean_probability": expected / (windows + doors).max(1) as f64 });
+        let line = json!({ "buildings": buildings.len(), "windows": windows, "doors": doors,
+            "mean_probability": sum.mean() });
         print::line(&line.to_string())?;
     }
     print::message(&format!(
         "{} buildings with {windows} windows and {doors} doors, of mean probability {:.2}, in {}",
-        dressed.len(),
-        expected / (windows + doors).max(1) as f64,
+        buildings.len(),
+        sum.mean(),
         output.display()
     ));
     Ok(())
+}
+
+/// The openings so far.
+#[derive(Default)]
+struct Sum {
+    windows: usize,
+    doors: usize,
+    probability: f64,
+}
+
+impl Sum {
+    fn add(&mut self, building: &DetailedBuilding) {
+        for part in openings(building) {
+            match part.kind {
+                PartKind::Door => self.doors += 1,
+                _ => self.windows += 1,
+            }
+            let probability = part.attributes.get("probability");
+            self.probability += probability.and_then(|p| p.as_f64()).unwrap_or(0.0);
+        }
+    }
+
+    fn mean(&self) -> f64 {
+        self.probability / (self.windows + self.doors).max(1) as f64
+    }
 }

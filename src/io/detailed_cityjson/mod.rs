@@ -11,6 +11,8 @@
 mod check;
 mod read;
 
+use std::fmt::Write;
+
 use rustc_hash::FxHashMap;
 use serde_json::{Map, Value, json};
 
@@ -44,30 +46,77 @@ pub fn to_string(buildings: &[DetailedBuilding], place: &Place) -> String {
         true => MILLIMETRE,
         false => MICROMETRE,
     };
-    let mut vertices = Vertices {
-        scale,
-        known: FxHashMap::default(),
-        all: Vec::new(),
-    };
-    let mut objects = Map::new();
-    for building in buildings {
-        let mut object =
-            json!({ "type": "Building", "geometry": [geometry(building, &mut vertices)] });
+    let mut document = Document::of_unit(scale);
+    buildings.iter().for_each(|b| document.add(b));
+    document.finish(place)
+}
+
+/// A CityJSON 2.0 file that grows building by building: of a city, no more than its text and its corners is in memory.
+#[derive(Debug)]
+pub struct Document {
+    vertices: Vertices,
+    /// The members of `CityObjects` so far.
+    objects: String,
+}
+
+impl Default for Document {
+    /// Without buildings, in micrometres.
+    fn default() -> Self {
+        Self::of_unit(MICROMETRE)
+    }
+}
+
+impl Document {
+    fn of_unit(scale: f64) -> Self {
+        let vertices = Vertices {
+            scale,
+            known: FxHashMap::default(),
+            all: Vec::new(),
+        };
+        Self {
+            vertices,
+            objects: String::new(),
+        }
+    }
+
+    /// Adds a building, whose name differs from those of all before it.
+    pub fn add(&mut self, building: &DetailedBuilding) {
+        let geometry = geometry(building, &mut self.vertices);
+        let mut object = json!({ "type": "Building", "geometry": [geometry] });
         if !building.attributes.is_empty() {
             object["attributes"] = Value::Object(building.attributes.clone());
         }
-        objects.insert(building.name.clone(), object);
+        let comma = if self.objects.is_empty() { "" } else { "," };
+        let name = Value::from(building.name.as_str());
+        self.objects += &format!("{comma}\n{name}:{object}");
     }
-    let mut document = json!({ "type": "CityJSON", "version": "2.0",
-        "transform": { "scale": [scale, scale, scale], "translate": place.origin },
-        "CityObjects": objects, "vertices": vertices.all });
-    if let Some(system) = place.reference_system.as_deref().and_then(standard_name) {
-        document["metadata"] = json!({ "referenceSystem": system });
+
+    /// The text of the file.
+    pub fn finish(self, place: &Place) -> String {
+        let scale = self.vertices.scale;
+        let mut head = json!({ "type": "CityJSON", "version": "2.0",
+            "transform": { "scale": [scale, scale, scale], "translate": place.origin } });
+        if let Some(system) = place.reference_system.as_deref().and_then(standard_name) {
+            head["metadata"] = json!({ "referenceSystem": system });
+        }
+        let mut text = head.to_string();
+        // The object goes on.
+        text.pop();
+        text += ",\n\"CityObjects\":{";
+        text += &self.objects;
+        drop(self.objects);
+        text += "},\n\"vertices\":[";
+        for (k, [x, y, z]) in self.vertices.all.iter().enumerate() {
+            let comma = if k == 0 { "" } else { "," };
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{comma}[{x},{y},{z}]");
+        }
+        text + "]}\n"
     }
-    document.to_string()
 }
 
 /// The corners of all buildings, each once.
+#[derive(Debug)]
 struct Vertices {
     scale: f64,
     known: FxHashMap<[i64; 3], u32>,
@@ -95,8 +144,14 @@ fn geometry(building: &DetailedBuilding, vertices: &mut Vertices) -> Value {
             values.push(part);
         }
     }
-    let surfaces: Vec<Value> = (building.parts.iter().enumerate())
-        .map(|(k, part)| surface(building, k, part))
+    let mut children = vec![Vec::new(); building.parts.len()];
+    for (k, part) in building.parts.iter().enumerate() {
+        if let Some(wall) = part.wall {
+            children[wall].push(k);
+        }
+    }
+    let surfaces: Vec<Value> = (building.parts.iter().zip(&children))
+        .map(|(part, children)| surface(part, children))
         .collect();
     let corners = boundaries
         .iter()
@@ -111,8 +166,8 @@ fn geometry(building: &DetailedBuilding, vertices: &mut Vertices) -> Value {
     }
 }
 
-/// The description of a part.
-fn surface(building: &DetailedBuilding, k: usize, part: &Part) -> Value {
+/// The description of a part in which others lie.
+fn surface(part: &Part, children: &[usize]) -> Value {
     let class = match part.kind {
         PartKind::BuildingInstallation if part.name == "trim" => PartKind::RoofSurface,
         PartKind::BuildingInstallation => PartKind::WallSurface,
@@ -124,11 +179,6 @@ fn surface(building: &DetailedBuilding, k: usize, part: &Part) -> Value {
     if let Some(wall) = part.wall {
         surface.insert("parent".into(), json!(wall));
     }
-    let own = building.parts.iter().enumerate();
-    let children: Vec<usize> = own
-        .filter(|(_, p)| p.wall == Some(k))
-        .map(|(i, _)| i)
-        .collect();
     if !children.is_empty() {
         surface.insert("children".into(), json!(children));
     }

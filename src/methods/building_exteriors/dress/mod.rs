@@ -35,6 +35,8 @@ mod exposure;
 mod grid;
 mod walls;
 
+use std::ops::Range;
+
 use edifice_base::rng::stream;
 use edifice_model::ModelError;
 use edifice_shape::{DetailedBuilding, Part};
@@ -82,30 +84,67 @@ pub fn dress(
     model: &ModelFile,
     settings: &Settings,
 ) -> Result<Vec<DetailedBuilding>, ModelError> {
-    let roofs = Roofs::new(city.iter().map(|b| b.mesh));
-    let pool = draw::rows(
-        model,
-        None,
-        POOL,
-        &mut stream(settings.seed, "building/dress/pool", 0),
-    )?;
-    let houses = survey_all(city, &Limits::default());
-    let one = |(number, (own, house)): (usize, (&Candidate, &Result<Surveyed, Refused>))| {
-        let mut rng = stream(settings.seed, "building/dress", number as u64);
-        let rows = match house.as_ref().ok().and_then(mass_of) {
-            Some(mass) => draw::rows(model, Some(mass), settings.draws, &mut rng)?,
-            None => draw::some_of(&pool, settings.draws, &mut rng),
+    Dresser::new(city, model, settings)?.dressed(0..city.len())
+}
+
+/// A city that is dressed in pieces: of a large one, not all openings are in memory at once.
+pub struct Dresser<'a> {
+    city: &'a [Candidate<'a>],
+    model: &'a ModelFile,
+    settings: Settings,
+    roofs: Roofs,
+    /// Rows of attributes for buildings that are no houses.
+    pool: Vec<AttributeRow>,
+    houses: Vec<Result<Surveyed, Refused>>,
+}
+
+impl<'a> Dresser<'a> {
+    /// Measures the houses of a city and draws from the model what all of its buildings share.
+    ///
+    /// # Errors
+    /// [`ModelError`] when the model cannot be asked.
+    pub fn new(
+        city: &'a [Candidate<'a>],
+        model: &'a ModelFile,
+        settings: &Settings,
+    ) -> Result<Self, ModelError> {
+        let rng = &mut stream(settings.seed, "building/dress/pool", 0);
+        Ok(Self {
+            city,
+            model,
+            settings: *settings,
+            roofs: Roofs::new(city.iter().map(|b| b.mesh)),
+            pool: draw::rows(model, None, POOL, rng)?,
+            houses: survey_all(city, &Limits::default()),
+        })
+    }
+
+    /// Some buildings of the city as [`dress`] has them; those beyond its end are none.
+    ///
+    /// # Errors
+    /// [`ModelError`] when the model cannot be asked.
+    pub fn dressed(&self, buildings: Range<usize>) -> Result<Vec<DetailedBuilding>, ModelError> {
+        let end = buildings.end.min(self.city.len());
+        let numbers = (buildings.start.min(end)..end).into_par_iter();
+        numbers.map(|number| self.one(number)).collect()
+    }
+
+    fn one(&self, number: usize) -> Result<DetailedBuilding, ModelError> {
+        let own = &self.city[number];
+        let draws = self.settings.draws;
+        let mut rng = stream(self.settings.seed, "building/dress", number as u64);
+        let rows = match self.houses[number].as_ref().ok().and_then(mass_of) {
+            Some(mass) => draw::rows(self.model, Some(mass), draws, &mut rng)?,
+            None => draw::some_of(&self.pool, draws, &mut rng),
         };
-        let mut faces = walls::faces(own.mesh, |p| roofs.covers(number, p));
-        roofs.note(number, &mut faces.walls);
+        let mut faces = walls::faces(own.mesh, |p| self.roofs.covers(number, p));
+        self.roofs.note(number, &mut faces.walls);
         let storeys = Known::new(own.attributes).storeys;
         let building = draw::Site::new(&faces, storeys);
         let drawn = (rows.iter().map(|row| building.draw(row, &mut rng))).collect::<Vec<_>>();
         let chosen = choice::choose(drawn);
         Ok(cut::dressed(own, &faces, &chosen))
-    };
-    let numbered = city.par_iter().zip(&houses).enumerate();
-    numbered.map(one).collect()
+    }
 }
 
 /// The attributes of the mass of a measured house.
