@@ -204,9 +204,7 @@ impl Library {
     }
 
     fn told<C: Coder>(&self, facade: &Facade, coder: &mut C) -> Result<f64, LibraryError> {
-        same_unit(facade, &self.unit)?;
-        let mut own = self.rules.clone();
-        let parse = tree::parse(facade, self.step, &mut own)?;
+        let (parse, own) = self.parse(facade)?;
         let mut both = Both {
             counter: Counter::default(),
             coder,
@@ -268,13 +266,24 @@ impl Library {
         )
     }
 
+    /// Root, extents, counts and sizes of a facade, and the rules that they are about: those of the library, and
+    /// after them the facade's own.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn parse(&self, facade: &Facade) -> Result<(Parse, Rules), LibraryError> {
+        same_unit(facade, &self.unit)?;
+        let mut rules = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut rules)?;
+        Ok((parse, rules))
+    }
+
     /// True if the library has a facade with the structure of another: the same root.
     ///
     /// # Errors
     /// As [`Library::encode`].
     pub fn knows(&self, facade: &Facade) -> Result<bool, LibraryError> {
-        let mut own = self.rules.clone();
-        let parse = tree::parse(facade, self.step, &mut own)?;
+        let (parse, _) = self.parse(facade)?;
         Ok(self.tables.structure.roots().contains_key(&parse.root))
     }
 
@@ -283,8 +292,7 @@ impl Library {
     /// # Errors
     /// As [`Library::encode`].
     pub fn is_new(&self, facade: &Facade) -> Result<bool, LibraryError> {
-        let mut own = self.rules.clone();
-        let parse = tree::parse(facade, self.step, &mut own)?;
+        let (parse, _) = self.parse(facade)?;
         let same = |member: &Member| {
             (member.parse.root, &member.parse.counts) == (parse.root, &parse.counts)
         };

@@ -26,6 +26,7 @@
 //! | `draw.rs`, `recombine.rs`, `bands.rs` | new facades: sizes between two, floors of two, columns and floors more or less |
 //! | `fixed.rs` | what one facade costs alone, sizes included |
 //! | `written.rs`, `show.rs`, `names.rs` | a library as a split grammar, and as text |
+//! | `named/`, `regions.rs` | a library, or one facade, as rules with named sizes and counts |
 //!
 //! # Deviations and readings
 //! - Cuts are along horizontal lines where there are any: regions with full lines of both directions are rare in
@@ -45,10 +46,12 @@ mod error;
 mod extents;
 mod fixed;
 mod library;
+mod named;
 mod names;
 mod phrases;
 mod program;
 mod recombine;
+mod regions;
 mod rules;
 mod show;
 mod sizes;
@@ -65,7 +68,7 @@ pub use coder::{Coder, Counter, Decoder, Drawer, Encoder};
 pub use error::LibraryError;
 pub use fixed::parse_cost;
 pub use library::{Code, Library, Member};
+pub use named::{AGREED, Attribute, Choice, Named, NamedItem, NamedPart, NamedRule, Spread};
 pub use phrases::{LONGEST, Part, Sharing, Written, share};
 pub use rules::{Item, Rule, Rules, Symbol};
 pub use tree::{Parse, STEP_LIMIT, Slot, slots};
-pub use written::FACADE;
