@@ -22,7 +22,8 @@
 //! | `bodies.rs`, `phrases.rs` | rules as strings; shared phrases by an integer program |
 //! | `coder.rs` | counting, writing, reading and drawing as one walk |
 //! | `structure.rs`, `extents.rs`, `counts.rs`, `sizes.rs`, `codec.rs` | the model, part by part, and its walk |
-//! | `library.rs` | [`Library`]: learn, score, encode, decode |
+//! | `library.rs`, `step.rs` | [`Library`]: learn, score, encode, decode |
+//! | `separate.rs` | [`Separate`]: facades one by one, without a library |
 //! | `draw.rs`, `recombine.rs`, `bands.rs` | new facades: sizes between two, floors of two, columns and floors more or less |
 //! | `fixed.rs` | what one facade costs alone, sizes included |
 //! | `written.rs`, `show.rs`, `names.rs` | a library as a split grammar, and as text |
@@ -53,8 +54,10 @@ mod program;
 mod recombine;
 mod regions;
 mod rules;
+mod separate;
 mod show;
 mod sizes;
+mod step;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -71,4 +74,6 @@ pub use library::{Code, Library, Member};
 pub use named::{AGREED, Attribute, Choice, Named, NamedItem, NamedPart, NamedRule, Spread};
 pub use phrases::{LONGEST, Part, Sharing, Written, share};
 pub use rules::{Item, Rule, Rules, Symbol};
+pub use separate::Separate;
+pub use sizes::SizeModel;
 pub use tree::{Parse, STEP_LIMIT, Slot, slots};
