@@ -25,7 +25,7 @@ use super::reserved;
 use super::write::{VERSION, percentages};
 use crate::json::quoted;
 use crate::palette::Palette;
-use edifice_grammar::parametric::{Attribute, Named, NamedItem, NamedPart, NamedRule};
+use edifice_grammar::parametric::{Attribute, Named, NamedItem, NamedPart, NamedRule, Spread};
 
 /// Longest line of a rule, in characters.
 const LINE: usize = 120;
@@ -140,9 +140,12 @@ impl Text<'_> {
         );
         match &attribute.spread {
             None => line,
-            Some(spread) => {
-                let (least, greatest) = spread.range;
-                let (facades, deviation) = (spread.facades, spread.deviation);
+            Some(Spread { facades: 1, .. }) => format!("{line} // 1 facade"),
+            Some(Spread {
+                facades,
+                deviation,
+                range: (least, greatest),
+            }) => {
                 format!(
                     "{line} // {facades} facades, {least:.1} to {greatest:.1}, deviation {deviation:.1}"
                 )

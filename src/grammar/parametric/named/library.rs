@@ -30,7 +30,7 @@ impl Library {
     /// chance, as often as facades have it.
     pub fn named(&self) -> Named {
         let chosen = self.chosen_by_facade();
-        // Counts are told exactly; a size that one facade alone has may be equal by accident.
+        // Counts are told exactly; sizes of different symbols may be equal in one facade by accident.
         let least = 2.min(self.members().len());
         let (mut counts, mut sizes) = (Ties::new(1.0, 0), Ties::new(AGREED, least));
         let names = self.rule_names();
@@ -51,14 +51,16 @@ impl Library {
             for (item, parts) in written.items.iter().enumerate() {
                 let at = (rule, item as u32);
                 if let Some(own) = chosen.counts.get(&at)
-                    && counts.add(at, written.axis, commonest(own)).is_some()
+                    && counts
+                        .add(at, (written.axis, None), commonest(own))
+                        .is_some()
                 {
                     count_names.push(taken.free(count(written.axis)));
                 }
                 for (place, &part) in parts.symbols().iter().enumerate() {
                     let at = (rule, item as u32, place as u32);
                     let own = self.means(&chosen.sizes[&at]);
-                    if sizes.add(at, written.axis, own).is_some() {
+                    if sizes.add(at, (written.axis, Some(part)), own).is_some() {
                         let stem = format!("{}_{}", name(part), extent(written.axis));
                         size_names.push(taken.free(&stem));
                     }

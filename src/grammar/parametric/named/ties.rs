@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Spread;
+use crate::parametric::rules::Symbol;
 use edifice_shape::Axis;
 
 /// Sizes share a name when they are equal in this share of the facades that have both.
@@ -11,13 +12,16 @@ pub const AGREED: f64 = 0.95;
 /// The value of a parameter in each facade that has it.
 pub(super) type Values = BTreeMap<usize, f64>;
 
+/// The direction of a parameter, and the symbol that it is the size of; none of a count.
+pub(super) type Of = (Axis, Option<Symbol>);
+
 /// Parameters in groups that share a name.
 pub(super) struct Ties<K> {
-    groups: Vec<(Axis, Values)>,
+    groups: Vec<(Of, Values)>,
     of: BTreeMap<K, usize>,
     /// The share of common facades in which the values of a group are equal.
     share: f64,
-    /// The fewest common facades.
+    /// The fewest common facades, where symbols differ; else one is enough.
     least: usize,
 }
 
@@ -32,16 +36,19 @@ impl<K: Ord> Ties<K> {
     }
 
     /// Puts a parameter into the first group that agrees with it, else into a new one, whose number is returned.
-    pub(super) fn add(&mut self, key: K, axis: Axis, values: Values) -> Option<usize> {
-        let agrees = |(of, known): &(Axis, Values)| {
+    pub(super) fn add(&mut self, key: K, of: Of, values: Values) -> Option<usize> {
+        let agrees = |(other, known): &(Of, Values)| {
             let both: Vec<(&f64, &f64)> = values
                 .iter()
                 .filter_map(|(facade, value)| Some((value, known.get(facade)?)))
                 .collect();
             let equal = both.iter().filter(|(a, b)| (*a - *b).abs() < 1e-9).count();
-            *of == axis
-                && both.len() >= self.least
-                && equal as f64 >= self.share * both.len() as f64
+            let least = if *other == of {
+                self.least.min(1)
+            } else {
+                self.least
+            };
+            other.0 == of.0 && both.len() >= least && equal as f64 >= self.share * both.len() as f64
         };
         let found = self.groups.iter().position(agrees);
         let group = found.unwrap_or(self.groups.len());
@@ -55,7 +62,7 @@ impl<K: Ord> Ties<K> {
                 None
             }
             None => {
-                self.groups.push((axis, values));
+                self.groups.push((of, values));
                 Some(group)
             }
         }
