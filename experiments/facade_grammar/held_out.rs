@@ -8,7 +8,7 @@ use edifice_shape::Facade;
 use crate::peers::{self, Parsed};
 
 /// Bits of each held-out facade.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct HeldOut {
     /// Given the library of the others.
     pub library: Vec<f64>,
@@ -90,5 +90,51 @@ fn checked(facade: &Facade, code: &Code, back: Facade) -> Result<f64> {
             "{}: the code does not give it back",
             facade.name
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_shape::{Rect, Region};
+
+    /// Windows in a wall, all sizes the same.
+    fn grid(columns: usize, rows: usize) -> Facade {
+        let (width, height) = (9.0, 13.0);
+        let mut regions = Vec::new();
+        let mut add = |label: &str, x: f64, y: f64, w: f64, h: f64| {
+            regions.push(Region {
+                label: label.into(),
+                rect: Rect::new(x, y, w, h),
+            });
+        };
+        let across = width * (2 * columns + 1) as f64;
+        for row in 0..=2 * rows {
+            let y = height * row as f64;
+            match row % 2 {
+                0 => add("wall", 0.0, y, across, height),
+                _ => (0..=2 * columns).for_each(|k| {
+                    let label = ["wall", "window"][k % 2];
+                    add(label, width * k as f64, y, width, height);
+                }),
+            }
+        }
+        let name = format!("{columns}x{rows}");
+        Facade::new(name, "px", across, height * (2 * rows + 1) as f64, regions).unwrap()
+    }
+
+    #[test]
+    fn grids_of_new_counts_are_short_for_a_library_and_come_back_from_every_code() {
+        let others = [grid(3, 4), grid(5, 6), grid(4, 3), grid(6, 5)];
+        let told = Library::learn_with_step(&others, 1.0).unwrap();
+        let mut bits = HeldOut::default();
+        bits.add(&told, &others, &[grid(7, 2), grid(2, 7)]).unwrap();
+        assert_eq!(bits.known, 2);
+        for k in 0..2 {
+            let library = bits.library[k];
+            assert!(library < bits.separate[k], "{bits:?}");
+            assert!(library < bits.logic[k], "{bits:?}");
+            assert!(bits.logic[k] < bits.logic_normal[k], "{bits:?}");
+        }
     }
 }

@@ -121,12 +121,12 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ctx.note(
         "*Library*: Wu's cost of the rules of all facades of a set with sizes and counts as parameters, phrases shared (`grammar infer --sizes free`), \
          and the bound of branch and bound over phrases of at most 14 symbols: it holds for the parse that made the strings. *Separate*: the sum over the facades of \
-         the cost of their own parse trees, sizes included and equal regions written once (not the cheapest grammars, which cost less). *Bits*: what a facade costs in a code of whole frequencies and an arithmetic coder; alone, nothing is known, not even labels; held \
-         out, five folds, each code read back and compared. *Library*: the library of the others. *Separate*: a grammar of its own, its rules spelled out, in the same code; \
-         labels, the extents of facades and the trust in predictors within one facade are learnt from the others. *Procedural logic* (Weissenberg et al. 2013): affinities \
-         and rules of the others (parameters for compression), the rules that a facade adds spelled out; each size by a normal distribution of its \
-         place in the rule (Sec. 4.4) mixed with all sizes alike, trust learnt from the others. The paper gives no code. *Its rules in this code*: the same rules, sizes by the library's predictors, the strongest rival: it differs in repeats and counts \
-         alone. *Known structure*: held-out facades whose root the library has. Draws: 100; *new* means root and counts that no facade \
+         the cost of their own parse trees, sizes included and equal regions written once (not the cheapest grammars, which cost less). *Bits*: what a facade costs in an arithmetic code; alone, \
+         nothing is known, not even labels; held out, five folds, each code read back and compared. *Library*: the library of the others. *Separate*: a grammar of \
+         its own, its rules spelled out, in the same code; labels, the extents of facades and the trust in predictors within one facade are learnt from the others. \
+         *Procedural logic* (Weissenberg et al. 2013; the paper gives no code): affinities and rules of the others (parameters for compression), new rules spelled \
+         out; each size by a normal distribution of its place in the rule (Sec. 4.4) mixed with all sizes alike, trust learnt from the others. *Its rules in \
+         this code*: the same rules, sizes by the library's predictors, the strongest rival: it lacks repeats and counts alone. *Known structure*: held-out facades whose root the library has. Draws: 100; *new* means root and counts that no facade \
          has; *aligned*: all windows lie in columns of common left and right sides. *Told from real*: boosted trees on counts, shares, sizes and gaps of all labels learn \
          four fifths of the real facades and draws from their library, and judge the last fifth and fresh draws: the area under their curve, 0.5 where \
          nothing tells them apart.",
