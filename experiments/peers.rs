@@ -3,8 +3,9 @@
 
 use edifice_base::{Error, Result};
 use edifice_grammar::Grammar;
-use edifice_grammar::parametric::{Parse, Rules};
 use edifice_shape::Facade;
+
+use super::parsed::Parsed;
 
 /// Finds a grammar of one facade.
 type Infer = fn(&Facade) -> Result<Grammar>;
@@ -15,16 +16,6 @@ const GRAMMARS: &[(&str, Infer)] = &[
     ("procedural_logic", super::procedural_logic::grammar), // one line each
     ("procedural_logic_picture", super::procedural_logic::picture_grammar),
 ];
-
-/// Facades as rules without sizes.
-pub struct Parsed {
-    /// The rules of the facades that the method learnt from.
-    pub rules: Rules,
-    /// Those facades.
-    pub learnt: Vec<Parse>,
-    /// The others, each with the rules above and its own after them.
-    pub others: Vec<(Parse, Rules)>,
-}
 
 /// Learns from some facades and parses them and others; lengths are multiples of a step.
 type ParseAll = fn(learnt: &[Facade], others: &[Facade], step: f64) -> Result<Parsed>;

@@ -5,7 +5,8 @@ use edifice_grammar::parametric::{Code, Library, Member, Parse, Separate, SizeMo
 use edifice_grammar::same_tiling;
 use edifice_shape::Facade;
 
-use crate::peers::{self, Parsed};
+use crate::parsed::Parsed;
+use crate::peers;
 
 /// Bits of each held-out facade.
 #[derive(Debug, Default)]
