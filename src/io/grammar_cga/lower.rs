@@ -95,7 +95,7 @@ struct Builder<'a> {
     constants: FxHashMap<&'a str, f64>,
     /// Rules that take numbers, by their identifiers.
     taking: FxHashMap<&'a str, &'a CgaRule<'a>>,
-    /// What the rule at hand was called with.
+    /// The numbers that the rule at hand was called with.
     numbers: FxHashMap<&'a str, f64>,
     /// Called rules that are not built yet, with their symbols and numbers.
     waiting: VecDeque<(&'a CgaRule<'a>, String, Vec<f64>)>,

@@ -153,7 +153,7 @@ impl Text<'_> {
         }
     }
 
-    /// What the start becomes, with the share of the facades that chose it.
+    /// The replacements of the start, with the shares of the facades that chose them.
     fn choices(&self, named: &Named) -> String {
         let calls = named.choices.iter().map(|choice| {
             let counts: Vec<String> = choice.counts.iter().map(u32::to_string).collect();

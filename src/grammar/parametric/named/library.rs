@@ -18,7 +18,7 @@ type Repeat = (u32, u32);
 /// A slot: rule, item and place.
 type Place = (u32, u32, u32);
 
-/// What each facade chose for each repeat and each slot.
+/// The counts of each repeat and the sizes of each slot, by facade.
 #[derive(Default)]
 struct Chosen {
     counts: BTreeMap<Repeat, BTreeMap<usize, Vec<u32>>>,

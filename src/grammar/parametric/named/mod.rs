@@ -5,7 +5,7 @@
 //!
 //! | in the library | here |
 //! | --- | --- |
-//! | sizes of a slot | an [`Attribute`]: the mean over the facades; slots that agree in [`AGREED`] of the facades that have both (two at least, one for the same symbol) share one |
+//! | sizes of a slot | mean over the facades, as [`Attribute`]; slots that agree in [`AGREED`] of the facades that have both (two at least, one for the same symbol) share one |
 //! | counts of a repeat | a parameter of the rule; repeats that no facade tells apart share one |
 //! | roots with counts | a [`Choice`] of the start for each pair of root and counts, as often as facades have it |
 //!
@@ -60,7 +60,7 @@ pub struct Attribute {
     pub name: String,
     /// Its value: a length in the unit, or a count.
     pub value: f64,
-    /// What a library's facades have; none where one facade alone is written.
+    /// Its distribution over a library's facades; none where one facade alone is written.
     pub spread: Option<Spread>,
 }
 
