@@ -12,6 +12,7 @@ mod figure_12;
 mod figure_13;
 mod figure_14;
 mod figure_9;
+mod held_out;
 mod joint_real;
 mod judge;
 mod library;

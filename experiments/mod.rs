@@ -30,6 +30,7 @@
 mod frame;
 mod generic;
 pub mod layouts;
+mod parsed;
 pub mod peers;
 mod picture;
 pub mod sweep;

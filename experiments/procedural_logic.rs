@@ -13,6 +13,7 @@ pub mod gold;
 mod lossless;
 pub mod noise;
 pub mod outline;
+mod parsed;
 mod readings;
 mod retrieval_search;
 mod segmentation;
@@ -22,6 +23,8 @@ pub mod study;
 pub mod trial;
 pub mod trivial;
 pub mod words;
+
+pub use parsed::parsed;
 
 use super::{Artefact, Experiment};
 use edifice_base::{Error, Result};

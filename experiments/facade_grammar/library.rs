@@ -3,13 +3,14 @@
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_grammar::Costs;
-use edifice_grammar::parametric::{Library, parse_cost};
+use edifice_grammar::parametric::{Library, Separate, parse_cost};
 use edifice_io::read_label_grid;
 use edifice_layout::retile::retile;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::{Facade, decompose};
 
 use super::data::{files, stem};
+use super::held_out::HeldOut;
 use super::runs::mean;
 use super::told_apart::{Fold, area};
 use crate::{Budget, Context};
@@ -32,6 +33,9 @@ struct Measured {
     rules: usize,
     seconds: f64,
     alone: f64,
+    separate_bits: f64,
+    logic_normal: f64,
+    logic: f64,
     held_out: f64,
     known_roots: f64,
     new_draws: f64,
@@ -50,7 +54,10 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             "no choice of parts costs less",
             "rules",
             "bits alone",
-            "bits held out",
+            "bits held out, separate",
+            "bits held out, procedural logic",
+            "bits held out, its rules in this code",
+            "bits held out, library",
             "known structure (%)",
             "draws of new structure (%)",
             "windows aligned, real (%)",
@@ -98,6 +105,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             format!("{:.1}", measured.bound),
             measured.rules.to_string(),
             format!("{:.1}", measured.alone),
+            format!("{:.1}", measured.separate_bits),
+            format!("{:.1}", measured.logic_normal),
+            format!("{:.1}", measured.logic),
             format!("{:.1}", measured.held_out),
             format!("{:.0}", 100.0 * measured.known_roots),
             format!("{:.0}", 100.0 * measured.new_draws),
@@ -111,9 +121,12 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ctx.note(
         "*Library*: Wu's cost of the rules of all facades of a set with sizes and counts as parameters, phrases shared (`grammar infer --sizes free`), \
          and the bound of branch and bound over phrases of at most 14 symbols: it holds for the parse that made the strings. *Separate*: the sum over the facades of \
-         the cost of their own parse trees, sizes included and equal regions written once (not the cheapest grammars, which cost less). *Bits*: what a facade costs in the \
-         code that is read back, alone (a library of nothing else than itself tells how much structure a single facade has to pay for) and held out (five \
-         folds, the library of the others). *Known structure*: held-out facades whose root the library has. Draws: 100; *new* means root and counts that no facade \
+         the cost of their own parse trees, sizes included and equal regions written once (not the cheapest grammars, which cost less). *Bits*: what a facade costs in an arithmetic code; alone, \
+         nothing is known, not even labels; held out, five folds, each code read back and compared. *Library*: the library of the others. *Separate*: a grammar of \
+         its own, its rules spelled out, in the same code; labels, the extents of facades and the trust in predictors within one facade are learnt from the others. \
+         *Procedural logic* (Weissenberg et al. 2013; the paper gives no code): affinities and rules of the others (parameters for compression), new rules spelled \
+         out; each size by a normal distribution of its place in the rule (Sec. 4.4) mixed with all sizes alike, trust learnt from the others. *Its rules in \
+         this code*: the same rules, sizes by the library's predictors, the strongest rival: it lacks repeats and counts alone. *Known structure*: held-out facades whose root the library has. Draws: 100; *new* means root and counts that no facade \
          has; *aligned*: all windows lie in columns of common left and right sides. *Told from real*: boosted trees on counts, shares, sizes and gaps of all labels learn \
          four fifths of the real facades and draws from their library, and judge the last fifth and fresh draws: the area under their curve, 0.5 where \
          nothing tells them apart.",
@@ -128,6 +141,9 @@ fn tell(ctx: &mut Context, name: &str, measured: &Measured) {
         ("lower_bound", measured.bound, ""),
         ("rules", measured.rules as f64, ""),
         ("bits_alone", measured.alone, "bits"),
+        ("bits_separate", measured.separate_bits, "bits"),
+        ("bits_procedural_logic", measured.logic_normal, "bits"),
+        ("bits_procedural_logic_rules", measured.logic, "bits"),
         ("bits_held_out", measured.held_out, "bits"),
         ("known_structure", measured.known_roots, ""),
         ("draws_new", measured.new_draws, ""),
@@ -153,7 +169,8 @@ fn measure(facades: &[Facade], seed: u64) -> Result<Measured> {
     let library = Library::learn(facades).map_err(Error::method)?;
     let sharing = library.sharing(&costs);
     let seconds = started.elapsed().as_secs_f64();
-    let (mut held_out, mut alone, mut separate, mut known) = (Vec::new(), Vec::new(), 0.0, 0);
+    let (mut held_out, mut alone, mut separate) = (HeldOut::default(), Vec::new(), 0.0);
+    let code = Separate::new(library.unit().to_owned(), library.step());
     let mut folds = Vec::new();
     for fold in 0..FOLDS.min(facades.len()) {
         let others = facades
@@ -173,20 +190,17 @@ fn measure(facades: &[Facade], seed: u64) -> Result<Measured> {
                 .collect::<std::result::Result<Vec<_>, _>>()
         };
         let unseen: Vec<Facade> = facades.iter().skip(fold).step_by(FOLDS).cloned().collect();
+        held_out.add(&told, &others, &unseen)?;
         folds.push(Fold {
             drawn: draws("told apart", others.len()).map_err(Error::method)?,
             fresh: draws("fresh", unseen.len()).map_err(Error::method)?,
             known: others,
             held_out: unseen,
         });
-        for facade in facades.iter().skip(fold).step_by(FOLDS) {
-            held_out.push(told.bits(facade).map_err(Error::method)?);
-            known += usize::from(told.knows(facade).map_err(Error::method)?);
-        }
     }
     for facade in facades {
         separate += parse_cost(facade, library.step(), &costs).map_err(Error::method)?;
-        alone.push(library.bits_alone(facade).map_err(Error::method)?);
+        alone.push(code.encode(facade).map_err(Error::method)?.bits);
     }
     let real = facades.iter().filter(|facade| is_aligned(facade)).count();
     let (mut new, mut aligned) = (0, 0);
@@ -214,8 +228,11 @@ fn measure(facades: &[Facade], seed: u64) -> Result<Measured> {
         rules: sharing.rules.len(),
         seconds,
         alone: mean(&alone),
-        held_out: mean(&held_out),
-        known_roots: share(known, held_out.len()),
+        separate_bits: mean(&held_out.separate),
+        logic_normal: mean(&held_out.logic_normal),
+        logic: mean(&held_out.logic),
+        held_out: mean(&held_out.library),
+        known_roots: share(held_out.known, held_out.library.len()),
         new_draws: share(new, DRAWS as usize),
         aligned: (share(real, facades.len()), share(aligned, DRAWS as usize)),
         told_apart,

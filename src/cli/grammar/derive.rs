@@ -25,9 +25,10 @@ with a warning. Then edges are aligned, and terminals that are equal at the gram
 become equal again; --no-align leaves them where the rules put them. --bands does not ask the rules:
 columns that stand together repeat together in all floors of the facade at its own size, floors at
 their own rhythm, and what is left is stretched.
-In a stochastic grammar the seed picks among the rules of each symbol.")]
+In a stochastic grammar the seed picks among the rules of each symbol.
+A library (grammar infer --sizes free) is written as stochastic rules of CGA with attributes.")]
 pub(crate) struct Args {
-    /// Grammar to read: .grammar.json or .cga, also as .gz
+    /// Grammar to read: .grammar.json or .cga, or a .library.json to write as .cga, also as .gz
     grammar: PathBuf,
     /// Width to derive at, in the grammar's unit [default: its own]
     #[arg(long, value_name = "W", value_parser = super::positive)]
@@ -47,7 +48,7 @@ pub(crate) struct Args {
     /// At another size, repeat or leave out whole columns and floors of the facade at its own size, and stretch the rest
     #[arg(long, conflicts_with = "no_align")]
     bands: bool,
-    /// File to write: .facade.json, .svg, .png or .glb (in relief, metres)
+    /// File to write: .facade.json, .svg, .png or .glb (in relief, metres); of a library .cga
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
@@ -56,6 +57,10 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(super) fn run(args: &Args) -> Result<()> {
+    let bytes = edifice_io::read_bytes(&args.grammar)?;
+    if edifice_io::grammar_library_json::is_library(&bytes) {
+        return super::library::derive(&args.grammar, &bytes, &args.output, &args.json);
+    }
     let facade = derive(args)?;
     let extension = args.output.extension().unwrap_or_default();
     match extension.eq_ignore_ascii_case("glb") {

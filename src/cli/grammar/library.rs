@@ -69,11 +69,11 @@ fn tidy(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }
 
-/// Writes a library: as itself, or as a split grammar (stochastic as CGA).
+/// Writes a library: as itself, as a split grammar of mean sizes, or as stochastic rules of CGA with attributes.
 fn write(library: &Library, sharing: &Sharing, path: &Path) -> Result<()> {
     let name = path.to_string_lossy().to_lowercase();
     if name.ends_with(".cga") {
-        io::write_grammar(&library.stochastic_grammar(sharing), path)
+        io::grammar_cga::write_named(&library.named(), path)
     } else if name.ends_with(".grammar.json") {
         io::write_grammar(&library.grammar(sharing), path)
     } else if name.ends_with(".json") {
@@ -110,6 +110,34 @@ pub(super) fn show(path: &Path, bytes: &[u8], costs: &Costs, json: bool) -> Resu
         print::line(&line.to_string())?;
     }
     Ok(())
+}
+
+fn is_cga(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("cga"))
+}
+
+/// Runs `grammar derive` of a library: its rules as CGA.
+pub(super) fn derive(path: &Path, bytes: &[u8], output: &Path, json: &Json) -> Result<()> {
+    if !is_cga(output) {
+        let message = "a library is written as .cga; `edifice grammar draw` makes facades of it";
+        return Err(Error::option("--output", message));
+    }
+    let named = library_json::parse(bytes, path)?.named();
+    io::grammar_cga::write_named(&named, output)?;
+    let (rules, attributes, choices) = (
+        named.rules.len(),
+        named.attributes.len(),
+        named.choices.len(),
+    );
+    let text = format!(
+        "{}: {rules} rules, {attributes} attributes, {choices} choices of structure and counts",
+        output.display()
+    );
+    let value = serde_json::json!({
+        "file": output, "rules": rules, "attributes": attributes, "choices": choices,
+    });
+    json.after(&text, &value)
 }
 
 /// Options of `edifice grammar draw`.
@@ -240,14 +268,15 @@ pub(super) fn encode(args: &Encode) -> Result<()> {
 
 /// Options of `edifice grammar decode`.
 #[derive(clap::Args)]
-#[command(after_help = "Example:
-  edifice grammar decode street.library.json new.encoded.json -o new.facade.json")]
+#[command(after_help = "Examples:
+  edifice grammar decode street.library.json new.encoded.json -o new.facade.json
+  edifice grammar decode street.library.json new.encoded.json -o new.cga")]
 pub(crate) struct Decode {
     /// Library that the facade was written with: .library.json, also as .gz
     library: PathBuf,
     /// Encoded facade: .encoded.json, also as .gz
     encoded: PathBuf,
-    /// Facade to write: .facade.json, .svg, .png
+    /// Facade to write: .facade.json, .svg, .png; or its rules with sizes and counts as attributes: .cga
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
@@ -265,7 +294,14 @@ pub(super) fn decode(args: &Decode) -> Result<()> {
     let facade = library
         .decode(&encoded.bytes, &encoded.name)
         .map_err(|e| Error::content(&args.encoded, e))?;
-    io::write_facade(&facade, &args.output)?;
+    match is_cga(&args.output) {
+        true => {
+            let named = library.named_facade(&facade);
+            let named = named.map_err(|e| Error::content(&args.encoded, e))?;
+            io::grammar_cga::write_named(&named, &args.output)?;
+        }
+        false => io::write_facade(&facade, &args.output)?,
+    }
     let value = serde_json::json!({ "file": args.output, "regions": facade.regions.len() });
     args.json.end(&value)
 }

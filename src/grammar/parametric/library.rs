@@ -8,6 +8,8 @@ use super::coder::{Coder, Counter, Decoder, Drawer, Encoder};
 use super::error::LibraryError;
 use super::phrases::{self, Sharing};
 use super::rules::Rules;
+use super::sizes::SizeModel;
+use super::step::step;
 use super::tree::{self, Parse};
 use crate::Costs;
 use edifice_shape::Facade;
@@ -40,9 +42,6 @@ pub struct Code {
     /// Bits of the choices.
     pub bits: f64,
 }
-
-/// Steps that are tried when facades do not give one: all their lengths must be multiples of it.
-const STEPS: [f64; 7] = [1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001];
 
 impl Library {
     /// The library of some facades: tilings of one unit that full lines split. Lengths are multiples of the
@@ -84,6 +83,20 @@ impl Library {
         rules: Rules,
         members: Vec<Member>,
     ) -> Result<Self, LibraryError> {
+        Self::from_members_with(unit, step, rules, members, SizeModel::default())
+    }
+
+    /// As [`Library::from_members`], with another model of sizes.
+    ///
+    /// # Errors
+    /// As [`Library::from_members`].
+    pub fn from_members_with(
+        unit: String,
+        step: f64,
+        rules: Rules,
+        members: Vec<Member>,
+        sizes: SizeModel,
+    ) -> Result<Self, LibraryError> {
         if members.is_empty() {
             return Err(LibraryError::NoFacades);
         }
@@ -98,8 +111,21 @@ impl Library {
             tables: Tables::default(),
             told_by_others: Vec::new(),
         };
+        library.tables.sizes.model = sizes;
         library.fit()?;
         Ok(library)
+    }
+
+    /// A library of no facades, as [`Separate`](super::Separate) codes with.
+    pub(super) fn empty(unit: String, step: f64, rules: Rules, tables: Tables) -> Self {
+        Self {
+            unit,
+            step,
+            rules,
+            members: Vec::new(),
+            tables,
+            told_by_others: Vec::new(),
+        }
     }
 
     /// Fills the tables, and learns which predictors to trust: each facade is told by all others.
@@ -173,13 +199,16 @@ impl Library {
     /// # Errors
     /// [`LibraryError::Invalid`] for parameters that do not fit the library's rules.
     pub fn facade(&self, parse: &Parse, name: &str) -> Result<Facade, LibraryError> {
-        tree::facade(
-            parse,
-            self.rules.rules(),
-            self.rules.labels(),
-            self.step,
-            (name, &self.unit),
-        )
+        self.tiling(parse, &self.rules, name)
+    }
+
+    /// A facade with rules of its own after the library's.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] for parameters that do not fit the rules.
+    pub fn tiling(&self, parse: &Parse, rules: &Rules, name: &str) -> Result<Facade, LibraryError> {
+        let place = (name, self.unit.as_str());
+        tree::facade(parse, rules.rules(), rules.labels(), self.step, place)
     }
 
     /// The code of a facade: structure, counts, sizes and extents, given the library.
@@ -187,11 +216,29 @@ impl Library {
     /// # Errors
     /// [`LibraryError`] for a facade of another unit, off the library's step, or that full lines do not split.
     pub fn encode(&self, facade: &Facade) -> Result<Code, LibraryError> {
-        let mut encoder = Encoder::default();
-        let bits = self.told(facade, &mut encoder)?;
+        let (parse, rules) = self.parse(facade)?;
+        self.encode_parse(&parse, &rules, &facade.name)
+    }
+
+    /// The code of a facade that some other parser split: rules of the library, and after them the facade's own.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] where there is no code.
+    pub fn encode_parse(
+        &self,
+        parse: &Parse,
+        rules: &Rules,
+        name: &str,
+    ) -> Result<Code, LibraryError> {
+        let mut both = Both {
+            counter: Counter::default(),
+            coder: Encoder::default(),
+        };
+        self.walked(&mut both, Some((parse, rules)))
+            .ok_or_else(|| no_code(name))?;
         Ok(Code {
-            bytes: encoder.finish(),
-            bits,
+            bytes: both.coder.finish(),
+            bits: both.counter.bits,
         })
     }
 
@@ -200,20 +247,11 @@ impl Library {
     /// # Errors
     /// As [`Library::encode`].
     pub fn bits(&self, facade: &Facade) -> Result<f64, LibraryError> {
-        self.told(facade, &mut Counter::default())
-    }
-
-    fn told<C: Coder>(&self, facade: &Facade, coder: &mut C) -> Result<f64, LibraryError> {
-        same_unit(facade, &self.unit)?;
-        let mut own = self.rules.clone();
-        let parse = tree::parse(facade, self.step, &mut own)?;
-        let mut both = Both {
-            counter: Counter::default(),
-            coder,
-        };
-        self.walked(&mut both, Some((&parse, &own)))
+        let (parse, rules) = self.parse(facade)?;
+        let mut counter = Counter::default();
+        self.walked(&mut counter, Some((&parse, &rules)))
             .ok_or_else(|| no_code(&facade.name))?;
-        Ok(both.counter.bits)
+        Ok(counter.bits)
     }
 
     fn walked<C: Coder>(
@@ -239,16 +277,17 @@ impl Library {
     /// # Errors
     /// [`LibraryError::Invalid`] for bytes that are no code of this library.
     pub fn decode(&self, code: &[u8], name: &str) -> Result<Facade, LibraryError> {
-        let (parse, rules) = self
-            .walked(&mut Decoder::new(code), None)
-            .ok_or_else(|| no_code(name))?;
-        tree::facade(
-            &parse,
-            rules.rules(),
-            rules.labels(),
-            self.step,
-            (name, &self.unit),
-        )
+        let (parse, rules) = self.decode_parse(code, name)?;
+        self.tiling(&parse, &rules, name)
+    }
+
+    /// Reads the root, extents, counts and sizes of a code back, and the rules that they are about.
+    ///
+    /// # Errors
+    /// As [`Library::decode`].
+    pub fn decode_parse(&self, code: &[u8], name: &str) -> Result<(Parse, Rules), LibraryError> {
+        self.walked(&mut Decoder::new(code), None)
+            .ok_or_else(|| no_code(name))
     }
 
     /// Draws from the distribution of codes: a facade comes as often as its bits say.
@@ -259,13 +298,19 @@ impl Library {
         let (parse, rules) = self
             .walked(&mut Drawer { rng }, None)
             .ok_or_else(|| no_code(name))?;
-        tree::facade(
-            &parse,
-            rules.rules(),
-            rules.labels(),
-            self.step,
-            (name, &self.unit),
-        )
+        self.tiling(&parse, &rules, name)
+    }
+
+    /// Root, extents, counts and sizes of a facade, and the rules that they are about: those of the library, and
+    /// after them the facade's own.
+    ///
+    /// # Errors
+    /// As [`Library::encode`].
+    pub fn parse(&self, facade: &Facade) -> Result<(Parse, Rules), LibraryError> {
+        same_unit(facade, &self.unit)?;
+        let mut rules = self.rules.clone();
+        let parse = tree::parse(facade, self.step, &mut rules)?;
+        Ok((parse, rules))
     }
 
     /// True if the library has a facade with the structure of another: the same root.
@@ -273,8 +318,7 @@ impl Library {
     /// # Errors
     /// As [`Library::encode`].
     pub fn knows(&self, facade: &Facade) -> Result<bool, LibraryError> {
-        let mut own = self.rules.clone();
-        let parse = tree::parse(facade, self.step, &mut own)?;
+        let (parse, _) = self.parse(facade)?;
         Ok(self.tables.structure.roots().contains_key(&parse.root))
     }
 
@@ -283,45 +327,28 @@ impl Library {
     /// # Errors
     /// As [`Library::encode`].
     pub fn is_new(&self, facade: &Facade) -> Result<bool, LibraryError> {
-        let mut own = self.rules.clone();
-        let parse = tree::parse(facade, self.step, &mut own)?;
+        let (parse, _) = self.parse(facade)?;
         let same = |member: &Member| {
             (member.parse.root, &member.parse.counts) == (parse.root, &parse.counts)
         };
         Ok(!self.members.iter().any(same))
     }
-
-    /// The bits of a facade without any library: everything it has is spelled out, in the library's steps.
-    ///
-    /// # Errors
-    /// As [`Library::encode`].
-    pub fn bits_alone(&self, facade: &Facade) -> Result<f64, LibraryError> {
-        let empty = Self {
-            unit: self.unit.clone(),
-            step: self.step,
-            rules: Rules::default(),
-            members: Vec::new(),
-            tables: Tables::default(),
-            told_by_others: Vec::new(),
-        };
-        empty.bits(facade)
-    }
 }
 
 /// Counts the bits of what another coder does.
-struct Both<'c, C> {
+struct Both<C> {
     counter: Counter,
-    coder: &'c mut C,
+    coder: C,
 }
 
-impl<C: Coder> Coder for Both<'_, C> {
+impl<C: Coder> Coder for Both<C> {
     fn choose(&mut self, weights: &[f64], value: Option<usize>) -> Option<usize> {
         self.counter.choose(weights, value)?;
         self.coder.choose(weights, value)
     }
 }
 
-fn no_code(name: &str) -> LibraryError {
+pub(super) fn no_code(name: &str) -> LibraryError {
     LibraryError::Invalid {
         place: name.to_owned(),
         message: "there is no such code of this library".to_owned(),
@@ -337,28 +364,4 @@ fn same_unit(facade: &Facade, expected: &str) -> Result<(), LibraryError> {
         unit: facade.unit.clone(),
         expected: expected.to_owned(),
     })
-}
-
-/// The largest step that all edges are multiples of; the smallest one where none fits, so that the error of
-/// parsing names the coordinate.
-fn step(facades: &[Facade]) -> Result<f64, LibraryError> {
-    let fits = |step: f64| {
-        facades.iter().all(|facade| {
-            let tolerance = facade.tolerance().min(step / 4.0);
-            let on = |value: f64| (value - (value / step).round() * step).abs() <= tolerance;
-            let edges = facade.regions.iter().map(|region| region.rect);
-            on(facade.width)
-                && on(facade.height)
-                && edges
-                    .into_iter()
-                    .all(|r| on(r.x) && on(r.y) && on(r.right()) && on(r.top()))
-        })
-    };
-    if facades.is_empty() {
-        return Err(LibraryError::NoFacades);
-    }
-    Ok(STEPS
-        .into_iter()
-        .find(|&step| fits(step))
-        .unwrap_or(STEPS[STEPS.len() - 1]))
 }

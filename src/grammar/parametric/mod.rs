@@ -22,10 +22,12 @@
 //! | `bodies.rs`, `phrases.rs` | rules as strings; shared phrases by an integer program |
 //! | `coder.rs` | counting, writing, reading and drawing as one walk |
 //! | `structure.rs`, `extents.rs`, `counts.rs`, `sizes.rs`, `codec.rs` | the model, part by part, and its walk |
-//! | `library.rs` | [`Library`]: learn, score, encode, decode |
+//! | `library.rs`, `step.rs` | [`Library`]: learn, score, encode, decode |
+//! | `separate.rs` | [`Separate`]: facades one by one, without a library |
 //! | `draw.rs`, `recombine.rs`, `bands.rs` | new facades: sizes between two, floors of two, columns and floors more or less |
 //! | `fixed.rs` | what one facade costs alone, sizes included |
 //! | `written.rs`, `show.rs`, `names.rs` | a library as a split grammar, and as text |
+//! | `named/`, `regions.rs` | a library, or one facade, as rules with named sizes and counts |
 //!
 //! # Deviations and readings
 //! - Cuts are along horizontal lines where there are any: regions with full lines of both directions are rare in
@@ -45,13 +47,17 @@ mod error;
 mod extents;
 mod fixed;
 mod library;
+mod named;
 mod names;
 mod phrases;
 mod program;
 mod recombine;
+mod regions;
 mod rules;
+mod separate;
 mod show;
 mod sizes;
+mod step;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -65,7 +71,9 @@ pub use coder::{Coder, Counter, Decoder, Drawer, Encoder};
 pub use error::LibraryError;
 pub use fixed::parse_cost;
 pub use library::{Code, Library, Member};
+pub use named::{AGREED, Attribute, Choice, Named, NamedItem, NamedPart, NamedRule, Spread};
 pub use phrases::{LONGEST, Part, Sharing, Written, share};
 pub use rules::{Item, Rule, Rules, Symbol};
+pub use separate::Separate;
+pub use sizes::SizeModel;
 pub use tree::{Parse, STEP_LIMIT, Slot, slots};
-pub use written::FACADE;

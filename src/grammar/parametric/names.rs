@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use super::library::Library;
+use super::rules::Symbol;
 use edifice_shape::Axis;
 
 /// Gives names that no label has, numbered by kind in the order in which they are asked for.
@@ -48,5 +50,22 @@ impl<'l> Namer<'l> {
             name.push('_');
         }
         name
+    }
+}
+
+impl Library {
+    /// The names of all rules, outer ones numbered first.
+    pub(super) fn rule_names(&self) -> Vec<String> {
+        let rules = self.rules();
+        let roots = self.tables().structure.roots();
+        let mut namer = Namer::new(rules.labels());
+        let mut names = vec![String::new(); rules.rules().len()];
+        for (k, rule) in rules.rules().iter().enumerate().rev() {
+            names[k] = namer.next(match roots.contains_key(&Symbol::Rule(k as u32)) {
+                true => Kind::Facade,
+                false => Kind::Split(rule.axis),
+            });
+        }
+        names
     }
 }

@@ -10,7 +10,6 @@ use edifice_shape::Axis;
 
 use super::codec::questions;
 use super::library::Library;
-use super::names::{Kind, Namer};
 use super::rules::{Item, Symbol};
 
 /// Sizes are one parameter when they agree in this share of the regions.
@@ -39,23 +38,13 @@ impl Library {
     pub fn listing(&self) -> Vec<String> {
         let chosen = self.chosen();
         let rules = self.rules();
-        let roots = self.tables().structure.roots();
-        let mut namer = Namer::new(rules.labels());
-        let numbered: Vec<usize> = (0..rules.rules().len()).rev().collect();
-        let mut names = vec![String::new(); rules.rules().len()];
-        for &k in &numbered {
-            let kind = match roots.contains_key(&Symbol::Rule(k as u32)) {
-                true => Kind::Facade,
-                false => Kind::Split(rules.rules()[k].axis),
-            };
-            names[k] = namer.next(kind);
-        }
+        let names = self.rule_names();
         let name = |symbol: Symbol| match symbol {
             Symbol::Terminal(label) => rules.labels()[label as usize].as_str(),
             Symbol::Rule(rule) => names[rule as usize].as_str(),
         };
         let mut lines = Vec::new();
-        for k in numbered {
+        for k in (0..names.len()).rev() {
             let rule = &rules.rules()[k];
             let own = &chosen[k];
             let parameters = own.parameters(rule.axis);

@@ -11,6 +11,7 @@
 //! | the mirrored slot | the axis, kernel of 3 steps |
 //! | the symbol on this axis | |
 //! | any part of the axis | all sizes alike |
+//! | | the same slot of `r`: a normal distribution, which speaks in [`SizeModel::Normal`] alone |
 //!
 //! so that equal, repeated, mirrored and aligned sizes share a parameter. The weights of the mixture are counts of
 //! how well each predictor did (its share in the probability of what came), kept apart for each set of
@@ -26,11 +27,11 @@ use super::tree::{Slot, index};
 use edifice_shape::Axis;
 
 /// Number of predictors.
-const PREDICTORS: usize = 13;
+const PREDICTORS: usize = 14;
 
 /// The weight of each predictor before anything was seen.
 const PRIOR: [f64; PREDICTORS] = [
-    2.0, 1.0, 0.5, 0.5, 0.3, 0.1, 0.5, 0.5, 0.3, 0.3, 0.2, 0.1, 0.05,
+    2.0, 1.0, 0.5, 0.5, 0.3, 0.1, 0.5, 0.5, 0.3, 0.3, 0.2, 0.1, 0.05, 2.0,
 ];
 
 /// The number of times that each size was seen.
@@ -39,9 +40,24 @@ pub(super) type Sizes = BTreeMap<u32, u32>;
 /// A slot of a rule in any repetition.
 pub(super) type SlotKey = (u32, u32, u32);
 
+/// The least standard deviation of a normal distribution of sizes, in steps.
+const LEAST_DEVIATION: f64 = 1.0;
+
+/// The predictors that may speak.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SizeModel {
+    /// All but the normal distribution: sizes are tied within a facade, and distributed as they were seen.
+    #[default]
+    Shared,
+    /// Mean and standard deviation of each slot, and all sizes alike: every size is told for itself (the rules of
+    /// Weissenberg et al. 2013).
+    Normal,
+}
+
 /// Sizes that were seen, by what they belong to.
 #[derive(Debug, Clone, Default)]
 pub struct SizeTable {
+    pub(super) model: SizeModel,
     place: FxHashMap<SlotKey, Sizes>,
     /// Sizes with the extent of their region.
     share: FxHashMap<SlotKey, BTreeMap<(u32, u32), u32>>,
@@ -190,6 +206,22 @@ fn kernels(sizes: impl Iterator<Item = (f64, u32)>, width: f64, max: u32) -> Pre
     normalized(out)
 }
 
+/// The normal distribution with the mean and deviation of what was seen.
+fn normal(seen: &[(f64, u32)], max: u32) -> Prediction {
+    let count: f64 = seen.iter().map(|&(_, n)| f64::from(n)).sum();
+    if count == 0.0 {
+        return None;
+    }
+    let over = |f: &dyn Fn(f64) -> f64| -> f64 {
+        seen.iter().map(|&(size, n)| f64::from(n) * f(size)).sum()
+    };
+    let mean = over(&|size| size) / count;
+    let deviation = (over(&|size| (size - mean).powi(2)) / count).sqrt();
+    let deviation = deviation.max(LEAST_DEVIATION);
+    let weight = |size: u32| (-0.5 * ((f64::from(size) - mean) / deviation).powi(2)).exp();
+    normalized((1..=max).map(weight).collect())
+}
+
 fn normalized(mut weights: Vec<f64>) -> Prediction {
     let sum: f64 = weights.iter().sum();
     if sum <= 0.0 {
@@ -210,6 +242,14 @@ fn predictions(table: &SizeTable, memory: &SizeMemory, at: &Question) -> [Predic
             .map(|(&size, &count)| (f64::from(size), count))
             .collect()
     };
+    let of_place = table.place.get(&place).map(seen).unwrap_or_default();
+    let alike = Some(vec![1.0 / f64::from(max); max as usize]);
+    if table.model == SizeModel::Normal {
+        let mut only: [Prediction; PREDICTORS] = Default::default();
+        only[PREDICTORS - 2] = alike;
+        only[PREDICTORS - 1] = normal(&of_place, max);
+        return only;
+    }
     let mut next = vec![0.0; max as usize];
     let mut weight = 1.0;
     for &cut in memory.cuts[along]
@@ -224,7 +264,6 @@ fn predictions(table: &SizeTable, memory: &SizeMemory, at: &Question) -> [Predic
         one[size as usize - 1] = 1.0;
         one
     });
-    let of_place = table.place.get(&place).map(seen).unwrap_or_default();
     let shares = table
         .share
         .get(&place)
@@ -254,7 +293,8 @@ fn predictions(table: &SizeTable, memory: &SizeMemory, at: &Question) -> [Predic
         kernels(shares, 3.0, max),
         kernels(of_symbol.into_iter(), 3.0, max),
         kernels(seen(&table.axis[along]).into_iter(), 3.0, max),
-        Some(vec![1.0 / f64::from(max); max as usize]),
+        alike,
+        None,
     ]
 }
 

@@ -10,14 +10,11 @@ use super::bodies::{Bodies, Letter};
 use super::library::Library;
 use super::names::{Kind, Namer};
 use super::phrases::{Part, Sharing, Written};
+use super::regions::regions;
 use super::rules::Symbol;
-use super::tree::{index, slots};
 use edifice_shape::Axis;
 
 use crate::{Grammar, Operation, Rule, Size, Start, Successor};
-
-/// Symbol of all facades together in a stochastic grammar.
-pub const FACADE: &str = "Facade";
 
 /// Sums of sizes at the letters of a string.
 #[derive(Clone, Default)]
@@ -112,65 +109,6 @@ impl Library {
         }
     }
 
-    /// The rules with one start, [`FACADE`], that is one of the facades' symbols by chance, as often as they are;
-    /// its size is the mean size.
-    pub fn stochastic_grammar(&self, sharing: &Sharing) -> Grammar {
-        let mut grammar = self.grammar(sharing);
-        let count = grammar.starts.len() as f64;
-        let mean = |extent: fn(&Start) -> f64| {
-            let sum: f64 = grammar.starts.iter().map(extent).sum();
-            (sum / count / self.step()).round().max(1.0) * self.step()
-        };
-        let (width, height) = (mean(|s| s.width), mean(|s| s.height));
-        let mut symbol = FACADE.to_owned();
-        while self.rules().labels().contains(&symbol) {
-            symbol.push('_');
-        }
-        let mut chosen: Vec<(String, f64)> = Vec::new();
-        for start in &grammar.starts {
-            match chosen.iter_mut().find(|known| known.0 == start.symbol) {
-                Some(known) => known.1 += 1.0,
-                None => chosen.push((start.symbol.clone(), 1.0)),
-            }
-        }
-        let rules = chosen.into_iter().map(|(root, weight)| {
-            let own = grammar.rules.iter().find(|rule| rule.symbol == root);
-            let operation = own
-                .map(|rule| rule.operation.clone())
-                .unwrap_or(Operation::Split {
-                    axis: Axis::X,
-                    successors: vec![Successor {
-                        symbol: root,
-                        size: Size::Relative(1.0),
-                    }],
-                });
-            Rule {
-                symbol: symbol.clone(),
-                weight: Some(weight),
-                operation,
-            }
-        });
-        let mut rules: Vec<Rule> = rules.collect();
-        let used: BTreeSet<&str> = grammar
-            .rules
-            .iter()
-            .flat_map(|rule| rule.operation.symbols())
-            .collect();
-        let kept = grammar
-            .rules
-            .iter()
-            .filter(|rule| used.contains(rule.symbol.as_str()));
-        rules.extend(kept.cloned());
-        grammar.rules = rules;
-        grammar.starts = vec![Start {
-            name: symbol.clone(),
-            symbol,
-            width,
-            height,
-        }];
-        grammar
-    }
-
     /// The mean size of each letter of each rule.
     fn letter_sizes(&self, bodies: &Bodies, sharing: &Sharing) -> Vec<Vec<f64>> {
         let mut sums: Vec<Sums> = vec![Sums::default(); sharing.rules.len()];
@@ -213,46 +151,26 @@ impl Library {
 
     /// Adds the sizes of one facade.
     fn add_sizes(&self, member: &super::library::Member, bodies: &Bodies, sums: &mut [Sums]) {
-        let parse = &member.parse;
-        let (mut counts, mut sizes) = (parse.counts.iter().copied(), parse.sizes.iter().copied());
-        let mut stack = vec![(parse.root, parse.extent)];
-        while let Some((symbol, extent)) = stack.pop() {
-            let Symbol::Rule(rule) = symbol else { continue };
-            let written = self.rules().rule(rule);
-            let repeats = written.items.iter().filter(|item| item.is_repeat()).count();
-            let own: Vec<u32> = counts.by_ref().take(repeats).collect();
-            let slots = slots(written, &own);
-            let along = index(written.axis);
-            let mut left = extent[along];
-            let body = bodies.of_rule[rule as usize] as usize;
-            let first = stack.len();
-            for (k, slot) in slots.iter().enumerate() {
-                let size = if k + 1 < slots.len() {
-                    sizes.next().unwrap_or(1)
-                } else {
-                    left
-                };
-                left = left.saturating_sub(size);
+        regions(&member.parse, self.rules(), |region| {
+            let written = self.rules().rule(region.rule);
+            let body = bodies.of_rule[region.rule as usize] as usize;
+            for (slot, &size) in region.slots.iter().zip(region.sizes) {
                 let length = f64::from(size) * self.step();
                 if !bodies.bodies[body].repeat {
                     sums[body].sum[slot.item as usize] += length;
                 }
                 if written.items[slot.item as usize].is_repeat() {
-                    let repeat = bodies.repeat_of(rule, slot.item as usize) as usize;
+                    let repeat = bodies.repeat_of(region.rule, slot.item as usize) as usize;
                     sums[repeat].sum[slot.place as usize] += length;
                     if slot.place == 0 {
                         sums[repeat].count += 1.0;
                     }
                 }
-                let mut part = extent;
-                part[along] = size;
-                stack.push((slot.symbol, part));
             }
             if !bodies.bodies[body].repeat {
                 sums[body].count += 1.0;
             }
-            stack[first..].reverse();
-        }
+        });
     }
 }
 

@@ -1,5 +1,6 @@
 //! From statements to a grammar.
 
+mod call;
 mod chance;
 mod draw;
 mod natural;
@@ -7,13 +8,15 @@ mod operation;
 mod value;
 mod written_out;
 
+use std::collections::VecDeque;
+
 use chumsky::span::SimpleSpan;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::error::Fault;
 use super::note::Note;
 use super::reserved::is_leaf_operation;
-use super::syntax::{At, CgaRule, Chance, Item, Target};
+use super::syntax::{At, Call, CgaRule, Chance, Item, Target};
 use draw::{DRAWS, Draw};
 use edifice_grammar::{Grammar, GrammarError, Operation, Rule, Start, check};
 use edifice_shape::Axis;
@@ -23,9 +26,9 @@ use natural::natural_extent;
 const UNIT: &str = "m";
 
 /// Builds the grammar and checks it.
-pub(super) fn lower(
-    header: &[At<Note>],
-    items: &[Item<'_>],
+pub(super) fn lower<'a>(
+    header: &'a [At<Note>],
+    items: &'a [Item<'a>],
     end: SimpleSpan,
 ) -> Result<Grammar, Fault> {
     let mut builder = Builder::default();
@@ -51,6 +54,10 @@ pub(super) fn lower(
             Item::Rule(rule) => {
                 let symbol = builder.symbol(rule.name.0);
                 builder.used.insert(symbol);
+                if !rule.parameters.is_empty() && builder.taking.insert(rule.name.0, rule).is_some()
+                {
+                    return Err(Fault::new(rule.name.1, "this symbol already has a rule"));
+                }
             }
             Item::Skipped | Item::StartRule => {}
         }
@@ -61,15 +68,23 @@ pub(super) fn lower(
         match item {
             Item::StartRule => marked = true,
             Item::Rule(rule) => {
+                if builder.takes_numbers(rule.name.0) {
+                    if std::mem::take(&mut marked) || rule.parameters.is_empty() {
+                        let message = "a rule that starts, or has two forms, takes no numbers";
+                        return Err(Fault::new(rule.name.1, message));
+                    }
+                    continue;
+                }
                 first = first.or(Some(rule.name));
                 if std::mem::take(&mut marked) {
                     start = start.or(Some(rule.name));
                 }
-                builder.rule(rule)?;
+                builder.rule(rule, builder.symbol(rule.name.0))?;
             }
             Item::Skipped | Item::Constant(..) => {}
         }
     }
+    builder.called_rules()?;
     builder.finish(header, start.or(first), end)
 }
 
@@ -78,6 +93,14 @@ struct Builder<'a> {
     /// Symbols that identifiers stand for.
     renamed: FxHashMap<&'a str, &'a str>,
     constants: FxHashMap<&'a str, f64>,
+    /// Rules that take numbers, by their identifiers.
+    taking: FxHashMap<&'a str, &'a CgaRule<'a>>,
+    /// The numbers that the rule at hand was called with.
+    numbers: FxHashMap<&'a str, f64>,
+    /// Called rules that are not built yet, with their symbols and numbers.
+    waiting: VecDeque<(&'a CgaRule<'a>, String, Vec<f64>)>,
+    /// Number of symbols that calls made.
+    calls: usize,
     /// Left-hand sides, so that helper symbols are new.
     used: FxHashSet<String>,
     /// Symbols whose rule only says how they look, and where it is written.
@@ -99,11 +122,13 @@ impl<'a> Builder<'a> {
         name.copied().unwrap_or(identifier).to_owned()
     }
 
-    fn rule(&mut self, rule: &CgaRule<'_>) -> Result<(), Fault> {
-        let symbol = self.symbol(rule.name.0);
+    fn rule(&mut self, rule: &CgaRule<'_>, symbol: String) -> Result<(), Fault> {
         if let [alternative] = &rule.alternatives[..]
             && matches!(alternative.chance, Chance::Always)
             && let (Target::Calls(calls, None), _) = &alternative.target
+            && !calls
+                .last()
+                .is_some_and(|last| self.takes_numbers(last.name.0))
         {
             return self.leaf(symbol, rule.name.1, calls);
         }
@@ -134,8 +159,12 @@ impl<'a> Builder<'a> {
     }
 
     /// A rule that divides nothing: its symbol is a terminal.
-    fn leaf(&mut self, symbol: String, at: SimpleSpan, calls: &[At<&str>]) -> Result<(), Fault> {
-        if let Some(&(name, span)) = calls.iter().find(|(name, _)| !is_leaf_operation(name)) {
+    fn leaf(&mut self, symbol: String, at: SimpleSpan, calls: &[Call<'_>]) -> Result<(), Fault> {
+        let changes = calls.iter().find(|call| !is_leaf_operation(call.name.0));
+        if let Some(&Call {
+            name: (name, span), ..
+        }) = changes
+        {
             return Err(operation::changes_shape(name, span));
         }
         match self.leaves.insert(symbol, at) {

@@ -66,7 +66,11 @@
 //! - `//@ weights`: what the percentages below were rounded from.
 //!
 //! Text of others may also name sizes with `attr`, compute them with `+ - * / ( )`, and have comments
-//! `//`, `/* */` and `#`. Conditions (`case`), parameters and operations that change shapes are errors.
+//! `//`, `/* */` and `#`. A rule may take numbers, `Floor(columns)`: each list of numbers
+//! that it is called with, `Floor(4)`, is a symbol of its own. Conditions (`case`) and operations that change shapes are errors.
+//!
+//! Parametric libraries, and single facades of them, are written with attributes, counts as parameters and a stochastic
+//! start ([`write_named`]).
 //!
 //! Text of rules that make solids, as of cities, is read by [`solids`].
 //!
@@ -74,6 +78,7 @@
 
 mod error;
 mod lower;
+mod named;
 mod names;
 mod note;
 mod parse;
@@ -92,6 +97,7 @@ pub(crate) use reserved::words as reserved_words;
 use super::{read_bytes, write_atomic};
 use edifice_base::{Error, Result};
 use edifice_grammar::Grammar;
+use edifice_grammar::parametric::Named;
 use error::Fault;
 
 /// Reads a grammar from a file.
@@ -140,6 +146,20 @@ pub fn from_str(text: &str) -> std::result::Result<Grammar, CgaError> {
 /// The text of a grammar.
 pub fn to_string(grammar: &Grammar) -> String {
     write::to_string(grammar)
+}
+
+/// Writes rules with named sizes and counts to a file, whole or not at all: of a library as stochastic rules, or of one
+/// facade. [`read`] gives their grammar, with a symbol for each list of counts that a rule is called with.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be written.
+pub fn write_named(named: &Named, path: &Path) -> Result<()> {
+    write_atomic(path, named_to_string(named).as_bytes())
+}
+
+/// The text of rules with named sizes and counts.
+pub fn named_to_string(named: &Named) -> String {
+    named::to_string(named)
 }
 
 fn grammar(text: &str) -> std::result::Result<Grammar, Fault> {

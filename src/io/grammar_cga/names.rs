@@ -8,19 +8,24 @@ use edifice_shape::Axis;
 /// A size that is written more than once for the same symbol and axis has a name.
 pub(super) type SizeKey<'g> = (&'g str, Axis, u64);
 
-/// An identifier for each symbol, and the list of those that are not spelt like their symbol.
-#[allow(clippy::type_complexity)] // a map and a list of pairs
-pub(super) fn identifiers<'g>(
-    grammar: &'g Grammar,
-    taken: &mut FxHashSet<String>,
-) -> (FxHashMap<&'g str, String>, Vec<(String, &'g str)>) {
+/// The symbols of a grammar, each once.
+pub(super) fn symbols(grammar: &Grammar) -> impl Iterator<Item = &str> {
     let starts = grammar.starts.iter().map(|s| s.symbol.as_str());
     let written = grammar.rules.iter().flat_map(|rule| {
         let symbols = rule.operation.symbols();
         std::iter::once(rule.symbol.as_str()).chain(symbols)
     });
+    starts.chain(written)
+}
+
+/// An identifier for each symbol, and the list of those that are not spelt like their symbol.
+#[allow(clippy::type_complexity)] // a map and a list of pairs
+pub(super) fn identifiers<'g>(
+    symbols: impl Iterator<Item = &'g str>,
+    taken: &mut FxHashSet<String>,
+) -> (FxHashMap<&'g str, String>, Vec<(String, &'g str)>) {
     let mut seen = FxHashSet::default();
-    let symbols: Vec<&str> = starts.chain(written).filter(|s| seen.insert(*s)).collect();
+    let symbols: Vec<&str> = symbols.filter(|s| seen.insert(*s)).collect();
     let plain = |symbol: &str| {
         let head = symbol.starts_with(|c: char| c.is_ascii_alphabetic());
         head && symbol

@@ -6,7 +6,7 @@ use chumsky::prelude::*;
 
 use super::error::Fault;
 use super::syntax::{
-    Alternative, At, CgaRule, Chance, Entry, Expression, Item, Part, Prefix, Target,
+    Alternative, At, Call, CgaRule, Chance, Entry, Expression, Item, Part, Prefix, Target,
 };
 use super::token::Token;
 use edifice_shape::Axis;
@@ -143,12 +143,22 @@ where
                 .repeated()
                 .delimited_by(just(Token::OpenParen), just(Token::CloseParen))
         });
+        let numbers = expression
+            .clone()
+            .separated_by(just(Token::Comma))
+            .at_least(1)
+            .collect::<Vec<_>>()
+            .delimited_by(just(Token::OpenParen), just(Token::CloseParen));
+        // What the next rule takes is not what this one becomes.
         let call = name
             .map_with(|name, e| (name, e.span()))
-            .then_ignore(arguments);
-        let calls = call.repeated().at_least(1).collect::<Vec<At<&str>>>();
+            .then(choice((numbers.map(Some), arguments.to(None))))
+            .then_ignore(just(Token::Arrow).not())
+            .map(|(name, numbers)| Call { name, numbers });
+        let calls = call.repeated().at_least(1).collect::<Vec<Call>>();
         // The name of the next rule is not what this one becomes.
-        let symbol = name.then_ignore(just(Token::Arrow).not());
+        let next = choice((just(Token::Arrow), just(Token::OpenParen)));
+        let symbol = name.then_ignore(next.not());
         let after = choice((split.clone(), symbol.map(Target::Symbol)));
         let called = calls
             .then(after.or_not())
@@ -176,14 +186,20 @@ where
     let single = notes
         .then(target)
         .map(move |rest| vec![alternative(Chance::Always, rest)]);
+    let parameters = name
+        .separated_by(just(Token::Comma))
+        .collect::<Vec<_>>()
+        .delimited_by(just(Token::OpenParen), just(Token::CloseParen));
     let rule = notes
         .then(name.map_with(|name, e| (name, e.span())))
+        .then(parameters.or_not().map(Option::unwrap_or_default))
         .then_ignore(just(Token::Arrow))
         .then(choice((weighted, single)))
-        .map(|((notes, name), alternatives)| {
+        .map(|(((notes, name), parameters), alternatives)| {
             Item::Rule(Box::new(CgaRule {
                 notes,
                 name,
+                parameters,
                 alternatives,
             }))
         });

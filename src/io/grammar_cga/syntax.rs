@@ -26,6 +26,8 @@ pub(super) struct CgaRule<'a> {
     /// Our comments before the rule.
     pub notes: Vec<At<&'a str>>,
     pub name: At<&'a str>,
+    /// Names of the numbers that it takes.
+    pub parameters: Vec<&'a str>,
     pub alternatives: Vec<Alternative<'a>>,
 }
 
@@ -51,8 +53,16 @@ pub(super) enum Chance<'a> {
 pub(super) enum Target<'a> {
     Symbol(&'a str),
     Split(Axis, Vec<Entry<'a>>),
-    /// `color("#ff0000") A`: calls of operations, and what follows them.
-    Calls(Vec<At<&'a str>>, Option<Box<Target<'a>>>),
+    /// `color("#ff0000") A`: calls of operations, and what follows them. The last one may be a rule with parameters.
+    Calls(Vec<Call<'a>>, Option<Box<Target<'a>>>),
+}
+
+/// `Floor(3, 1.2)`: an operation or a rule with what it takes.
+#[derive(Debug, Clone)]
+pub(super) struct Call<'a> {
+    pub name: At<&'a str>,
+    /// Numbers; none where something else stands in the parentheses.
+    pub numbers: Option<Vec<At<Expression<'a>>>>,
 }
 
 /// One entry between the bars of a split.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::names::{SizeKey, constants, identifiers};
+use super::names::{SizeKey, constants, identifiers, symbols};
 use super::reserved;
 use crate::json::quoted;
 use crate::palette::Palette;
@@ -12,13 +12,13 @@ use edifice_grammar::{Grammar, Operation, Rule, Size, Successor, size_independen
 use edifice_shape::Axis;
 
 /// The version of CGA that the text keeps to: every word of it is known since then.
-const VERSION: &str = "2019.0";
+pub(super) const VERSION: &str = "2019.0";
 
 /// The text of a grammar. Reading it gives back the same value, bit by bit, with the rules of each
 /// symbol of a stochastic grammar brought together.
 pub(super) fn to_string(grammar: &Grammar) -> String {
     let mut taken: FxHashSet<String> = reserved::words().map(str::to_owned).collect();
-    let (identifiers, renamed) = identifiers(grammar, &mut taken);
+    let (identifiers, renamed) = identifiers(symbols(grammar), &mut taken);
     let constants = constants(grammar, &identifiers, &mut taken);
     let text = Text {
         identifiers,
@@ -272,7 +272,7 @@ fn size(size: Size) -> String {
 }
 
 /// Percentages for weights, and whether reading them gives back exactly the weights.
-fn percentages(weights: &[f64]) -> (Vec<f64>, bool) {
+pub(super) fn percentages(weights: &[f64]) -> (Vec<f64>, bool) {
     // As the reader does: the last one is what the others leave of 100.
     let others: f64 = weights[..weights.len() - 1].iter().sum();
     if weights.len() > 1 && 100.0 - others == weights[weights.len() - 1] {

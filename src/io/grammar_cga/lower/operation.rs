@@ -5,7 +5,7 @@ use chumsky::span::SimpleSpan;
 use super::super::error::Fault;
 use super::super::note::Note;
 use super::super::reserved::is_appearance;
-use super::super::syntax::{Alternative, At, Entry, Part, Prefix, Target};
+use super::super::syntax::{Alternative, At, Call, Entry, Expression, Part, Prefix, Target};
 use super::Builder;
 use edifice_grammar::{Operation, Size, Successor};
 use edifice_shape::Axis;
@@ -14,27 +14,42 @@ use edifice_shape::Axis;
 const FRACTION_SLACK: f64 = 1e-9;
 
 /// Most periods that fractions may repeat.
-const MOST_PERIODS: f64 = 1000.0;
+const MOST_PERIODS: f64 = 4096.0;
 
 /// The replacement that a target names, without its looks.
 #[derive(Clone, Copy)]
 enum Plain<'t, 'a> {
-    Symbol(&'a str),
+    Symbol(&'a str, &'t [At<Expression<'a>>]),
     Split(Axis, &'t [Entry<'a>]),
 }
 
-/// A target without the operations that only change its looks.
-fn plain<'t, 'a>((target, span): &'t At<Target<'a>>) -> Result<Plain<'t, 'a>, Fault> {
+/// A target without the operations that only change its looks; `is_rule` knows the rules that take numbers.
+fn plain<'t, 'a>(
+    (target, span): &'t At<Target<'a>>,
+    is_rule: impl Fn(&str) -> bool,
+) -> Result<Plain<'t, 'a>, Fault> {
     match target {
-        Target::Symbol(name) => Ok(Plain::Symbol(name)),
+        Target::Symbol(name) => Ok(Plain::Symbol(name, &[])),
         Target::Split(axis, entries) => Ok(Plain::Split(*axis, entries)),
         Target::Calls(calls, after) => {
-            if let Some(&(name, span)) = calls.iter().find(|(name, _)| !is_appearance(name)) {
+            let (calls, last) = match (&calls[..], after) {
+                ([looks @ .., last], None) if is_rule(last.name.0) => (looks, Some(last)),
+                (all, _) => (all, None),
+            };
+            let changes = calls.iter().find(|call| !is_appearance(call.name.0));
+            if let Some(&Call {
+                name: (name, span), ..
+            }) = changes
+            {
                 return Err(changes_shape(name, span));
             }
-            match after.as_deref() {
-                Some(Target::Symbol(name)) => Ok(Plain::Symbol(name)),
-                Some(Target::Split(axis, entries)) => Ok(Plain::Split(*axis, entries)),
+            match (last, after.as_deref()) {
+                (Some(last), _) => match &last.numbers {
+                    Some(numbers) => Ok(Plain::Symbol(last.name.0, numbers)),
+                    None => Err(Fault::new(last.name.1, "this rule takes numbers")),
+                },
+                (None, Some(Target::Symbol(name))) => Ok(Plain::Symbol(name, &[])),
+                (None, Some(Target::Split(axis, entries))) => Ok(Plain::Split(*axis, entries)),
                 _ => {
                     let message =
                         "this part becomes no symbol; name it, as in color(\"#ff0000\") Window";
@@ -73,9 +88,9 @@ impl Builder<'_> {
                 other => note = Some((other, at)),
             }
         }
-        let target = plain(&alternative.target)?;
+        let target = plain(&alternative.target, |name| self.takes_numbers(name))?;
         match (note, target) {
-            (None, target) => self.operation(target, symbol),
+            (None, target) => self.operation(target, symbol, alternative.target.1),
             (Some((Note::SymSplit, at)), Plain::Split(axis, entries)) => {
                 self.sym_split(axis, entries, symbol, at)
             }
@@ -86,13 +101,18 @@ impl Builder<'_> {
         }
     }
 
-    fn operation(&mut self, target: Plain<'_, '_>, symbol: &str) -> Result<Operation, Fault> {
+    fn operation(
+        &mut self,
+        target: Plain<'_, '_>,
+        symbol: &str,
+        span: SimpleSpan,
+    ) -> Result<Operation, Fault> {
         let (axis, entries) = match target {
             Plain::Split(axis, entries) => (axis, entries),
-            Plain::Symbol(name) => {
+            Plain::Symbol(name, numbers) => {
                 let size = Size::Relative(1.0);
                 let successors = vec![Successor {
-                    symbol: self.symbol(name),
+                    symbol: self.called(name, numbers, span)?,
                     size,
                 }];
                 return Ok(Operation::Split {
@@ -258,11 +278,12 @@ impl Builder<'_> {
 
     /// The symbol of a part; a helper for a split.
     fn target_symbol(&mut self, part: &Part<'_>, parent: &str) -> Result<String, Fault> {
-        match plain(&part.target)? {
-            Plain::Symbol(name) => Ok(self.symbol(name)),
+        let span = part.target.1;
+        match plain(&part.target, |name| self.takes_numbers(name))? {
+            Plain::Symbol(name, numbers) => self.called(name, numbers, span),
             split => {
-                let operation = self.operation(split, parent)?;
-                Ok(self.helper(parent, operation, part.target.1))
+                let operation = self.operation(split, parent, span)?;
+                Ok(self.helper(parent, operation, span))
             }
         }
     }

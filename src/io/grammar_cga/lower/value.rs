@@ -25,7 +25,10 @@ pub(super) fn is_random(target: &Target<'_>) -> bool {
     match target {
         Target::Symbol(_) => false,
         Target::Split(_, entries) => entries.iter().any(in_entry),
-        Target::Calls(_, after) => after.as_deref().is_some_and(is_random),
+        Target::Calls(calls, after) => {
+            let mut numbers = calls.iter().flat_map(|call| call.numbers.iter().flatten());
+            numbers.any(|number| random(&number.0)) || after.as_deref().is_some_and(is_random)
+        }
     }
 }
 
@@ -47,12 +50,12 @@ impl Builder<'_> {
             Expression::Number(text) => text
                 .parse()
                 .map_err(|_| Fault::new(span, format!("{text} is not a number"))),
-            Expression::Name(name) => self.constants.get(name).copied().ok_or_else(|| {
-                Fault::new(
-                    span,
-                    format!("constant {name} is not defined above this line"),
-                )
-            }),
+            Expression::Name(name) => {
+                let numbers = [&self.numbers, &self.constants];
+                let known = numbers.into_iter().find_map(|known| known.get(name));
+                let message = || format!("constant {name} is not defined above this line");
+                known.copied().ok_or_else(|| Fault::new(span, message()))
+            }
             Expression::Between(low, high) => {
                 let (low, high) = (self.evaluate(low, span)?, self.evaluate(high, span)?);
                 Ok(self.draw.between(low, high))
