@@ -37,6 +37,8 @@ pub struct CountrySettings {
     pub precision: Precision,
     /// The share of the types that are local.
     pub shares: Shares,
+    /// Most templates, and most rules, that a tile proposes: what the merge holds grows with them.
+    pub proposed: usize,
 }
 
 /// The parting of types among dictionary and tiles.

@@ -31,7 +31,9 @@ pub fn propose(
     if components.is_empty() {
         return Err(ProceduralizeError::Empty);
     }
-    let k = settings.types(components.len());
+    let k = settings
+        .types(components.len())
+        .min(settings.proposed.max(1));
     let shape = geometric_features(&components);
     let priced = TypeTree::new(&components, &shape, settings.representative)?.cut(k);
     if !watched.goes_on(Progress::stage("rules of buildings over templates")) {
