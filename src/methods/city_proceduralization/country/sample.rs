@@ -23,7 +23,7 @@ pub struct Stands {
 pub struct Sample {
     /// Templates, rules of buildings, and under the axiom an example of each rule, in the order of the rules.
     pub grammar: InstanceGrammar,
-    /// What each template stands for.
+    /// The components that each template stands for.
     pub stands: Vec<Stands>,
     /// Components of the tiles that it was made from.
     pub components: usize,
