@@ -86,7 +86,8 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
         "bif" => drop(Network::from_bif(text)?),
         "city-grammar" => drop(io::city::grammar_json::parse(bytes, path)?),
         "city-plan" => {
-            let plan = edifice_experiments::country::Plan::parse(bytes, path)?;
+            let plan =
+                edifice_experiments::city_proceduralization::country::Plan::parse(bytes, path)?;
             assert_eq!((plan.tiles.len(), plan.buildings()), (1, 96));
         }
         "city-proposal" => {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::Result;
-use edifice_experiments::country::{Options, PLAN, Plan};
+use edifice_experiments::city_proceduralization::country::{Options, PLAN, Plan};
 
 use crate::print::Json;
 

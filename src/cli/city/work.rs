@@ -6,7 +6,7 @@ use std::process::{Child, Command};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use edifice_base::{Error, Progress, Result};
-use edifice_experiments::country::{Plan, work};
+use edifice_experiments::city_proceduralization::country::{Plan, work};
 
 use crate::print::{self, Json};
 

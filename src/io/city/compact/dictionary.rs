@@ -24,31 +24,6 @@ pub struct Dictionary {
 }
 
 impl Dictionary {
-    /// The dictionary of a file's bytes.
-    ///
-    /// # Errors
-    /// [`CompactError`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CompactError> {
-        Ok(Self {
-            sha256: sha256(bytes),
-            grammar: super::from_bytes(bytes)?,
-        })
-    }
-
-    /// Reads the dictionary beside the grammar at `path`; its digest has to be `wanted`.
-    pub(super) fn beside(path: &Path, wanted: &str) -> Result<Self, CompactError> {
-        let path = path.with_file_name(DICTIONARY);
-        let name = path.display();
-        let bytes = read_bytes(&path).map_err(|e| CompactError::Dictionary(e.to_string()))?;
-        let found = sha256(&bytes);
-        if found != wanted {
-            let message = format!("{name} has the SHA-256 {found}, expected {wanted}");
-            return Err(CompactError::Dictionary(message));
-        }
-        let read = Self::from_bytes(&bytes);
-        read.map_err(|e| CompactError::Dictionary(format!("{name}: {e}")))
-    }
-
     /// The rules but the axiom's.
     pub(super) fn rules(&self) -> Vec<InstanceRule> {
         let rules = self.grammar.rules.iter();
@@ -68,7 +43,20 @@ impl Dictionary {
     }
 }
 
-fn sha256(bytes: &[u8]) -> String {
+pub(super) fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The bytes of the dictionary beside the grammar at `path`; their digest has to be `wanted`.
+pub(super) fn bytes_beside(path: &Path, wanted: &str) -> Result<Vec<u8>, CompactError> {
+    let path = path.with_file_name(DICTIONARY);
+    let bytes = read_bytes(&path).map_err(|e| CompactError::Dictionary(e.to_string()))?;
+    match sha256(&bytes) {
+        found if found == wanted => Ok(bytes),
+        found => Err(CompactError::Dictionary(format!(
+            "{} has the SHA-256 {found}, expected {wanted}",
+            path.display()
+        ))),
+    }
 }

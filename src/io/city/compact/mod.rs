@@ -25,6 +25,7 @@ mod error;
 mod identity;
 mod integers;
 mod mesh;
+mod names;
 mod order;
 mod range_coder;
 mod rows;
@@ -41,6 +42,7 @@ pub use self::error::{CompactError, VERSION};
 use self::error::{FIRST, SHARING};
 use self::identity::{Attributes, Identities};
 use self::mesh::{MeshModels, StepMesh};
+use self::names::{Names, names, runs};
 use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
 pub use self::unit::Steps;
@@ -64,8 +66,22 @@ const MOST_TEXT: u64 = 1 << 28;
 /// Names the file.
 pub fn read(path: &Path) -> Result<InstanceGrammar> {
     let bytes = read_bytes(path)?;
-    let beside = |wanted: &str| Dictionary::beside(path, wanted);
+    let beside = |wanted: &str| {
+        let bytes = dictionary::bytes_beside(path, wanted)?;
+        dictionary(&bytes).map_err(|e| CompactError::Dictionary(e.to_string()))
+    };
     decoded(&bytes, &beside).map_err(|e| Error::content(path, e))
+}
+
+/// The dictionary of a file's bytes.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn dictionary(bytes: &[u8]) -> Result<Dictionary, CompactError> {
+    Ok(Dictionary {
+        sha256: dictionary::sha256(bytes),
+        grammar: from_bytes(bytes)?,
+    })
 }
 
 /// Writes a grammar, whole or not at all.
@@ -99,10 +115,6 @@ struct Texts {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     dictionary: Option<String>,
 }
-
-/// Names that are one text with consecutive numbers; without numbers one name.
-#[derive(Serialize, Deserialize)]
-struct Names(String, u64, u64);
 
 /// The bytes of a grammar.
 ///
@@ -233,7 +245,7 @@ fn symbols_of(rules: &[InstanceRule]) -> usize {
 
 fn decoded(
     bytes: &[u8],
-    dictionary: &dyn Fn(&str) -> Result<Dictionary, CompactError>,
+    shared: &dyn Fn(&str) -> Result<Dictionary, CompactError>,
 ) -> Result<InstanceGrammar, CompactError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(CompactError::Magic);
@@ -257,7 +269,7 @@ fn decoded(
         serde_json::from_slice(&inflated(texts)?).map_err(|e| CompactError::Text(e.to_string()))?;
     let steps = texts.steps.checked()?;
     let shared = match (version, texts.dictionary.as_deref()) {
-        (SHARING, Some(wanted)) => Some(dictionary(wanted)?),
+        (SHARING, Some(wanted)) => Some(shared(wanted)?),
         _ => None,
     };
     let known = shared.as_ref().map_or_else(Vec::new, Dictionary::rules);
@@ -349,41 +361,6 @@ fn in_box(mesh: &StepMesh, steps: i64) -> TriangleMesh {
             .collect(),
         triangles: mesh.triangles.clone(),
     }
-}
-
-/// Names as few runs: `T1`, `T2`, `T3` are one.
-fn runs(names: &[String]) -> Vec<Names> {
-    let mut out: Vec<Names> = Vec::new();
-    for name in names {
-        let text = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        // A number with zeros in front is text.
-        let number = name[text.len()..].parse::<u64>().ok();
-        let number = number.filter(|n| *n < 1 << 40 && name[text.len()..] == n.to_string());
-        match (out.last_mut(), number) {
-            (Some(run), Some(n)) if run.2 > 0 && run.0 == text && run.1 + run.2 == n => run.2 += 1,
-            (_, Some(n)) => out.push(Names(text.to_owned(), n, 1)),
-            (_, None) => out.push(Names(name.clone(), 0, 0)),
-        }
-    }
-    out
-}
-
-/// Most names of a file.
-const MOST_NAMES: u64 = 4_000_000;
-
-fn names(runs: &[Names]) -> Result<Vec<String>, CompactError> {
-    let total: u64 = runs.iter().fold(0, |sum, r| sum.saturating_add(r.2.max(1)));
-    if total > MOST_NAMES {
-        return Err(CompactError::TooLarge("names"));
-    }
-    let mut out = Vec::new();
-    for Names(text, first, count) in runs {
-        match count {
-            0 => out.push(text.clone()),
-            _ => out.extend((0..*count).map(|k| format!("{text}{}", first.saturating_add(k)))),
-        }
-    }
-    Ok(out)
 }
 
 fn checksum(bytes: &[u8]) -> u32 {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
-use super::plan::Tile;
+use super::tile::Tile;
 use crate::frame::provenance;
 use edifice_base::{Error, Result, file};
 use edifice_io::city::cityjson;

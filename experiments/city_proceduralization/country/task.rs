@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::plan::{Plan, Tile};
+use super::plan::Plan;
+use super::tile::Tile;
 use crate::frame::provenance;
 use edifice_base::{Error, Result, Watch, file};
 use edifice_city_proceduralization::country::{Sample, Stands, code, merge, propose};
 use edifice_grammar::instance::Kept;
-use edifice_io::city::compact::{self, DICTIONARY, Dictionary};
+use edifice_io::city::compact::{self, DICTIONARY};
 use edifice_io::city::proposal_json::{self, Proposal};
 use edifice_io::city::{self, tiles};
 use edifice_shape::triangles::City;
@@ -167,7 +168,7 @@ impl<'a> Place<'a> {
 
     fn code(&self, tile: usize, watch: &Watch) -> Result<Vec<u8>> {
         let path = self.output(Task::Merge);
-        let dictionary = Dictionary::from_bytes(&file::read_bytes(&path)?);
+        let dictionary = compact::dictionary(&file::read_bytes(&path)?);
         let dictionary = dictionary.map_err(|e| Error::content(&path, e))?;
         let proposal = self.proposal(tile)?;
         let (city, path) = self.tile(&self.plan.tiles[tile])?;

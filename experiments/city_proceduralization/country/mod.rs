@@ -15,7 +15,9 @@
 mod plan;
 mod split;
 mod task;
+mod tile;
 mod work;
 
-pub use plan::{Memory, Options, PLAN, Plan, Tile};
+pub use plan::{Memory, Options, PLAN, Plan};
+pub use tile::Tile;
 pub use work::{Ran, work};

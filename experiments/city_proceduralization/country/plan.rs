@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::split::{Seen, split};
+use super::tile::Tile;
 use crate::frame::provenance;
 use edifice_base::{Error, Result, file};
 use edifice_city_proceduralization::country::{CountrySettings, Shares};
@@ -62,19 +63,6 @@ impl Default for Options {
             scenes: false,
         }
     }
-}
-
-/// A tile.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Tile {
-    /// Name of its grammar.
-    pub name: String,
-    /// Its file; a relative path is relative to the plan's folder.
-    pub path: PathBuf,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// Number of buildings.
-    pub buildings: usize,
 }
 
 /// A plan.
