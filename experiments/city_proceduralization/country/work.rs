@@ -88,7 +88,7 @@ pub fn work(plan: &Plan, out: &Path, watch: &Watch) -> Result<Ran> {
 fn claimed(place: &Place, open: &[Task], claims: &Path) -> Result<Option<(Task, Lock)>> {
     for &task in open {
         let needs = place.needs(task);
-        if !needs.iter().all(|n| !open.contains(n)) {
+        if needs.iter().any(|n| open.contains(n)) {
             continue;
         }
         let path = claims.join(format!("{}.lock", place.name(task)));
