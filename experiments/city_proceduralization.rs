@@ -3,6 +3,7 @@
 
 mod clustering;
 mod communities;
+pub mod country;
 mod data;
 mod exhibits;
 mod figure_10;

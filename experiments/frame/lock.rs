@@ -30,6 +30,19 @@ impl Lock {
         Ok(Self(file))
     }
 
+    /// Takes a file, which is made where it is not there; `None` while another process has it.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub(crate) fn claim(path: &Path) -> Result<Option<Self>> {
+        let file = open_file(path)?;
+        match file.try_lock() {
+            Ok(()) => Ok(Some(Self(file))),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(e)) => unsupported(path, e).map(|()| Some(Self(file))),
+        }
+    }
+
     /// Takes the folder as soon as no other process has it.
     ///
     /// # Errors
@@ -54,14 +67,17 @@ pub(crate) fn exclusive(file: &File, path: &Path) -> Result<()> {
 }
 
 fn open(folder: &Path) -> Result<File> {
-    let path = folder.join(NAME);
+    open_file(&folder.join(NAME))
+}
+
+fn open_file(path: &Path) -> Result<File> {
     OpenOptions::new()
         .create(true)
         .truncate(false)
         .read(true)
         .write(true)
-        .open(&path)
-        .map_err(|e| Error::io(&path, "create", e))
+        .open(path)
+        .map_err(|e| Error::io(path, "create", e))
 }
 
 /// Goes on, with a warning, where the file system has no locks.

@@ -8,11 +8,13 @@ mod derive;
 mod draw;
 mod edit;
 mod locate;
+mod plan;
 mod proceduralize;
 mod residuals;
 mod show;
 mod synthesize;
 mod tiles;
+mod work;
 
 use clap::Subcommand;
 
@@ -77,6 +79,18 @@ The view lists buildings near each other: { \"format\": \"edifice/city-view\", \
     #[command(after_help = "Examples:
   edifice city tiles town.city-grammar.json -o town-tiles")]
     Tiles(tiles::Args),
+    /// Plan the work on a country: tiles that share a dictionary of types.
+    #[command(after_help = "Examples:
+  edifice city plan town.obj --tile 150 --scenes -o country
+A country is more buildings than fit into one machine's memory. Each tile becomes a grammar over one dictionary; see
+`edifice city work`.")]
+    Plan(plan::Args),
+    /// Work through a plan; any number of workers, also on several machines that share the folder.
+    #[command(after_help = "Examples:
+  edifice city work country --workers 2
+A worker that is killed loses its task alone; started again it goes on. On a cluster, start this command as often as wanted, for
+example as a job array. The grammars in DIR/city-KEY are read by all commands of `edifice city`.")]
+    Work(work::Args),
     /// Draw a city or a grammar.
     #[command(after_help = "Examples:
   edifice city draw town.city-grammar.json --beside town.obj -o town.png
@@ -97,5 +111,7 @@ pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
         Command::Synthesize(args) => synthesize::run(&args),
         Command::Locate(args) => locate::run(&args),
         Command::Tiles(args) => tiles::run(&args),
+        Command::Plan(args) => plan::run(&args),
+        Command::Work(args) => work::run(&args),
     }
 }

@@ -7,6 +7,7 @@ mod cga_judge;
 mod citygml;
 mod commands;
 mod compact;
+mod country;
 mod far_away;
 mod formats;
 mod gltf;

@@ -85,6 +85,19 @@ fn read(kind: &str, text: &str) -> Result<(), Box<dyn std::error::Error>> {
         }
         "bif" => drop(Network::from_bif(text)?),
         "city-grammar" => drop(io::city::grammar_json::parse(bytes, path)?),
+        "city-plan" => {
+            let plan =
+                edifice_experiments::city_proceduralization::country::Plan::parse(bytes, path)?;
+            assert_eq!((plan.tiles.len(), plan.buildings()), (1, 96));
+        }
+        "city-proposal" => {
+            use io::city::proposal_json::{parse, to_bytes};
+            let proposal = parse(bytes, path)?;
+            let folder = tempfile::tempdir()?;
+            let file = folder.path().join("again.city-proposal.json.gz");
+            std::fs::write(&file, to_bytes(&proposal)?)?;
+            assert_eq!(io::city::proposal_json::read(&file)?, proposal);
+        }
         "city-view" => assert_eq!(io::city::view_json::parse(bytes, path)?.len(), 2),
         "made-city" => sweep("city_proceduralization/proceduralize", "made-city", text),
         "knapsack" => sweep("optim/annealing", "knapsack", text),

@@ -97,6 +97,7 @@ fn files_and_tables_are_told_to_programs() {
     let [house, city, again, scaled] =
         ["h.svg", "c.obj", "c.city.json", "s.city-grammar.json"].map(out);
     let [tiles, view, network, pages] = ["tiles", "v.png", "n.json", "man"].map(out);
+    let country = out("country");
     let cases: &[(&str, &[&str])] = &[
         ("grammar derive", &[&first, "-o", &derived]),
         (
@@ -123,6 +124,8 @@ fn files_and_tables_are_told_to_programs() {
         ("city convert", &[&city, "-o", &again]),
         ("city edit", &[town, "scale house=1,1,2", "-o", &scaled]),
         ("city tiles", &[town, "-o", &tiles]),
+        ("city plan", &[&city, "--tile", "200", "-o", &country]),
+        ("city work", &[&country]),
         ("city draw", &[town, "--size", "64x48", "-o", &view]),
         ("model schema", &[&numbers]),
         ("model sample", &[asia, "-n", "3"]),

@@ -18,9 +18,9 @@ const SAMPLES: usize = 20_000;
 /// Options.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A city or a grammar.
+    /// A city, a grammar, or the folder of a country's grammars.
     first: PathBuf,
-    /// Another city or grammar.
+    /// Another of them.
     second: PathBuf,
     /// Cells of the raster, in metres.
     #[arg(long, default_value_t = 0.5)]
@@ -91,15 +91,12 @@ struct Side {
 
 fn read(path: &Path) -> Result<Side> {
     let city: City = data::city(path)?;
-    let bytes = std::fs::metadata(path)
-        .map_err(|e| Error::io(path, "read", e))?
-        .len();
     Ok(Side {
         name: path.display().to_string(),
         buildings: city.buildings.len(),
         triangles: city.triangles(),
-        bytes,
-        meshes: match data::is_grammar(path) {
+        bytes: data::bytes(path)?,
+        meshes: match data::is_derived(path) {
             // What is derived is judged as it is.
             true => city.buildings.into_iter().map(|b| b.mesh).collect(),
             false => city

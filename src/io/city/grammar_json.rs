@@ -155,7 +155,7 @@ pub fn packed_bytes(grammar: &InstanceGrammar) -> serde_json::Result<usize> {
     Ok(packed(to_string(grammar)?.as_bytes()).len())
 }
 
-fn packed(bytes: &[u8]) -> Vec<u8> {
+pub(super) fn packed(bytes: &[u8]) -> Vec<u8> {
     use std::io::Write;
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     // Writing to memory does not fail.

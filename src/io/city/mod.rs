@@ -35,6 +35,7 @@ pub mod obj;
 mod obj_write;
 pub mod picture;
 mod pictures;
+pub mod proposal_json;
 mod shells;
 pub mod tiles;
 pub mod view_json;

@@ -5,9 +5,10 @@ use super::stacks::Stack;
 /// Bases at least as square as this may be turned by a quarter.
 const SQUARE: f64 = 0.75;
 
-/// A building that a rule may be made from: its class, and which of the distinct members it is.
+/// A building that a rule may be made from: its class, which of its members it is, and which of the distinct ones.
 pub(super) struct Candidate {
     pub(super) class: usize,
+    pub(super) member: usize,
     pub(super) row: usize,
     pub(super) maps: Vec<f32>,
     /// Price of the derived triangles of an instance, in cubic metres.

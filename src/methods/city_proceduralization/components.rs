@@ -132,24 +132,38 @@ fn blurred(side: &SideView) -> Vec<f32> {
 
 /// The components of a building of which the input says what it is put together from: nothing is cut.
 fn stated_components(parts: Vec<(&Part, TriangleMesh)>, building: usize) -> Vec<Component> {
-    let component = |(slab, (part, mesh)): (usize, (&Part, TriangleMesh))| {
+    let component = |(slab, (part, mesh)): (usize, (&Part, TriangleMesh))| Component {
+        texture: part.texture.clone(),
+        ..Component::of_template(mesh, part.frame, part.template, building, slab)
+    };
+    parts.into_iter().enumerate().map(component).collect()
+}
+
+impl Component {
+    /// The template of number `stated`, with the mesh `mesh` in its unit box, in its place.
+    pub(super) fn of_template(
+        mesh: TriangleMesh,
+        frame: OrientedBox,
+        stated: usize,
+        building: usize,
+        slab: usize,
+    ) -> Self {
         let heights = height_map(&mesh, CELLS, SAMPLES);
-        Component {
+        Self {
             building,
             slab,
-            frame: part.frame,
-            volume: mesh.volume_above(0.0) * part.frame.volume(),
+            frame,
+            volume: mesh.volume_above(0.0) * frame.volume(),
             symmetric: upside_down(&heights).is_none(),
             heights,
             mesh,
-            stated: Some(part.template),
+            stated: Some(stated),
             windows: None,
             looks: Vec::new(),
             texture_bytes: 0.0,
-            texture: part.texture.clone(),
+            texture: None,
         }
-    };
-    parts.into_iter().enumerate().map(component).collect()
+    }
 }
 
 /// The components of a repaired building.

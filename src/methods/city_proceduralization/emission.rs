@@ -2,6 +2,7 @@
 
 use super::building_types::BuildingTypes;
 use super::component::Component;
+use super::detail::Detail;
 use super::parse_tree::ParseTree;
 use super::rulebook::{RuleUse, Rulebook};
 use super::types::Types;
@@ -9,53 +10,6 @@ use edifice_grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
 };
 use edifice_shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
-
-/// The precision in which the numbers of a grammar are written.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Detail {
-    /// Steps of lengths in a metre.
-    length: f64,
-    /// Steps of turns in a degree.
-    angle: f64,
-    /// Steps of a template's box.
-    box_steps: f64,
-    /// Coplanar triangles of a template are joined within this share of its box.
-    coplanar: f64,
-}
-
-impl Detail {
-    /// At least centimetres, and hundredths of degrees: what rules compute is rounded so, and is found again in a city that was
-    /// derived from them.
-    pub(super) fn at_least_centimetre(self) -> Self {
-        Self {
-            length: self.length.max(Self::CENTIMETRE.length),
-            angle: self.angle.max(Self::CENTIMETRE.angle),
-            ..self
-        }
-    }
-
-    /// Centimetres, hundredths of degrees, 12 bits: where templates stand for others, nothing finer is seen.
-    pub(super) const CENTIMETRE: Self = Self {
-        length: 100.0,
-        angle: 100.0,
-        box_steps: 4095.0,
-        coplanar: 1e-3,
-    };
-    /// Millimetres, ten-thousandths of degrees, 16 bits: where each component has its own template.
-    pub(super) const MILLIMETRE: Self = Self {
-        length: 1000.0,
-        angle: 10_000.0,
-        box_steps: 65_535.0,
-        coplanar: 2e-5,
-    };
-    /// Decimetres, half degrees, 7 bits: where few bytes count.
-    pub(super) const DECIMETRE: Self = Self {
-        length: 10.0,
-        angle: 2.0,
-        box_steps: 127.0,
-        coplanar: 4e-3,
-    };
-}
 
 /// Axiom of the grammar.
 pub const AXIOM: &str = "City";
@@ -93,7 +47,7 @@ pub fn placed_components(
     components.iter().enumerate().map(one).collect()
 }
 
-fn terminals(
+pub(super) fn terminals(
     city: &City,
     components: &[Component],
     types: &Types,
@@ -133,6 +87,39 @@ pub(super) struct Found<'a> {
 /// A building's parts stand where its rule puts them; one that differs from it by more than a step, or by anything
 /// where the grammar is to be `exact`, keeps its parts as a residual.
 pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGrammar {
+    emit_rules(found, named_rules(found, 0, BUILDING), detail, exact)
+}
+
+/// Beginnings of the symbols of types of buildings, and of escapes.
+const BUILDING: [&str; 2] = ["B", "E"];
+
+/// The rules of the rulebook from the number `first` on, named.
+pub(super) fn named_rules(found: &Found, first: usize, names: [&str; 2]) -> Vec<InstanceRule> {
+    let (rulebook, mut numbers) = (found.rulebook, [0usize; 2]);
+    let mut counts = vec![0usize; rulebook.rules.len()];
+    for used in rulebook.uses.iter().flatten() {
+        counts[used.rule] += 1;
+    }
+    let own = rulebook.rules.iter().zip(&counts).skip(first);
+    let named = own.map(|(&building, &count)| {
+        let escape = usize::from(count == 1);
+        numbers[escape] += 1;
+        let parts = &found.buildings.parts[building];
+        let mut rule = rule_of(found.components, parts, found.types);
+        rule.symbol = format!("{}{}", names[escape], numbers[escape]);
+        rule.weight = count as f64;
+        rule
+    });
+    named.collect()
+}
+
+/// The grammar of `best` with these `rules`, those of the rulebook.
+pub(super) fn emit_rules(
+    found: &Found,
+    rules: Vec<InstanceRule>,
+    detail: &Detail,
+    exact: bool,
+) -> InstanceGrammar {
     let Found {
         city,
         components,
@@ -142,20 +129,6 @@ pub(super) fn emit(found: &Found, detail: &Detail, exact: bool) -> InstanceGramm
         patterns,
     } = *found;
     let mut grammar = terminals(city, components, types, detail, true);
-    let mut counts = vec![0usize; rulebook.rules.len()];
-    for used in rulebook.uses.iter().flatten() {
-        counts[used.rule] += 1;
-    }
-    let mut rules: Vec<InstanceRule> = Vec::with_capacity(counts.len());
-    let mut numbers = [0usize; 2];
-    for (&building, &count) in rulebook.rules.iter().zip(&counts) {
-        let escape = usize::from(count == 1);
-        numbers[escape] += 1;
-        let symbol = format!("{}{}", ["B", "E"][escape], numbers[escape]);
-        let mut rule = rule_of(components, &buildings.parts[building], types);
-        (rule.symbol, rule.weight) = (symbol, count as f64);
-        rules.push(rule);
-    }
     let mut successors = Vec::new();
     let step = if exact { 0.0 } else { 1.0 / detail.length };
     for building in 0..city.buildings.len() {
@@ -247,7 +220,7 @@ fn rule_of(components: &[Component], parts: &[usize], types: &Types) -> Instance
 const TURNS: f64 = 2.0;
 
 /// A building as an instance of a rule: its frame, and where it is, with its numbers.
-fn instance(
+pub(super) fn instance(
     components: &[Component],
     parts: &[usize],
     used: RuleUse,
@@ -303,7 +276,7 @@ pub fn terminal(kind: usize) -> String {
 
 /// The frame of a building: that of its lowest component. Parts stand where they do relative to it before it is rounded, so that like
 /// buildings have like parts wherever they are.
-struct Frame {
+pub(super) struct Frame {
     base: [f64; 3],
     /// Degrees.
     turn: f64,

@@ -92,7 +92,7 @@ impl Table<'_> {
     }
 
     /// The prices around given types.
-    fn price(&self, medoids: &[usize], uses: &[Use]) -> Price {
+    pub(super) fn price(&self, medoids: &[usize], uses: &[Use]) -> Price {
         let apart = |i: usize| {
             let Use { kind, quarter } = uses[i];
             self.weights[i] * mismatch(self.forms[medoids[kind]], self.forms[i], quarter)
@@ -172,22 +172,33 @@ impl Table<'_> {
         members.par_iter().enumerate().map(medoid).collect()
     }
 
+    /// The least cost, as a share of its volume, at which a medoid stands for a component, and the quarter turn; infinite
+    /// where it is not below `limit`.
+    pub(super) fn share(&self, medoid: usize, i: usize, price: Price, limit: f64) -> (f64, u8) {
+        let triangles = self.counts[i] * self.triangles[medoid];
+        let price = price.derived * triangles / self.weights[i];
+        let (form, own) = (self.forms[medoid], self.forms[i]);
+        let mut best = (f64::INFINITY, 0);
+        for quarter in 0..4 {
+            let below = limit.min(best.0) - price;
+            let cost = price + mismatch_below(form, own, quarter, below);
+            if cost < best.0 {
+                best = (cost, quarter);
+            }
+        }
+        best
+    }
+
     /// The best of the present type and the types whose medoids are nearest in features.
-    fn assign(&self, medoids: &[usize], uses: &[Use], price: Price) -> Vec<Use> {
+    pub(super) fn assign(&self, medoids: &[usize], uses: &[Use], price: Price) -> Vec<Use> {
         let nearest = Nearest::new(&self.rows, self.d, medoids);
         let best = |i: usize| {
             let mut best = (f64::INFINITY, uses[i]);
             let near = nearest.of(self.row(i), CANDIDATES).into_iter();
             for kind in near.chain([uses[i].kind]) {
-                let medoid = medoids[kind];
-                let triangles = self.counts[i] * self.triangles[medoid];
-                let price = price.derived * triangles / self.weights[i];
-                for quarter in 0..4 {
-                    let (form, own) = (self.forms[medoid], self.forms[i]);
-                    let cost = price + mismatch_below(form, own, quarter, best.0 - price);
-                    if cost < best.0 {
-                        best = (cost, Use { kind, quarter });
-                    }
+                let (cost, quarter) = self.share(medoids[kind], i, price, best.0);
+                if cost < best.0 {
+                    best = (cost, Use { kind, quarter });
                 }
             }
             best.1

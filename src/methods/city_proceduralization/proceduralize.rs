@@ -5,12 +5,13 @@ use rayon::prelude::*;
 use super::building_types::{BuildingTypes, building_types};
 use super::component::Component;
 use super::components::{Decomposition, decompose};
-use super::emission::{Detail, Found, emit, emit_tree, placed_components};
+use super::detail::Detail;
+use super::emission::{Found, emit, emit_tree, placed_components};
 use super::features::geometric_features;
 use super::parse_tree::{ParseTree, grow};
 use super::patterns::patterns;
 use super::rulebook::Stacks;
-use super::settings::{Budget, Mode, Precision, ProceduralizeError, Settings};
+use super::settings::{Budget, Mode, ProceduralizeError, Settings};
 use super::types::{Priced, TypeTree, Types, distinct_types, paper_types, stated_types};
 use edifice_base::{Ended, Progress, Watch, Watched};
 use edifice_grammar::instance::{InstanceGrammar, Repeated};
@@ -227,9 +228,7 @@ impl<'a> Prepared<'a> {
         };
         let detail = match settings.precision {
             None => detail,
-            Some(Precision::Millimetre) => Detail::MILLIMETRE,
-            Some(Precision::Centimetre) => Detail::CENTIMETRE,
-            Some(Precision::Decimetre) => Detail::DECIMETRE,
+            Some(precision) => precision.into(),
         };
         (self.watched).goes_on(Progress::stage("rules of buildings over templates"));
         // What is stated is kept as it is.

@@ -2,11 +2,8 @@
 //!
 //! Buildings of equally many levels are compared as stacks ([`Stack`]). Candidates are the buildings nearest to the means of many
 //! clusters (Ward, weighted by volume). Of them, one after the other becomes a rule: always the one that removes most
-//! mismatched volume for its bytes (the lazy greedy choice of submodular facility location, Minoux 1978). A
-//! building that no rule reaches within its neighbourhood takes the nearest rule of its number of levels.
+//! mismatched volume for its bytes ([`Facilities`]). A building that no rule reaches within its neighbourhood takes the nearest rule of its number of levels.
 //! Rules of one instance are escapes: buildings whose shape no type explains.
-
-use std::collections::BinaryHeap;
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -14,7 +11,7 @@ use rustc_hash::FxHashMap;
 use super::building_types::{BuildingTypes, projected};
 use super::candidates::{Candidate, Near, best};
 use super::component::Component;
-use super::gain::Gain;
+use super::facility::Facilities;
 use super::nearest::Nearest;
 use super::nearest::square;
 use super::settings::ProceduralizeError;
@@ -78,6 +75,8 @@ struct Class {
     weights: Vec<f64>,
     tree: WardTree,
     volume: f64,
+    /// How many buildings each member stands for.
+    times: Vec<f64>,
 }
 
 impl<'a> Stacks<'a> {
@@ -86,6 +85,18 @@ impl<'a> Stacks<'a> {
     pub(super) fn new(
         components: &'a [Component],
         buildings: &BuildingTypes,
+    ) -> Result<Self, ProceduralizeError> {
+        Self::weighted(components, buildings, &vec![1.0; buildings.parts.len()])
+    }
+
+    /// Stacks that stand for others, each for so many `times` buildings.
+    ///
+    /// # Errors
+    /// [`ProceduralizeError::Ward`].
+    pub(super) fn weighted(
+        components: &'a [Component],
+        buildings: &BuildingTypes,
+        times: &[f64],
     ) -> Result<Self, ProceduralizeError> {
         let mut by_levels: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
         for &b in &buildings.order {
@@ -113,7 +124,7 @@ impl<'a> Stacks<'a> {
                     weights.push(0.0);
                     distinct.len() - 1
                 });
-                weights[g] += stacks[i].volume.max(1e-3);
+                weights[g] += times[members[i]] * stacks[i].volume.max(1e-3);
                 group.push(g);
             }
             let own: Vec<Vec<f64>> = distinct.iter().map(|&i| raw[i].clone()).collect();
@@ -122,6 +133,7 @@ impl<'a> Stacks<'a> {
                 _ => projected(&own),
             };
             Ok(Class {
+                times: members.iter().map(|&b| times[b]).collect(),
                 tree: ward(&rows, dimension, &weights)?,
                 volume: weights.iter().sum(),
                 distinct,
@@ -146,13 +158,38 @@ impl<'a> Stacks<'a> {
 
     /// At most `count` rules, but one for each number of levels, over templates of these `types`.
     pub(super) fn rulebook(&self, types: &Priced, count: usize) -> Rulebook {
-        let candidates = self.candidates(types, count);
-        let near = self.near(&candidates);
-        let chosen = self.choose(&candidates, &near, count);
-        self.assigned(&candidates, &near, &chosen)
+        let candidates = self.candidates(types, self.means(count));
+        self.of(&candidates, 0, count)
     }
 
-    fn candidates(&self, priced: &Priced, count: usize) -> Vec<Candidate> {
+    /// The rules made from the buildings `given`, and at most `more` of those made from `others`, but one for each number of levels.
+    /// Those given are first, in their order, also those that stand for no building.
+    pub(super) fn extended(
+        &self,
+        types: &Priced,
+        given: &[usize],
+        others: &[usize],
+        more: usize,
+    ) -> Rulebook {
+        let mut places = vec![None; self.count];
+        for (class, c) in self.classes.iter().enumerate() {
+            for (i, &b) in c.members.iter().enumerate() {
+                places[b] = Some((class, i));
+            }
+        }
+        let named = given.iter().chain(others).filter_map(|&b| places[b]);
+        let candidates = self.candidates(types, named.collect());
+        self.of(&candidates, given.len(), given.len() + more)
+    }
+
+    fn of(&self, candidates: &[Candidate], given: usize, count: usize) -> Rulebook {
+        let near = self.near(candidates);
+        let chosen = self.choose(candidates, &near, given, count);
+        self.assigned(candidates, &near, &chosen, given)
+    }
+
+    /// Members of classes that are nearest to the means of clusters: where `count` rules are wanted, so many more.
+    fn means(&self, count: usize) -> Vec<(usize, usize)> {
         let all: usize = self.classes.iter().map(|c| c.members.len()).sum();
         let volume: f64 = self.classes.iter().map(|c| c.volume).sum();
         let mut out = Vec::new();
@@ -161,16 +198,21 @@ impl<'a> Stacks<'a> {
             let share = (c.members.len() as f64 / all as f64 + c.volume / volume) / 2.0;
             let wanted = (SURPLUS * count as f64 * share).ceil() as usize + LEAST;
             let medoids = c.medoids(wanted.min(n));
-            out.extend(medoids.into_iter().map(|row| (class, row)));
+            out.extend(medoids.into_iter().map(|row| (class, c.distinct[row])));
         }
-        let drawn = out.into_par_iter().map(|(class, row)| {
+        out
+    }
+
+    fn candidates(&self, priced: &Priced, members: Vec<(usize, usize)>) -> Vec<Candidate> {
+        let drawn = members.into_par_iter().map(|(class, member)| {
             let c = &self.classes[class];
-            let parts = &c.parts[c.distinct[row]];
+            let parts = &c.parts[member];
             let types = &priced.types;
             let triangles = parts.iter().map(|&i| priced.triangles[types.uses[i].kind]);
             Candidate {
                 class,
-                row,
+                member,
+                row: c.group[member],
                 maps: Stack::ruled(self.components, parts, types),
                 price: priced.price.derived * triangles.sum::<f64>(),
             }
@@ -197,88 +239,59 @@ impl<'a> Stacks<'a> {
         self.classes.iter().enumerate().map(of_class).collect()
     }
 
-    /// The candidates that become rules, in the order of their choice.
+    /// The candidates that become rules, in the order of their choice, after the `given` first ones.
     fn choose(
         &self,
         candidates: &[Candidate],
         near: &[Vec<Vec<Near>>],
+        given: usize,
         count: usize,
     ) -> Vec<usize> {
-        // Who is near to each candidate.
-        let mut served: Vec<Vec<(usize, f64)>> = vec![Vec::new(); candidates.len()];
-        let mut left: Vec<f64> = Vec::new();
+        let levels = |c: &Candidate| RULE + self.classes[c.class].levels as f64;
+        let mut facilities = Facilities {
+            served: vec![Vec::new(); candidates.len()],
+            price: candidates.iter().map(levels).collect(),
+            left: Vec::new(),
+        };
         for (c, near) in self.classes.iter().zip(near) {
-            for (stack, near) in c.stacks.iter().zip(near) {
+            for ((stack, near), times) in c.stacks.iter().zip(near).zip(&c.times) {
                 for n in near {
-                    served[n.candidate].push((left.len(), n.cost));
+                    let customer = (facilities.left.len(), times * n.cost);
+                    facilities.served[n.candidate].push(customer);
                 }
-                left.push(stack.volume);
+                facilities.left.push(times * stack.volume);
             }
         }
-        let gain = |k: usize, left: &[f64]| {
-            let won = served[k].iter().map(|&(i, cost)| (left[i] - cost).max(0.0));
-            let levels = self.classes[candidates[k].class].levels;
-            won.sum::<f64>() / (RULE + levels as f64)
-        };
-        let mut heap: BinaryHeap<Gain> = (0..candidates.len())
-            .map(|candidate| Gain {
-                value: gain(candidate, &left),
-                candidate,
-            })
-            .collect();
-        let mut chosen = Vec::new();
-        let take = |k: usize, left: &mut [f64]| {
-            for &(i, cost) in &served[k] {
-                left[i] = left[i].min(cost);
-            }
-        };
+        let mut chosen: Vec<usize> = (0..given).collect();
+        chosen.iter().for_each(|&k| facilities.take(k));
         // One of each number of levels, so that each building has a rule.
         for class in 0..self.classes.len() {
-            let own = (0..candidates.len()).filter(|&k| candidates[k].class == class);
-            let value = |candidate| Gain {
-                value: gain(candidate, &left),
-                candidate,
-            };
-            if let Some(first) = own.map(value).max() {
-                take(first.candidate, &mut left);
+            let own = |k: &usize| candidates[*k].class == class;
+            if chosen.iter().any(own) {
+                continue;
+            }
+            let gains = (0..candidates.len())
+                .filter(own)
+                .map(|k| facilities.gain(k));
+            if let Some(first) = gains.max() {
+                facilities.take(first.candidate);
                 chosen.push(first.candidate);
             }
         }
-        let mut is_chosen = vec![false; candidates.len()];
-        chosen.iter().for_each(|&k| is_chosen[k] = true);
-        while chosen.len() < count
-            && let Some(top) = heap.pop()
-        {
-            if is_chosen[top.candidate] {
-                continue;
-            }
-            let value = gain(top.candidate, &left);
-            // Gains only fall: one that is still the largest is.
-            if heap.peek().is_some_and(|next| value < next.value) {
-                heap.push(Gain { value, ..top });
-                continue;
-            }
-            if value <= 0.0 {
-                break;
-            }
-            take(top.candidate, &mut left);
-            is_chosen[top.candidate] = true;
-            chosen.push(top.candidate);
-        }
-        chosen
+        facilities.choose(chosen, count)
     }
 
     fn building(&self, candidate: &Candidate) -> usize {
-        let class = &self.classes[candidate.class];
-        class.members[class.distinct[candidate.row]]
+        self.classes[candidate.class].members[candidate.member]
     }
 
-    /// The best rule for each building; rules of most instances first, those of none left out.
+    /// The best rule for each building; after the `given` first, rules of most instances first, those of none left out.
     fn assigned(
         &self,
         candidates: &[Candidate],
         near: &[Vec<Vec<Near>>],
         chosen: &[usize],
+        given: usize,
     ) -> Rulebook {
         let mut is_chosen = vec![false; candidates.len()];
         chosen.iter().for_each(|&k| is_chosen[k] = true);
@@ -306,8 +319,9 @@ impl<'a> Stacks<'a> {
         }
         let mut counts = vec![0usize; candidates.len()];
         found.iter().for_each(|f| counts[f.1.candidate] += 1);
-        let mut order: Vec<usize> = (0..candidates.len()).filter(|&k| counts[k] > 0).collect();
-        order.sort_by_key(|&k| std::cmp::Reverse(counts[k]));
+        let used = |&k: &usize| k < given || counts[k] > 0;
+        let mut order: Vec<usize> = (0..candidates.len()).filter(used).collect();
+        order[given..].sort_by_key(|&k| std::cmp::Reverse(counts[k]));
         let mut number = vec![0; candidates.len()];
         for (new, &old) in order.iter().enumerate() {
             number[old] = new;

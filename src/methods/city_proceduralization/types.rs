@@ -193,6 +193,17 @@ impl<'a> TypeTree<'a> {
         points: &Points,
         representative: Representative,
     ) -> Result<Self, ProceduralizeError> {
+        let once = vec![1.0; components.len()];
+        Self::weighted(components, points, &once, representative)
+    }
+
+    /// The hierarchy over components that stand for others: `times`, how many components each stands for; its volume is theirs.
+    pub(super) fn weighted(
+        components: &'a [Component],
+        points: &Points,
+        times: &[f64],
+        representative: Representative,
+    ) -> Result<Self, ProceduralizeError> {
         let d = points.dimension;
         // Equal components first: the hierarchy is over distinct ones.
         let mut known: FxHashMap<Vec<u8>, usize> = FxHashMap::default();
@@ -215,7 +226,7 @@ impl<'a> TypeTree<'a> {
                 distinct.len() - 1
             });
             weights[g] += c.volume.max(1e-3);
-            counts[g] += 1.0;
+            counts[g] += times[i];
             group.push(g);
         }
         let rows: Vec<f64> = distinct
@@ -224,12 +235,9 @@ impl<'a> TypeTree<'a> {
             .collect();
         let tree = ward(&rows, d, &weights)?;
         let forms = distinct.iter().map(|&i| Form::of(&components[i]));
-        let triangles = distinct.par_iter().map(|&i| {
-            let mesh = &components[i].mesh;
-            let merged = merge_coplanar(mesh, COPLANAR);
-            // What is left open is not cheaper: a hole counts as about the triangles that would close it.
-            (merged.triangles.len() + repair(mesh).1.open_edges) as f64
-        });
+        let triangles = distinct
+            .par_iter()
+            .map(|&i| template_triangles(&components[i]));
         let table = Table {
             rows,
             d,
@@ -290,6 +298,12 @@ impl<'a> TypeTree<'a> {
             price,
         }
     }
+}
+
+/// Triangles of a component as a template. What is left open is not cheaper: a hole counts as about the triangles that would close it.
+pub(super) fn template_triangles(component: &Component) -> f64 {
+    let merged = merge_coplanar(&component.mesh, COPLANAR);
+    (merged.triangles.len() + repair(&component.mesh).1.open_edges) as f64
 }
 
 /// Types with what their triangles cost.

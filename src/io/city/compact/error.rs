@@ -6,6 +6,9 @@ use edifice_grammar::instance::InstanceGrammarError;
 /// The version written.
 pub const VERSION: u16 = 3;
 
+/// The version of grammars that share a dictionary, and the newest that is read.
+pub(super) const SHARING: u16 = 4;
+
 /// The oldest version that is read.
 pub(super) const FIRST: u16 = 1;
 
@@ -17,7 +20,7 @@ pub enum CompactError {
     #[error("not a compact grammar: it does not begin with \"EdCG\"")]
     Magic,
     /// A version that is not known.
-    #[error("version {0}, expected {FIRST} to {VERSION}")]
+    #[error("version {0}, expected {FIRST} to {SHARING}")]
     Version(u16),
     /// The bytes are not those that were written.
     #[error("damaged: the checksum does not fit")]
@@ -37,6 +40,9 @@ pub enum CompactError {
     /// The numbers of steps are not from 1 to 65,535.
     #[error("steps {0:?} are not whole numbers from 1 to 65,535")]
     Steps(Steps),
+    /// The dictionary that the grammar shares.
+    #[error("dictionary: {0}")]
+    Dictionary(String),
     /// The text part.
     #[error("text part: {0}")]
     Text(String),

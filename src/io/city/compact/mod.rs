@@ -1,4 +1,4 @@
-//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 to 3.
+//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 to 4.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -13,17 +13,19 @@
 //!
 //! Whoever needs no residuals leaves the last part unread. Until version 2, buildings follow Hilbert's curve; from version 3 on they go along
 //! rows, each told by its place beside the one before it (`rows.rs`). In version 1, rules have no parameters, and residuals follow the
-//! rules in one part.
+//! rules in one part. In version 4 a dictionary in another file has the first templates and rules ([`Dictionary`]).
 //!
 //! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
 //! any of the steps that are tried; otherwise it is rounded to the finest. A file holds what the text
 //! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (so that neighbours
 //! follow each other), that of a template's corners and triangles, and corners without a triangle.
 
+mod dictionary;
 mod error;
 mod identity;
 mod integers;
 mod mesh;
+mod names;
 mod order;
 mod range_coder;
 mod rows;
@@ -35,10 +37,12 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use self::error::FIRST;
+pub use self::dictionary::{DICTIONARY, Dictionary};
 pub use self::error::{CompactError, VERSION};
+use self::error::{FIRST, SHARING};
 use self::identity::{Attributes, Identities};
 use self::mesh::{MeshModels, StepMesh};
+use self::names::{Names, names, runs};
 use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
 pub use self::unit::Steps;
@@ -46,7 +50,7 @@ use super::pictures;
 use crate::write_atomic;
 use edifice_base::file::read_bytes;
 use edifice_base::{Error, Result};
-use edifice_grammar::instance::{InstanceGrammar, Template};
+use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Template};
 use edifice_shape::triangles::TriangleMesh;
 
 /// The first bytes of a file.
@@ -56,12 +60,28 @@ const START: usize = 10;
 /// Most bytes of names, identifiers and attributes, unpacked.
 const MOST_TEXT: u64 = 1 << 28;
 
-/// Reads a grammar and checks that it derives.
+/// Reads a grammar and checks that it derives; a dictionary that it shares is read from [`DICTIONARY`] beside it.
 ///
 /// # Errors
 /// Names the file.
 pub fn read(path: &Path) -> Result<InstanceGrammar> {
-    from_bytes(&read_bytes(path)?).map_err(|e| Error::content(path, e))
+    let bytes = read_bytes(path)?;
+    let beside = |wanted: &str| {
+        let bytes = dictionary::bytes_beside(path, wanted)?;
+        dictionary(&bytes).map_err(|e| CompactError::Dictionary(e.to_string()))
+    };
+    decoded(&bytes, &beside).map_err(|e| Error::content(path, e))
+}
+
+/// The dictionary of a file's bytes.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn dictionary(bytes: &[u8]) -> Result<Dictionary, CompactError> {
+    Ok(Dictionary {
+        sha256: dictionary::sha256(bytes),
+        grammar: from_bytes(bytes)?,
+    })
 }
 
 /// Writes a grammar, whole or not at all.
@@ -91,18 +111,43 @@ struct Texts {
     /// Templates' textures as data URIs, with their templates.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     textures: Vec<(usize, String)>,
+    /// SHA-256 of the dictionary that has the first templates and rules.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dictionary: Option<String>,
 }
-
-/// Names that are one text with consecutive numbers; without numbers one name.
-#[derive(Serialize, Deserialize)]
-struct Names(String, u64, u64);
 
 /// The bytes of a grammar.
 ///
 /// # Errors
 /// [`CompactError`] on a grammar that is not sound, and on numbers too large to be lengths.
 pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
+    encoded(grammar, None)
+}
+
+/// The bytes of a grammar without those templates and rules that it shares with others.
+///
+/// # Errors
+/// As [`to_bytes`]; [`CompactError::Dictionary`] on a grammar that does not begin with the dictionary.
+pub fn to_bytes_over(
+    grammar: &InstanceGrammar,
+    dictionary: &Dictionary,
+) -> Result<Vec<u8>, CompactError> {
+    dictionary.check(grammar)?;
+    encoded(grammar, Some(dictionary))
+}
+
+fn encoded(
+    grammar: &InstanceGrammar,
+    dictionary: Option<&Dictionary>,
+) -> Result<Vec<u8>, CompactError> {
     grammar.check()?;
+    let version = if dictionary.is_some() {
+        SHARING
+    } else {
+        VERSION
+    };
+    let shared = dictionary.map_or(0, |d| d.grammar.templates.len());
+    let known = dictionary.map_or_else(Vec::new, Dictionary::rules);
     let steps = Steps::of(grammar);
     let mut symbols: Vec<String> = grammar.templates.iter().map(|t| t.symbol.clone()).collect();
     let templates = symbols.len();
@@ -113,7 +158,7 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     let axiom = axiom.ok_or(CompactError::Index("symbol"))?;
     let mut coder = Encoder::new();
     let mut models = MeshModels::new(steps.shape);
-    for template in &grammar.templates {
+    for template in &grammar.templates[shared..] {
         models.code(&mut coder, &in_steps(&template.mesh, steps.shape)?)?;
     }
     let mut sorted = grammar.rules.clone();
@@ -126,9 +171,9 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
         &symbols,
         templates,
         Identities::default(),
-        VERSION,
+        version,
     );
-    let mut made = rules.rules(&sorted, axiom)?;
+    let mut made = rules.rules(&sorted, &known, axiom)?;
     let mut residuals = Vec::new();
     let mut coder = None;
     if sorted
@@ -156,11 +201,12 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
         origin: grammar.origin,
         axiom,
         steps,
-        templates: runs(&symbols[..templates]),
-        non_terminals: runs(&symbols[templates..]),
+        templates: runs(&symbols[shared..templates]),
+        non_terminals: runs(&symbols[templates + symbols_of(&known)..]),
         ids: identities.texts,
         attributes: identities.attributes,
         textures: textures.collect(),
+        dictionary: dictionary.map(|d| d.sha256.clone()),
     };
     let texts = serde_json::to_vec(&texts).map_err(|e| CompactError::Text(e.to_string()))?;
     let texts = deflated(&texts);
@@ -173,7 +219,7 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
     body.extend(coded);
     body.extend(residuals);
     let mut bytes = MAGIC.to_vec();
-    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend(version.to_le_bytes());
     bytes.extend(checksum(&body).to_le_bytes());
     bytes.extend(body);
     Ok(bytes)
@@ -184,6 +230,23 @@ pub fn to_bytes(grammar: &InstanceGrammar) -> Result<Vec<u8>, CompactError> {
 /// # Errors
 /// [`CompactError`].
 pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
+    decoded(bytes, &|wanted| {
+        let message =
+            format!("it has the SHA-256 {wanted}, and bytes alone have no file beside them");
+        Err(CompactError::Dictionary(message))
+    })
+}
+
+/// The number of symbols of rules.
+fn symbols_of(rules: &[InstanceRule]) -> usize {
+    let symbols: rustc_hash::FxHashSet<&str> = rules.iter().map(|r| r.symbol.as_str()).collect();
+    symbols.len()
+}
+
+fn decoded(
+    bytes: &[u8],
+    shared: &dyn Fn(&str) -> Result<Dictionary, CompactError>,
+) -> Result<InstanceGrammar, CompactError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(CompactError::Magic);
     }
@@ -191,7 +254,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
         return Err(CompactError::Truncated);
     };
     let version = u16::from_le_bytes([start[4], start[5]]);
-    if !(FIRST..=VERSION).contains(&version) {
+    if !(FIRST..=SHARING).contains(&version) {
         return Err(CompactError::Version(version));
     }
     if u32::from_le_bytes([start[6], start[7], start[8], start[9]]) != checksum(body) {
@@ -205,13 +268,23 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
     let texts: Texts =
         serde_json::from_slice(&inflated(texts)?).map_err(|e| CompactError::Text(e.to_string()))?;
     let steps = texts.steps.checked()?;
-    let mut symbols = names(&texts.templates)?;
+    let shared = match (version, texts.dictionary.as_deref()) {
+        (SHARING, Some(wanted)) => Some(shared(wanted)?),
+        _ => None,
+    };
+    let known = shared.as_ref().map_or_else(Vec::new, Dictionary::rules);
+    let mut templates = shared.map_or_else(Vec::new, |d| d.grammar.templates);
+    let first = templates.len();
+    let mut symbols: Vec<String> = templates.iter().map(|t| t.symbol.clone()).collect();
+    symbols.extend(names(&texts.templates)?);
     let count = symbols.len();
+    let mut seen = rustc_hash::FxHashSet::default();
+    let new = known.iter().filter(|r| seen.insert(&r.symbol));
+    symbols.extend(new.map(|r| r.symbol.clone()));
     symbols.extend(names(&texts.non_terminals)?);
     let mut coder = Decoder::new(coded);
     let mut models = MeshModels::new(steps.shape);
-    let mut templates = Vec::new();
-    for symbol in &symbols[..count] {
+    for symbol in &symbols[first..count] {
         if coder.exhausted() {
             return Err(CompactError::Truncated);
         }
@@ -232,7 +305,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<InstanceGrammar, CompactError> {
     let axiom = symbols.get(texts.axiom).cloned();
     let identities = Identities::new(texts.ids, texts.attributes);
     let mut rules = Rules::new(coder, steps, &symbols, count, identities, version);
-    let mut made = rules.rules(&[], texts.axiom)?;
+    let mut made = rules.rules(&[], &known, texts.axiom)?;
     if version > FIRST && !residuals.is_empty() {
         if rules.switch(Decoder::new(residuals)).exhausted() {
             return Err(CompactError::Truncated);
@@ -288,41 +361,6 @@ fn in_box(mesh: &StepMesh, steps: i64) -> TriangleMesh {
             .collect(),
         triangles: mesh.triangles.clone(),
     }
-}
-
-/// Names as few runs: `T1`, `T2`, `T3` are one.
-fn runs(names: &[String]) -> Vec<Names> {
-    let mut out: Vec<Names> = Vec::new();
-    for name in names {
-        let text = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        // A number with zeros in front is text.
-        let number = name[text.len()..].parse::<u64>().ok();
-        let number = number.filter(|n| *n < 1 << 40 && name[text.len()..] == n.to_string());
-        match (out.last_mut(), number) {
-            (Some(run), Some(n)) if run.2 > 0 && run.0 == text && run.1 + run.2 == n => run.2 += 1,
-            (_, Some(n)) => out.push(Names(text.to_owned(), n, 1)),
-            (_, None) => out.push(Names(name.clone(), 0, 0)),
-        }
-    }
-    out
-}
-
-/// Most names of a file.
-const MOST_NAMES: u64 = 4_000_000;
-
-fn names(runs: &[Names]) -> Result<Vec<String>, CompactError> {
-    let total: u64 = runs.iter().fold(0, |sum, r| sum.saturating_add(r.2.max(1)));
-    if total > MOST_NAMES {
-        return Err(CompactError::TooLarge("names"));
-    }
-    let mut out = Vec::new();
-    for Names(text, first, count) in runs {
-        match count {
-            0 => out.push(text.clone()),
-            _ => out.extend((0..*count).map(|k| format!("{text}{}", first.saturating_add(k)))),
-        }
-    }
-    Ok(out)
 }
 
 fn checksum(bytes: &[u8]) -> u32 {

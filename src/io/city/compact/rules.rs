@@ -172,16 +172,17 @@ impl<'a, C: Coder> Rules<'a, C> {
         std::mem::replace(&mut self.coder, coder)
     }
 
-    /// All rules: what they make, then the numbers of instances.
+    /// All rules, of which the first are `known`: what the others make, then the numbers of instances.
     pub(super) fn rules(
         &mut self,
         given: &[InstanceRule],
+        known: &[InstanceRule],
         axiom: usize,
     ) -> Result<Vec<InstanceRule>, CompactError> {
-        let count = self.count(given.len())?;
-        let mut rules: Vec<Option<InstanceRule>> = vec![None; count.min(given.len())];
+        let end = known.len() + self.count(given.len().saturating_sub(known.len()))?;
+        let mut rules: Vec<Option<InstanceRule>> = known.iter().cloned().map(Some).collect();
         let mut later = Vec::new();
-        for i in 0..count {
+        for i in known.len()..end {
             let own = given.get(i);
             let top = own.is_some_and(|r| self.numbers.get(r.symbol.as_str()) == Some(&axiom));
             // Who reads the axiom's buildings needs to know the rules' levels.
@@ -192,10 +193,7 @@ impl<'a, C: Coder> Rules<'a, C> {
                 }
                 false => Some(self.rule(own, axiom)?),
             };
-            match rules.get_mut(i) {
-                Some(place) => *place = rule,
-                None => rules.push(rule),
-            }
+            rules.push(rule);
             if self.coder.exhausted() {
                 return Err(CompactError::Truncated);
             }

@@ -1,0 +1,171 @@
+//! A country in tiles: the bytes do not depend on workers, kills lose nothing, the dictionary is the one that was meant, and all
+//! tiles together are the city.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use edifice::io::city::obj;
+use edifice_generators::city_proceduralization as synthetic;
+use serde_json::Value;
+
+fn edifice(folder: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("edifice"));
+    command.arg("city").args(args).current_dir(folder);
+    command
+}
+
+/// Runs a command; what it printed last, as JSON.
+fn line(folder: &Path, args: &[&str]) -> Value {
+    let output = edifice(folder, args).arg("--json").output().unwrap();
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{args:?}: {messages}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    serde_json::from_str(text.lines().last().unwrap()).unwrap()
+}
+
+/// Runs a command that fails; its messages.
+fn refused(folder: &Path, args: &[&str]) -> String {
+    let output = edifice(folder, args).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{args:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A folder with a made city of 96 buildings, `c.obj`.
+fn made() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let (city, _) = synthetic::city(16, 0.05, 3);
+    std::fs::write(folder.path().join("c.obj"), obj::to_string(&city)).unwrap();
+    folder
+}
+
+/// Plans the city in tiles; the folder of the results.
+fn plan(folder: &Path, out: &str) -> PathBuf {
+    let args = ["plan", "c.obj", "--tile", "150", "--level", "2", "--scenes"];
+    let planned = line(folder, &[&args[..], &["-o", out]].concat());
+    assert_eq!(planned["buildings"], 96);
+    assert!(planned["tiles"].as_u64().unwrap() >= 4, "{planned}");
+    let key = planned["key"].as_str().unwrap();
+    folder.join(out).join(format!("city-{key}"))
+}
+
+/// All files below a folder, by their paths in it.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let (mut open, mut found) = (vec![folder.to_path_buf()], BTreeMap::new());
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            match path.is_dir() {
+                true => open.push(path),
+                false => {
+                    let bytes = std::fs::read(&path).unwrap();
+                    found.insert(path.strip_prefix(folder).unwrap().to_path_buf(), bytes);
+                }
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn tiles_over_one_dictionary_are_the_city_whoever_made_them() {
+    let made = made();
+    let folder = made.path();
+    let alone = plan(folder, "alone");
+    let worked = line(folder, &["work", "alone"]);
+    assert_eq!(worked["finished"], worked["tasks"]);
+    let one = files(&alone);
+
+    // Several workers, of which one is killed in its first task.
+    let together = plan(folder, "together");
+    let mut killed = edifice(folder, &["work", "together", "--threads", "1"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let work = together.with_file_name(
+        together
+            .file_name()
+            .unwrap()
+            .to_string_lossy()
+            .replacen("city", "work", 1),
+    );
+    let start = Instant::now();
+    let claimed = || {
+        work.join("claims")
+            .read_dir()
+            .is_ok_and(|mut found| found.next().is_some())
+    };
+    while !claimed() {
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "no task was claimed"
+        );
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    line(folder, &["work", "together", "--workers", "3"]);
+    assert_eq!(files(&together), one);
+    let again = line(folder, &["work", "together"]);
+    assert_eq!(again["finished"], 0);
+
+    let compared = line(folder, &["compare", "c.obj", alone.to_str().unwrap()]);
+    assert_eq!(compared["buildings"][1], 96);
+    assert_eq!(compared["bytes"][1], worked["bytes"]);
+    assert!(compared["iou"].as_f64().unwrap() > 0.9, "{compared}");
+
+    // 3D Tiles of all tiles hang below one root, which holds them.
+    let index: Value = serde_json::from_slice(&one[Path::new("3dtiles/tileset.json")]).unwrap();
+    let children = index["root"]["children"].as_array().unwrap();
+    let grammars = one
+        .keys()
+        .filter(|name| name.extension().is_some_and(|e| e == "bin"));
+    assert_eq!(children.len() + 1, grammars.count());
+    for child in children {
+        let uri = Path::new("3dtiles").join(child["content"]["uri"].as_str().unwrap());
+        assert!(one.contains_key(&uri), "{uri:?}");
+    }
+
+    // Another dictionary is refused, and so is none.
+    let tile = one
+        .keys()
+        .find(|name| name.starts_with("x0_y0.city-grammar.bin"))
+        .unwrap();
+    let tile = alone.join(tile);
+    let dictionary = alone.join("dictionary.city-grammar.bin");
+    let other = edifice(folder, &["proceduralize", "c.obj", "--level", "6", "-o"])
+        .arg(&dictionary)
+        .output()
+        .unwrap();
+    assert!(other.status.success());
+    let messages = refused(folder, &["show", tile.to_str().unwrap()]);
+    assert!(messages.contains("SHA-256"), "{messages}");
+    std::fs::remove_file(&dictionary).unwrap();
+    let messages = refused(folder, &["show", tile.to_str().unwrap()]);
+    assert!(
+        messages.contains("dictionary.city-grammar.bin"),
+        "{messages}"
+    );
+}
+
+#[test]
+fn a_building_in_two_tiles_and_a_changed_tile_are_refused() {
+    let made = made();
+    let folder = made.path();
+    std::fs::copy(folder.join("c.obj"), folder.join("d.obj")).unwrap();
+    let messages = refused(folder, &["plan", "c.obj", "d.obj", "-o", "twice"]);
+    assert!(
+        messages.contains("d.obj") && messages.contains("belongs to one tile"),
+        "{messages}"
+    );
+    line(folder, &["plan", "d.obj", "-o", "one"]);
+    let mut text = std::fs::read_to_string(folder.join("d.obj")).unwrap();
+    text.push_str("# changed\n");
+    std::fs::write(folder.join("d.obj"), text).unwrap();
+    let messages = refused(folder, &["work", "one"]);
+    assert!(
+        messages.contains("d.obj") && messages.contains("has changed"),
+        "{messages}"
+    );
+}
