@@ -21,7 +21,7 @@ pub const VERSION: u64 = 1;
 pub struct Proposal {
     /// Components of the tile.
     pub components: usize,
-    /// How many components each template stands for, and their volume in cubic metres.
+    /// The number of components that each template stands for, and their volume in cubic metres.
     pub stands: Vec<[f64; 2]>,
     /// Templates, rules, and an example of each rule.
     pub grammar: InstanceGrammar,

@@ -75,7 +75,7 @@ struct Class {
     weights: Vec<f64>,
     tree: WardTree,
     volume: f64,
-    /// How many buildings each member stands for.
+    /// The number of buildings that each member stands for.
     times: Vec<f64>,
 }
 

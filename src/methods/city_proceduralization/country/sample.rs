@@ -12,7 +12,7 @@ use edifice_shape::triangles::City;
 /// A number of things and their volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Stands {
-    /// How many components a template stands for.
+    /// The number of components that a template stands for.
     pub count: f64,
     /// Their volume, in cubic metres.
     pub volume: f64,
