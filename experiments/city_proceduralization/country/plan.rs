@@ -185,8 +185,8 @@ impl Plan {
         self.tiles.iter().map(|t| t.buildings).sum()
     }
 
-    /// The memory that workers need: 40,000 bytes for a building of a tile, 8,000 bytes for each template and each rule of the dictionary and of
-    /// the proposals, two components for a building.
+    /// The memory that workers need: 40,000 bytes for a building of a tile, 8,000 bytes for each template and each rule of the
+    /// dictionary and of the proposals, two components for a building.
     ///
     /// # Errors
     /// As [`Plan::settings`].
