@@ -82,7 +82,8 @@ The view lists buildings near each other: { \"format\": \"edifice/city-view\", \
     /// Plan the work on a country: tiles that share a dictionary of types.
     #[command(after_help = "Examples:
   edifice city plan town.obj --tile 150 --scenes -o country
-A country is more buildings than fit into one machine's memory. Each tile becomes a grammar over one dictionary; see
+A country is more buildings than fit into one machine's memory. Each tile becomes a grammar over one dictionary, without
+textures; see
 `edifice city work`.")]
     Plan(plan::Args),
     /// Work through a plan; any number of workers, also on several machines that share the folder.

@@ -20,4 +20,4 @@ mod work;
 
 pub use plan::{Memory, Options, PLAN, Plan};
 pub use tile::Tile;
-pub use work::{Ran, work};
+pub use work::{Ran, TASKS, work};

@@ -14,6 +14,9 @@ use edifice_base::{Error, Progress, Result, Watch, Watched, file};
 /// The time between two looks for a task while others work on what is needed.
 const PAUSE: Duration = Duration::from_millis(50);
 
+/// The stage of [`work`] in which progress counts the tasks that are finished.
+pub const TASKS: &str = "tasks";
+
 /// The state of a plan when a worker ends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ran {
@@ -58,7 +61,7 @@ pub fn work(plan: &Plan, out: &Path, watch: &Watch) -> Result<Ran> {
             return ran(&place, &tasks, &times, finished);
         }
         let done = (tasks.len() - open.len()) as u64;
-        if !watched.goes_on(Progress::of("tasks", done, tasks.len() as u64)) {
+        if !watched.goes_on(Progress::of(TASKS, done, tasks.len() as u64)) {
             return Err(Error::Interrupted);
         }
         match claimed(&place, &open, &claims)? {

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::{Child, Command};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use edifice_base::{Error, Progress, Result};
-use edifice_experiments::city_proceduralization::country::{Plan, work};
+use edifice_experiments::city_proceduralization::country::{Plan, TASKS, work};
 
 use crate::print::{self, Json};
 
@@ -36,9 +36,17 @@ pub(super) fn run(args: &Args) -> Result<()> {
     static STOP: AtomicBool = AtomicBool::new(false);
     // A second handler is refused only where one is set already.
     let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
-    let watch = |_: Progress| match STOP.load(Ordering::Relaxed) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
+    let told = AtomicU64::new(u64::MAX);
+    let watch = |progress: Progress| {
+        if let (TASKS, Some(most)) = (progress.stage, progress.most)
+            && told.swap(progress.done, Ordering::Relaxed) != progress.done
+        {
+            print::message(&format!("{} of {most} tasks", progress.done));
+        }
+        match STOP.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(Error::method)?;
@@ -55,7 +63,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
             .map_err(|e| Error::io(&args.folder, "work on", e))?;
         if ran.is_ok() && !ended.success() {
             print::message(&format!(
-                "warning: a worker ended with {ended}; its task was done again"
+                "warning: a worker ended with {ended}; this one did what it left open"
             ));
         }
     }
@@ -72,7 +80,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
 fn worker(args: &Args, threads: usize) -> Result<Child> {
     let program = std::env::current_exe().map_err(|e| Error::io("edifice".as_ref(), "find", e))?;
     let mut command = Command::new(&program);
-    command.args(["city", "work"]).arg(&args.folder);
+    command.args(["--quiet", "city", "work"]).arg(&args.folder);
     command.args(["--threads", &threads.to_string()]);
     command.stdout(std::process::Stdio::null());
     command.spawn().map_err(|e| Error::io(&program, "start", e))
