@@ -10,12 +10,13 @@
 //! the description of the features is shortest ([`shortest_description`]): repeated buildings become types without anyone
 //! saying how many.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::component::{CELLS, Component};
 use super::features::Points;
 use super::orientation::is_symmetric;
+use super::principal_axes::principal_axes;
 use super::settings::ProceduralizeError;
 use edifice_cluster::{shortest_description, ward};
 
@@ -167,16 +168,10 @@ pub(super) fn projected(rows: &[Vec<f64>]) -> (Vec<f64>, usize) {
         .map(|j| rows.iter().map(|r| r[j]).sum::<f64>() / n as f64)
         .collect();
     let table = DMatrix::from_fn(d, n, |j, i| rows[i][j] - mean[j]);
-    let eigen = SymmetricEigen::new(&table * table.transpose());
-    let mut order: Vec<usize> = (0..d).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    order.truncate(MOST_FEATURES);
+    let axes = principal_axes(&table * table.transpose(), &table, MOST_FEATURES);
     let points = (0..n).flat_map(|i| {
-        let table = &table;
-        let eigen = &eigen;
-        order
-            .iter()
-            .map(move |&k| eigen.eigenvectors.column(k).dot(&table.column(i)))
+        let point = table.column(i);
+        axes.iter().map(move |axis| axis.dot(&point))
     });
-    (points.collect(), order.len())
+    (points.collect(), axes.len())
 }

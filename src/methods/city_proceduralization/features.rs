@@ -1,9 +1,10 @@
 //! Features by which components are compared.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::component::Component;
+use super::principal_axes::principal_axes;
 use edifice_shape::triangles::convex_hull;
 
 /// Names of the eleven features of the paper, in order; the names that weights are given by.
@@ -165,21 +166,17 @@ pub fn geometric_features(components: &[Component]) -> Points {
     let rows: Vec<Vec<f32>> = sample.iter().map(|c| values(c, looks).collect()).collect();
     let table = DMatrix::from_fn(d, sample.len(), |i, j| f64::from(rows[j][i]) - mean[i]);
     let covariance = &table * table.transpose() / n;
-    let eigen = SymmetricEigen::new(covariance);
-    let mut order: Vec<usize> = (0..d).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    order.truncate(PRINCIPAL);
+    let axes = principal_axes(covariance, &table, PRINCIPAL);
     let project = |c: &Component| -> Vec<f64> {
-        let along = |&k: &usize| {
-            let axis = eigen.eigenvectors.column(k);
+        let along = |axis: &DVector<f64>| {
             let values = values(c, looks).zip(&mean).zip(axis.iter());
             values.map(|((h, m), a)| (f64::from(h) - m) * a).sum()
         };
-        order.iter().map(along).collect()
+        axes.iter().map(along).collect()
     };
     let rows: Vec<Vec<f64>> = components.par_iter().map(project).collect();
     Points {
         values: rows.concat(),
-        dimension: order.len(),
+        dimension: axes.len(),
     }
 }

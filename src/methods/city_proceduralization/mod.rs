@@ -64,6 +64,7 @@ mod order;
 mod orientation;
 pub mod parse_tree;
 pub mod patterns;
+mod principal_axes;
 pub mod proceduralize;
 mod pruning;
 mod rulebook;

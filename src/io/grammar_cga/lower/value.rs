@@ -3,6 +3,7 @@
 use chumsky::span::SimpleSpan;
 
 use super::super::error::Fault;
+use super::super::reserved::is_leaf_operation;
 use super::super::syntax::{At, Entry, Expression, Target};
 use super::Builder;
 
@@ -25,10 +26,12 @@ pub(super) fn is_random(target: &Target<'_>) -> bool {
     match target {
         Target::Symbol(_) => false,
         Target::Split(_, entries) => entries.iter().any(in_entry),
-        Target::Calls(calls, after) => {
-            let mut numbers = calls.iter().flat_map(|call| call.numbers.iter().flatten());
-            numbers.any(|number| random(&number.0)) || after.as_deref().is_some_and(is_random)
-        }
+        Target::Calls(_, Some(after)) => is_random(after),
+        // The last call may be a rule with parameters; what an operation takes changes looks alone.
+        Target::Calls(calls, None) => calls.last().is_some_and(|call| {
+            let mut numbers = call.numbers.iter().flatten();
+            !is_leaf_operation(call.name.0) && numbers.any(|number| random(&number.0))
+        }),
     }
 }
 
