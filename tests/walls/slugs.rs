@@ -102,7 +102,7 @@ fn only_its_own_files_name_a_method() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// Slow: checks the library, the experiments and the studio once for each method. `.ci/run` runs it. The command line is left
+/// Slow: checks the library, the experiments and the studio once for each method. `.ci/full` runs it. The command line is left
 /// out: a method's commands are part of it.
 ///
 /// One copy serves all methods, changed in place as a person would: only crates that name a method are checked again.
