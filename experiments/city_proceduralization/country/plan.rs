@@ -26,9 +26,9 @@ const MOST_PROPOSED: usize = 150_000;
 const LEAST_PROPOSED: usize = 64;
 /// Bytes that a building of a tile takes in a worker: 693 MB were measured on a tile of Delft with 16,033 buildings.
 const BUILDING_BYTES: u64 = 40_000;
-/// Bytes that a type takes: triangles, height map, features.
+/// Bytes that a type takes: triangles, height map, features. Assumed, not measured.
 const TYPE_BYTES: u64 = 8_000;
-/// Components of a building, as measured.
+/// Components of a building, more than the 1.55 of Delft.
 const COMPONENTS: f64 = 2.0;
 
 /// The settings of a plan.

@@ -69,7 +69,7 @@ pub fn work(plan: &Plan, out: &Path, watch: &Watch) -> Result<Ran> {
             Some((task, claim)) => {
                 let start = Instant::now();
                 let ended = place.run(task, &watched.inner());
-                // What was stopped may have failed of it.
+                // A task that was stopped may have failed for that reason.
                 if watched.is_stopped() {
                     return Err(Error::Interrupted);
                 }

@@ -5,11 +5,10 @@ use edifice_grammar::instance::{InstanceGrammar, InstanceRule};
 use edifice_shape::triangles::City;
 use rayon::prelude::*;
 
-use super::CountrySettings;
 use super::sample::{Sample, examples, templates};
+use super::{CountrySettings, components};
 use crate::building_types::BuildingTypes;
 use crate::component::Component;
-use crate::components::decompose;
 use crate::detail::Detail;
 use crate::emission::{AXIOM, Found, emit_rules, named_rules};
 use crate::facility::Facilities;
@@ -37,13 +36,7 @@ pub fn code(
     watch: &Watch,
 ) -> Result<InstanceGrammar, ProceduralizeError> {
     let watched = Watched::new(watch);
-    let components = decompose(tile, true, &watched.inner()).components;
-    if !watched.goes_on(Progress::stage("types of components")) {
-        return Err(ProceduralizeError::Stopped);
-    }
-    if components.is_empty() {
-        return Err(ProceduralizeError::Empty);
-    }
+    let components = components(tile, &watched)?;
     let own = components.len();
     let more = settings.local(own);
     let pool = Pool::new(tile, components, dictionary, &proposal.grammar);

@@ -19,7 +19,12 @@ mod merge;
 mod propose;
 mod sample;
 
-use super::settings::{Precision, Representative};
+use edifice_base::{Progress, Watched};
+use edifice_shape::triangles::City;
+
+use super::component::Component;
+use super::components::decompose;
+use super::settings::{Precision, ProceduralizeError, Representative};
 
 pub use code::code;
 pub use merge::merge;
@@ -76,5 +81,17 @@ impl CountrySettings {
     fn local(&self, components: usize) -> usize {
         let share = self.shares.local.clamp(0.0, 1.0);
         (share * self.types(components) as f64).round() as usize
+    }
+}
+
+/// The components of a tile, of which there is at least one.
+fn components(tile: &City, watched: &Watched) -> Result<Vec<Component>, ProceduralizeError> {
+    let components = decompose(tile, true, &watched.inner()).components;
+    if !watched.goes_on(Progress::stage("types of components")) {
+        return Err(ProceduralizeError::Stopped);
+    }
+    match components.is_empty() {
+        true => Err(ProceduralizeError::Empty),
+        false => Ok(components),
     }
 }

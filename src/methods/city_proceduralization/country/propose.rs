@@ -3,10 +3,9 @@
 use edifice_base::{Progress, Watch, Watched};
 use edifice_shape::triangles::City;
 
-use super::CountrySettings;
 use super::sample::{Sample, Stands};
+use super::{CountrySettings, components};
 use crate::building_types::BuildingTypes;
-use crate::components::decompose;
 use crate::detail::Detail;
 use crate::emission::Found;
 use crate::features::geometric_features;
@@ -24,13 +23,7 @@ pub fn propose(
     watch: &Watch,
 ) -> Result<Sample, ProceduralizeError> {
     let watched = Watched::new(watch);
-    let components = decompose(tile, true, &watched.inner()).components;
-    if !watched.goes_on(Progress::stage("types of components")) {
-        return Err(ProceduralizeError::Stopped);
-    }
-    if components.is_empty() {
-        return Err(ProceduralizeError::Empty);
-    }
+    let components = components(tile, &watched)?;
     let k = settings
         .types(components.len())
         .min(settings.proposed.max(1));
