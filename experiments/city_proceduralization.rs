@@ -16,6 +16,7 @@ mod figure_8;
 mod figure_9;
 mod ingolstadt;
 mod judge;
+mod new_squares;
 mod photographs;
 mod recovery;
 mod scaling;
@@ -72,6 +73,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "figure_9",
         title: "a new city in a drawn shape",
         run: figure_9::run,
+    },
+    Artefact {
+        name: "new_squares",
+        title: "squares of new cities beside those of the old",
+        run: new_squares::run,
     },
     Artefact {
         name: "figure_10",

@@ -52,6 +52,18 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     Ok(found)
 }
 
+/// The made city, and with `--data` midtown and Delft.
+pub(crate) fn three_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
+    let mut found = cities(ctx)?;
+    if ctx.budget() > crate::Budget::Smoke {
+        let (name, file) = REAL[3];
+        if let Some(path) = ctx.real(file)? {
+            found.push((name.to_owned(), city::read(&path)?));
+        }
+    }
+    Ok(found)
+}
+
 /// The city with textures, with `--data`.
 pub(crate) fn chiba(ctx: &mut Context) -> Result<Option<City>> {
     if ctx.budget() == crate::Budget::Smoke {

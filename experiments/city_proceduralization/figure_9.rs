@@ -35,7 +35,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     for (name, city) in data::cities(ctx)? {
         let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
             .map_err(Error::method)?;
-        let new = synthesize(&made.grammar, &shape, seed).map_err(Error::method)?;
+        let new = synthesize(&made.grammar, &shape, seed, &unwatched).map_err(Error::method)?;
         let derivation = new.derive().map_err(Error::method)?;
         if derivation.buildings.is_empty() {
             ctx.note(format!("{name}: no building fits into the letters."));

@@ -8,6 +8,7 @@ mod derive;
 mod draw;
 mod edit;
 mod locate;
+mod morphology;
 mod plan;
 mod proceduralize;
 mod residuals;
@@ -68,6 +69,14 @@ grammars; writes .obj and .city.json.")]
   edifice city synthesize town.city-grammar.json --shape datasets/examples/park.geojson -o new.glb
 The shape is a polygon in metres. The output is a grammar, .glb, .obj or .city.json.")]
     Synthesize(synthesize::Args),
+    /// Measure the plan of a city: blocks, attached and parallel buildings, gaps, covered ground.
+    #[command(after_help = "Examples:
+  edifice city morphology town.city-grammar.json --side 200
+  edifice city morphology town.city-grammar.json --side 60 --at 0,0 --json
+Buildings are attached where walls are at most 0.5 m apart; a block is a set of attached buildings; a building's four nearest
+within 40 m are its neighbours, parallel within 5 degrees; the gap is to the nearest building of another block. Measures are
+pooled over squares of --side that overlap by half and are town: nine tenths within 100 m of a building.")]
+    Morphology(morphology::Args),
     /// Find where in a city a view was taken.
     #[command(after_help = "Examples:
   edifice city locate datasets/examples/street.obj --view datasets/examples/seen.json --top 2
@@ -110,6 +119,7 @@ pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
         Command::Show(args) => show::run(&args),
         Command::Draw(args) => draw::run(&args),
         Command::Synthesize(args) => synthesize::run(&args),
+        Command::Morphology(args) => morphology::run(&args),
         Command::Locate(args) => locate::run(&args),
         Command::Tiles(args) => tiles::run(&args),
         Command::Plan(args) => plan::run(&args),

@@ -21,7 +21,7 @@ use super::examples::{Example, Source};
 use super::script::{Shell, Word};
 use super::work::Work;
 use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Result, Watch, unwatched};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 use edifice_io::city::{self, cityjson, glb, grammar_json, obj};
@@ -59,12 +59,18 @@ fn open(path: &Path, bytes: &[u8], work: &Work) -> Opened {
     Some(city.map(|city| Arc::new(city) as Arc<dyn State>))
 }
 
+/// The greatest width of a shape to be filled, in metres: beyond a few kilometres a new city takes hours.
+pub const WIDEST: f64 = 50_000.0;
+
 /// Why a shape is not filled.
 #[derive(Debug, thiserror::Error)]
 pub enum FillError {
     /// The shape has fewer than three corners.
     #[error("a shape of {0} corners: expected at least 3")]
     Corners(usize),
+    /// The shape reaches farther than [`WIDEST`].
+    #[error("a shape {0} m wide: expected at most {WIDEST}")]
+    Wide(f64),
     /// No building fits.
     #[error("no building fits into the shape")]
     Full,
@@ -81,13 +87,20 @@ pub fn fill(
     grammar: &InstanceGrammar,
     mut shape: Shape,
     seed: u64,
+    watch: &Watch,
 ) -> std::result::Result<(InstanceGrammar, InstanceDerivation), FillError> {
+    if let Some((low, high)) = shape.bounds() {
+        let width = (high[0] - low[0]).max(high[1] - low[1]);
+        if width > WIDEST {
+            return Err(FillError::Wide(width));
+        }
+    }
     // Near the origin, where millimetres are kept.
     let low = shape.bounds().map_or([0.0; 2], |b| b.0.map(f64::floor));
     for p in shape.rings.iter_mut().flatten() {
         *p = [p[0] - low[0], p[1] - low[1]];
     }
-    let mut made = synthesize(grammar, &shape, seed)?;
+    let mut made = synthesize(grammar, &shape, seed, watch)?;
     made.origin = [low[0], low[1], 0.0];
     let derivation = made.derive()?;
     match derivation.buildings.is_empty() {
@@ -237,7 +250,7 @@ impl City {
             rings: vec![polygon],
         };
         let (grammar, derivation) =
-            fill(&self.made()?.grammar, shape, seed).map_err(Error::method)?;
+            fill(&self.made()?.grammar, shape, seed, &unwatched).map_err(Error::method)?;
         let count = derivation.buildings.len();
         let shell = Shell::new(["city", "synthesize", "<"])
             .option("--polygon", corners)

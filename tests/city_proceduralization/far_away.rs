@@ -273,6 +273,18 @@ fn a_building_far_from_the_others_does_not_hold_up_a_synthesis() {
     run(&["proceduralize", "c.obj", "-o", "g.city-grammar.json"]).success();
     let read = || std::fs::read_to_string(folder.path().join("g.city-grammar.json")).unwrap();
     let mut grammar: Value = serde_json::from_str(&read()).unwrap();
+    let wide = "0,0,1e7,0,1e7,60,0,60";
+    let asked = [
+        "synthesize",
+        "g.city-grammar.json",
+        "--polygon",
+        wide,
+        "-o",
+        "s.obj",
+    ];
+    let asked = run(&asked).failure();
+    let said = String::from_utf8_lossy(&asked.get_output().stderr);
+    assert!(said.contains("10000000 m wide"), "{said}");
     let polygon = "0,0,60,0,60,60,0,60";
     for (far, done) in [(9e8, true), (-1e18, false), (1e308, false)] {
         let rules = grammar["rules"].as_array_mut().unwrap();

@@ -14,6 +14,7 @@ mod gltf;
 mod grammar;
 mod interrupted;
 mod invariance;
+mod new_cities;
 mod parametric;
 mod photographs;
 mod textures;

@@ -205,6 +205,10 @@ fn lines_for_programs_have_the_keys_of_the_page() {
         ("building check", &["building", "check", &house]),
         ("city show", &["city", "show", town]),
         (
+            "city morphology",
+            &["city", "morphology", town, "--side", "100"],
+        ),
+        (
             "city synthesize",
             &[
                 "city",

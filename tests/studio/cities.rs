@@ -7,6 +7,7 @@ use std::time::Instant;
 use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{grammar_json, obj};
 use edifice::methods::city_proceduralization::synthesis::Shape;
+use edifice::unwatched;
 use edifice_datasets::shipped_bytes;
 use edifice_editing::city_proceduralization::fill;
 use edifice_studio::Settings;
@@ -135,7 +136,7 @@ fn triangles(folder: &Path) -> std::path::PathBuf {
     let shape = Shape {
         rings: vec![corners],
     };
-    let (grammar, derivation) = fill(&grammar, shape, 1).expect("filled");
+    let (grammar, derivation) = fill(&grammar, shape, 1, &unwatched).expect("filled");
     let place = folder.join("town.obj");
     std::fs::write(&place, obj::to_string(&derivation.city(&grammar))).expect("written");
     place

@@ -1,14 +1,20 @@
 //! `edifice city synthesize`.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-use edifice_base::{Error, Result};
+use edifice_base::{Error, Progress, Result};
 use edifice_city_proceduralization::synthesis::Shape;
 use edifice_editing::city_proceduralization::fill;
 use edifice_io::city::{geojson, grammar_file};
 
 use super::{data, derive};
 use crate::print;
+
+/// The time after which progress is told.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Options.
 #[derive(clap::Args)]
@@ -55,8 +61,18 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     let shape = Shape { rings };
     let area = shape.area();
+    let told = Mutex::new(Instant::now());
+    let tell = |progress: Progress| {
+        let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.elapsed() > PATIENCE {
+            *told = Instant::now();
+            let most = progress.most.unwrap_or_default();
+            print::message(&format!("{}: {} of {most}", progress.stage, progress.done));
+        }
+        ControlFlow::Continue(())
+    };
     let (made, derivation) =
-        fill(&grammar, shape, args.seed).map_err(|e| Error::content(&args.grammar, e))?;
+        fill(&grammar, shape, args.seed, &tell).map_err(|e| Error::content(&args.grammar, e))?;
     let count = derivation.buildings.len();
     match is_grammar {
         true => grammar_file::write(&made, &args.output)?,

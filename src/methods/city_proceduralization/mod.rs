@@ -59,6 +59,7 @@ mod gain;
 pub mod judge;
 pub mod localization;
 mod medoids;
+pub mod morphology;
 mod nearest;
 mod order;
 mod orientation;

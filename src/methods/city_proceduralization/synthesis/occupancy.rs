@@ -1,185 +1,141 @@
-//! The ground that is taken by buildings, on a grid of 1 m.
+//! The ground of the new city: what buildings cover, what stays open, and what has been decided.
 
-use rustc_hash::{FxHashMap, FxHashSet};
-
+use super::footprint::{CELL, Footprint, OPEN_CELL};
+use super::raster::Raster;
 use super::shape::{Shape, rotated};
-use edifice_shape::triangles::{TriangleMesh, plan_area};
 
-/// Side of a cell, in metres.
-const CELL: f64 = 1.0;
-/// Share of a building's inner points that may lie on others.
+/// Share of the inner points of a block that may lie on others.
 const OVERLAP: f64 = 0.004;
-/// Side of a cell of open ground, in metres.
-const OPEN_CELL: f64 = 2.0;
-/// Steps of such cells that open ground reaches from its building.
-const OPEN_STEPS: usize = 4;
-/// Share of a building that may lie on the open ground of others, and of its open ground that others may cover.
-const INTRUSION: f64 = 0.04;
-/// Share of its points that may lie outside the shape.
+/// Share of a block that may lie on the open ground of others, and of its open ground that others may cover.
+const INTRUSION: f64 = 0.12;
+/// Share of the rim of a building that may lie outside the shape.
 const OUTSIDE: f64 = 0.004;
+/// Side of the cells that have been decided, in metres.
+const DECIDED_CELL: f64 = 4.0;
 
-/// The plan of a building as points of a grid in its frame.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Footprint {
-    /// Points whose four neighbours are covered; all points, if there are none.
-    inner: Vec<[f64; 2]>,
-    /// The points of the plan that are no inner ones.
-    rim: Vec<[f64; 2]>,
-    /// Points of the open ground that belongs to the building.
-    pub(super) open: Vec<[f64; 2]>,
-}
-
-impl Footprint {
-    /// Number of points: square metres of plan.
-    pub(super) fn points(&self) -> usize {
-        self.inner.len() + self.rim.len()
-    }
-
-    /// Square metres of plan and of open ground.
-    pub(super) fn ground(&self) -> f64 {
-        CELL * CELL * self.points() as f64 + OPEN_CELL * OPEN_CELL * self.open.len() as f64
-    }
-}
-
-/// The plan of a mesh, in the frame at `at`, turned by `turn` degrees.
-pub(super) fn footprint(mesh: &TriangleMesh, at: [f64; 3], turn: f64) -> Footprint {
-    let mut cells: FxHashSet<[i64; 2]> = FxHashSet::default();
-    for t in mesh.corners() {
-        let t = t.map(|p| rotated([p[0] - at[0], p[1] - at[1]], -turn));
-        let flat = t.map(|p| [p[0], p[1], 0.0]);
-        if plan_area(&flat) > 0.0 {
-            cover(&t, &mut cells);
-        }
-    }
-    let mut sorted: Vec<[i64; 2]> = cells.iter().copied().collect();
-    sorted.sort_unstable();
-    let is_inner = |&[i, j]: &[i64; 2]| {
-        let around = [[i - 1, j], [i + 1, j], [i, j - 1], [i, j + 1]];
-        around.iter().all(|c| cells.contains(c))
-    };
-    let (inner, rim): (Vec<_>, Vec<_>) = sorted.into_iter().partition(is_inner);
-    let point = |c: Vec<[i64; 2]>| -> Vec<[f64; 2]> {
-        let middle = |v: i64| (v as f64 + 0.5) * CELL;
-        c.into_iter().map(|c| c.map(middle)).collect()
-    };
-    match inner.is_empty() {
-        true => Footprint {
-            inner: point(rim),
-            ..Footprint::default()
-        },
-        false => Footprint {
-            inner: point(inner),
-            rim: point(rim),
-            open: Vec::new(),
-        },
-    }
-}
-
-/// Marks the cells whose middles a triangle covers.
-fn cover(t: &[[f64; 2]; 3], cells: &mut FxHashSet<[i64; 2]>) {
-    let low = [0, 1].map(|k| t.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min));
-    let high = [0, 1].map(|k| t.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max));
-    let first = low.map(|v| (v / CELL - 0.5).ceil() as i64);
-    let last = high.map(|v| (v / CELL - 0.5).floor() as i64);
-    for i in first[0]..=last[0] {
-        for j in first[1]..=last[1] {
-            let p = [(i as f64 + 0.5) * CELL, (j as f64 + 0.5) * CELL];
-            let inside = (0..3).all(|k| {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
-            });
-            if inside {
-                cells.insert([i, j]);
-            }
-        }
-    }
+/// What is known of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ground {
+    /// A building stands there.
+    Built,
+    /// The open ground of a building, or ground that a patch left open.
+    Open,
+    /// Nothing has been put there yet.
+    Undecided,
 }
 
 /// Ground that buildings stand on.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Occupancy {
-    taken: FxHashSet<[i64; 2]>,
-    open: FxHashSet<[i64; 2]>,
+    built: Raster,
+    open: Raster,
+    decided: Raster,
 }
 
-/// The open ground of each building of a city, in its frame: cells nearer to it than to others, counted in steps.
-pub(super) fn open_ground(prints: &[&Footprint], frames: &[([f64; 3], f64)]) -> Vec<Vec<[f64; 2]>> {
-    let cell = |p: [f64; 2]| p.map(|v| (v / OPEN_CELL).floor() as i64);
-    let mut owner: FxHashMap<[i64; 2], usize> = FxHashMap::default();
-    let mut front: Vec<[i64; 2]> = Vec::new();
-    for (i, (print, (at, turn))) in prints.iter().zip(frames).enumerate() {
-        for p in print.inner.iter().chain(&print.rim) {
-            let [x, y] = rotated(*p, *turn);
-            let c = cell([at[0] + x, at[1] + y]);
-            owner.entry(c).or_insert_with(|| {
-                front.push(c);
-                i
-            });
-        }
+/// A footprint, where it would stand.
+#[derive(Clone, Copy)]
+pub(super) struct Standing<'a> {
+    pub(super) footprint: &'a Footprint,
+    pub(super) at: [f64; 2],
+    pub(super) turn: f64,
+}
+
+impl Standing<'_> {
+    fn placed<'a>(&'a self, points: &'a [[f64; 2]]) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let (sin, cos) = self.turn.to_radians().sin_cos();
+        let at = self.at;
+        points
+            .iter()
+            .map(move |[x, y]| [at[0] + x * cos - y * sin, at[1] + x * sin + y * cos])
     }
-    let mut open: Vec<Vec<[f64; 2]>> = vec![Vec::new(); prints.len()];
-    for _ in 0..OPEN_STEPS {
-        let mut next = Vec::new();
-        for [x, y] in front {
-            let own = owner[&[x, y]];
-            for c in [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]] {
-                owner.entry(c).or_insert_with(|| {
-                    let (at, turn) = frames[own];
-                    let p = c.map(|v| (v as f64 + 0.5) * OPEN_CELL);
-                    open[own].push(rotated([p[0] - at[0], p[1] - at[1]], -turn));
-                    next.push(c);
-                    own
-                });
-            }
-        }
-        front = next;
+
+    /// True if it lies inside the shape.
+    pub(super) fn inside(&self, shape: &Shape) -> bool {
+        let edge = self.footprint.edge();
+        let most = (OUTSIDE * edge.len() as f64) as usize;
+        let outside = self.placed(edge).filter(|p| !shape.contains(*p));
+        outside.take(most + 1).count() <= most
     }
-    open
 }
 
 impl Occupancy {
-    /// Puts a building down, if it lies inside the shape and on nothing else; whether it did.
-    pub(super) fn take(
-        &mut self,
-        footprint: &Footprint,
-        at: [f64; 2],
-        turn: f64,
-        shape: &Shape,
-    ) -> bool {
-        let place = |p: &[f64; 2]| {
-            let [x, y] = rotated(*p, turn);
-            [at[0] + x, at[1] + y]
+    /// Ground on which nothing stands.
+    pub(super) fn new() -> Self {
+        Self {
+            built: Raster::new(CELL),
+            open: Raster::new(OPEN_CELL),
+            decided: Raster::new(DECIDED_CELL),
+        }
+    }
+
+    /// What is known of a point.
+    pub(super) fn ground(&self, p: [f64; 2]) -> Ground {
+        if self.built.at(p) > 0 {
+            Ground::Built
+        } else if self.open.at(p) > 0 || self.decided.at(p) > 0 {
+            Ground::Open
+        } else {
+            Ground::Undecided
+        }
+    }
+
+    /// True if nothing stands at a point, and it is not the open ground of a building.
+    pub(super) fn free(&self, p: [f64; 2]) -> bool {
+        self.built.at(p) == 0 && self.open.at(p) == 0
+    }
+
+    /// True if the buildings of a block fit together: on nothing that stands, beyond the open ground of others, and nothing on theirs.
+    pub(super) fn fits(&self, block: &[Standing]) -> bool {
+        let inner: usize = block.iter().map(|s| s.footprint.inner.len()).sum();
+        let open: usize = block.iter().map(|s| s.footprint.open.len()).sum();
+        let at_most = |share: f64, of: usize, hits: &mut dyn Iterator<Item = [f64; 2]>| {
+            let most = (share * of as f64) as usize;
+            hits.take(most + 1).count() <= most
         };
-        let cell = |p: [f64; 2]| p.map(|v| (v / CELL).floor() as i64);
-        let inner: Vec<[f64; 2]> = footprint.inner.iter().map(place).collect();
-        if inner.is_empty() {
-            return false;
+        let covered = || block.iter().flat_map(|s| s.placed(&s.footprint.inner));
+        let around = || block.iter().flat_map(|s| s.placed(&s.footprint.open));
+        inner > 0
+            && at_most(
+                OVERLAP,
+                inner,
+                &mut covered().filter(|p| self.built.at(*p) > 0),
+            )
+            && at_most(
+                INTRUSION,
+                inner,
+                &mut covered().filter(|p| self.open.at(*p) > 0),
+            )
+            && at_most(
+                INTRUSION,
+                open,
+                &mut around().filter(|p| self.built.at(*p) > 0),
+            )
+    }
+
+    /// Puts a building down.
+    pub(super) fn take(&mut self, standing: &Standing) {
+        let print = standing.footprint;
+        for p in standing
+            .placed(&print.inner)
+            .chain(standing.placed(&print.rim))
+        {
+            *self.built.at_mut(p) = 1;
         }
-        let most = (OVERLAP * inner.len() as f64) as usize;
-        let hit = |p: &&[f64; 2]| self.taken.contains(&cell(**p));
-        if inner.iter().filter(hit).take(most + 1).count() > most {
-            return false;
+        for p in standing.placed(&print.open) {
+            *self.open.at_mut(p) = 1;
         }
-        let open_cell = |p: [f64; 2]| p.map(|v| (v / OPEN_CELL).floor() as i64);
-        let intruding = |p: &&[f64; 2]| self.open.contains(&open_cell(**p));
-        let most = (INTRUSION * inner.len() as f64) as usize;
-        if inner.iter().filter(intruding).take(most + 1).count() > most {
-            return false;
+    }
+
+    /// A square of so many metres is decided: what no building covers there is meant to be open.
+    pub(super) fn decide(&mut self, middle: [f64; 2], side: f64, degrees: f64) {
+        // Half cells, so that a turned square has no holes.
+        let step = DECIDED_CELL / 2.0;
+        let half = (side / 2.0 / step) as i64;
+        for i in -half..half {
+            for j in -half..half {
+                let [x, y] = rotated([i, j].map(|v| (v as f64 + 0.5) * step), degrees);
+                *self.decided.at_mut([middle[0] + x, middle[1] + y]) = 1;
+            }
         }
-        let open: Vec<[f64; 2]> = footprint.open.iter().map(place).collect();
-        let most = (INTRUSION * open.len() as f64) as usize;
-        if open.iter().filter(hit).take(most + 1).count() > most {
-            return false;
-        }
-        let rim: Vec<[f64; 2]> = footprint.rim.iter().map(place).collect();
-        let edge = if rim.is_empty() { &inner } else { &rim };
-        let most = (OUTSIDE * edge.len() as f64) as usize;
-        let out = |p: &&[f64; 2]| !shape.contains(**p);
-        if edge.iter().filter(out).take(most + 1).count() > most {
-            return false;
-        }
-        self.taken.extend(inner.into_iter().chain(rim).map(cell));
-        self.open.extend(open.into_iter().map(open_cell));
-        true
     }
 }

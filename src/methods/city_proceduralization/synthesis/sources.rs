@@ -1,21 +1,13 @@
-//! The buildings that a new city is made of: those of the grammar's city, with what stands near them.
+//! The buildings that a new city is made of: those of the grammar's city.
 
-use super::super::localization::{Landmark, landmark};
-use super::occupancy::{Footprint, footprint, open_ground};
+use super::footprint::{Footprint, footprint, open_ground};
 use edifice_grammar::instance::{
     InstanceGrammar, InstanceGrammarError, Placement, TemplateInstance,
 };
-use edifice_shape::triangles::TriangleMesh;
+use edifice_shape::triangles::{TriangleMesh, normal};
 
-/// Neighbours of a building are no farther from it, in metres,
-const REACH: f64 = 80.0;
-/// and so many at most.
-const NEIGHBOURS: usize = 10;
-/// Classes by plan area,
-pub(super) const AREAS: usize = 16;
-/// and in each by height.
-pub(super) const HEIGHTS: usize = 2;
-
+/// The normals of walls are so many times as long in the plan as upright.
+const STEEP: f64 = 5.0;
 /// No building reaches farther in the plan, in metres.
 const LARGEST: f64 = 5000.0;
 
@@ -26,16 +18,11 @@ const FARTHEST: f64 = 1e9;
 pub(super) struct Source {
     /// The placements under the axiom: one symbol, or the templates of a building.
     pub(super) placed: Vec<Placement>,
-    pub(super) kind: usize,
-    /// Class of plan area and height.
-    pub(super) class: usize,
     pub(super) at: [f64; 3],
     pub(super) turn: f64,
-    /// As it stands in the grammar's city.
-    pub(super) looks: Landmark,
+    /// The direction of its walls: the sum of area · exp(4iφ) over walls whose normals have direction φ, so that walls at right angles agree.
+    pub(super) walls: [f64; 2],
     pub(super) footprint: Footprint,
-    /// Other sources near it, the nearest first.
-    pub(super) near: Vec<usize>,
 }
 
 /// The buildings of the grammar's city.
@@ -55,7 +42,6 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
             whole.entry(id.as_str()).or_insert_with(Vec::new).push(s);
         }
     }
-    let mut kinds: rustc_hash::FxHashMap<Vec<String>, usize> = rustc_hash::FxHashMap::default();
     let mut out = Vec::new();
     for ((id, _), parts) in derivation.buildings.iter().zip(&parts) {
         let Some(first) = parts.first() else { continue };
@@ -63,9 +49,6 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
             Some(list) => list.iter().map(|p| (*p).clone()).collect(),
             None => parts.iter().map(|i| terminal(grammar, i)).collect(),
         };
-        let symbols: Vec<String> = placed.iter().map(|p| p.symbol.clone()).collect();
-        let next = kinds.len();
-        let kind = *kinds.entry(symbols).or_insert(next);
         let mut mesh = TriangleMesh::default();
         for part in parts {
             let template = &grammar.templates[part.template].mesh;
@@ -93,19 +76,13 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
                 });
             }
         }
-        let Some(looks) = landmark(&mesh) else {
-            continue;
-        };
         let (at, turn) = (first.at, placed.first().map_or(0.0, |p| p.turn));
         out.push(Source {
             placed,
-            kind,
-            class: 0,
             at,
             turn,
-            looks,
+            walls: walls(&mesh),
             footprint: footprint(&mesh, at, turn),
-            near: Vec::new(),
         });
     }
     let frames: Vec<([f64; 3], f64)> = out.iter().map(|s| (s.at, s.turn)).collect();
@@ -114,60 +91,25 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
     for (source, open) in out.iter_mut().zip(open) {
         source.footprint.open = open;
     }
-    classify(&mut out);
-    let near: Vec<Vec<usize>> = neighbours(&out);
-    for (source, near) in out.iter_mut().zip(near) {
-        source.near = near;
-    }
     Ok(out)
 }
 
-/// Puts sources into classes of equally many.
-fn classify(sources: &mut [Source]) {
-    let n = sources.len();
-    let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by_key(|&i| (sources[i].footprint.points(), i));
-    for a in 0..AREAS {
-        let own = &mut order[a * n / AREAS..(a + 1) * n / AREAS];
-        own.sort_by(|&i, &j| {
-            let height = |s: usize| sources[s].looks.seen.height;
-            height(i).total_cmp(&height(j)).then(i.cmp(&j))
-        });
-        for (rank, &i) in own.iter().enumerate() {
-            sources[i].class = a * HEIGHTS + rank * HEIGHTS / own.len();
+/// The direction of the walls of a mesh (see [`Source::walls`]).
+fn walls(mesh: &TriangleMesh) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for t in mesh.corners() {
+        let n = normal(&t);
+        let flat = n[0].hypot(n[1]);
+        // Roofs may be steep; walls are steeper.
+        if flat > STEEP * n[2].abs() {
+            let (sin, cos) = (4.0 * n[1].atan2(n[0])).sin_cos();
+            sum = [sum[0] + flat * cos, sum[1] + flat * sin];
         }
     }
+    sum
 }
 
 fn terminal(grammar: &InstanceGrammar, i: &TemplateInstance) -> Placement {
     let symbol = grammar.templates[i.template].symbol.clone();
     Placement::new(symbol, i.at, i.turn, i.size)
-}
-
-/// The nearest sources of each, by a grid.
-fn neighbours(sources: &[Source]) -> Vec<Vec<usize>> {
-    let cell = |p: &[f64; 3]| [0, 1].map(|k| (p[k] / REACH).floor() as i64);
-    let mut grid: rustc_hash::FxHashMap<[i64; 2], Vec<usize>> = rustc_hash::FxHashMap::default();
-    for (i, s) in sources.iter().enumerate() {
-        grid.entry(cell(&s.at)).or_default().push(i);
-    }
-    let far = |i: usize, j: usize| {
-        let (a, b) = (sources[i].at, sources[j].at);
-        (a[0] - b[0]).hypot(a[1] - b[1])
-    };
-    (0..sources.len())
-        .map(|i| {
-            let [x, y] = cell(&sources[i].at);
-            let around = (-1..=1).flat_map(|u| (-1..=1).map(move |v| [x + u, y + v]));
-            let mut near: Vec<usize> = around
-                .filter_map(|c| grid.get(&c))
-                .flatten()
-                .copied()
-                .filter(|&j| j != i && far(i, j) <= REACH)
-                .collect();
-            near.sort_by(|&a, &b| far(i, a).total_cmp(&far(i, b)).then(a.cmp(&b)));
-            near.truncate(NEIGHBOURS);
-            near
-        })
-        .collect()
 }

@@ -1,0 +1,98 @@
+//! Blocks: buildings that stand wall to wall, as they are copied together.
+
+use rustc_hash::FxHashMap;
+
+use super::footprint::CELL;
+use super::shape::rotated;
+use super::sources::Source;
+
+/// Buildings that are attached to each other, or a single one.
+#[derive(Debug)]
+pub(super) struct Block {
+    pub(super) buildings: Vec<usize>,
+    /// The middle of its plan.
+    pub(super) middle: [f64; 2],
+    /// Square metres of plan.
+    pub(super) area: f64,
+    /// The direction of its walls, as of [`Source::walls`].
+    pub(super) walls: [f64; 2],
+    /// The direction of its length: area · (1 - width / length) · exp(2iφ), of the principal axes of its plan.
+    pub(super) length: [f64; 2],
+}
+
+/// The blocks of a city. Buildings without a plan are in none.
+pub(super) fn blocks(buildings: &[Source]) -> Vec<Block> {
+    let mut points: Vec<Vec<[f64; 2]>> = Vec::with_capacity(buildings.len());
+    let mut owner: FxHashMap<[i64; 2], usize> = FxHashMap::default();
+    for (i, b) in buildings.iter().enumerate() {
+        let stand = |p| {
+            let [x, y] = rotated(p, b.turn);
+            [b.at[0] + x, b.at[1] + y]
+        };
+        let own: Vec<[f64; 2]> = b.footprint.covered().map(stand).collect();
+        for p in &own {
+            owner
+                .entry(p.map(|v| (v / CELL).floor() as i64))
+                .or_insert(i);
+        }
+        points.push(own);
+    }
+    let mut sets = Sets((0..buildings.len()).collect());
+    // Walls half a metre apart may lie in cells that touch at a corner alone.
+    for (&[x, y], &i) in &owner {
+        for c in [[x + 1, y], [x, y + 1], [x + 1, y + 1], [x + 1, y - 1]] {
+            if let Some(&j) = owner.get(&c) {
+                sets.join(i, j);
+            }
+        }
+    }
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.len()];
+    for i in (0..buildings.len()).filter(|&i| !points[i].is_empty()) {
+        members[sets.first(i)].push(i);
+    }
+    members.retain(|m| !m.is_empty());
+    let block = |members: Vec<usize>| block(buildings, &points, members);
+    members.into_iter().map(block).collect()
+}
+
+fn block(buildings: &[Source], points: &[Vec<[f64; 2]>], members: Vec<usize>) -> Block {
+    let all = || members.iter().flat_map(|&i| &points[i]);
+    let n = all().count() as f64;
+    let middle = [0, 1].map(|k| all().map(|p| p[k]).sum::<f64>() / n);
+    let [mut xx, mut xy, mut yy] = [0.0; 3];
+    for p in all() {
+        let [x, y] = [p[0] - middle[0], p[1] - middle[1]];
+        xx += x * x / n;
+        xy += x * y / n;
+        yy += y * y / n;
+    }
+    // Eigenvalues of a symmetric matrix of two rows.
+    let (mean, half) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
+    let slender = 1.0 - ((mean - half).max(0.0) / (mean + half).max(f64::MIN_POSITIVE)).sqrt();
+    let double = xy.atan2((xx - yy) / 2.0);
+    Block {
+        middle,
+        area: n * CELL * CELL,
+        walls: [0, 1].map(|k| members.iter().map(|&i| buildings[i].walls[k]).sum()),
+        length: [double.cos(), double.sin()].map(|v| v * n * slender),
+        buildings: members,
+    }
+}
+
+/// Sets of buildings, each called by its first.
+struct Sets(Vec<usize>);
+
+impl Sets {
+    fn first(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+
+    fn join(&mut self, i: usize, j: usize) {
+        let (i, j) = (self.first(i), self.first(j));
+        self.0[i.max(j)] = i.min(j);
+    }
+}
