@@ -13,7 +13,7 @@ const OUTSIDE: f64 = 0.004;
 /// Side of the cells that have been decided, in metres.
 const DECIDED_CELL: f64 = 4.0;
 
-/// What is known of a point.
+/// The knowledge of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ground {
     /// A building stands there.
@@ -68,7 +68,7 @@ impl Occupancy {
         }
     }
 
-    /// What is known of a point.
+    /// The knowledge of a point.
     pub(super) fn ground(&self, p: [f64; 2]) -> Ground {
         if self.built.at(p) > 0 {
             Ground::Built

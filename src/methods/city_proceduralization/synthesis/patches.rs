@@ -13,14 +13,14 @@ use edifice_base::rng::Stream;
 const DRAWN: usize = 400;
 /// and so many of them tried that agree best with what stands.
 const TRIED: usize = 24;
-/// What stands is compared so far around a square, in metres.
+/// Buildings and open ground are compared so far around a square, in metres.
 const AROUND: f64 = 48.0;
 /// Steps by which a patch is moved to where it agrees best, in metres, as judged by every so many known points.
 const STEPS: [(f64, usize); 4] = [(16.0, SPARSE), (8.0, SPARSE), (4.0, 2), (2.0, 1)];
 /// Patches that are drawn are judged by every so many known points.
 const SPARSE: usize = 7;
 
-/// Where a patch is taken, its turn in degrees, and how much it disagrees with what stands.
+/// A patch: the place where it is taken, its turn in degrees, and its disagreement with what stands.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {
     pub(super) from: [f64; 2],
@@ -75,7 +75,7 @@ impl Search<'_> {
         Some(cheapest.min_by(|a, b| a.1.total_cmp(&b.1))?.0)
     }
 
-    /// What is known around a square.
+    /// The points around a square that are known.
     fn window(&self, whole: bool) -> Vec<Known> {
         let known = |p: [f64; 2]| match self.ground.ground(p) {
             Ground::Built => Some(true),
@@ -130,7 +130,7 @@ impl Search<'_> {
         }
     }
 
-    /// How much a patch disagrees with every `step`th known point: the sum of differences over the points where buildings stand, or
+    /// The disagreement of a patch with every `step`th known point: the sum of differences over the points where buildings stand, or
     /// over a fifth of the points, if that is more.
     fn mismatch(&self, window: &[Known], step: usize, from: [f64; 2], turn: f64) -> f64 {
         let (mut sum, mut built, mut all) = (0.0, 0usize, 0usize);

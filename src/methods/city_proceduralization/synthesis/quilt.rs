@@ -119,7 +119,7 @@ impl<'a> Quilt<'a> {
         self.amount.0[2] >= self.density.0[2] * self.squares
     }
 
-    /// How much an amount on so many squares is unlike the old city: the sum of the absolute logarithms of the ratios of area,
+    /// The unlikeness of an amount on so many squares to the old city: the sum of the absolute logarithms of the ratios of area,
     /// buildings, and buildings a block.
     fn unlike(&self, amount: Amount, squares: f64) -> f64 {
         let [blocks, buildings, area] = amount.0;
@@ -210,7 +210,7 @@ impl<'a> Quilt<'a> {
         }
     }
 
-    /// What of a block is kept inside the shape.
+    /// The part of a block that is kept inside the shape.
     fn kept(&self, (_, copies): &(usize, Vec<Copy>)) -> [f64; 3] {
         let points = |c: &Copy| self.city.buildings[c.source].footprint.points();
         let area: usize = copies.iter().map(points).sum();
