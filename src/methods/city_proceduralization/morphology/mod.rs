@@ -5,6 +5,7 @@
 
 mod plan;
 
+use petgraph::unionfind::UnionFind;
 use rustc_hash::FxHashMap;
 
 use self::plan::{Building, building, distance};
@@ -103,7 +104,7 @@ impl CityPlan {
             }
         }
         let mut plan = Self {
-            block: (0..buildings.len()).collect(),
+            block: Vec::new(),
             attached: vec![false; buildings.len()],
             gap: vec![LARGEST_GAP; buildings.len()],
             buildings,
@@ -145,28 +146,17 @@ impl CityPlan {
 
     /// Joins attached buildings to blocks.
     fn join(&mut self) {
+        let mut sets = UnionFind::new(self.buildings.len());
         for i in 0..self.buildings.len() {
             for (_, j) in self.around(i, ATTACHED) {
-                if j < i
-                    && distance(&self.buildings[i].walls, &self.buildings[j].walls, ATTACHED)
-                        <= ATTACHED
-                {
+                let walls = [i, j].map(|b| self.buildings[b].walls.as_slice());
+                if j < i && distance(walls[0], walls[1], ATTACHED) <= ATTACHED {
                     (self.attached[i], self.attached[j]) = (true, true);
-                    let (a, b) = (self.first(i), self.first(j));
-                    self.block[a.max(b)] = a.min(b);
+                    sets.union(i, j);
                 }
             }
         }
-        for i in 0..self.buildings.len() {
-            self.block[i] = self.first(i);
-        }
-    }
-
-    fn first(&self, mut i: usize) -> usize {
-        while self.block[i] != i {
-            i = self.block[i];
-        }
-        i
+        self.block = sets.into_labeling();
     }
 
     fn measure_gaps(&mut self) {

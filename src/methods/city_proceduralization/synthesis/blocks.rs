@@ -1,5 +1,6 @@
 //! Blocks: buildings that stand wall to wall, as they are copied together.
 
+use petgraph::unionfind::UnionFind;
 use rustc_hash::FxHashMap;
 
 use super::footprint::CELL;
@@ -37,20 +38,26 @@ pub(super) fn blocks(buildings: &[Source]) -> Vec<Block> {
         }
         points.push(own);
     }
-    let mut sets = Sets((0..buildings.len()).collect());
+    let mut sets = UnionFind::new(buildings.len());
     // Walls half a metre apart may lie in cells that touch at a corner alone.
     for (&[x, y], &i) in &owner {
         for c in [[x + 1, y], [x, y + 1], [x + 1, y + 1], [x + 1, y - 1]] {
             if let Some(&j) = owner.get(&c) {
-                sets.join(i, j);
+                sets.union(i, j);
             }
         }
     }
-    let mut members: Vec<Vec<usize>> = vec![Vec::new(); buildings.len()];
+    // Blocks are in the order of their first buildings.
+    let set = sets.into_labeling();
+    let mut place: FxHashMap<usize, usize> = FxHashMap::default();
+    let mut members: Vec<Vec<usize>> = Vec::new();
     for i in (0..buildings.len()).filter(|&i| !points[i].is_empty()) {
-        members[sets.first(i)].push(i);
+        let block = *place.entry(set[i]).or_insert(members.len());
+        match members.get_mut(block) {
+            Some(own) => own.push(i),
+            None => members.push(vec![i]),
+        }
     }
-    members.retain(|m| !m.is_empty());
     let block = |members: Vec<usize>| block(buildings, &points, members);
     members.into_iter().map(block).collect()
 }
@@ -76,23 +83,5 @@ fn block(buildings: &[Source], points: &[Vec<[f64; 2]>], members: Vec<usize>) ->
         walls: [0, 1].map(|k| members.iter().map(|&i| buildings[i].walls[k]).sum()),
         length: [double.cos(), double.sin()].map(|v| v * n * slender),
         buildings: members,
-    }
-}
-
-/// Sets of buildings, each called by its first.
-struct Sets(Vec<usize>);
-
-impl Sets {
-    fn first(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-
-    fn join(&mut self, i: usize, j: usize) {
-        let (i, j) = (self.first(i), self.first(j));
-        self.0[i.max(j)] = i.min(j);
     }
 }
