@@ -59,7 +59,7 @@ fn open(path: &Path, bytes: &[u8], work: &Work) -> Opened {
     Some(city.map(|city| Arc::new(city) as Arc<dyn State>))
 }
 
-/// The greatest width of a shape to be filled, in metres: beyond a few kilometres a new city takes hours.
+/// The greatest width of a shape to be filled, in metres; a square of it takes hours.
 pub const WIDEST: f64 = 50_000.0;
 
 /// Why a shape is not filled.

@@ -62,7 +62,9 @@ impl Search<'_> {
         let draws: Vec<[f64; 4]> = (0..DRAWN)
             .map(|_| std::array::from_fn(|_| rng.random()))
             .collect();
-        let mut patches: Vec<Patch> = draws.par_iter().map(|d| self.drawn(&window, *d)).collect();
+        let around = self.directions();
+        let drawn = |draw: &[f64; 4]| self.drawn(&window, around, *draw);
+        let mut patches: Vec<Patch> = draws.par_iter().map(drawn).collect();
         // The sort is stable: the same order for any number of threads.
         patches.sort_by(|a, b| a.mismatch.total_cmp(&b.mismatch));
         patches.truncate(TRIED);
@@ -92,10 +94,8 @@ impl Search<'_> {
         points.into_iter().filter_map(about).collect()
     }
 
-    /// A patch from a random place, turned as what stands around.
-    fn drawn(&self, window: &[Known], draw: [f64; 4]) -> Patch {
-        let city = self.city;
-        let from = city.place([draw[0], draw[1], draw[2]]);
+    /// The directions of the walls and of the length of the blocks that stand around; zeros where none does.
+    fn directions(&self) -> [[f64; 2]; 2] {
         let reach = self.square.side / 2.0 + AROUND;
         let near = self.laid.iter().filter(|l| {
             let [x, y] = [0, 1].map(|k| (l.middle[k] - self.square.middle[k]).abs());
@@ -106,6 +106,13 @@ impl Search<'_> {
             walls = [0, 1].map(|k| walls[k] + block.walls[k]);
             length = [0, 1].map(|k| length[k] + block.length[k]);
         }
+        [walls, length]
+    }
+
+    /// A patch from a random place, turned as the walls and the length of what stands around.
+    fn drawn(&self, window: &[Known], [walls, length]: [[f64; 2]; 2], draw: [f64; 4]) -> Patch {
+        let city = self.city;
+        let from = city.place([draw[0], draw[1], draw[2]]);
         let mut turn = 0.0;
         if walls != [0.0; 2] {
             let (mut own, mut along) = ([0.0; 2], [0.0; 2]);
