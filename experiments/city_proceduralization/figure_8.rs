@@ -5,7 +5,7 @@ use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Mode, judge, proceduralize};
-use edifice_io::city::picture::{Drawing, Drawn, bounds, draw};
+use edifice_io::city::picture::{Drawing, Drawn, View, bounds, draw};
 
 /// Part of the width of a made city that is drawn: its buildings are small and far apart.
 const NEAR: f64 = 0.12;
@@ -25,7 +25,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         let whole = Drawing {
             width,
             height: width * 5 / 8,
-            plan: false,
+            view: View::Oblique,
             around: None,
         };
         let near = bounds(&city, &whole).filter(|_| name == data::MADE);

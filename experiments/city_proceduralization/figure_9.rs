@@ -6,7 +6,7 @@ use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_city_proceduralization::{Mode, proceduralize};
-use edifice_io::city::grammar_json;
+use edifice_io::city::grammar_file;
 use edifice_io::city::picture::side_by_side;
 use edifice_report::{Align, Table};
 
@@ -69,9 +69,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         ctx.attach(&format!("figure_9_{name}.png"), &picture, &what)?;
         if name == data::MADE {
             // That of a real city holds its data.
-            let text = grammar_json::to_string(&new).map_err(Error::method)?;
-            let file = format!("figure_9_{name}.city-grammar.json");
-            ctx.attach(&file, text.as_bytes(), "the same as a grammar of instances")?;
+            let file = format!("figure_9_{name}.city-grammar.bin");
+            let bytes = grammar_file::to_bytes(&new, file.as_ref())?;
+            ctx.attach(&file, &bytes, "the same as a grammar of instances")?;
         }
     }
     ctx.table(&table);

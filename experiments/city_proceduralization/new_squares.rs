@@ -9,7 +9,7 @@ use edifice_city_proceduralization::morphology::{CityPlan, Morphology, Square};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_city_proceduralization::{Mode, proceduralize};
 use edifice_grammar::instance::InstanceGrammar;
-use edifice_io::city::picture::{Drawing, Drawn, draw};
+use edifice_io::city::picture::{Drawing, Drawn, View, draw};
 use edifice_report::{Align, Table};
 use edifice_shape::triangles::City;
 
@@ -132,12 +132,16 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             .min_by(|a, b| unlike(a).total_cmp(&unlike(b)));
         if let (Some(typical), Some(new)) = (typical, shown) {
             let [from, to] = [cut(&derived, typical), cut(&new, &square)];
-            for (what, plan) in [("plan", true), ("view", false)] {
-                let width = ctx.budget().choose(160, 700, 900);
+            for (what, view) in [("plan", View::FigureGround), ("view", View::Oblique)] {
+                let width = ctx.budget().choose(160, 600, 900);
+                let height = match view {
+                    View::FigureGround => width,
+                    _ => width * 5 / 8,
+                };
                 let drawing = Drawing {
                     width,
-                    height: width,
-                    plan,
+                    height,
+                    view,
                     around: None,
                 };
                 let drawn = [&from, &to].map(|city| Drawn {

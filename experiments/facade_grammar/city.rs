@@ -10,6 +10,7 @@ use edifice_base::{Error, Result};
 use edifice_facade_grammar::city::{Settings, city};
 use edifice_grammar::{Derivation, Grammar, Sampler, combine};
 use edifice_io::gltf;
+use edifice_io::scene_png::scene_png;
 use edifice_report::{Figure, Row};
 
 /// Layouts whose grammars are combined, group by group of similar structure.
@@ -72,6 +73,14 @@ fn build(
     let bytes = gltf::to_bytes(&town.scene).map_err(Error::method)?;
     let seconds = start.elapsed().as_secs_f64();
     ctx.attach(&format!("{artefact}.glb"), &bytes, "the scene, binary glTF")?;
+    let size = ctx.budget().choose([160, 90], [880, 495], [1280, 720]);
+    for (what, said, camera) in [
+        ("above", "over the roofs", town.from_above()),
+        ("street", "in a street", town.in_the_street()),
+    ] {
+        let picture = scene_png(&town.scene, &camera, size[0], size[1]).map_err(Error::method)?;
+        ctx.attach(&format!("{artefact}_{what}.png"), &picture, said)?;
+    }
     let inputs: usize = groups.iter().map(|g| g.len()).sum();
     let numbers = [
         ("buildings", town.buildings as f64, ""),

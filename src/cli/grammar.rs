@@ -7,6 +7,7 @@ mod infer;
 mod library;
 mod merge;
 mod show;
+mod town;
 
 use clap::Subcommand;
 use edifice_grammar::Costs;
@@ -24,6 +25,8 @@ pub(crate) enum Command {
     Merge(merge::Args),
     /// Combine grammars of several facades into a stochastic one, part by part.
     Combine(library::Combine),
+    /// Build a town of variations from grammars.
+    Town(town::Args),
     /// Draw new facades from a library (`infer --sizes free`).
     Draw(library::Draw),
     /// Tell how many bits facades cost given a library: how like its facades they are.
@@ -46,6 +49,7 @@ pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
         Command::Edit(args) => edit::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Combine(args) => library::combine(&args),
+        Command::Town(args) => town::run(&args),
         Command::Draw(args) => library::draw(&args),
         Command::Score(args) => library::score(&args),
         Command::Encode(args) => library::encode(&args),

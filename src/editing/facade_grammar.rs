@@ -6,6 +6,7 @@ mod merge;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use edifice_facade_grammar::city;
 pub use merge::merge;
 use serde::Deserialize;
 use serde_json::{Value, json};

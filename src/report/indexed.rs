@@ -1,6 +1,6 @@
 //! PNG files of at most 256 colours: half as large as others, and figures and pictures look the same.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use color_quant::NeuQuant;
 
@@ -36,8 +36,8 @@ pub(super) fn png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, png::E
     encoded(width, height, palette.concat(), &indices)
 }
 
-/// Brings a PNG of RGB pixels (a rendered picture, say, of many shades) to at most 256 colours, chosen by NeuQuant (Dekker 1994);
-/// other PNG files stay as they are.
+/// Brings a PNG of RGB pixels (a rendered picture, say, of many shades) to at most 256 colours: its own, or those that NeuQuant
+/// (Dekker 1994) chooses where it has more; other PNG files stay as they are.
 ///
 /// # Errors
 /// Those of the PNG decoder, for bytes that are no PNG, and of the encoder.
@@ -51,6 +51,14 @@ pub fn few_colours(bytes: &[u8]) -> Result<Vec<u8>, Box<dyn std::error::Error + 
     let mut rgb = vec![0; size];
     let frame = reader.next_frame(&mut rgb)?;
     let (pixels, _) = rgb.as_chunks::<3>();
+    let mut colours: HashSet<[u8; 3]> = HashSet::new();
+    let is_few = pixels.iter().all(|p| {
+        colours.insert(*p);
+        colours.len() <= COLOURS
+    });
+    if is_few {
+        return Ok(png(frame.width, frame.height, &rgb)?);
+    }
     let rgba: Vec<u8> = pixels
         .iter()
         .flat_map(|&[r, g, b]| [r, g, b, 255])
@@ -82,13 +90,36 @@ fn encoded(
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
+    let bits = match palette.len() / 3 {
+        0..=2 => 1,
+        3..=4 => 2,
+        5..=16 => 4,
+        _ => 8,
+    };
+    encoder.set_depth(match bits {
+        1 => png::BitDepth::One,
+        2 => png::BitDepth::Two,
+        4 => png::BitDepth::Four,
+        _ => png::BitDepth::Eight,
+    });
     encoder.set_palette(palette);
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(indices)?;
+    writer.write_image_data(&packed(indices, width as usize, bits))?;
     writer.finish()?;
     Ok(bytes)
+}
+
+/// Indices of so many bits each, the first in the highest; every row begins with a new byte.
+fn packed(indices: &[u8], width: usize, bits: usize) -> Vec<u8> {
+    let byte = |own: &[u8]| {
+        let places = own.iter().enumerate();
+        places.fold(0, |byte, (i, v)| byte | v << (8 - bits * (i + 1)))
+    };
+    let rows = indices.chunks(width.max(1));
+    rows.flat_map(|row| row.chunks(8 / bits).map(byte))
+        .collect()
 }
 
 #[cfg(test)]
@@ -115,6 +146,22 @@ mod tests {
         let found = decoded(&png(514, 1, &many).unwrap());
         assert_eq!(found[..1536], many[..1536]);
         assert_eq!(found[1536..], [10, 10, 10, 201, 201, 201]);
+    }
+
+    #[test]
+    fn pictures_of_few_colours_stay_as_they_are() {
+        for colours in [1, 2, 3, 4, 5, 16, 17, 256] {
+            let (width, height) = (37, 11);
+            let shade = |i: usize| [(i * i % colours) as u8, 9, 255 - (i % colours) as u8];
+            let rgb: Vec<u8> = (0..width * height).flat_map(shade).collect();
+            let mut whole = Vec::new();
+            let mut encoder = png::Encoder::new(&mut whole, width as u32, height as u32);
+            encoder.set_color(png::ColorType::Rgb);
+            let mut writer = encoder.write_header().unwrap();
+            writer.write_image_data(&rgb).unwrap();
+            writer.finish().unwrap();
+            assert_eq!(decoded(&few_colours(&whole).unwrap()), rgb, "{colours}");
+        }
     }
 
     #[test]

@@ -98,6 +98,7 @@ fn files_and_tables_are_told_to_programs() {
         ["h.svg", "c.obj", "c.city.json", "s.city-grammar.json"].map(out);
     let [tiles, view, network, pages] = ["tiles", "v.png", "n.json", "man"].map(out);
     let country = out("country");
+    let town_view = out("town.png");
     let cases: &[(&str, &[&str])] = &[
         ("grammar derive", &[&first, "-o", &derived]),
         (
@@ -107,6 +108,10 @@ fn files_and_tables_are_told_to_programs() {
         ("grammar merge", &[&first, &b, "-o", &merged]),
         ("grammar combine", &[&first, &second, "-o", &both]),
         ("grammar draw", &[&library, "-o", &drawn]),
+        (
+            "grammar town",
+            &[&both, "--buildings", "3", "--size", "64", "-o", &town_view],
+        ),
         ("grammar encode", &[&library, &a, "-o", &code]),
         ("grammar decode", &[&library, &code, "-o", &decoded]),
         ("facade convert", &[&cottage, "-o", &picture]),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::{Error, Result};
-use edifice_io::city::picture::{self, Drawing, Drawn};
+use edifice_io::city::picture::{self, Drawing, Drawn, View};
 
 use super::colours::{Colour, Colouring, Read, colouring};
 use crate::print::Json;
@@ -31,6 +31,9 @@ pub(crate) struct Args {
     /// From above, north at the top.
     #[arg(long)]
     plan: bool,
+    /// The plan in black and white: dark where there are buildings, or in their colours.
+    #[arg(long, conflicts_with = "plan")]
+    figure_ground: bool,
     /// Only buildings around a point, in the coordinates of the city's reference system.
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     at: Option<String>,
@@ -71,10 +74,15 @@ pub(super) fn run(args: &Args) -> Result<()> {
         cities.push(drawn(beside, others.as_deref()));
     }
     cities.push(drawn(&shown, colours.as_deref()));
+    let view = match (args.figure_ground, args.plan) {
+        (true, _) => View::FigureGround,
+        (false, true) => View::Plan,
+        (false, false) => View::Oblique,
+    };
     let drawing = Drawing {
         width,
         height,
-        plan: args.plan,
+        view,
         around,
     };
     let bytes = picture::draw(&cities, &drawing, &legend);

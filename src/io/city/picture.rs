@@ -2,6 +2,7 @@
 //! of the first city in double precision, wherever in its reference system it lies.
 
 mod drawing;
+mod figure_ground;
 mod glyphs;
 mod legend;
 mod scene;
@@ -13,7 +14,7 @@ use edifice_scene::trace::framing_at;
 use edifice_shape::triangles::City;
 
 use self::drawing::seen;
-pub use self::drawing::{Drawing, Drawn};
+pub use self::drawing::{Drawing, Drawn, View};
 use self::scene::scene;
 
 /// Space between pictures, in pixels.
@@ -26,7 +27,7 @@ const PLAN: ([f32; 3], f32) = ([0.0, -1.0, -1e-4], 4.0);
 /// Colours, red, green and blue from 0 to 255, each with what it stands for.
 pub type Legend = Vec<([u8; 3], String)>;
 
-/// Draws cities from one place, from which the first is seen whole, as a PNG of one row; each picture is `width` x `height` pixels.
+/// Draws cities from one place, from which all are seen whole, as a PNG of one row; each picture is `width` x `height` pixels.
 ///
 /// # Errors
 /// Those of the PNG encoder, which writes to memory.
@@ -45,7 +46,7 @@ pub fn side_by_side(
     let drawing = Drawing {
         width,
         height,
-        plan: false,
+        view: View::Oblique,
         around: None,
     };
     draw(&drawn, &drawing, &Vec::new())
@@ -65,20 +66,17 @@ pub fn draw(
         return Ok(Vec::new());
     };
     let middle = middle_of(first.city, drawing);
-    let (direction, angle) = if drawing.plan { PLAN } else { OBLIQUE };
-    let aspect = width as f32 / height as f32;
-    let first = scene(first, drawing, middle);
-    let camera = framing_at(&first, direction, aspect, angle);
-    let whole = cities.len() * (width + GAP) - GAP.min(cities.len() * (width + GAP));
+    let mut pictures = match drawing.view {
+        View::Oblique => seen_from(cities, drawing, middle, OBLIQUE),
+        View::Plan => seen_from(cities, drawing, middle, PLAN),
+        View::FigureGround => figure_ground::draw(cities, drawing),
+    };
+    if let Some(first) = pictures.first_mut() {
+        legend::write(first, legend);
+    }
+    let whole = cities.len() * (width + GAP) - GAP;
     let mut rgb = vec![255; whole * height * 3];
-    for (i, city) in cities.iter().enumerate() {
-        let mut picture = match i {
-            0 => render(&first, &camera, width, height),
-            _ => render(&scene(city, drawing, middle), &camera, width, height),
-        };
-        if i == 0 {
-            legend::write(&mut picture, legend);
-        }
+    for (i, picture) in pictures.iter().enumerate() {
         for (y, row) in picture.rgb.chunks_exact(width * 3).enumerate() {
             let from = (y * whole + i * (width + GAP)) * 3;
             rgb[from..from + row.len()].copy_from_slice(row);
@@ -89,6 +87,21 @@ pub fn draw(
         height,
         rgb,
     })
+}
+
+/// Pictures in perspective, all from the place from which all cities are seen whole.
+fn seen_from(
+    cities: &[Drawn],
+    drawing: &Drawing,
+    middle: [f64; 3],
+    (direction, angle): ([f32; 3], f32),
+) -> Vec<Picture> {
+    let Drawing { width, height, .. } = *drawing;
+    let scenes = cities.iter().map(|city| scene(city, drawing, middle));
+    let scenes: Vec<_> = scenes.collect();
+    let camera = framing_at(&scenes, direction, width as f32 / height as f32, angle);
+    let pictures = scenes.iter().map(|s| render(s, &camera, width, height));
+    pictures.collect()
 }
 
 /// The least and the greatest corner of what is drawn of a city, relative to its origin; `None` where nothing is.

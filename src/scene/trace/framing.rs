@@ -12,20 +12,22 @@ const FILL: f32 = 0.92;
 /// A camera that looks along a direction and stands so far back that all of a scene is seen in a picture of given
 /// width over height.
 pub fn framing(scene: &Scene, direction: [f32; 3], aspect: f32) -> Camera {
-    framing_at(scene, direction, aspect, ANGLE)
+    framing_at(std::slice::from_ref(scene), direction, aspect, ANGLE)
 }
 
-/// As [`framing`], with a vertical angle of view in degrees.
-pub fn framing_at(scene: &Scene, direction: [f32; 3], aspect: f32, angle: f32) -> Camera {
+/// As [`framing`], for several scenes seen from one place, with a vertical angle of view in degrees.
+pub fn framing_at(scenes: &[Scene], direction: [f32; 3], aspect: f32, angle: f32) -> Camera {
     let mut corners: Vec<V> = Vec::new();
-    for group in &scene.groups {
-        for instance in &group.instances {
-            let mesh = &scene.meshes[instance.mesh];
-            corners.extend(
-                mesh.positions
-                    .iter()
-                    .map(|p| group.place(instance.place(*p))),
-            );
+    for scene in scenes {
+        for group in &scene.groups {
+            for instance in &group.instances {
+                let mesh = &scene.meshes[instance.mesh];
+                corners.extend(
+                    mesh.positions
+                        .iter()
+                        .map(|p| group.place(instance.place(*p))),
+                );
+            }
         }
     }
     let forward = unit(direction);

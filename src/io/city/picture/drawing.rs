@@ -9,10 +9,21 @@ pub struct Drawing {
     pub width: usize,
     /// Height, in pixels.
     pub height: usize,
-    /// From above instead of from the south-west.
-    pub plan: bool,
+    /// From where, and in which manner.
+    pub view: View,
     /// Only buildings whose middle lies within so many metres of a point, in the coordinates of the reference system.
     pub around: Option<([f64; 2], f64)>,
+}
+
+/// From where cities are drawn, and in which manner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum View {
+    /// In perspective, from the south-west and above.
+    Oblique,
+    /// From above, north at the top, with shadows.
+    Plan,
+    /// The plan of an urban designer: what is built on is dark, or has the building's colour, and everything else is white.
+    FigureGround,
 }
 
 /// A city to draw.

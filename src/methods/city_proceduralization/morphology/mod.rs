@@ -67,9 +67,22 @@ pub struct Morphology {
     pub sizes: [f64; 3],
 }
 
+/// The place of a building among others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Neighbourhood {
+    /// A label that the attached buildings of a block have in common.
+    pub block: usize,
+    /// True if it is attached to another building.
+    pub attached: bool,
+    /// Distance of its walls to those of the nearest building of another block, in metres, at most [`LARGEST_GAP`].
+    pub gap: f64,
+}
+
 /// A city's buildings as the measures need them.
 pub struct CityPlan {
     buildings: Vec<Building>,
+    /// Index in the city of each building.
+    index: Vec<usize>,
     /// Block of each building.
     block: Vec<usize>,
     attached: Vec<bool>,
@@ -83,11 +96,12 @@ pub struct CityPlan {
 impl CityPlan {
     /// The plan of a city; buildings without triangles are left out.
     pub fn new(city: &City) -> Self {
-        let buildings: Vec<Building> = city
+        let (index, buildings): (Vec<usize>, Vec<Building>) = city
             .buildings
             .iter()
-            .filter_map(|b| building(&b.mesh))
-            .collect();
+            .enumerate()
+            .filter_map(|(i, b)| Some((i, building(&b.mesh)?)))
+            .unzip();
         let mut near: FxHashMap<[i64; 2], Vec<usize>> = FxHashMap::default();
         for (i, b) in buildings.iter().enumerate() {
             let [low, high] = [b.low, b.high].map(|p| p.map(|v| (v / NEAR).floor() as i64));
@@ -108,12 +122,44 @@ impl CityPlan {
             attached: vec![false; buildings.len()],
             gap: vec![LARGEST_GAP; buildings.len()],
             buildings,
+            index,
             cells,
             near,
         };
         plan.join();
         plan.measure_gaps();
         plan
+    }
+
+    /// The places of the buildings, each with the index in the city; buildings without triangles have none.
+    pub fn neighbourhoods(&self) -> impl Iterator<Item = (usize, Neighbourhood)> {
+        self.index.iter().enumerate().map(|(i, &of)| {
+            let neighbourhood = Neighbourhood {
+                block: self.block[i],
+                attached: self.attached[i],
+                gap: self.gap[i],
+            };
+            (of, neighbourhood)
+        })
+    }
+
+    /// Pairs of buildings whose walls are at most `reach` metres apart, by their indices in the city.
+    pub fn pairs_within(&self, reach: f64) -> Vec<[usize; 2]> {
+        let pairs = self.within(reach).into_iter();
+        pairs.map(|(i, j)| [self.index[j], self.index[i]]).collect()
+    }
+
+    fn within(&self, reach: f64) -> Vec<(usize, usize)> {
+        let mut out = Vec::new();
+        for i in 0..self.buildings.len() {
+            for (_, j) in self.around(i, reach) {
+                let walls = [i, j].map(|b| self.buildings[b].walls.as_slice());
+                if j < i && distance(walls[0], walls[1], reach) <= reach {
+                    out.push((i, j));
+                }
+            }
+        }
+        out
     }
 
     /// Buildings whose rectangles along the axes are nearer to that of `i` than `reach`, the nearest first.
@@ -147,14 +193,9 @@ impl CityPlan {
     /// Joins attached buildings to blocks.
     fn join(&mut self) {
         let mut sets = UnionFind::new(self.buildings.len());
-        for i in 0..self.buildings.len() {
-            for (_, j) in self.around(i, ATTACHED) {
-                let walls = [i, j].map(|b| self.buildings[b].walls.as_slice());
-                if j < i && distance(walls[0], walls[1], ATTACHED) <= ATTACHED {
-                    (self.attached[i], self.attached[j]) = (true, true);
-                    sets.union(i, j);
-                }
-            }
+        for (i, j) in self.within(ATTACHED) {
+            (self.attached[i], self.attached[j]) = (true, true);
+            sets.union(i, j);
         }
         self.block = sets.into_labeling();
     }

@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::blocks::{Block, blocks};
 use super::footprint::CELL;
+use super::groups::{Group, groups};
 use super::raster::Raster;
 use super::shape::rotated;
 use super::sources::Source;
@@ -18,19 +18,19 @@ const TOWN_STEPS: i64 = 5;
 const TOWN_EDGE: i64 = 3;
 /// Patches are taken where at least this share of them is town, or this share of the most there is.
 const TOWN: f64 = 0.9;
-/// The side of a patch over the square root of the area of a block, mean over the ground that blocks cover.
+/// The side of a patch over the square root of the area of a group, mean over the ground that groups cover.
 const SIDE: f64 = 3.0;
 /// A patch is so wide, besides, that it holds so many buildings where they stand as densely as in the whole town.
 const HELD: f64 = 20.0;
 /// Patches are at least and at most so wide, in metres.
 const SIDES: [f64; 2] = [60.0, 240.0];
-/// Side of the cells by which blocks are found, in metres.
+/// Side of the cells by which groups are found, in metres.
 const NEAR: f64 = 100.0;
 
 /// A city, as patches are taken from it.
 pub(super) struct Exemplar {
     pub(super) buildings: Vec<Source>,
-    pub(super) blocks: Vec<Block>,
+    pub(super) groups: Vec<Group>,
     /// Square metres of plan in each cell of side [`COMPARED`].
     built: Raster,
     /// Middles of cells where a patch may be taken; they have sides of [`TOWN_CELL`].
@@ -43,14 +43,14 @@ pub(super) struct Exemplar {
 }
 
 impl Exemplar {
-    /// Of buildings; `None` if none of them covers ground.
-    pub(super) fn new(buildings: Vec<Source>) -> Option<Self> {
-        let blocks = blocks(&buildings);
-        let covered: f64 = blocks.iter().map(|b| b.area).sum();
-        if blocks.is_empty() {
+    /// Of buildings, and the pairs that stand near each other; `None` if none of them covers ground.
+    pub(super) fn new(buildings: Vec<Source>, pairs: &[[usize; 2]]) -> Option<Self> {
+        let groups = groups(&buildings, pairs);
+        let covered: f64 = groups.iter().map(|b| b.area).sum();
+        if groups.is_empty() {
             return None;
         }
-        let mean = blocks.iter().map(|b| b.area * b.area.sqrt()).sum::<f64>() / covered;
+        let mean = groups.iter().map(|b| b.area * b.area.sqrt()).sum::<f64>() / covered;
         let mut built = Raster::new(COMPARED);
         let mut town: FxHashSet<[i64; 2]> = FxHashSet::default();
         for b in &buildings {
@@ -67,11 +67,11 @@ impl Exemplar {
         let held = (HELD * ground / buildings.len() as f64).sqrt();
         let side = (SIDE * mean).max(held).clamp(SIDES[0], SIDES[1]);
         let mut near: FxHashMap<[i64; 2], Vec<usize>> = FxHashMap::default();
-        for (i, b) in blocks.iter().enumerate() {
+        for (i, b) in groups.iter().enumerate() {
             let cell = b.middle.map(|v| (v / NEAR).floor() as i64);
             near.entry(cell).or_default().push(i);
         }
-        let walls = [0, 1].map(|k| blocks.iter().map(|b| b.walls[k]).sum());
+        let walls = [0, 1].map(|k| groups.iter().map(|b| b.walls[k]).sum());
         Some(Self {
             middles: middles(&town, side),
             axis: direction(walls, 4.0),
@@ -79,7 +79,7 @@ impl Exemplar {
             built,
             near,
             buildings,
-            blocks,
+            groups,
         })
     }
 
@@ -95,7 +95,7 @@ impl Exemplar {
         f64::from(self.built.at(p)).min(BUILT) / BUILT
     }
 
-    /// Blocks whose middles lie in a square that is turned by so many degrees, in order.
+    /// Groups whose middles lie in a square that is turned by so many degrees, in order.
     pub(super) fn within(&self, middle: [f64; 2], side: f64, degrees: f64) -> Vec<usize> {
         let reach = side * std::f64::consts::FRAC_1_SQRT_2;
         let cell = |v: f64| (v / NEAR).floor() as i64;
@@ -106,7 +106,7 @@ impl Exemplar {
             }
         }
         out.retain(|&i: &usize| {
-            let b = self.blocks[i].middle;
+            let b = self.groups[i].middle;
             let local = rotated([b[0] - middle[0], b[1] - middle[1]], -degrees);
             local.iter().all(|v| v.abs() <= side / 2.0)
         });

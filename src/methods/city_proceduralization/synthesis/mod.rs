@@ -1,6 +1,6 @@
 //! New cities from a grammar's buildings, within a drawn shape (Fig. 9).
 //!
-//! The new city is quilted from patches of the grammar's city: blocks of attached buildings are copied with the streets
+//! The new city is quilted from patches of the grammar's city: groups of buildings that stand near each other are copied with the streets
 //! and yards between them, and patches are chosen so that streets go on across their seams (`quilt`). The paper does not say how its new
 //! cities are made.
 //!
@@ -8,9 +8,9 @@
 //! building covers. A building also brings the open ground that is nearer to it than to any other building of its city: no other may
 //! stand there, so that streets and yards stay open.
 
-mod blocks;
 mod exemplar;
 mod footprint;
+mod groups;
 mod lattice;
 mod occupancy;
 mod patches;
@@ -38,7 +38,8 @@ pub fn synthesize(
     watch: &Watch,
 ) -> Result<InstanceGrammar, InstanceGrammarError> {
     let mut successors = Vec::new();
-    let city = Exemplar::new(sources(grammar)?);
+    let (buildings, near) = sources(grammar)?;
+    let city = Exemplar::new(buildings, &near);
     let copies = city.iter().flat_map(|c| {
         quilt(c, shape, seed, watch)
             .into_iter()

@@ -4,9 +4,9 @@ use super::footprint::{CELL, Footprint, OPEN_CELL};
 use super::raster::Raster;
 use super::shape::{Shape, rotated};
 
-/// Share of the inner points of a block that may lie on others.
+/// Share of the inner points of a group that may lie on others.
 const OVERLAP: f64 = 0.004;
-/// Share of a block that may lie on the open ground of others, and of its open ground that others may cover.
+/// Share of a group that may lie on the open ground of others, and of its open ground that others may cover.
 const INTRUSION: f64 = 0.12;
 /// Share of the rim of a building that may lie outside the shape.
 const OUTSIDE: f64 = 0.004;
@@ -84,16 +84,16 @@ impl Occupancy {
         self.built.at(p) == 0 && self.open.at(p) == 0
     }
 
-    /// True if the buildings of a block fit together: on nothing that stands, beyond the open ground of others, and nothing on theirs.
-    pub(super) fn fits(&self, block: &[Standing]) -> bool {
-        let inner: usize = block.iter().map(|s| s.footprint.inner.len()).sum();
-        let open: usize = block.iter().map(|s| s.footprint.open.len()).sum();
+    /// True if the buildings of a group fit together: on nothing that stands, beyond the open ground of others, and nothing on theirs.
+    pub(super) fn fits(&self, group: &[Standing]) -> bool {
+        let inner: usize = group.iter().map(|s| s.footprint.inner.len()).sum();
+        let open: usize = group.iter().map(|s| s.footprint.open.len()).sum();
         let at_most = |share: f64, of: usize, hits: &mut dyn Iterator<Item = [f64; 2]>| {
             let most = (share * of as f64) as usize;
             hits.take(most + 1).count() <= most
         };
-        let covered = || block.iter().flat_map(|s| s.placed(&s.footprint.inner));
-        let around = || block.iter().flat_map(|s| s.placed(&s.footprint.open));
+        let covered = || group.iter().flat_map(|s| s.placed(&s.footprint.inner));
+        let around = || group.iter().flat_map(|s| s.placed(&s.footprint.open));
         inner > 0
             && at_most(
                 OVERLAP,

@@ -35,7 +35,7 @@ struct Known {
     built: bool,
 }
 
-/// A block of the new city: its middle, and the directions of its walls and of its length.
+/// A group of the new city: its middle, and the directions of its walls and of its length.
 pub(super) struct Laid {
     pub(super) middle: [f64; 2],
     pub(super) walls: [f64; 2],
@@ -94,7 +94,7 @@ impl Search<'_> {
         points.into_iter().filter_map(about).collect()
     }
 
-    /// The directions of the walls and of the length of the blocks that stand around; zeros where none does.
+    /// The directions of the walls and of the length of the groups that stand around; zeros where none does.
     fn directions(&self) -> [[f64; 2]; 2] {
         let reach = self.square.side / 2.0 + AROUND;
         let near = self.laid.iter().filter(|l| {
@@ -102,9 +102,9 @@ impl Search<'_> {
             x.max(y) < reach
         });
         let (mut walls, mut length) = ([0.0; 2], [0.0; 2]);
-        for block in near {
-            walls = [0, 1].map(|k| walls[k] + block.walls[k]);
-            length = [0, 1].map(|k| length[k] + block.length[k]);
+        for group in near {
+            walls = [0, 1].map(|k| walls[k] + group.walls[k]);
+            length = [0, 1].map(|k| length[k] + group.length[k]);
         }
         [walls, length]
     }
@@ -116,9 +116,9 @@ impl Search<'_> {
         let mut turn = 0.0;
         if walls != [0.0; 2] {
             let (mut own, mut along) = ([0.0; 2], [0.0; 2]);
-            for block in city.within(from, self.square.side + AROUND, city.axis) {
-                own = [0, 1].map(|k| own[k] + city.blocks[block].walls[k]);
-                along = [0, 1].map(|k| along[k] + city.blocks[block].length[k]);
+            for group in city.within(from, self.square.side + AROUND, city.axis) {
+                own = [0, 1].map(|k| own[k] + city.groups[group].walls[k]);
+                along = [0, 1].map(|k| along[k] + city.groups[group].length[k]);
             }
             turn = direction(walls, 4.0) - direction(own, 4.0);
             let across = (direction(length, 2.0) - direction(along, 2.0) - turn).rem_euclid(180.0);

@@ -1,13 +1,16 @@
 //! The buildings that a new city is made of: those of the grammar's city.
 
+use super::super::morphology::{CityPlan, Neighbourhood};
 use super::footprint::{Footprint, footprint, open_ground};
 use edifice_grammar::instance::{
     InstanceGrammar, InstanceGrammarError, Placement, TemplateInstance,
 };
-use edifice_shape::triangles::{TriangleMesh, normal};
+use edifice_shape::triangles::{City, CityBuilding, TriangleMesh, normal};
 
 /// The normals of walls are so many times as long in the plan as upright.
 const STEEP: f64 = 5.0;
+/// Buildings that stand nearer to each other, in metres, are copied together: what is wider is a street.
+const NEAR: f64 = 8.0;
 /// No building reaches farther in the plan, in metres.
 const LARGEST: f64 = 5000.0;
 
@@ -23,10 +26,14 @@ pub(super) struct Source {
     /// The direction of its walls: the sum of area · exp(4iφ) over walls whose normals have direction φ, so that walls at right angles agree.
     pub(super) walls: [f64; 2],
     pub(super) footprint: Footprint,
+    /// Its place in the city; `None` without triangles.
+    pub(super) neighbourhood: Option<Neighbourhood>,
 }
 
-/// The buildings of the grammar's city.
-pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, InstanceGrammarError> {
+/// The buildings of the grammar's city, and the pairs of them that stand near each other ([`NEAR`]).
+pub(super) fn sources(
+    grammar: &InstanceGrammar,
+) -> Result<(Vec<Source>, Vec<[usize; 2]>), InstanceGrammarError> {
     let derivation = grammar.derive()?;
     let mut parts: Vec<Vec<&TemplateInstance>> = vec![Vec::new(); derivation.buildings.len()];
     for instance in &derivation.instances {
@@ -43,6 +50,7 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
         }
     }
     let mut out = Vec::new();
+    let mut city = City::default();
     for ((id, _), parts) in derivation.buildings.iter().zip(&parts) {
         let Some(first) = parts.first() else { continue };
         let placed: Vec<Placement> = match whole.get(id.as_str()) {
@@ -83,7 +91,16 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
             turn,
             walls: walls(&mesh),
             footprint: footprint(&mesh, at, turn),
+            neighbourhood: None,
         });
+        city.buildings.push(CityBuilding {
+            mesh,
+            ..CityBuilding::default()
+        });
+    }
+    let plan = CityPlan::new(&city);
+    for (i, neighbourhood) in plan.neighbourhoods() {
+        out[i].neighbourhood = Some(neighbourhood);
     }
     let frames: Vec<([f64; 3], f64)> = out.iter().map(|s| (s.at, s.turn)).collect();
     let prints: Vec<&Footprint> = out.iter().map(|s| &s.footprint).collect();
@@ -91,7 +108,7 @@ pub(super) fn sources(grammar: &InstanceGrammar) -> Result<Vec<Source>, Instance
     for (source, open) in out.iter_mut().zip(open) {
         source.footprint.open = open;
     }
-    Ok(out)
+    Ok((out, plan.pairs_within(NEAR)))
 }
 
 /// The direction of the walls of a mesh (see [`Source::walls`]).

@@ -23,6 +23,7 @@ use rayon::prelude::*;
 use edifice_base::rng::{Stream, stream};
 use edifice_grammar::{Grammar, GrammarError, Sampler, scaled, size_independent};
 use edifice_scene::relief::{material, relief};
+use edifice_scene::render::Camera;
 use edifice_scene::{Instance, Material, Scene};
 use edifice_shape::Facade;
 
@@ -63,6 +64,30 @@ pub struct City {
     pub triangles: u64,
     /// Number of triangles stored.
     pub stored_triangles: u64,
+    /// Height of the tallest building without its roof, in metres.
+    pub tallest: f32,
+}
+
+impl City {
+    /// A camera over the roofs near the middle, which looks to the horizon.
+    pub fn from_above(&self) -> Camera {
+        let height = 55.0 + 1.5 * self.tallest;
+        Camera {
+            eye: [-1.6 * height, height, 1.3 * height],
+            target: [0.6 * height, 0.0, -0.4 * height],
+            angle: 38.0,
+        }
+    }
+
+    /// A camera in the street beside the middle, a little above the heads of people.
+    pub fn in_the_street(&self) -> Camera {
+        let street = town::middle_of_street();
+        Camera {
+            eye: [-64.0, 5.0, street + 3.0],
+            target: [20.0, 3.0 + 0.3 * self.tallest, street - 7.0],
+            angle: 48.0,
+        }
+    }
 }
 
 /// A kind of building: meshes and sizes in metres.
@@ -134,6 +159,7 @@ pub fn city(grammars: &[Grammar], settings: &Settings, seed: u64) -> Result<City
         facade_instances: 4 * buildings,
         triangles: scene.triangles(),
         stored_triangles: scene.stored_triangles(),
+        tallest: types.iter().map(|t| t.height).fold(0.0, f32::max),
         scene,
     })
 }

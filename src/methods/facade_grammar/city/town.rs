@@ -16,6 +16,8 @@ const ROW: f32 = 16.0;
 const STREET: f32 = 11.0;
 /// Width of a pavement.
 const PAVEMENT: f32 = 3.5;
+/// Open country around the town, from one side to the other without the town.
+const COUNTRY: f32 = 6000.0;
 /// One block in this many is a park.
 const PARK: u32 = 24;
 
@@ -150,12 +152,20 @@ fn tree() -> (Vec<[f32; 3]>, Vec<u32>, Vec<u32>) {
     (positions, crown, stem)
 }
 
+/// From the middle of a block to that of the next, along both sides.
+const PITCH: [f32; 2] = [
+    BLOCK + 2.0 * PAVEMENT + STREET,
+    2.0 * ROW + YARD + 2.0 * PAVEMENT + STREET,
+];
+
+/// Place on the z axis of the middle of the street beside the block at the origin.
+pub(super) fn middle_of_street() -> f32 {
+    PITCH[1] / 2.0
+}
+
 /// Builds blocks around the origin, the nearest first, until enough buildings stand.
 pub(super) fn town(kit: &Kit, types: &[Type], buildings: usize, rng: &mut Stream) -> Vec<Group> {
-    let pitch = [
-        BLOCK + 2.0 * PAVEMENT + STREET,
-        2.0 * ROW + YARD + 2.0 * PAVEMENT + STREET,
-    ];
+    let pitch = PITCH;
     // A block takes at least four buildings: this many blocks are surely enough.
     let reach = (buildings as f64 / 4.0).sqrt().ceil() as i32 + 2;
     let mut blocks: Vec<(i32, i32)> = (-reach..=reach)
@@ -219,6 +229,10 @@ pub(super) fn town(kit: &Kit, types: &[Type], buildings: usize, rng: &mut Stream
     ground.instances.push(Instance {
         scale: [span, 0.1, span],
         ..Instance::at(kit.asphalt, [0.0, -0.1, 0.0])
+    });
+    ground.instances.push(Instance {
+        scale: [span + COUNTRY, 0.1, span + COUNTRY],
+        ..Instance::at(kit.lawn, [0.0, -0.25, 0.0])
     });
     groups.push(ground);
     groups

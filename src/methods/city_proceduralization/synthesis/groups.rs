@@ -1,4 +1,4 @@
-//! Blocks: buildings that stand wall to wall, as they are copied together.
+//! Groups of buildings that stand near each other, as they are copied together.
 
 use petgraph::unionfind::UnionFind;
 use rustc_hash::FxHashMap;
@@ -7,9 +7,9 @@ use super::footprint::CELL;
 use super::shape::rotated;
 use super::sources::Source;
 
-/// Buildings that are attached to each other, or a single one.
+/// Buildings that stand near each other: blocks with the sheds in their yards, or a single building.
 #[derive(Debug)]
-pub(super) struct Block {
+pub(super) struct Group {
     pub(super) buildings: Vec<usize>,
     /// The middle of its plan.
     pub(super) middle: [f64; 2],
@@ -21,8 +21,13 @@ pub(super) struct Block {
     pub(super) length: [f64; 2],
 }
 
-/// The blocks of a city. Buildings without a plan are in none.
-pub(super) fn blocks(buildings: &[Source]) -> Vec<Block> {
+/// The groups of a city, of the pairs of buildings that are near each other. Buildings without a plan are in none.
+pub(super) fn groups(buildings: &[Source], near: &[[usize; 2]]) -> Vec<Group> {
+    let mut sets = UnionFind::new(buildings.len());
+    for [i, j] in near {
+        sets.union(*i, *j);
+    }
+    // A tower within the walls of its base may be far from them.
     let mut points: Vec<Vec<[f64; 2]>> = Vec::with_capacity(buildings.len());
     let mut owner: FxHashMap<[i64; 2], usize> = FxHashMap::default();
     for (i, b) in buildings.iter().enumerate() {
@@ -32,37 +37,27 @@ pub(super) fn blocks(buildings: &[Source]) -> Vec<Block> {
         };
         let own: Vec<[f64; 2]> = b.footprint.covered().map(stand).collect();
         for p in &own {
-            owner
-                .entry(p.map(|v| (v / CELL).floor() as i64))
-                .or_insert(i);
+            let cell = p.map(|v| (v / CELL).floor() as i64);
+            sets.union(i, *owner.entry(cell).or_insert(i));
         }
         points.push(own);
     }
-    let mut sets = UnionFind::new(buildings.len());
-    // Walls half a metre apart may lie in cells that touch at a corner alone.
-    for (&[x, y], &i) in &owner {
-        for c in [[x + 1, y], [x, y + 1], [x + 1, y + 1], [x + 1, y - 1]] {
-            if let Some(&j) = owner.get(&c) {
-                sets.union(i, j);
-            }
-        }
-    }
-    // Blocks are in the order of their first buildings.
+    // Groups are in the order of their first buildings.
     let set = sets.into_labeling();
     let mut place: FxHashMap<usize, usize> = FxHashMap::default();
     let mut members: Vec<Vec<usize>> = Vec::new();
     for i in (0..buildings.len()).filter(|&i| !points[i].is_empty()) {
-        let block = *place.entry(set[i]).or_insert(members.len());
-        match members.get_mut(block) {
+        let group = *place.entry(set[i]).or_insert(members.len());
+        match members.get_mut(group) {
             Some(own) => own.push(i),
             None => members.push(vec![i]),
         }
     }
-    let block = |members: Vec<usize>| block(buildings, &points, members);
-    members.into_iter().map(block).collect()
+    let group = |members: Vec<usize>| group(buildings, &points, members);
+    members.into_iter().map(group).collect()
 }
 
-fn block(buildings: &[Source], points: &[Vec<[f64; 2]>], members: Vec<usize>) -> Block {
+fn group(buildings: &[Source], points: &[Vec<[f64; 2]>], members: Vec<usize>) -> Group {
     let all = || members.iter().flat_map(|&i| &points[i]);
     let n = all().count() as f64;
     let middle = [0, 1].map(|k| all().map(|p| p[k]).sum::<f64>() / n);
@@ -77,7 +72,7 @@ fn block(buildings: &[Source], points: &[Vec<[f64; 2]>], members: Vec<usize>) ->
     let (mean, half) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
     let slender = 1.0 - ((mean - half).max(0.0) / (mean + half).max(f64::MIN_POSITIVE)).sqrt();
     let double = xy.atan2((xx - yy) / 2.0);
-    Block {
+    Group {
         middle,
         area: n * CELL * CELL,
         walls: [0, 1].map(|k| members.iter().map(|&i| buildings[i].walls[k]).sum()),
