@@ -26,6 +26,8 @@ const OFFSET: f32 = 1.0;
 const BIAS: f32 = 1.2;
 /// Meshes of at most this many triangles cast their own shadow, larger ones that of their box.
 const EXACT: usize = 80;
+/// Slabs of at most this height, in metres, need no place in the shadow map.
+const FLAT: f32 = 0.5;
 /// Distance in metres at which haze hides two thirds, at least,
 const HAZE: f32 = 5000.0;
 /// and in distances from the eye to the middle of the scene: a large scene is seen from afar.
@@ -211,8 +213,11 @@ impl Shadows {
             .iter()
             .map(|g| g.translation[0].hypot(g.translation[2]));
         let reach = far.fold(50.0, f32::max) + 60.0;
-        // A group may be larger than a building.
-        let balls = instances(scene).map(|(group, instance)| {
+        // A group may be larger than a building; what lies flat, as open country does, casts no shadow that is seen.
+        let high = |(_, i): &(&Group, &Instance)| {
+            (bounds[i.mesh].high[1] - bounds[i.mesh].low[1]) * i.scale[1] > FLAT
+        };
+        let balls = instances(scene).filter(high).map(|(group, instance)| {
             let (centre, radius) = bounds[instance.mesh].ball(group, instance);
             centre[0].hypot(centre[2]) + radius
         });

@@ -73,9 +73,9 @@ impl City {
     pub fn from_above(&self) -> Camera {
         let height = 55.0 + 1.5 * self.tallest;
         Camera {
-            eye: [-1.6 * height, height, 1.3 * height],
-            target: [0.6 * height, 0.0, -0.4 * height],
-            angle: 38.0,
+            eye: [-1.5 * height, 0.9 * height, 1.25 * height],
+            target: [0.6 * height, 0.0, -0.45 * height],
+            angle: 36.0,
         }
     }
 

@@ -17,7 +17,7 @@ const STREET: f32 = 11.0;
 /// Width of a pavement.
 const PAVEMENT: f32 = 3.5;
 /// Open country around the town, from one side to the other without the town.
-const COUNTRY: f32 = 6000.0;
+const COUNTRY: f32 = 12_000.0;
 /// One block in this many is a park.
 const PARK: u32 = 24;
 
