@@ -59,6 +59,19 @@ fn its_own_size_is_the_identity_and_one_window_is_stretched() {
 }
 
 #[test]
+fn a_facade_twenty_times_as_wide_is_made_and_a_wider_one_refused() {
+    let own = windows(3, 2);
+    let most = MOST_TIMES * own.width;
+    let found = resized(&own, most, own.height).unwrap();
+    found.facade.check_tiling().unwrap();
+    assert!((found.scale[0] - 1.0).abs() < 0.05, "{:?}", found.scale);
+    let refused = resized(&own, 1e9 * own.width, own.height);
+    assert!(matches!(refused, Err(BandsError::Size { .. })));
+    let least = resized(&own, 1e-6 * own.width, own.height).unwrap();
+    least.facade.check_tiling().unwrap();
+}
+
+#[test]
 fn the_unit_does_not_matter() {
     let own = windows(5, 4);
     let small = |f: &Facade, k: f64| {
