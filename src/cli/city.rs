@@ -13,6 +13,7 @@ mod plan;
 mod proceduralize;
 mod residuals;
 mod show;
+mod submit;
 mod synthesize;
 mod tiles;
 mod work;
@@ -98,9 +99,15 @@ textures; see
     /// Work through a plan; any number of workers, also on several machines that share the folder.
     #[command(after_help = "Examples:
   edifice city work country --workers 2
-A worker that is killed loses its task alone; started again it goes on. On a cluster, start this command as often as wanted, for
-example as a job array. The grammars in DIR/city-KEY are read by all commands of `edifice city`.")]
+A worker that is killed loses its task alone; started again it goes on. `edifice city submit` starts workers on a cluster. The grammars
+in DIR/city-KEY are read by all commands of `edifice city`.")]
     Work(work::Args),
+    /// Write the script that starts the workers of a plan on a cluster, and submit it.
+    #[command(after_help = "Examples:
+  edifice city submit country --engine slurm --workers 4 --dry-run
+The memory that a job asks for is that of the plan's arithmetic (`edifice city plan` prints it). Jobs that were killed or ran out of time
+are submitted again by the same command.")]
+    Submit(submit::Args),
     /// Draw a city or a grammar.
     #[command(after_help = "Examples:
   edifice city draw town.city-grammar.json --beside town.obj -o town.png
@@ -124,5 +131,6 @@ pub(crate) fn run(command: Command) -> edifice_base::Result<()> {
         Command::Tiles(args) => tiles::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Work(args) => work::run(&args),
+        Command::Submit(args) => submit::run(&args),
     }
 }

@@ -3,7 +3,7 @@
 mod candidate;
 mod examples;
 mod studies;
-mod submit;
+pub(crate) mod submit;
 mod verify;
 
 use std::ops::ControlFlow;

@@ -108,6 +108,20 @@ impl Operation {
         }
     }
 
+    /// True if a size is relative: the rule says itself what gives way at another size.
+    pub fn has_relative_sizes(&self) -> bool {
+        let relative = |size: &Size| matches!(size, Size::Relative(_));
+        match self {
+            Operation::Split { successors, .. }
+            | Operation::Repeat { successors, .. }
+            | Operation::SymSplit { successors, .. } => {
+                successors.iter().any(|s| relative(&s.size))
+            }
+            Operation::RepeatAba { a, b, .. } => relative(&a.size) || relative(&b.size),
+            Operation::GridSplit { columns, rows, .. } => columns.iter().chain(rows).any(relative),
+        }
+    }
+
     /// The symbols written in the rule, in order.
     pub fn symbols(&self) -> Vec<&str> {
         match self {

@@ -2,10 +2,11 @@
 # Sweeps through a real Slurm on this machine: installs Debian's slurm-wlm and munge where they are missing, starts a controller and
 # a node in folders of its own, submits, compares with runs by threads and shards, kills a task and the node, submits
 # again, and stops everything. Root on Debian; five minutes on a machine busy with builds. Not part of .ci/run, which has no such time left, and whose
-# machine may have no root: run it by hand after a change of `experiments/sweep/submit`.
+# machine may have no root: run it by hand after a change of `experiments/sweep/submit` or of `city submit`.
 # EDIFICE names the program; without it the debug build is made.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+root=$PWD
 
 say() { printf 'slurm.sh: %s\n' "$*" >&2; }
 fail() {
@@ -165,4 +166,14 @@ cmp whole/results.csv faults/results.csv
 keys=$(cat faults/journal/*.jsonl | sed 's/^{"key":"\([0-9a-f]*\)".*/\1/' | sort -u | wc -l)
 [ "$keys" -eq 200 ] || fail "$keys tasks in the journals"
 say "200 tasks: the same bytes after a task and the node were killed"
+
+# --- a country in tiles ---
+"$EDIFICE" --quiet city derive "$root/datasets/city_proceduralization/town.city-grammar.json" -o town.obj
+"$EDIFICE" --quiet city plan town.obj --tile 60 -o country
+cp -r country jobs
+"$EDIFICE" --quiet city work country
+"$EDIFICE" city submit jobs --engine slurm --workers 3 --minutes 5
+wait_for 120 "the workers of the country are done" queue_is_empty
+diff -r country/city-* jobs/city-* || fail "workers of Slurm wrote other bytes"
+say "$(find jobs/city-* -name '*.bin' | wc -l) grammars of tiles: the same bytes by one worker and by three jobs of Slurm"
 say passed

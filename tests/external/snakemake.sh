@@ -5,6 +5,7 @@
 # `experiments/sweep/submit`. EDIFICE names the program; without it the debug build is made.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+root=$PWD
 
 say() { printf 'snakemake.sh: %s\n' "$*" >&2; }
 fail() {
@@ -67,4 +68,13 @@ edifice submit slow.toml --out faults --engine snakemake
 snakemake faults --rerun-incomplete
 cmp whole/results.csv faults/results.csv
 say "250 tasks: the same bytes after Snakemake was killed"
+
+"$EDIFICE" --quiet city derive "$root/datasets/city_proceduralization/town.city-grammar.json" -o town.obj
+"$EDIFICE" --quiet city plan town.obj --tile 60 -o country
+cp -r country jobs
+"$EDIFICE" --quiet city work country
+"$EDIFICE" city submit jobs --engine snakemake --workers 3
+snakemake jobs
+diff -r country/city-* jobs/city-* || fail "workers of Snakemake wrote other bytes"
+say "a country in tiles: the same bytes by one worker and by three jobs of Snakemake"
 say passed

@@ -131,6 +131,10 @@ fn files_and_tables_are_told_to_programs() {
         ("city tiles", &[town, "-o", &tiles]),
         ("city plan", &[&city, "--tile", "200", "-o", &country]),
         ("city work", &[&country]),
+        (
+            "city submit",
+            &[&country, "--engine", "snakemake", "--dry-run"],
+        ),
         ("city draw", &[town, "--size", "64x48", "-o", &view]),
         ("model schema", &[&numbers]),
         ("model sample", &[asia, "-n", "3"]),

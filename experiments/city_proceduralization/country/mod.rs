@@ -14,10 +14,12 @@
 
 mod plan;
 mod split;
+mod submit;
 mod task;
 mod tile;
 mod work;
 
 pub use plan::{Memory, Options, PLAN, Plan};
+pub use submit::{Jobs, slurm, snakefile};
 pub use tile::Tile;
 pub use work::{Ran, TASKS, work};

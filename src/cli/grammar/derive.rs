@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
-use edifice_editing::split_grammar::{Resizing, Wish, derived, glb};
+use edifice_editing::split_grammar::{DeriveError, Resizing, Wish, derived, glb};
 use edifice_grammar::{Derivation, Grammar, check};
 use edifice_io::{read_grammar, write_atomic, write_facade};
 use edifice_shape::Facade;
@@ -15,16 +15,17 @@ use crate::print::{self, Json};
 #[command(after_help = "Examples:
   edifice grammar derive facade.cga -o facade.facade.json
   edifice grammar derive fig9.grammar.json --width 800 --height 600 -o wide.svg
-  edifice grammar derive fig9.grammar.json --width 800 --bands -o columns.svg
+  edifice grammar derive fig9.grammar.json --width 800 --rules -o by_rules.svg
   edifice grammar derive joint.grammar.json --facade terrace_a --seed 7 -o terrace_a.png
 
-At its own size a grammar gives the facade that it was inferred from. At another size, rules without
-a relative size (~) are made size-independent: their sizes become relative, but for thin structures
-such as window frames, and repeats fill the space. Absolute sizes give way last and in proportion,
-with a warning. Then edges are aligned, and terminals that are equal at the grammar's own size
-become equal again; --no-align leaves them where the rules put them. --bands does not ask the rules:
-columns that stand together repeat together in all floors of the facade at its own size, floors at
-their own rhythm, and what is left is stretched.
+At its own size a grammar gives the facade that it was inferred from. At another size, columns that
+stand together repeat together in all floors of that facade, floors at their own rhythm, and what is
+left is stretched (--bands), unless the grammar says itself what gives way: by relative sizes (~) or
+by several rules for a symbol. Then, and with --rules, its rules are asked: those without a relative
+size are made size-independent, their sizes become relative, but for thin structures such as window
+frames, and repeats fill the space. Absolute sizes give way last and in proportion, with a warning.
+Edges are aligned, and terminals that are equal at the grammar's own size become equal again;
+--no-align leaves them where the rules put them.
 In a stochastic grammar the seed picks among the rules of each symbol.
 A library (grammar infer --sizes free) is written as stochastic rules of CGA with attributes.")]
 pub(crate) struct Args {
@@ -42,11 +43,14 @@ pub(crate) struct Args {
     /// Facade of a joint grammar, by name or by number from 1 [default: the first]
     #[arg(long, value_name = "NAME")]
     facade: Option<String>,
-    /// At another size, leave edges where the rules put them
+    /// At another size, ask the rules and align edges, also where no rule says what gives way
+    #[arg(long)]
+    rules: bool,
+    /// At another size, ask the rules and leave edges where they put them
     #[arg(long)]
     no_align: bool,
-    /// At another size, repeat or leave out whole columns and floors of the facade at its own size, and stretch the rest
-    #[arg(long, conflicts_with = "no_align")]
+    /// At another size, repeat or leave out whole columns and floors of the facade at its own size, and stretch the rest, whatever the rules say
+    #[arg(long, conflicts_with_all = ["no_align", "rules"])]
     bands: bool,
     /// File to write: .facade.json, .svg, .png or .glb (in relief, metres); of a library .cga
     #[arg(short, long, value_name = "OUT")]
@@ -98,20 +102,29 @@ fn derive(args: &Args) -> Result<Facade> {
         start: index,
         size: Some((width, height)),
         seed: args.seed,
-        resizing: match (args.bands, args.no_align) {
-            (true, _) => Resizing::Bands,
-            (false, true) => Resizing::Rules,
-            (false, false) => Resizing::Aligned,
+        resizing: match (args.bands, args.no_align, args.rules) {
+            (true, ..) => Resizing::Bands,
+            (_, true, _) => Resizing::Rules,
+            (_, _, true) => Resizing::Aligned,
+            (false, false, false) => Resizing::usual(&grammar),
         },
     };
-    let made = derived(&grammar, &wish).map_err(|e| Error::content(path, e))?;
+    let made = derived(&grammar, &wish).map_err(|e| match e {
+        DeriveError::Bands(e) => Error::content(path, format!("{e}; --rules asks the rules")),
+        e => Error::content(path, e),
+    })?;
     warn_of_shrunk(args, &grammar, &made.derivation);
     if !made.unequal.is_empty() {
         let labels = made.unequal.join(", ");
-        print::message(&format!(
-            "warning: {}: not all terminals that are equal at the own size could stay so: {labels}",
-            path.display()
-        ));
+        let path = path.display();
+        print::message(&match wish.resizing {
+            Resizing::Bands => {
+                format!("{path}: longer or shorter than at the own size, to fill it: {labels}")
+            }
+            _ => format!(
+                "warning: {path}: not all terminals that are equal at the own size could stay so: {labels}"
+            ),
+        });
     }
     let mut facade = made.facade;
     if grammar.starts.len() == 1 && facade.name == grammar.starts[0].symbol {

@@ -13,7 +13,7 @@ use super::Common;
 
 /// Who runs the jobs.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Engine {
+pub(crate) enum Engine {
     /// Slurm's job arrays
     Slurm,
     /// Snakemake
@@ -84,7 +84,7 @@ pub(super) fn submit(options: &Options, studies: &[Study]) -> Result<()> {
     ));
     if !options.dry_run {
         match options.engine {
-            Engine::Slurm => sbatch(&written)?,
+            Engine::Slurm => sbatch_all(&written)?,
             Engine::Snakemake => print::message(
                 "run snakemake with the file above, for example: snakemake --cores 2 --snakefile Snakefile",
             ),
@@ -97,33 +97,34 @@ pub(super) fn submit(options: &Options, studies: &[Study]) -> Result<()> {
 }
 
 /// Submits the arrays, then what collects when they have ended.
-fn sbatch(scripts: &[PathBuf]) -> Result<()> {
-    let mut ids: Vec<String> = Vec::new();
-    for (index, script) in scripts.iter().enumerate() {
-        let mut command = Command::new("sbatch");
-        command.arg("--parsable");
-        if index + 1 == scripts.len() {
-            command.arg(format!("--dependency=afterany:{}", ids.join(":")));
-        }
-        let output = command
-            .arg(script)
-            .output()
-            .map_err(|e| Error::io("sbatch".as_ref(), "run", e))?;
-        if !output.status.success() {
-            return Err(Error::method(format!(
-                "sbatch refused {}: {}",
-                script.display(),
-                String::from_utf8_lossy(&output.stderr).trim()
-            )));
-        }
-        let id = String::from_utf8_lossy(&output.stdout)
-            .trim()
-            .split(';')
-            .next()
-            .unwrap_or_default()
-            .to_owned();
-        print::message(&format!("submitted {} as job {id}", script.display()));
-        ids.push(id);
-    }
+fn sbatch_all(scripts: &[PathBuf]) -> Result<()> {
+    let Some((last, arrays)) = scripts.split_last() else {
+        return Ok(());
+    };
+    let ids = arrays.iter().map(|script| sbatch(script, None));
+    let ids = ids.collect::<Result<Vec<_>>>()?;
+    sbatch(last, Some(&format!("afterany:{}", ids.join(":"))))?;
     Ok(())
+}
+
+/// Submits a script, one that waits for others where there is a dependency; gives the number of the job.
+pub(crate) fn sbatch(script: &Path, dependency: Option<&str>) -> Result<String> {
+    let mut command = Command::new("sbatch");
+    command.arg("--parsable");
+    command.args(dependency.map(|d| format!("--dependency={d}")));
+    let output = command
+        .arg(script)
+        .output()
+        .map_err(|e| Error::io("sbatch".as_ref(), "run", e))?;
+    if !output.status.success() {
+        return Err(Error::method(format!(
+            "sbatch refused {}: {}",
+            script.display(),
+            String::from_utf8_lossy(&output.stderr).trim()
+        )));
+    }
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let id = text.trim().split(';').next().unwrap_or_default().to_owned();
+    print::message(&format!("submitted {} as job {id}", script.display()));
+    Ok(id)
 }

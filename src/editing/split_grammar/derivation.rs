@@ -1,9 +1,11 @@
 //! A facade of a grammar, at its own or another size.
 
+use std::collections::BTreeSet;
+
 use edifice_base::rng;
 use edifice_grammar::{Derivation, Grammar, GrammarError, derive_at, size_independent};
-use edifice_layout::resize::{AlignError, align, resized};
-use edifice_shape::{Facade, LayoutError};
+use edifice_layout::resize::{AlignError, BandsError, align, resized};
+use edifice_shape::Facade;
 
 /// The way to another size than the grammar's own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +16,22 @@ pub enum Resizing {
     Aligned,
     /// Whole columns and floors of the facade at its own size repeat or go, and the rest is stretched.
     Bands,
+}
+
+impl Resizing {
+    /// The way for a grammar of which nothing else is said: by bands where its rules say nothing of other sizes, as in grammars that
+    /// were inferred from a facade; by its rules where they have relative sizes, or choices.
+    pub fn usual(grammar: &Grammar) -> Self {
+        let mut symbols = BTreeSet::new();
+        let plain = grammar
+            .rules
+            .iter()
+            .all(|r| symbols.insert(&r.symbol) && !r.operation.has_relative_sizes());
+        match plain {
+            true => Resizing::Bands,
+            false => Resizing::Aligned,
+        }
+    }
 }
 
 /// The wanted derivation.
@@ -49,9 +67,9 @@ pub enum DeriveError {
     /// Edges cannot be aligned.
     #[error(transparent)]
     Align(#[from] AlignError),
-    /// The facade at its own size is no tiling.
+    /// The size, for bands.
     #[error(transparent)]
-    Layout(#[from] LayoutError),
+    Bands(#[from] BandsError),
 }
 
 /// Derives a start: as it is written at its own size; at another, size-independent or by bands.

@@ -50,6 +50,27 @@ const ASIDE: f64 = 0.1;
 /// Coordinates that differ by less, as a share of the side, are one.
 const NOISE: f64 = 1e-6;
 
+/// Bands are chosen one after another: a facade that becomes larger than so many times its own size is refused.
+pub const MOST_TIMES: f64 = 20.0;
+
+/// Why a facade cannot be brought to another size by bands.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BandsError {
+    /// The facade is no tiling.
+    #[error(transparent)]
+    Layout(#[from] edifice_shape::LayoutError),
+    /// The new size is too large.
+    #[error(
+        "{times:.0} times its own size along {axis:?} is more than the {MOST_TIMES} times to which columns and floors are repeated"
+    )]
+    Size {
+        /// The new size over the own one.
+        times: f64,
+        /// The axis.
+        axis: Axis,
+    },
+}
+
 /// A facade at another size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Banded {
@@ -66,15 +87,11 @@ pub struct Banded {
 /// A tiling at another width and height, by bands.
 ///
 /// # Errors
-/// [`LayoutError`](edifice_shape::LayoutError) when the facade is no tiling.
+/// [`BandsError`] when the facade is no tiling, or when it is to become more than [`MOST_TIMES`] times as large along an axis.
 ///
 /// # Complexity
 /// O(c^2 r) for c columns and r rows of cuts, and O(n log n) for each band that is tried, for n regions.
-pub fn resized(
-    own: &Facade,
-    width: f64,
-    height: f64,
-) -> Result<Banded, edifice_shape::LayoutError> {
+pub fn resized(own: &Facade, width: f64, height: f64) -> Result<Banded, BandsError> {
     let mut out = Banded {
         facade: own.clone(),
         bands: [0; 2],
@@ -86,6 +103,12 @@ pub fn resized(
         let view = AxisView::new(&out.facade, axis)?;
         if (target - view.side).abs() <= view.noise {
             continue;
+        }
+        if target > MOST_TIMES * view.side {
+            return Err(BandsError::Size {
+                times: target / view.side,
+                axis,
+            });
         }
         let best = view.planned(target);
         let (pieces, cut) = view.applied(&best.counts);

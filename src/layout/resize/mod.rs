@@ -6,7 +6,7 @@ mod terminals;
 #[cfg(test)]
 mod tests;
 
-pub use bands::{Banded, resized};
+pub use bands::{Banded, BandsError, MOST_TIMES, resized};
 pub use terminals::terminal_classes;
 
 use std::collections::BTreeSet;

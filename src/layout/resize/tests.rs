@@ -1,6 +1,6 @@
 //! Facades of equal windows at other sizes.
 
-use super::resized;
+use super::{BandsError, MOST_TIMES, resized};
 use edifice_shape::{Facade, Rect, Region};
 
 /// Windows of 10 x 15 in `columns` and `rows`, 20 and 30 apart.
@@ -56,6 +56,17 @@ fn its_own_size_is_the_identity_and_one_window_is_stretched() {
     assert_eq!(found.facade.regions.len(), one.regions.len());
     assert_eq!(found.scale, [2.0, 1.0]);
     found.facade.check_tiling().unwrap();
+}
+
+#[test]
+fn a_facade_twenty_times_as_wide_is_made_and_a_wider_one_refused() {
+    let own = windows(3, 2);
+    let most = MOST_TIMES * own.width;
+    let found = resized(&own, most, own.height).unwrap();
+    found.facade.check_tiling().unwrap();
+    assert!((found.scale[0] - 1.0).abs() < 0.05, "{:?}", found.scale);
+    let refused = resized(&own, 1e9 * own.width, own.height);
+    assert!(matches!(refused, Err(BandsError::Size { .. })));
 }
 
 #[test]

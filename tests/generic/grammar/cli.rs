@@ -178,7 +178,7 @@ fn bad_input_is_named_and_leaves_nothing() {
 }
 
 #[test]
-fn other_sizes_are_aligned_unless_switched_off() {
+fn other_sizes_are_by_bands_by_aligned_rules_or_by_rules_alone() {
     let folder = tempfile::tempdir().unwrap();
     let layouts = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("datasets/facade_grammar/layouts");
     let grammar = layouts.join("terrace_a.grammar.json");
@@ -197,11 +197,13 @@ fn other_sizes_are_aligned_unless_switched_off() {
         (1.3 * own.height).to_string(),
     );
     let size = ["--width", &width, "--height", &height];
-    let aligned = derive(&size);
+    let aligned = derive(&[&size[..], &["--rules"]].concat());
     let plain = derive(&[&size[..], &["--no-align"]].concat());
     assert_ne!(aligned, plain);
     let banded = derive(&[&size[..], &["--bands"]].concat());
     banded.check_tiling().unwrap();
+    // Rules without relative sizes and choices are not asked unless one says so.
+    assert_eq!(derive(&size), banded);
     assert!((banded.width - 0.8 * own.width).abs() < 1e-9);
     assert!(banded != aligned && banded != plain);
     // Each element of one size at the own size has one size.
