@@ -31,8 +31,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             .column("city", Align::Left)
             .column("measure", Align::Left)
             .numbers(["old squares", "new squares", "new/old"]);
-    for (name, city) in data::three_cities(ctx)? {
-        let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
+    let cities = data::three_cities(ctx)?;
+    for (name, city) in &cities {
+        let made = proceduralize(city, &data::settings(Mode::Best, 4, seed), &unwatched)
             .map_err(Error::method)?;
         let grammar = made.grammar;
         let derived = grammar.derive().map_err(Error::method)?.city(&grammar);
@@ -98,8 +99,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         ];
         for (measure, old, new) in measures {
             let key = measure.replace([' ', ','], "_").replace("__", "_");
-            ctx.observe(data::row(&name, "best", "old", &key, old, ""));
-            ctx.observe(data::row(&name, "best", "new", &key, new, ""));
+            ctx.observe(data::row(name, "best", "old", &key, old, ""));
+            ctx.observe(data::row(name, "best", "new", &key, new, ""));
             let ratio = if old > 0.0 {
                 format!("{:.3}", new / old)
             } else {
@@ -114,7 +115,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             ]);
         }
         let copied = copied.iter().sum::<f64>() / copied.len().max(1) as f64;
-        ctx.observe(data::row(&name, "best", "new", "pairs_copied", copied, ""));
+        ctx.observe(data::row(name, "best", "new", "pairs_copied", copied, ""));
         table.row(vec![
             name.clone(),
             "pairs copied".into(),
@@ -130,10 +131,12 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         let typical = squares
             .iter()
             .min_by(|a, b| unlike(a).total_cmp(&unlike(b)));
-        if let (Some(typical), Some(new)) = (typical, shown) {
+        // The made city is drawn where there is no real one.
+        let is_drawn = name != data::MADE || cities.len() == 1;
+        if let (true, Some(typical), Some(new)) = (is_drawn, typical, shown) {
             let [from, to] = [cut(&derived, typical), cut(&new, &square)];
             for (what, view) in [("plan", View::FigureGround), ("view", View::Oblique)] {
-                let width = ctx.budget().choose(160, 600, 900);
+                let width = ctx.budget().choose(160, 500, 900);
                 let height = match view {
                     View::FigureGround => width,
                     _ => width * 5 / 8,

@@ -73,12 +73,13 @@ fn build(
     let bytes = gltf::to_bytes(&town.scene).map_err(Error::method)?;
     let seconds = start.elapsed().as_secs_f64();
     ctx.attach(&format!("{artefact}.glb"), &bytes, "the scene, binary glTF")?;
-    let size = ctx.budget().choose([160, 90], [880, 495], [1280, 720]);
-    for (what, said, camera) in [
-        ("above", "over the roofs", town.from_above()),
-        ("street", "in a street", town.in_the_street()),
+    let width = ctx.budget().choose(160, 672, 1280);
+    for (what, said, camera, width) in [
+        ("above", "over the roofs", town.from_above(), width),
+        ("street", "in a street", town.in_the_street(), width * 3 / 4),
     ] {
-        let picture = scene_png(&town.scene, &camera, size[0], size[1]).map_err(Error::method)?;
+        let picture =
+            scene_png(&town.scene, &camera, width, width * 9 / 16).map_err(Error::method)?;
         ctx.attach(&format!("{artefact}_{what}.png"), &picture, said)?;
     }
     let inputs: usize = groups.iter().map(|g| g.len()).sum();

@@ -19,7 +19,7 @@ pub struct Jobs {
     pub minutes: u64,
 }
 
-/// What a worker takes besides what the plan's arithmetic counts, in bytes: the program, and buffers of reading and writing.
+/// Bytes that a worker takes besides those of the plan's arithmetic: the program, and buffers of reading and writing.
 const PROGRAM: u64 = 500_000_000;
 
 /// Megabytes that a worker may use: any may get the largest tile, and the merge.

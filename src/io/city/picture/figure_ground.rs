@@ -3,14 +3,14 @@
 use super::drawing::{Drawing, Drawn, seen};
 use edifice_scene::render::Picture;
 
-/// What is built on, where a building has no colour of its own.
+/// The colour of a building that has none of its own.
 const FIGURE: [u8; 3] = [45; 3];
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 3;
 /// White around the plan, a share of its extent.
 const MARGIN: f64 = 0.03;
 
-/// Where samples of a picture lie.
+/// The place of a picture's samples on the ground.
 struct Frame {
     /// The upper left corner of the picture, in the coordinates of the reference system.
     corner: [f64; 2],
