@@ -73,7 +73,7 @@ fn build(
     let bytes = gltf::to_bytes(&town.scene).map_err(Error::method)?;
     let seconds = start.elapsed().as_secs_f64();
     ctx.attach(&format!("{artefact}.glb"), &bytes, "the scene, binary glTF")?;
-    let width = ctx.budget().choose(160, 672, 1280);
+    let width = ctx.budget().choose(160, 592, 1280);
     for (what, said, camera, width) in [
         ("above", "over the roofs", town.from_above(), width),
         ("street", "in a street", town.in_the_street(), width * 3 / 4),

@@ -155,10 +155,13 @@ impl<'a> Prepared<'a> {
             Mode::Best => {
                 let count = city.buildings.len();
                 let goes_on = |stage| watched.goes_on(Progress::stage(stage));
-                let shape = geometric_features(components);
-                let buildings = match goes_on("types of buildings") {
-                    true => building_types(components, &shape, count)?,
-                    false => BuildingTypes::apart(components, count),
+                // What was stopped is not told apart by form any more.
+                let shape = goes_on("forms").then(|| geometric_features(components));
+                let buildings = match &shape {
+                    Some(shape) if goes_on("types of buildings") => {
+                        building_types(components, shape, count)?
+                    }
+                    _ => BuildingTypes::apart(components, count),
                 };
                 let mut best = Best {
                     stated: stated_types(components),
@@ -167,8 +170,10 @@ impl<'a> Prepared<'a> {
                     buildings,
                     patterns: Vec::new(),
                 };
-                if goes_on("types of components") {
-                    best.types = Some(TypeTree::new(components, &shape, settings.representative)?);
+                if let Some(shape) = &shape
+                    && goes_on("types of components")
+                {
+                    best.types = Some(TypeTree::new(components, shape, settings.representative)?);
                 }
                 if goes_on("patterns") {
                     best.patterns = patterns(components, &best.buildings);
