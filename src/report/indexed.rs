@@ -136,6 +136,17 @@ mod tests {
         pixels
     }
 
+    /// A PNG of RGB pixels without a palette.
+    fn plain(width: u32, height: u32, rgb: &[u8]) -> Vec<u8> {
+        let mut whole = Vec::new();
+        let mut encoder = png::Encoder::new(&mut whole, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(rgb).unwrap();
+        writer.finish().unwrap();
+        whole
+    }
+
     #[test]
     fn few_colours_stay_and_many_become_their_nearest() {
         let few: Vec<u8> = (0..200u8).flat_map(|i| [i, 7, 255 - i]).collect();
@@ -154,12 +165,7 @@ mod tests {
             let (width, height) = (37, 11);
             let shade = |i: usize| [(i * i % colours) as u8, 9, 255 - (i % colours) as u8];
             let rgb: Vec<u8> = (0..width * height).flat_map(shade).collect();
-            let mut whole = Vec::new();
-            let mut encoder = png::Encoder::new(&mut whole, width as u32, height as u32);
-            encoder.set_color(png::ColorType::Rgb);
-            let mut writer = encoder.write_header().unwrap();
-            writer.write_image_data(&rgb).unwrap();
-            writer.finish().unwrap();
+            let whole = plain(width as u32, height as u32, &rgb);
             assert_eq!(decoded(&few_colours(&whole).unwrap()), rgb, "{colours}");
         }
     }
@@ -169,12 +175,7 @@ mod tests {
         let (width, height) = (64, 64);
         let shade = |i: usize| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, 128];
         let rgb: Vec<u8> = (0..width * height).flat_map(shade).collect();
-        let mut whole = Vec::new();
-        let mut encoder = png::Encoder::new(&mut whole, width as u32, height as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        let mut writer = encoder.write_header().unwrap();
-        writer.write_image_data(&rgb).unwrap();
-        writer.finish().unwrap();
+        let whole = plain(width as u32, height as u32, &rgb);
         let few = few_colours(&whole).unwrap();
         let again = decoded(&few);
         let far = rgb.iter().zip(&again).map(|(a, b)| a.abs_diff(*b));

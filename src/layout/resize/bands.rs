@@ -24,6 +24,7 @@
 
 use std::collections::BTreeMap;
 
+use super::bands_error::{BandsError, MOST_TIMES};
 use super::in_line::{Piece, Shares, loss, loss_of_panes, shares};
 use edifice_shape::{Axis, Facade, Rect, Region, is_background};
 
@@ -49,27 +50,6 @@ const ASIDE: f64 = 0.1;
 
 /// Coordinates that differ by less, as a share of the side, are one.
 const NOISE: f64 = 1e-6;
-
-/// Bands are chosen one after another: a facade that becomes larger than so many times its own size is refused.
-pub const MOST_TIMES: f64 = 20.0;
-
-/// Why a facade cannot be brought to another size by bands.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BandsError {
-    /// The facade is no tiling.
-    #[error(transparent)]
-    Layout(#[from] edifice_shape::LayoutError),
-    /// The new size is too large.
-    #[error(
-        "{times:.0} times its own size along {axis:?} is more than the {MOST_TIMES} times to which columns and floors are repeated"
-    )]
-    Size {
-        /// The new size over the own one.
-        times: f64,
-        /// The axis.
-        axis: Axis,
-    },
-}
 
 /// A facade at another size.
 #[derive(Debug, Clone, PartialEq)]

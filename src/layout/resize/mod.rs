@@ -1,12 +1,14 @@
 //! Derivation at another size with aligned edges and equal terminals (Wu et al. 2014, Sec. 5, Fig. 12).
 
 mod bands;
+mod bands_error;
 mod in_line;
 mod terminals;
 #[cfg(test)]
 mod tests;
 
-pub use bands::{Banded, BandsError, MOST_TIMES, resized};
+pub use bands::{Banded, resized};
+pub use bands_error::{BandsError, MOST_TIMES};
 pub use terminals::terminal_classes;
 
 use std::collections::BTreeSet;

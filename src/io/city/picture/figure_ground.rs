@@ -153,6 +153,15 @@ mod tests {
         }
     }
 
+    fn drawing(width: usize, height: usize) -> Drawing {
+        Drawing {
+            width,
+            height,
+            view: View::FigureGround,
+            around: None,
+        }
+    }
+
     #[test]
     fn what_is_dark_has_the_area_of_the_footprints() {
         let origin = [500_000.0, 4_000_000.0, 0.0];
@@ -165,12 +174,7 @@ mod tests {
             buildings,
             ..City::default()
         };
-        let drawing = Drawing {
-            width: 300,
-            height: 300,
-            view: View::FigureGround,
-            around: None,
-        };
+        let drawing = drawing(300, 300);
         let drawn = Drawn {
             city: &city,
             colours: None,
@@ -194,12 +198,7 @@ mod tests {
     #[test]
     fn a_city_without_buildings_is_white() {
         let city = City::default();
-        let drawing = Drawing {
-            width: 20,
-            height: 12,
-            view: View::FigureGround,
-            around: None,
-        };
+        let drawing = drawing(20, 12);
         let drawn = Drawn {
             city: &city,
             colours: None,
