@@ -1,11 +1,15 @@
 //! Derivation at another size with aligned edges and equal terminals (Wu et al. 2014, Sec. 5, Fig. 12).
 
+mod apply;
 mod bands;
 mod bands_error;
+mod contacts;
 mod in_line;
+mod pitch;
 mod terminals;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use bands::{Banded, resized};
 pub use bands_error::{BandsError, MOST_TIMES};

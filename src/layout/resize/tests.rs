@@ -133,3 +133,66 @@ fn windows_are_repeated_with_all_their_panes() {
         assert!((found.scale[0] - 1.0).abs() < 1e-9);
     }
 }
+
+#[test]
+fn a_floor_is_added_with_its_cornice() {
+    // Three floors of windows; a cornice of two thirds of a window's height stands above the second alone.
+    let mut regions = Vec::new();
+    let mut put = |label: &str, x: f64, y: f64, w: f64, h: f64| {
+        let label = label.into();
+        let rect = Rect::new(x, y, w, h);
+        regions.push(Region { label, rect });
+    };
+    let starts = [4.0, 16.0, 34.0];
+    let mut at = 0.0;
+    for start in starts {
+        put("wall", 0.0, at, 20.0, start - at);
+        for x in [0.0, 8.0, 16.0] {
+            put("wall", x, start, 4.0, 6.0);
+        }
+        for x in [4.0, 12.0] {
+            put("window", x, start, 4.0, 6.0);
+        }
+        at = start + 6.0;
+    }
+    put("wall", 0.0, at, 20.0, 4.0);
+    let cornice = regions
+        .iter()
+        .position(|r| r.rect.y == 22.0 && r.label == "wall")
+        .unwrap();
+    regions.remove(cornice);
+    for (label, y, h) in [
+        ("wall", 22.0, 2.0),
+        ("cornice", 24.0, 4.0),
+        ("wall", 28.0, 6.0),
+    ] {
+        let rect = Rect::new(0.0, y, 20.0, h);
+        regions.push(Region {
+            label: label.into(),
+            rect,
+        });
+    }
+    let own = Facade::new("cornice", "m", 20.0, 44.0, regions).unwrap();
+    let pitch = |f: &Facade| {
+        let mut ys: Vec<f64> = f
+            .regions
+            .iter()
+            .filter(|r| r.label == "window")
+            .map(|r| r.rect.y)
+            .collect();
+        ys.sort_by(f64::total_cmp);
+        ys.dedup();
+        ys.windows(2)
+            .map(|w| w[1] - w[0])
+            .fold(f64::INFINITY, f64::min)
+    };
+    for times in [1.3, 1.6, 2.0] {
+        let found = resized(&own, 20.0, times * own.height).unwrap();
+        found.facade.check_tiling().unwrap();
+        assert!(found.bands[1] > 0, "{times}");
+        assert!(
+            pitch(&found.facade) / found.scale[1] >= 0.95 * pitch(&own),
+            "{times}"
+        );
+    }
+}

@@ -1,0 +1,237 @@
+//! A facade seen along one axis, and its bands.
+
+use std::collections::BTreeMap;
+
+use super::apply::Band;
+use super::contacts::Contacts;
+use super::in_line::Piece;
+use super::pitch::pitches;
+use edifice_shape::{Axis, Facade, is_background};
+
+/// Shortest and longest band, as shares of the side.
+const BAND: (f64, f64) = (0.04, 0.6);
+
+/// Least length of a region through which a seam may go if it must, as a share of the side.
+const WIDE: f64 = 0.07;
+
+/// Least `|ln|` of the ratio of two lengths of elements of different sizes.
+const SIZE: f64 = 0.1;
+
+/// Greatest [`Repeat::new`].
+pub(super) const MOST_NEW: f64 = 0.35;
+
+/// A band of floors is at least so many times as long as the least pitch of what it repeats: a floor comes with its cornice.
+const CLOSEST: f64 = 0.95;
+
+/// Coordinates that differ by less, as a share of the side, are one.
+const NOISE: f64 = 1e-6;
+
+/// A band that may be repeated or taken away.
+pub(super) struct Repeat {
+    pub(super) band: Band,
+    /// The share of the facade across where that brings together what is nowhere together, or the share of the band's elements that
+    /// stand nowhere else, whichever is greater: 0 to [`MOST_NEW`].
+    pub(super) new: f64,
+}
+
+/// A facade seen along one axis.
+pub(super) struct AxisView<'a> {
+    pub(super) pieces: Vec<Piece<'a>>,
+    cuts: Vec<f64>,
+    /// For each column of cuts and each row, the index of its piece.
+    cells: Vec<Vec<usize>>,
+    contacts: Contacts<'a>,
+    /// The least pitch of floors by label; empty along x, where windows of one floor may well stand closer than those of another.
+    pitch: BTreeMap<&'a str, f64>,
+    /// The lengths of the rows, across.
+    rows: Vec<f64>,
+    pub(super) side: f64,
+    pub(super) noise: f64,
+}
+
+impl<'a> AxisView<'a> {
+    pub(super) fn new(facade: &'a Facade, axis: Axis) -> Result<Self, edifice_shape::LayoutError> {
+        let layout = facade.indexed()?;
+        let other = axis.other();
+        let pieces: Vec<Piece> = (facade.regions.iter())
+            .map(|region| Piece {
+                label: &region.label,
+                along: (region.rect.start(axis), region.rect.end(axis)),
+                across: (region.rect.start(other), region.rect.end(other)),
+            })
+            .collect();
+        let cuts = match axis {
+            Axis::X => layout.xs.values().to_vec(),
+            Axis::Y => layout.ys.values().to_vec(),
+        };
+        let across = match axis {
+            Axis::X => layout.ys.values(),
+            Axis::Y => layout.xs.values(),
+        };
+        let rows: Vec<f64> = across.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let mut cells = vec![vec![0; rows.len()]; cuts.len() - 1];
+        for (index, span) in layout.spans.iter().enumerate() {
+            let ((from, to), (low, high)) = (span.along(axis), span.along(other));
+            for column in &mut cells[from..to] {
+                column[low..high].fill(index);
+            }
+        }
+        let side = cuts[cuts.len() - 1];
+        let noise = NOISE * facade.width.max(facade.height);
+        let pitch = match axis {
+            Axis::X => BTreeMap::new(),
+            Axis::Y => pitches(&pieces, noise),
+        };
+        Ok(Self {
+            pitch,
+            contacts: Contacts::new(&pieces, &cells, side),
+            pieces,
+            cuts,
+            cells,
+            rows,
+            side,
+            noise,
+        })
+    }
+
+    fn same(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() <= self.noise
+    }
+
+    /// From each line the shortest band, and the shortest that brings nothing new together, ordered by the first seam.
+    pub(super) fn bands(&self, loose: bool, more: bool) -> Vec<Repeat> {
+        let columns = self.cells.len();
+        let mut found: Vec<Repeat> = Vec::new();
+        for from in 0..columns {
+            let mut any = false;
+            for to in from + 1..columns {
+                if self.cuts[to] - self.cuts[from + 1] > BAND.1 * self.side {
+                    break;
+                }
+                let fits = |&band: &Band| {
+                    let share = (band.1 - band.0) / self.side;
+                    (BAND.0..=BAND.1).contains(&share)
+                        && self.alike((from, to), band, loose)
+                        && self.repeatable(band)
+                };
+                let Some(band) = self.seams(from, to).into_iter().find(fits) else {
+                    continue;
+                };
+                let new = self
+                    .new_contacts((from, to), band, more)
+                    .max(self.of_its_own(band));
+                if new <= MOST_NEW && (!any || new == 0.0) {
+                    found.push(Repeat { band, new });
+                }
+                any = true;
+                if new == 0.0 {
+                    break;
+                }
+            }
+        }
+        found
+    }
+
+    /// Bands from one column of cuts to another: as long as a pitch of floors where there is one, else with both seams equally far
+    /// behind their cuts.
+    fn seams(&self, from: usize, to: usize) -> Vec<Band> {
+        let mut lengths: Vec<f64> = self.pitch.values().copied().collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.dedup_by(|a, b| self.same(*a, *b));
+        let of_length = |length: f64| {
+            let low = self.cuts[from].max(self.cuts[to] - length);
+            let high = self.cuts[from + 1].min(self.cuts[to + 1] - length);
+            let start = 0.5 * (low + high);
+            (high - low > self.noise).then_some((start, start + length))
+        };
+        let width = |k: usize| self.cuts[k + 1] - self.cuts[k];
+        let half = 0.5 * width(from).min(width(to));
+        let mut out: Vec<Band> = lengths.into_iter().filter_map(of_length).collect();
+        out.push((self.cuts[from] + half, self.cuts[to] + half));
+        out
+    }
+
+    /// The share of the facade across where a band more (or less) brings together what is nowhere together, or closer than anywhere.
+    fn new_contacts(&self, (from, to): (usize, usize), (a, b): Band, more: bool) -> f64 {
+        let (first, second) = match more {
+            true => ((to, b), (from, a)),
+            false => ((from, a), (to, b)),
+        };
+        let new = self.rows.iter().enumerate().filter(|&(row, _)| {
+            let seam = &self.pieces[self.cells[from][row]];
+            is_background(seam.label) && !self.contacts.known(row, first, second)
+        });
+        new.map(|(_, length)| length).sum::<f64>() / self.rows.iter().sum::<f64>()
+    }
+
+    /// True if the facade is the same along both seams.
+    fn alike(&self, (from, to): (usize, usize), (a, b): Band, loose: bool) -> bool {
+        (0..self.cells[from].len()).all(|row| {
+            let [p, q] = [from, to].map(|column| self.cells[column][row]);
+            if p == q {
+                return true;
+            }
+            let (p, q) = (&self.pieces[p], &self.pieces[q]);
+            if p.label != q.label {
+                return false;
+            }
+            let level = self.same(p.across.0, q.across.0) && self.same(p.across.1, q.across.1);
+            let length = |piece: &Piece| piece.along.1 - piece.along.0;
+            let placed = self.same(a - p.along.0, b - q.along.0) && self.same(length(p), length(q));
+            // Panes of one window are no window each.
+            let apart = || (from + 1..to).any(|k| is_background(self.label(k, row)));
+            let wide = length(p).min(length(q)) >= WIDE * self.side;
+            is_background(p.label) || (level && ((placed && apart()) || (loose && wide)))
+        })
+    }
+
+    fn label(&self, column: usize, row: usize) -> &str {
+        self.pieces[self.cells[column][row]].label
+    }
+
+    /// The share of a band's elements, by their length across, that have none of their label and about their size outside: an attic
+    /// is no floor like others. Elements across most of the facade, its cornices, do not count.
+    fn of_its_own(&self, (a, b): Band) -> f64 {
+        let across = |p: &Piece| p.across.1 - p.across.0;
+        let most = 0.5 * self.rows.iter().sum::<f64>();
+        let inside = |p: &Piece| p.along.0 >= a - self.noise && p.along.1 <= b + self.noise;
+        let counted = |p: &&Piece| !is_background(p.label) && across(p) < most;
+        let (within, outside): (Vec<&Piece>, Vec<&Piece>) =
+            self.pieces.iter().filter(counted).partition(|p| inside(p));
+        let near = |p: f64, q: f64| (p / q).ln().abs() < SIZE;
+        let own = within.iter().filter(|p| {
+            !outside.iter().any(|q| {
+                p.label == q.label
+                    && near(across(p), across(q))
+                    && near(p.along.1 - p.along.0, q.along.1 - q.along.0)
+            })
+        });
+        let all = within.iter().map(|p| across(p)).sum::<f64>();
+        if all > 0.0 {
+            own.map(|p| across(p)).sum::<f64>() / all
+        } else {
+            0.0
+        }
+    }
+
+    /// True if a band has elements, of no label all.
+    fn repeatable(&self, (a, b): Band) -> bool {
+        let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        for piece in self
+            .pieces
+            .iter()
+            .filter(|piece| !is_background(piece.label))
+        {
+            let count = counts.entry(piece.label).or_default();
+            count.0 += 1;
+            let inside = piece.along.0 >= a - self.noise && piece.along.1 <= b + self.noise;
+            count.1 += usize::from(inside);
+            let pitch = self.pitch.get(piece.label).unwrap_or(&0.0);
+            if inside && b - a < CLOSEST * pitch {
+                return false;
+            }
+        }
+        let inside = counts.values().map(|count| count.1).sum::<usize>();
+        inside > 0 && counts.values().all(|count| count.1 < count.0)
+    }
+}
