@@ -16,8 +16,8 @@
 //!
 //! Not every such band is a floor or a column:
 //! - New is the share of the facade across where a new seam brings two elements together, with background between, that
-//!   are neighbours nowhere, or nowhere as close. At most [`MOST_NEW`](super::view::MOST_NEW) of it may be new.
-//! - As much of the elements of a band may stand nowhere else in about their size: an attic is not repeated like a floor.
+//!   are neighbours nowhere, or nowhere as close. Little of it may be new.
+//! - Most elements of a band stand elsewhere too, in about their size: an attic is not repeated like a floor.
 //!   A band that has all regions of a label (the door) is left alone.
 //! - Floors are as long as a pitch of windows where a band of that length fits, and never shorter: a floor comes with its cornice.
 //!
@@ -49,7 +49,7 @@ const STRETCHED: f64 = 0.25;
 const USED: f64 = 0.08;
 const ASIDE: f64 = 0.1;
 
-/// Weight of what a band brings together that is nowhere together, or of its own ([`Repeat::new`]).
+/// Weight of what a band brings together that is nowhere together ([`Repeat::new`]).
 const NEW: f64 = 0.2;
 
 /// A facade at another size.

@@ -5,7 +5,18 @@ use std::collections::BTreeMap;
 use super::in_line::Piece;
 use edifice_shape::is_background;
 
-/// For each label the least distance, start to start, of two elements one after the other with background between them.
+/// Least `|ln|` of the ratio of two lengths of elements of different sizes.
+const SIZE: f64 = 0.1;
+
+/// True if two elements have one label and about one size.
+pub(super) fn alike(p: &Piece, q: &Piece) -> bool {
+    let length = |ends: (f64, f64)| ends.1 - ends.0;
+    let near = |a, b| (length(a) / length(b)).ln().abs() < SIZE;
+    p.label == q.label && near(p.along, q.along) && near(p.across, q.across)
+}
+
+/// For each label the least distance, start to start, of two elements of about one size, one after the other with background
+/// between them.
 ///
 /// Panes of one window, with nothing or a frame between them, do not count. Labels of which no element has such a neighbour are left out.
 pub(super) fn pitches<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str, f64> {
@@ -17,7 +28,7 @@ pub(super) fn pitches<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str,
     for p in pieces.iter().filter(|p| !is_background(p.label)) {
         let after = pieces
             .iter()
-            .filter(|q| q.label == p.label && q.along.0 >= p.along.1 + noise && beside(p, q))
+            .filter(|q| alike(p, q) && q.along.0 >= p.along.1 + noise && beside(p, q))
             .min_by(|a, b| a.along.0.total_cmp(&b.along.0));
         let Some(q) = after else { continue };
         let between = |r: &Piece| {

@@ -1,11 +1,11 @@
 //! A facade seen along one axis, and its bands.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::apply::Band;
 use super::contacts::Contacts;
 use super::in_line::Piece;
-use super::pitch::pitches;
+use super::pitch::{alike, pitches};
 use edifice_shape::{Axis, Facade, is_background};
 
 /// Shortest and longest band, as shares of the side.
@@ -14,11 +14,14 @@ const BAND: (f64, f64) = (0.04, 0.6);
 /// Least length of a region through which a seam may go if it must, as a share of the side.
 const WIDE: f64 = 0.07;
 
-/// Least `|ln|` of the ratio of two lengths of elements of different sizes.
-const SIZE: f64 = 0.1;
+/// Elements across more than this share of the facade are no windows.
+const MOST_ACROSS: f64 = 0.5;
+
+/// Greatest share of a band's elements that stand nowhere else.
+const MOST_OWN: f64 = 0.6;
 
 /// Greatest [`Repeat::new`].
-pub(super) const MOST_NEW: f64 = 0.35;
+const MOST_NEW: f64 = 0.25;
 
 /// A band of floors is at least so many times as long as the least pitch of what it repeats: a floor comes with its cornice.
 const CLOSEST: f64 = 0.95;
@@ -29,8 +32,7 @@ const NOISE: f64 = 1e-6;
 /// A band that may be repeated or taken away.
 pub(super) struct Repeat {
     pub(super) band: Band,
-    /// The share of the facade across where that brings together what is nowhere together, or the share of the band's elements that
-    /// stand nowhere else, whichever is greater: 0 to [`MOST_NEW`].
+    /// The share of the facade across where that brings together what is nowhere together: 0 to [`MOST_NEW`].
     pub(super) new: f64,
 }
 
@@ -43,6 +45,8 @@ pub(super) struct AxisView<'a> {
     contacts: Contacts<'a>,
     /// The least pitch of floors by label; empty along x, where windows of one floor may well stand closer than those of another.
     pitch: BTreeMap<&'a str, f64>,
+    /// Labels of which no band has all: along x every one; along y those that stand lowest somewhere, doors and shops.
+    fixed: BTreeSet<&'a str>,
     /// The lengths of the rows, across.
     rows: Vec<f64>,
     pub(super) side: f64,
@@ -78,12 +82,23 @@ impl<'a> AxisView<'a> {
         }
         let side = cuts[cuts.len() - 1];
         let noise = NOISE * facade.width.max(facade.height);
+        let most = MOST_ACROSS * rows.iter().sum::<f64>();
+        let counted = |p: &&Piece<'a>| !is_background(p.label) && p.across.1 - p.across.0 < most;
+        let lowest = |row: usize| (cells.iter().map(|column| &pieces[column[row]])).find(counted);
+        let fixed = match axis {
+            Axis::X => pieces.iter().map(|piece| piece.label).collect(),
+            Axis::Y => (0..rows.len())
+                .filter_map(lowest)
+                .map(|piece| piece.label)
+                .collect(),
+        };
         let pitch = match axis {
             Axis::X => BTreeMap::new(),
             Axis::Y => pitches(&pieces, noise),
         };
         Ok(Self {
             pitch,
+            fixed,
             contacts: Contacts::new(&pieces, &cells, side),
             pieces,
             cuts,
@@ -113,13 +128,12 @@ impl<'a> AxisView<'a> {
                     (BAND.0..=BAND.1).contains(&share)
                         && self.alike((from, to), band, loose)
                         && self.repeatable(band)
+                        && self.of_its_own(band) <= MOST_OWN
                 };
                 let Some(band) = self.seams(from, to).into_iter().find(fits) else {
                     continue;
                 };
-                let new = self
-                    .new_contacts((from, to), band, more)
-                    .max(self.of_its_own(band));
+                let new = self.new_contacts((from, to), band, more);
                 if new <= MOST_NEW && (!any || new == 0.0) {
                     found.push(Repeat { band, new });
                 }
@@ -189,23 +203,15 @@ impl<'a> AxisView<'a> {
         self.pieces[self.cells[column][row]].label
     }
 
-    /// The share of a band's elements, by their length across, that have none of their label and about their size outside: an attic
+    /// The share of a band's elements, by their length across, that have none of their label and about their size ([`alike`]) outside: an attic
     /// is no floor like others. Elements across most of the facade, its cornices, do not count.
     fn of_its_own(&self, (a, b): Band) -> f64 {
         let across = |p: &Piece| p.across.1 - p.across.0;
-        let most = 0.5 * self.rows.iter().sum::<f64>();
         let inside = |p: &Piece| p.along.0 >= a - self.noise && p.along.1 <= b + self.noise;
-        let counted = |p: &&Piece| !is_background(p.label) && across(p) < most;
+        let counted = |p: &&Piece| !is_background(p.label) && across(p) < self.most_across();
         let (within, outside): (Vec<&Piece>, Vec<&Piece>) =
             self.pieces.iter().filter(counted).partition(|p| inside(p));
-        let near = |p: f64, q: f64| (p / q).ln().abs() < SIZE;
-        let own = within.iter().filter(|p| {
-            !outside.iter().any(|q| {
-                p.label == q.label
-                    && near(across(p), across(q))
-                    && near(p.along.1 - p.along.0, q.along.1 - q.along.0)
-            })
-        });
+        let own = (within.iter()).filter(|p| !outside.iter().any(|q| alike(p, q)));
         let all = within.iter().map(|p| across(p)).sum::<f64>();
         if all > 0.0 {
             own.map(|p| across(p)).sum::<f64>() / all
@@ -214,9 +220,14 @@ impl<'a> AxisView<'a> {
         }
     }
 
-    /// True if a band has elements, of no label all.
+    fn most_across(&self) -> f64 {
+        MOST_ACROSS * self.rows.iter().sum::<f64>()
+    }
+
+    /// True if a band has elements beside cornices, of no label all that is [`fixed`](Self::fixed), and floors are as long as any.
     fn repeatable(&self, (a, b): Band) -> bool {
         let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        let mut any = false;
         for piece in self
             .pieces
             .iter()
@@ -226,12 +237,18 @@ impl<'a> AxisView<'a> {
             count.0 += 1;
             let inside = piece.along.0 >= a - self.noise && piece.along.1 <= b + self.noise;
             count.1 += usize::from(inside);
-            let pitch = self.pitch.get(piece.label).unwrap_or(&0.0);
-            if inside && b - a < CLOSEST * pitch {
-                return false;
+            // Not every floor has a cornice.
+            if inside && piece.across.1 - piece.across.0 < self.most_across() {
+                any = true;
+                let pitch = self.pitch.get(piece.label).unwrap_or(&0.0);
+                if b - a < CLOSEST * pitch {
+                    return false;
+                }
             }
         }
-        let inside = counts.values().map(|count| count.1).sum::<usize>();
-        inside > 0 && counts.values().all(|count| count.1 < count.0)
+        let all = |(label, count): (&&str, &(usize, usize))| {
+            count.1 == count.0 && self.fixed.contains(label)
+        };
+        any && !counts.iter().any(all)
     }
 }
