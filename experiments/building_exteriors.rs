@@ -15,6 +15,7 @@ mod generation_speed;
 mod held_out;
 mod hidden_openings;
 mod learning;
+mod likeness;
 mod mixture_figures;
 mod openings;
 mod photographs;
@@ -147,6 +148,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "figure_12_right",
         title: "held-out negative log-likelihood by training houses",
         run: figure_12::right,
+    },
+    Artefact {
+        name: "likeness",
+        title: "drawn houses told from real ones that no model has seen",
+        run: likeness::run,
     },
     Artefact {
         name: "figure_14",

@@ -33,6 +33,7 @@ pub mod layouts;
 mod parsed;
 pub mod peers;
 mod picture;
+mod roc;
 pub mod sweep;
 
 pub mod building_exteriors;

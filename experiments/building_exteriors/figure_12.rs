@@ -1,22 +1,26 @@
 //! Fig. 12: held-out negative log-likelihood.
 
 use super::averages::mean_and_error;
+use super::real_sets::{DELFT, rows_of};
 use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_building_exteriors::data::{dataset, known};
 use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split};
 use edifice_report::{Align, BarGroup, Bars, Chart, Figure, Row, Scale, Series, Table};
 
-/// Fig. 12 left: five models over five splits of 80/20, on all three sets.
+/// Fig. 12 left: five models over five splits of 80/20, on all four sets.
 pub(crate) fn left(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let most = ctx.budget().choose(60, 400, 5000);
     ctx.setting("most_real_houses", most);
-    let mut sets = vec![("shipped", shipped.data)];
+    let delft = rows_of(ctx, DELFT)?;
+    let delft = dataset(&delft).and_then(known).map_err(Error::method)?;
+    let mut sets = vec![("shipped", shipped.data), ("delft", delft)];
     sets.extend(data::real(ctx, most)?);
     let splits: u64 = ctx.budget().choose(1, 2, 5);
     let mut units = Vec::new();

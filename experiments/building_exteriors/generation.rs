@@ -60,10 +60,10 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let settings = settings(ctx);
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
     let (many, slow) = (
-        ctx.budget().choose(3, 10, 500),
-        ctx.budget().choose(2, 3, 60),
+        ctx.budget().choose(2, 10, 500),
+        ctx.budget().choose(1, 3, 60),
     );
-    let wilder = ctx.budget().choose(3, 25, 500);
+    let wilder = ctx.budget().choose(2, 25, 500);
     ctx.setting("wild_houses", wilder);
     ctx.setting("houses", many);
     ctx.setting("houses_of_paper", slow);

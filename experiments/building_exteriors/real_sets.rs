@@ -3,7 +3,7 @@
 use super::{data, settings};
 use crate::Context;
 use edifice_base::{Error, Result};
-use edifice_building_exteriors::attributes::{COLUMNS, GROUPS, Level};
+use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS, GROUPS, Level};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::network;
 use edifice_io::building_csv;
@@ -15,7 +15,7 @@ use edifice_report::{Align, Figure, HeatMap, Row, Table};
 /// Attributes of real houses, their source in the first column.
 const REAL: &str = "building_exteriors/real.houses.csv";
 /// The source of it with more than one continuous attribute.
-const DELFT: &str = "delft";
+pub(super) const DELFT: &str = "delft";
 const H2K: &str = "h2k";
 /// Columns that a style is described by.
 const WORDS: usize = 5;
@@ -25,30 +25,35 @@ fn learnt(
     ctx: &mut Context,
     sources: &[&'static str],
 ) -> Result<Vec<(&'static str, Dataset, Hierarchy)>> {
-    let path = ctx.shipped(REAL)?;
-    let text = building_csv::read(&path)?;
-    let places = COLUMNS.map(|name| text.header.iter().position(|h| h == name));
     let settings = settings(ctx);
     let mut sets = Vec::new();
     for &source in sources {
-        let own = text.rows.iter().filter(|row| row[0] == source);
-        let rows = own.map(|row| {
-            let cells = places.iter().map(|place| match place.map(|k| &*row[k]) {
-                None | Some("") => Ok(None),
-                Some("yes") => Ok(Some(1.0)),
-                Some("no") => Ok(Some(0.0)),
-                Some(number) => number.parse().map(Some),
-            });
-            cells.collect::<std::result::Result<Vec<Option<f64>>, _>>()
-        });
-        let rows = rows.collect::<std::result::Result<Vec<_>, _>>();
-        let rows = rows.map_err(|e| Error::content(&path, e))?;
+        let rows = rows_of(ctx, source)?;
         let data = dataset(&rows).and_then(known).map_err(Error::method)?;
         let learned =
             learn(&data.table, &data.groups, &settings, ctx.seed()).map_err(Error::method)?;
         sets.push((source, data, learned.model));
     }
     Ok(sets)
+}
+
+/// The attributes of the houses of a source, each known or not.
+pub(super) fn rows_of(ctx: &mut Context, source: &str) -> Result<Vec<AttributeRow>> {
+    let path = ctx.shipped(REAL)?;
+    let text = building_csv::read(&path)?;
+    let places = COLUMNS.map(|name| text.header.iter().position(|h| h == name));
+    let own = text.rows.iter().filter(|row| row[0] == source);
+    let rows = own.map(|row| {
+        let cells = places.iter().map(|place| match place.map(|k| &*row[k]) {
+            None | Some("") => Ok(None),
+            Some("yes") => Ok(Some(1.0)),
+            Some("no") => Ok(Some(0.0)),
+            Some(number) => number.parse().map(Some),
+        });
+        cells.collect::<std::result::Result<AttributeRow, _>>()
+    });
+    let rows = rows.collect::<std::result::Result<Vec<_>, _>>();
+    rows.map_err(|e| Error::content(&path, e))
 }
 
 fn observe(ctx: &mut Context, source: &str, metric: &str, value: usize) {

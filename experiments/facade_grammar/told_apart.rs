@@ -1,5 +1,6 @@
 //! The ease with which a classifier tells drawn facades from real ones.
 
+use crate::roc::area_under_curve;
 use edifice_base::{Error, Result, unwatched};
 use edifice_model::boosting::{Boosting, Settings};
 use edifice_shape::{Axis, Facade};
@@ -42,16 +43,7 @@ pub(crate) fn area(folds: &[Fold], labels: &[&str]) -> Result<f64> {
         real.extend(judged(&fold.held_out));
         drawn.extend(judged(&fold.fresh));
     }
-    let wins: f64 = drawn
-        .iter()
-        .flat_map(|d| real.iter().map(move |r| (d, r)))
-        .map(|(d, r)| match d.total_cmp(r) {
-            std::cmp::Ordering::Greater => 1.0,
-            std::cmp::Ordering::Equal => 0.5,
-            std::cmp::Ordering::Less => 0.0,
-        })
-        .sum();
-    Ok(wins / (drawn.len() * real.len()).max(1) as f64)
+    Ok(area_under_curve(&drawn, &real))
 }
 
 /// Counts, shares, sizes and gaps of a facade.

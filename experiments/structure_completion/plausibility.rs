@@ -3,6 +3,7 @@
 
 use rand::seq::SliceRandom;
 
+use crate::roc::area_under_curve;
 use edifice_base::rng::stream;
 use edifice_base::unwatched;
 use edifice_model::boosting::{Boosting, BoostingError, Settings};
@@ -97,17 +98,5 @@ pub(crate) fn auc(pairs: &[(Vec<f64>, Vec<f64>)], seed: u64) -> Result<f64, Boos
             made.push(learnt.probability(&pairs[pair].1));
         }
     }
-    let above = |m: &f64| {
-        let wins = truth.iter().map(|t| {
-            if m > t {
-                1.0
-            } else if m == t {
-                0.5
-            } else {
-                0.0
-            }
-        });
-        wins.sum::<f64>()
-    };
-    Ok(made.iter().map(above).sum::<f64>() / (made.len() * truth.len()).max(1) as f64)
+    Ok(area_under_curve(&made, &truth))
 }

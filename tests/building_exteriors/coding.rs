@@ -94,6 +94,25 @@ fn draws_of_a_coded_model_are_possible() {
     assert!(!negative);
 }
 
+/// Nothing is to be aligned on a wall without windows, and all of it is symmetric; a house that wants another share there would have to
+/// get a window for it.
+#[test]
+fn sides_with_next_to_no_glass_are_blank_walls() {
+    let text = std::fs::read_to_string(shipped("real.houses.json")).unwrap();
+    let model = ModelFile::from_json(&text).unwrap();
+    let draws = model.sample(400, &mut stream(6, "coding", 0)).unwrap();
+    let mut blank = 0;
+    for row in attribute_rows(&draws.table) {
+        for side in 27..31 {
+            let [glass, symmetry, alignment] = [side, side + 4, side + 8].map(|c| row[c].unwrap());
+            assert!(glass == 0.0 || glass >= 0.01, "{glass}");
+            blank += usize::from(glass == 0.0);
+            assert!(glass > 0.0 || (symmetry, alignment) == (1.0, 0.0));
+        }
+    }
+    assert!((40..800).contains(&blank), "{blank} blank sides of 1,600");
+}
+
 #[test]
 fn columns_are_those_of_draws() {
     for file in ["made.houses.json", "real.houses.json"] {

@@ -13,6 +13,8 @@ const FACADES: usize = 27;
 const SHARES: [usize; 3] = [6, 7, 8];
 /// Largest extent of a drawn house (m).
 const LARGEST: f64 = 60.0;
+/// Window-to-wall ratio below which a side has no window: less than half a square metre on most sides.
+const BLANK: f64 = 0.01;
 /// Least share of an upper floor that is there.
 const LEAST_SHARE: f64 = 0.03;
 
@@ -119,12 +121,25 @@ fn possible(
     if let (None, Some(covered), Some(ground)) = (given[FAR], row[3], row[6]) {
         row[FAR] = Some(covered.clamp(0.2, 1.0) / ground);
     }
+    blank_sides(row, given);
     if row[..FACADES].iter().all(Option::is_some) {
         let mut whole: [f64; 49] = std::array::from_fn(|c| row[c].unwrap_or(0.0));
         let known: [bool; 49] = std::array::from_fn(|c| given[c].is_some());
         repair(&mut whole, &known, &[1.0; 49]);
         for (value, repaired) in row.iter_mut().zip(whole) {
             *value = value.map(|_| repaired);
+        }
+    }
+}
+
+/// Sides with next to no glass have no window, and are what a wall without any is: symmetric, with nothing to align.
+fn blank_sides(row: &mut AttributeRow, given: &AttributeRow) {
+    for side in FACADES..FACADES + 4 {
+        let own = [side, side + 4, side + 8];
+        if own.iter().all(|&c| given[c].is_none()) && row[side].is_some_and(|ratio| ratio < BLANK) {
+            for (c, value) in own.into_iter().zip([0.0, 1.0, 0.0]) {
+                row[c] = row[c].map(|_| value);
+            }
         }
     }
 }
